@@ -1,0 +1,121 @@
+//! An expression as written: a tree in an arena, with the place of every node, that prints back to source.
+//!
+//! Nodes are indices into one vector, children before parents: walking is a loop or a recursion over bounded depth, and
+//! dropping never recurses.
+
+use super::functions::Function;
+use super::interpolation::Interpolation;
+use super::measures::Measure;
+use crate::diagnostic::Span;
+
+/// Index of a node in its [`Ast`].
+pub type NodeIx = u32;
+
+/// Which of the two languages a text is written in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Dialect {
+    /// direct-entry functions: radians, `TIME`, degree suffix `D`, arithmetic IF
+    #[default]
+    Function,
+    /// I-DEAS expression functions: degrees, `t`
+    Expression,
+}
+
+/// A named number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Constant {
+    /// simulation time (`TIME`; `t` in the expression dialect)
+    Time,
+    /// π
+    Pi,
+    /// π/180
+    Dtor,
+    /// 180/π
+    Rtod,
+    /// code of the running analysis: 1 kinematic, 3 initial conditions, 4 dynamic, 5 static, 6 quasi-static, 7 linear
+    Mode,
+}
+
+/// An operator with two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`
+    Sub,
+    /// `*`
+    Mul,
+    /// `/`
+    Div,
+    /// `**`
+    Pow,
+}
+
+/// What a call calls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Callee {
+    /// a function of numbers
+    Function(Function),
+    /// a function of the model, whose arguments are identifiers
+    Measure(Measure),
+    /// a curve through data: number arguments and an identifier
+    Interpolation(Interpolation),
+}
+
+/// One node.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Node {
+    /// A literal. `degrees`: it carried the suffix D, its value is `literal·π/180`.
+    Number {
+        /// the number before the suffix
+        literal: f64,
+        /// whether the suffix D follows
+        degrees: bool,
+    },
+    /// A named number.
+    Constant(Constant),
+    /// `-x`
+    Negate(NodeIx),
+    /// `+x`
+    Plus(NodeIx),
+    /// `a op b`
+    Binary(BinaryOp, NodeIx, NodeIx),
+    /// `IF(selector: negative, zero, positive)`
+    If {
+        /// e1
+        selector: NodeIx,
+        /// the value where e1 < 0
+        negative: NodeIx,
+        /// the value where e1 = 0
+        zero: NodeIx,
+        /// the value where e1 > 0
+        positive: NodeIx,
+    },
+    /// `NAME(args)`; identifiers and selectors are `Number` nodes
+    Call {
+        /// what is called
+        callee: Callee,
+        /// as many as were written
+        args: Vec<NodeIx>,
+    },
+}
+
+/// An expression as written.
+#[derive(Clone, Debug)]
+pub struct Ast {
+    /// the language
+    pub dialect: Dialect,
+    /// all nodes, children before parents
+    pub nodes: Vec<Node>,
+    /// where each node stands in the text: for a binary operator the operator itself, for a call its name
+    pub spans: Vec<Span>,
+    /// the whole
+    pub root: NodeIx,
+}
+
+impl Ast {
+    /// The node at an index.
+    pub fn node(&self, ix: NodeIx) -> &Node {
+        &self.nodes[ix as usize]
+    }
+}

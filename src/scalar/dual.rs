@@ -1,0 +1,94 @@
+//! A number with its derivatives along `N` directions (first order, forward mode).
+
+use super::{Mask, Scalar, elementary_functions, operators};
+
+/// `re + Σ eps[k] εₖ` with εᵢ εⱼ = 0: a value and `N` partial derivatives.
+///
+/// Generic over the number it is made of, so that a dual of jets or of recorded nodes is the same code.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<const N: usize, S = f64> {
+    /// value
+    pub re: S,
+    /// derivatives, one per direction   (N)
+    pub eps: [S; N],
+}
+
+impl<const N: usize, S: Scalar> Dual<N, S> {
+    /// The number that varies along direction `k` with slope one.
+    pub fn variable(re: S, k: usize) -> Self {
+        let mut eps = [S::zero(); N];
+        eps[k] = S::one();
+        Self { re, eps }
+    }
+
+    #[inline(always)]
+    fn map2(self, other: Self, re: S, f: impl Fn(S, S) -> S) -> Self {
+        Self { re, eps: std::array::from_fn(|k| f(self.eps[k], other.eps[k])) }
+    }
+    #[inline(always)]
+    fn sum(self, b: Self) -> Self {
+        self.map2(b, self.re + b.re, |x, y| x + y)
+    }
+    #[inline(always)]
+    fn difference(self, b: Self) -> Self {
+        self.map2(b, self.re - b.re, |x, y| x - y)
+    }
+    #[inline(always)]
+    fn product(self, b: Self) -> Self {
+        self.map2(b, self.re * b.re, |x, y| x * b.re + self.re * y)
+    }
+    #[inline(always)]
+    fn quotient(self, b: Self) -> Self {
+        let q = self.re / b.re;
+        self.map2(b, q, |x, y| (x - q * y) / b.re)
+    }
+    #[inline(always)]
+    fn negative(self) -> Self {
+        Self { re: -self.re, eps: self.eps.map(|x| -x) }
+    }
+    #[inline(always)]
+    fn chain(self, f: S, d1: S, _d2: impl FnOnce() -> S) -> Self {
+        Self { re: f, eps: self.eps.map(|x| if x.is_known_zero() { x } else { d1 * x }) }
+    }
+    fn value_part(&self) -> S {
+        self.re
+    }
+    fn value_part_mut(&mut self) -> &mut S {
+        &mut self.re
+    }
+    fn from_value(re: S) -> Self {
+        Self { re, eps: [S::zero(); N] }
+    }
+    fn is_value_only(&self) -> bool {
+        self.eps.iter().all(Scalar::is_known_zero)
+    }
+}
+
+operators!([const N: usize, S: Scalar] Dual<N, S>);
+
+impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
+    type Mask = S::Mask;
+
+    fn constant(x: f64) -> Self {
+        Self::from_value(S::constant(x))
+    }
+    fn known(&self) -> Option<f64> {
+        if self.is_value_only() { self.re.known() } else { None }
+    }
+    fn lt(self, other: Self) -> S::Mask {
+        self.re.lt(other.re)
+    }
+    fn le(self, other: Self) -> S::Mask {
+        self.re.le(other.re)
+    }
+    fn same(self, other: Self) -> S::Mask {
+        self.re.same(other.re)
+    }
+    fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
+        yes.map2(no, S::select(mask, yes.re, no.re), |x, y| S::select(mask, x, y))
+    }
+    fn scale(self, factor: f64) -> Self {
+        Self { re: self.re.scale(factor), eps: self.eps.map(|x| x.scale(factor)) }
+    }
+    elementary_functions!(S);
+}

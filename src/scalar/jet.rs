@@ -1,0 +1,113 @@
+//! A number with its first and second derivative in time: value, rate, acceleration.
+
+use super::{Mask, Scalar, elementary_functions, operators};
+
+/// A value with its first two derivatives along one direction, usually time.
+///
+/// Not scaled by factorials: `second` is the second derivative itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet<S = f64> {
+    /// value
+    pub value: S,
+    /// first derivative
+    pub first: S,
+    /// second derivative
+    pub second: S,
+}
+
+impl<S: Scalar> Jet<S> {
+    /// The variable itself: slope one, no curvature.
+    pub fn variable(value: S) -> Self {
+        Self { value, first: S::one(), second: S::zero() }
+    }
+    /// From a value and its two derivatives.
+    pub fn new(value: S, first: S, second: S) -> Self {
+        Self { value, first, second }
+    }
+
+    #[inline(always)]
+    fn sum(self, b: Self) -> Self {
+        Self::new(self.value + b.value, self.first + b.first, self.second + b.second)
+    }
+    #[inline(always)]
+    fn difference(self, b: Self) -> Self {
+        Self::new(self.value - b.value, self.first - b.first, self.second - b.second)
+    }
+    #[inline(always)]
+    fn product(self, b: Self) -> Self {
+        let a = self;
+        Self::new(
+            a.value * b.value,
+            a.first * b.value + a.value * b.first,
+            a.second * b.value + (a.first * b.first).scale(2.0) + a.value * b.second,
+        )
+    }
+    #[inline(always)]
+    fn quotient(self, b: Self) -> Self {
+        // from a = q b, differentiated twice
+        let a = self;
+        let q = a.value / b.value;
+        let q1 = (a.first - q * b.first) / b.value;
+        let q2 = (a.second - (q1 * b.first).scale(2.0) - q * b.second) / b.value;
+        Self::new(q, q1, q2)
+    }
+    #[inline(always)]
+    fn negative(self) -> Self {
+        Self::new(-self.value, -self.first, -self.second)
+    }
+    #[inline(always)]
+    fn chain(self, f: S, d1: S, d2: impl FnOnce() -> S) -> Self {
+        if self.is_value_only() {
+            return Self::from_value(f);
+        }
+        let second = if self.second.is_known_zero() { S::zero() } else { d1 * self.second };
+        let curvature = if self.first.is_known_zero() { S::zero() } else { d2() * self.first * self.first };
+        let first = if self.first.is_known_zero() { S::zero() } else { d1 * self.first };
+        Self::new(f, first, second + curvature)
+    }
+    fn value_part(&self) -> S {
+        self.value
+    }
+    fn value_part_mut(&mut self) -> &mut S {
+        &mut self.value
+    }
+    fn from_value(value: S) -> Self {
+        Self::new(value, S::zero(), S::zero())
+    }
+    fn is_value_only(&self) -> bool {
+        self.first.is_known_zero() && self.second.is_known_zero()
+    }
+}
+
+operators!([S: Scalar] Jet<S>);
+
+impl<S: Scalar> Scalar for Jet<S> {
+    type Mask = S::Mask;
+
+    fn constant(x: f64) -> Self {
+        Self::from_value(S::constant(x))
+    }
+    fn known(&self) -> Option<f64> {
+        if self.is_value_only() { self.value.known() } else { None }
+    }
+    fn lt(self, other: Self) -> S::Mask {
+        self.value.lt(other.value)
+    }
+    fn le(self, other: Self) -> S::Mask {
+        self.value.le(other.value)
+    }
+    fn same(self, other: Self) -> S::Mask {
+        self.value.same(other.value)
+    }
+    fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
+        Self::new(
+            S::select(mask, yes.value, no.value),
+            S::select(mask, yes.first, no.first),
+            S::select(mask, yes.second, no.second),
+        )
+    }
+    fn scale(self, factor: f64) -> Self {
+        Self::new(self.value.scale(factor), self.first.scale(factor), self.second.scale(factor))
+    }
+    elementary_functions!(S);
+}

@@ -1,0 +1,101 @@
+//! What angles mean. The only file that knows Euler sequences and quaternions.
+//!
+//! 3-1-3 angles (PSI, THETA, PHI) are body-fixed: `R = Rz(ψ) Rx(θ) Rz(φ)`. Angles are radians.
+
+use super::{Mat3, Vec3};
+use crate::scalar::Scalar;
+
+/// Rotation by `angle` about axis `k` (0 x, 1 y, 2 z), right-handed.
+#[inline(always)]
+pub fn about_axis<S: Scalar>(k: usize, angle: S) -> Mat3<S> {
+    let (s, c) = angle.sin_cos();
+    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+    let mut m = Mat3::zero();
+    m.0[k][k] = S::one();
+    m.0[i][i] = c;
+    m.0[j][j] = c;
+    m.0[i][j] = -s;
+    m.0[j][i] = s;
+    m
+}
+
+/// `R = Rz(ψ) Rx(θ) Rz(φ)`
+pub fn from_313<S: Scalar>(psi: S, theta: S, phi: S) -> Mat3<S> {
+    about_axis(2, psi) * about_axis(0, theta) * about_axis(2, phi)
+}
+
+/// The frame with z along `z` and x in the half plane of `x`; `None` when they are parallel or zero.
+pub fn from_z_and_x(z: Vec3<f64>, x: Vec3<f64>) -> Option<Mat3<f64>> {
+    let unit = |v: Vec3<f64>| {
+        let n = v.norm();
+        (n > 0.0 && n.is_finite()).then(|| v.times(1.0 / n))
+    };
+    let z = unit(z)?;
+    let y = z.cross(unit(x)?);
+    if y.norm() < 1e-12 {
+        return None;
+    }
+    let y = unit(y)?;
+    Some(Mat3::from_columns(y.cross(z), y, z))
+}
+
+/// The rotation matrix of the quaternion (w, x, y, z), which is scaled to unit length here: `R = R(q/|q|)`.
+pub fn from_quaternion<S: Scalar>(q: [S; 4]) -> Mat3<S> {
+    let [w, x, y, z] = q;
+    let n = w * w + x * x + y * y + z * z;
+    let f = S::constant(2.0) / n;
+    let one = S::one();
+    Mat3([
+        [one - f * (y * y + z * z), f * (x * y - w * z), f * (x * z + w * y)],
+        [f * (x * y + w * z), one - f * (x * x + z * z), f * (y * z - w * x)],
+        [f * (x * z - w * y), f * (y * z + w * x), one - f * (x * x + y * y)],
+    ])
+}
+
+/// The rate of a quaternion for the angular velocity `w_B` in body axes: `q̇ = ½ q ∘ (0, ω)`.
+pub fn quaternion_rate<S: Scalar>(q: [S; 4], w: Vec3<S>) -> [S; 4] {
+    let [a, x, y, z] = q;
+    let [p, r, s] = w.0;
+    [
+        (-(x * p + y * r + z * s)).scale(0.5),
+        (a * p + y * s - z * r).scale(0.5),
+        (a * r + z * p - x * s).scale(0.5),
+        (a * s + x * r - y * p).scale(0.5),
+    ]
+}
+
+/// The unit quaternion (w, x, y, z) of a rotation matrix, w ≥ 0 (Shepperd's choice of the largest pivot).
+pub fn to_quaternion(r: &Mat3<f64>) -> [f64; 4] {
+    let m = &r.0;
+    let trace = m[0][0] + m[1][1] + m[2][2];
+    let candidates = [trace, m[0][0], m[1][1], m[2][2]];
+    let largest = (0..4).fold(0, |best, k| if candidates[k] > candidates[best] { k } else { best });
+    let mut q = [0.0; 4];
+    if largest == 0 {
+        let s = 2.0 * (1.0 + trace).sqrt();
+        q = [s / 4.0, (m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s];
+    } else {
+        let (i, j, k) = (largest - 1, largest % 3, (largest + 1) % 3);
+        let s = 2.0 * (1.0 + m[i][i] - m[j][j] - m[k][k]).sqrt();
+        q[0] = (m[k][j] - m[j][k]) / s;
+        q[i + 1] = s / 4.0;
+        q[j + 1] = (m[j][i] + m[i][j]) / s;
+        q[k + 1] = (m[k][i] + m[i][k]) / s;
+    }
+    let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
+    q.map(|x| sign * x / n)
+}
+
+/// Sets entries that rounding kept from being 0, 1 or −1 to what they were meant to be.
+///
+/// `90D` in a dataset gives a cosine of 6e-17; a zero there lets whole products be left out of a scene. The change is of
+/// the size of one rounding error.
+pub fn snapped(r: &Mat3<f64>) -> Mat3<f64> {
+    Mat3(r.0.map(|row| {
+        row.map(|x| {
+            let whole = x.round();
+            if (x - whole).abs() < 4.0 * f64::EPSILON { whole } else { x }
+        })
+    }))
+}
