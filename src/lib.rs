@@ -9,3 +9,5 @@ pub mod space;
 
 #[cfg(feature = "solver")]
 pub mod numeric;
+#[cfg(feature = "solver")]
+pub mod model;
