@@ -8,6 +8,6 @@ pub mod scalar;
 pub mod space;
 
 #[cfg(feature = "solver")]
-pub mod numeric;
-#[cfg(feature = "solver")]
 pub mod model;
+#[cfg(feature = "solver")]
+pub mod numeric;

@@ -72,7 +72,10 @@ impl Diagnostic {
     }
     /// A warning without a place yet.
     pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(code, message) }
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
     }
     /// The same, about this place of `text`.
     pub fn at(mut self, text: &str, span: Span) -> Self {
@@ -131,7 +134,8 @@ pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> V
         .filter_map(|k| {
             let upper = k.to_ascii_uppercase();
             let d = edit_distance(&name, &upper);
-            let begins = name.len() >= 3 && (upper.starts_with(&name) || name.starts_with(&upper) && upper.len() >= 3);
+            let begins = name.len() >= 3
+                && (upper.starts_with(&name) || name.starts_with(&upper) && upper.len() >= 3);
             (d <= limit || begins).then_some((d, k))
         })
         .collect();
@@ -143,7 +147,8 @@ pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> V
 
 /// Insertions, deletions, replacements and swaps of neighbours between two words (optimal string alignment).
 fn edit_distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().take(64).collect(), b.chars().take(64).collect());
+    let (a, b): (Vec<char>, Vec<char>) =
+        (a.chars().take(64).collect(), b.chars().take(64).collect());
     let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
     for i in 1..=a.len() {
         let mut row = vec![i];

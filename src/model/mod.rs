@@ -42,7 +42,11 @@ pub enum Formula {
 impl Formula {
     /// An expression built by a program.
     pub fn text(text: impl Into<String>) -> Self {
-        Formula::Expression { text: text.into(), line: 0, column: 0 }
+        Formula::Expression {
+            text: text.into(),
+            line: 0,
+            column: 0,
+        }
     }
 }
 
@@ -166,7 +170,11 @@ pub enum Driven {
     /// the only freedom of a joint (no keyword given)
     Joint(u32),
     /// component 0 X, 1 Y, 2 Z of I from J along J's axes; 3 B1, 4 B2, 5 B3 body 1-2-3 angles of I in J
-    Markers { i: u32, j: u32, component: usize },
+    Markers {
+        i: u32,
+        j: u32,
+        component: usize,
+    },
 }
 
 /// Level at which a MOTION prescribes.
@@ -338,10 +346,26 @@ pub struct SplineData {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum RequestKind {
-    Displacement { i: u32, j: Option<u32>, rm: Option<u32> },
-    Velocity { i: u32, j: Option<u32>, rm: Option<u32> },
-    Acceleration { i: u32, j: Option<u32>, rm: Option<u32> },
-    Force { i: u32, j: Option<u32>, rm: Option<u32> },
+    Displacement {
+        i: u32,
+        j: Option<u32>,
+        rm: Option<u32>,
+    },
+    Velocity {
+        i: u32,
+        j: Option<u32>,
+        rm: Option<u32>,
+    },
+    Acceleration {
+        i: u32,
+        j: Option<u32>,
+        rm: Option<u32>,
+    },
+    Force {
+        i: u32,
+        j: Option<u32>,
+        rm: Option<u32>,
+    },
     Functions(Box<[Option<Formula>; 8]>),
     User(Formula),
 }

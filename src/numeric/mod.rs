@@ -32,7 +32,13 @@ pub trait Ode {
     ///
     /// # Errors
     /// When it has no finite value there.
-    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64], dfdt: &mut [f64]) -> Result<(), Failure>;
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        jacobian: &mut [f64],
+        dfdt: &mut [f64],
+    ) -> Result<(), Failure>;
     /// Typical magnitude of each unknown, below which its error is measured absolutely   (n)
     fn typical(&self, typical: &mut [f64]);
 }
@@ -52,7 +58,14 @@ pub trait Dae {
     ///
     /// # Errors
     /// When it has no finite value there.
-    fn jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], cj: f64, values: &mut [f64]) -> Result<(), Failure>;
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        cj: f64,
+        values: &mut [f64],
+    ) -> Result<(), Failure>;
     /// How each unknown is treated by the error norm and the order of its constraint   (n)
     fn kinds(&self) -> Vec<Kind>;
     /// Typical magnitude of each unknown, below which its error is measured absolutely   (n)

@@ -23,7 +23,10 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
 
     #[inline(always)]
     fn map2(self, other: Self, re: S, f: impl Fn(S, S) -> S) -> Self {
-        Self { re, eps: std::array::from_fn(|k| f(self.eps[k], other.eps[k])) }
+        Self {
+            re,
+            eps: std::array::from_fn(|k| f(self.eps[k], other.eps[k])),
+        }
     }
     #[inline(always)]
     fn sum(self, b: Self) -> Self {
@@ -44,11 +47,17 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
     #[inline(always)]
     fn negative(self) -> Self {
-        Self { re: -self.re, eps: self.eps.map(|x| -x) }
+        Self {
+            re: -self.re,
+            eps: self.eps.map(|x| -x),
+        }
     }
     #[inline(always)]
     fn chain(self, f: S, d1: S, _d2: impl FnOnce() -> S) -> Self {
-        Self { re: f, eps: self.eps.map(|x| if x.is_known_zero() { x } else { d1 * x }) }
+        Self {
+            re: f,
+            eps: self.eps.map(|x| if x.is_known_zero() { x } else { d1 * x }),
+        }
     }
     fn value_part(&self) -> S {
         self.re
@@ -57,7 +66,10 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
         &mut self.re
     }
     fn from_value(re: S) -> Self {
-        Self { re, eps: [S::zero(); N] }
+        Self {
+            re,
+            eps: [S::zero(); N],
+        }
     }
     fn is_value_only(&self) -> bool {
         self.eps.iter().all(Scalar::is_known_zero)
@@ -73,7 +85,11 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
         Self::from_value(S::constant(x))
     }
     fn known(&self) -> Option<f64> {
-        if self.is_value_only() { self.re.known() } else { None }
+        if self.is_value_only() {
+            self.re.known()
+        } else {
+            None
+        }
     }
     fn lt(self, other: Self) -> S::Mask {
         self.re.lt(other.re)
@@ -85,10 +101,15 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
         self.re.same(other.re)
     }
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
-        yes.map2(no, S::select(mask, yes.re, no.re), |x, y| S::select(mask, x, y))
+        yes.map2(no, S::select(mask, yes.re, no.re), |x, y| {
+            S::select(mask, x, y)
+        })
     }
     fn scale(self, factor: f64) -> Self {
-        Self { re: self.re.scale(factor), eps: self.eps.map(|x| x.scale(factor)) }
+        Self {
+            re: self.re.scale(factor),
+            eps: self.eps.map(|x| x.scale(factor)),
+        }
     }
     elementary_functions!(S);
 }

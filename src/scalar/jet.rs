@@ -18,20 +18,36 @@ pub struct Jet<S = f64> {
 impl<S: Scalar> Jet<S> {
     /// The variable itself: slope one, no curvature.
     pub fn variable(value: S) -> Self {
-        Self { value, first: S::one(), second: S::zero() }
+        Self {
+            value,
+            first: S::one(),
+            second: S::zero(),
+        }
     }
     /// From a value and its two derivatives.
     pub fn new(value: S, first: S, second: S) -> Self {
-        Self { value, first, second }
+        Self {
+            value,
+            first,
+            second,
+        }
     }
 
     #[inline(always)]
     fn sum(self, b: Self) -> Self {
-        Self::new(self.value + b.value, self.first + b.first, self.second + b.second)
+        Self::new(
+            self.value + b.value,
+            self.first + b.first,
+            self.second + b.second,
+        )
     }
     #[inline(always)]
     fn difference(self, b: Self) -> Self {
-        Self::new(self.value - b.value, self.first - b.first, self.second - b.second)
+        Self::new(
+            self.value - b.value,
+            self.first - b.first,
+            self.second - b.second,
+        )
     }
     #[inline(always)]
     fn product(self, b: Self) -> Self {
@@ -60,9 +76,21 @@ impl<S: Scalar> Jet<S> {
         if self.is_value_only() {
             return Self::from_value(f);
         }
-        let second = if self.second.is_known_zero() { S::zero() } else { d1 * self.second };
-        let curvature = if self.first.is_known_zero() { S::zero() } else { d2() * self.first * self.first };
-        let first = if self.first.is_known_zero() { S::zero() } else { d1 * self.first };
+        let second = if self.second.is_known_zero() {
+            S::zero()
+        } else {
+            d1 * self.second
+        };
+        let curvature = if self.first.is_known_zero() {
+            S::zero()
+        } else {
+            d2() * self.first * self.first
+        };
+        let first = if self.first.is_known_zero() {
+            S::zero()
+        } else {
+            d1 * self.first
+        };
         Self::new(f, first, second + curvature)
     }
     fn value_part(&self) -> S {
@@ -88,7 +116,11 @@ impl<S: Scalar> Scalar for Jet<S> {
         Self::from_value(S::constant(x))
     }
     fn known(&self) -> Option<f64> {
-        if self.is_value_only() { self.value.known() } else { None }
+        if self.is_value_only() {
+            self.value.known()
+        } else {
+            None
+        }
     }
     fn lt(self, other: Self) -> S::Mask {
         self.value.lt(other.value)
@@ -107,7 +139,11 @@ impl<S: Scalar> Scalar for Jet<S> {
         )
     }
     fn scale(self, factor: f64) -> Self {
-        Self::new(self.value.scale(factor), self.first.scale(factor), self.second.scale(factor))
+        Self::new(
+            self.value.scale(factor),
+            self.first.scale(factor),
+            self.second.scale(factor),
+        )
     }
     elementary_functions!(S);
 }

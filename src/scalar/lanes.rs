@@ -84,7 +84,9 @@ impl<const N: usize> Scalar for Lanes<N> {
         std::array::from_fn(|k| self.0[k] == other.0[k])
     }
     fn select(mask: [bool; N], yes: Self, no: Self) -> Self {
-        Self(std::array::from_fn(|k| if mask[k] { yes.0[k] } else { no.0[k] }))
+        Self(std::array::from_fn(|k| {
+            if mask[k] { yes.0[k] } else { no.0[k] }
+        }))
     }
     lane_by_lane!(sqrt sin cos tan asin acos atan sinh cosh tanh exp ln log10 abs trunc round floor);
     fn atan2(self, other: Self) -> Self {

@@ -416,9 +416,17 @@ macro_rules! elementary_functions {
         fn powi(self, n: i32) -> Self {
             let x = self.value_part();
             let k = f64::from(n);
-            let d1 = if n == 0 { <$S>::zero() } else { x.powi(n - 1).scale(k) };
+            let d1 = if n == 0 {
+                <$S>::zero()
+            } else {
+                x.powi(n - 1).scale(k)
+            };
             self.chain(x.powi(n), d1, || {
-                if n == 0 || n == 1 { <$S>::zero() } else { x.powi(n - 2).scale(k * (k - 1.0)) }
+                if n == 0 || n == 1 {
+                    <$S>::zero()
+                } else {
+                    x.powi(n - 2).scale(k * (k - 1.0))
+                }
             })
         }
         fn abs(self) -> Self {
@@ -453,13 +461,16 @@ macro_rules! elementary_functions {
             // well conditioned there; the value is the four-quadrant one.
             let (y, x) = (self.value_part(), other.value_part());
             let steep = x.abs().lt(y.abs());
-            let mut result = Self::choose(steep, || -(other / self).atan(), || (self / other).atan());
+            let mut result =
+                Self::choose(steep, || -(other / self).atan(), || (self / other).atan());
             *result.value_part_mut() = y.atan2(x);
             result
         }
         fn lookup(self, table: &std::sync::Arc<dyn $crate::scalar::Table>, order: u32) -> Self {
             let x = self.value_part();
-            self.chain(x.lookup(table, order), x.lookup(table, order + 1), || x.lookup(table, order + 2))
+            self.chain(x.lookup(table, order), x.lookup(table, order + 1), || {
+                x.lookup(table, order + 2)
+            })
         }
         fn powf(self, exponent: Self) -> Self {
             // d(aᵇ) = b aᵇ⁻¹ da + aᵇ ln a db, the second term only where b varies
@@ -470,7 +481,11 @@ macro_rules! elementary_functions {
                 // b = 0 and b = 1 have derivatives 0 and 1, also at a = 0
                 let d1 = <$S>::choose(b.same(zero), || zero, || b * a.powf(b - one));
                 return self.chain(a.powf(b), d1, || {
-                    <$S>::choose(b.same(zero).or(b.same(one)), || zero, || b * (b - one) * a.powf(b - one - one))
+                    <$S>::choose(
+                        b.same(zero).or(b.same(one)),
+                        || zero,
+                        || b * (b - one) * a.powf(b - one - one),
+                    )
                 });
             }
             let mut result = (exponent * self.ln()).exp();

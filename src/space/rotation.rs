@@ -46,9 +46,21 @@ pub fn from_quaternion<S: Scalar>(q: [S; 4]) -> Mat3<S> {
     let f = S::constant(2.0) / n;
     let one = S::one();
     Mat3([
-        [one - f * (y * y + z * z), f * (x * y - w * z), f * (x * z + w * y)],
-        [f * (x * y + w * z), one - f * (x * x + z * z), f * (y * z - w * x)],
-        [f * (x * z - w * y), f * (y * z + w * x), one - f * (x * x + y * y)],
+        [
+            one - f * (y * y + z * z),
+            f * (x * y - w * z),
+            f * (x * z + w * y),
+        ],
+        [
+            f * (x * y + w * z),
+            one - f * (x * x + z * z),
+            f * (y * z - w * x),
+        ],
+        [
+            f * (x * z - w * y),
+            f * (y * z + w * x),
+            one - f * (x * x + y * y),
+        ],
     ])
 }
 
@@ -69,11 +81,22 @@ pub fn to_quaternion(r: &Mat3<f64>) -> [f64; 4] {
     let m = &r.0;
     let trace = m[0][0] + m[1][1] + m[2][2];
     let candidates = [trace, m[0][0], m[1][1], m[2][2]];
-    let largest = (0..4).fold(0, |best, k| if candidates[k] > candidates[best] { k } else { best });
+    let largest = (0..4).fold(0, |best, k| {
+        if candidates[k] > candidates[best] {
+            k
+        } else {
+            best
+        }
+    });
     let mut q = [0.0; 4];
     if largest == 0 {
         let s = 2.0 * (1.0 + trace).sqrt();
-        q = [s / 4.0, (m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s];
+        q = [
+            s / 4.0,
+            (m[2][1] - m[1][2]) / s,
+            (m[0][2] - m[2][0]) / s,
+            (m[1][0] - m[0][1]) / s,
+        ];
     } else {
         let (i, j, k) = (largest - 1, largest % 3, (largest + 1) % 3);
         let s = 2.0 * (1.0 + m[i][i] - m[j][j] - m[k][k]).sqrt();
@@ -95,7 +118,11 @@ pub fn snapped(r: &Mat3<f64>) -> Mat3<f64> {
     Mat3(r.0.map(|row| {
         row.map(|x| {
             let whole = x.round();
-            if (x - whole).abs() < 4.0 * f64::EPSILON { whole } else { x }
+            if (x - whole).abs() < 4.0 * f64::EPSILON {
+                whole
+            } else {
+                x
+            }
         })
     }))
 }

@@ -21,7 +21,9 @@ impl<S: Scalar> Vec3<S> {
     /// The unit vector of axis `k` (0 x, 1 y, 2 z).
     #[inline(always)]
     pub fn axis(k: usize) -> Self {
-        Self(std::array::from_fn(|i| if i == k { S::one() } else { S::zero() }))
+        Self(std::array::from_fn(|i| {
+            if i == k { S::one() } else { S::zero() }
+        }))
     }
     /// A constant vector.
     #[inline(always)]
@@ -37,7 +39,11 @@ impl<S: Scalar> Vec3<S> {
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
         let (a, b) = (self.0, b.0);
-        Self([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+        Self([
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ])
     }
     /// Product with a number.
     #[inline(always)]
@@ -134,7 +140,9 @@ impl<S: Scalar> Mat3<S> {
     /// The transpose; for a rotation, the inverse.
     #[inline(always)]
     pub fn transpose(&self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[j][i])))
+        Self(std::array::from_fn(|i| {
+            std::array::from_fn(|j| self.0[j][i])
+        }))
     }
     /// `self · v`
     #[inline(always)]
@@ -164,21 +172,27 @@ impl<S: Scalar> Mul for Mat3<S> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.row(i).dot(b.column(j)))))
+        Self(std::array::from_fn(|i| {
+            std::array::from_fn(|j| self.row(i).dot(b.column(j)))
+        }))
     }
 }
 impl<S: Scalar> Add for Mat3<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i][j] + b.0[i][j])))
+        Self(std::array::from_fn(|i| {
+            std::array::from_fn(|j| self.0[i][j] + b.0[i][j])
+        }))
     }
 }
 impl<S: Scalar> Sub for Mat3<S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i][j] - b.0[i][j])))
+        Self(std::array::from_fn(|i| {
+            std::array::from_fn(|j| self.0[i][j] - b.0[i][j])
+        }))
     }
 }
 
@@ -194,20 +208,32 @@ pub struct Frame<S> {
 impl<S: Scalar> Frame<S> {
     /// Aligned with the reference, at its origin.
     pub fn identity() -> Self {
-        Self { rotation: Mat3::identity(), position: Vec3::zero() }
+        Self {
+            rotation: Mat3::identity(),
+            position: Vec3::zero(),
+        }
     }
     /// A constant frame.
     pub fn constant(f: Frame<f64>) -> Self {
-        Self { rotation: Mat3::constant(f.rotation), position: Vec3::constant(f.position) }
+        Self {
+            rotation: Mat3::constant(f.rotation),
+            position: Vec3::constant(f.position),
+        }
     }
     /// `X_GP · X_PM = X_GM`
     #[inline(always)]
     pub fn compose(&self, inner: &Self) -> Self {
-        Self { rotation: self.rotation * inner.rotation, position: self.point(inner.position) }
+        Self {
+            rotation: self.rotation * inner.rotation,
+            position: self.point(inner.position),
+        }
     }
     /// The pose of G in M.
     pub fn inverse(&self) -> Self {
-        Self { rotation: self.rotation.transpose(), position: -self.rotation.apply_transposed(self.position) }
+        Self {
+            rotation: self.rotation.transpose(),
+            position: -self.rotation.apply_transposed(self.position),
+        }
     }
     /// A point of M, expressed in G.
     #[inline(always)]
