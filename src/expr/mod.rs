@@ -8,3 +8,4 @@ pub mod functions;
 pub mod interpolation;
 pub mod measures;
 pub mod program;
+pub mod signature;
