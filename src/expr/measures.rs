@@ -302,7 +302,10 @@ impl Measure {
     }
     /// Whether its value depends on what was before: angles that count turns, Euler parameters that keep their sign.
     pub fn needs_history(self) -> bool {
-        matches!(self, Measure::Ax | Measure::Ay | Measure::Az | Measure::Incang | Measure::Orient)
+        matches!(
+            self,
+            Measure::Ax | Measure::Ay | Measure::Az | Measure::Incang | Measure::Orient
+        )
     }
 }
 

@@ -458,7 +458,10 @@ mod tests {
             let rotations = [0, 1, 2].map(|n| about_axis(sequence[n], angles[n]));
             let i = turned(rotations[0] * rotations[1] * rotations[2]);
             for (n, angle) in (1..).zip(angles) {
-                assert_close(orientation(k as u32 + 1, n, &i, &MarkerState::ground()).unwrap(), angle);
+                assert_close(
+                    orientation(k as u32 + 1, n, &i, &MarkerState::ground()).unwrap(),
+                    angle,
+                );
             }
         }
         for q in [
@@ -470,7 +473,10 @@ mod tests {
             let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
             let i = turned(crate::space::rotation::from_quaternion(q));
             for (k, x) in (1..).zip(q) {
-                assert_close(orientation(27, k, &i, &MarkerState::ground()).unwrap(), x / n);
+                assert_close(
+                    orientation(27, k, &i, &MarkerState::ground()).unwrap(),
+                    x / n,
+                );
             }
         }
     }
