@@ -4,18 +4,34 @@
 //! order. All fields are public; `check` and the scene compiler say what does not fit together.
 //! Nothing here knows how anything is computed.
 
+mod body;
+mod constraint;
+mod force;
+mod output;
+mod settings;
+mod system;
+
+pub use body::*;
+pub use constraint::*;
+pub use force::*;
+pub use output::*;
+pub use settings::*;
+pub use system::*;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Elements of one kind by their numbers.
 pub type ById<T> = BTreeMap<u32, T>;
 
-/// Where an element was written.
+/// Where an element was written, its name, and what of it carries no mechanics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Place {
     /// 1-based line of the statement's first character; 0 when built by a program
     pub line: usize,
     /// the name given by `adams_view_name='…'`
     pub name: Option<String>,
+    /// arguments that are kept but not used: full keyword and text of the value, empty for a bare keyword
+    pub extra: Vec<(String, String)>,
 }
 
 /// A FUNCTION as written.
@@ -29,6 +45,8 @@ pub enum Formula {
         line: usize,
         /// column of its first character in that line
         column: usize,
+        /// where the text went on, on later lines
+        breaks: Vec<Break>,
     },
     /// `USER(r1, …)`, computed by a routine of the user's
     User {
@@ -39,6 +57,15 @@ pub enum Formula {
     },
 }
 
+/// From this byte of an expression on, the text stands at this line and column of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub struct Break {
+    pub offset: usize,
+    pub line: usize,
+    pub column: usize,
+}
+
 impl Formula {
     /// An expression built by a program.
     pub fn text(text: impl Into<String>) -> Self {
@@ -46,381 +73,38 @@ impl Formula {
             text: text.into(),
             line: 0,
             column: 0,
+            breaks: Vec::new(),
         }
+    }
+
+    /// Line and column in the file of a byte of the expression; `None` when it was not read from a file.
+    pub fn file_place(&self, offset: usize) -> Option<(usize, usize)> {
+        let Formula::Expression {
+            text,
+            line,
+            column,
+            breaks,
+        } = self
+        else {
+            return None;
+        };
+        if *line == 0 {
+            return None;
+        }
+        let last = breaks.iter().rev().find(|b| b.offset <= offset);
+        let (from, line, column) = match last {
+            Some(b) => (b.offset, b.line, b.column),
+            None => (0, *line, *column),
+        };
+        let walked = text.get(from..offset.min(text.len()))?;
+        Some((line, column + walked.chars().count()))
     }
 }
 
-/// The orientation of a part or marker, as written.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Orientation {
-    /// that of the parent
-    #[default]
-    Aligned,
-    /// body-fixed 3-1-3 angles ψ, θ, φ [rad]
-    Euler([f64; 3]),
-    /// points on the axes, in parent coordinates (ZP/XP, ZG/XG)
-    Points {
-        /// on +z (with `use_x`: only in the x–z half plane)
-        z: Option<[f64; 3]>,
-        /// in the +x half plane (with `use_x`: on +x)
-        x: Option<[f64; 3]>,
-        /// USEXP: x is exact
-        use_x: bool,
-    },
-}
-
-/// PART (a rigid body; ground is the part with `ground`) and POINT_MASS.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
-pub struct Part {
-    pub place: Place,
-    pub ground: bool,
-    pub mass: f64,
-    /// marker at the centre of mass
-    pub cm: Option<u32>,
-    /// marker about whose origin and axes `ip` is given; CM when absent
-    pub im: Option<u32>,
-    /// Ixx, Iyy, Izz, and the positive products ∫xy, ∫xz, ∫yz dm
-    pub ip: [f64; 6],
-    /// origin of the part frame in ground
-    pub qg: [f64; 3],
-    /// orientation of the part frame in ground
-    pub orientation: Orientation,
-    /// initial velocity of CM along the axes of `vm` (ground when absent); `None` = not given
-    pub velocity: [Option<f64>; 3],
-    /// initial angular velocity about the axes of `wm` (CM when absent); `None` = not given
-    pub angular_velocity: [Option<f64>; 3],
-    pub vm: Option<u32>,
-    pub wm: Option<u32>,
-    /// EXACT: x, y, z, ψ, θ, φ that assembly should keep
-    pub exact: [bool; 6],
-}
-
-/// What a marker is fixed in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum MarkerOwner {
-    Part(u32),
-    PointMass(u32),
-    /// FLEX_BODY, FE_PART, CURVE …: read, not solved
-    Other(u32),
-}
-
-/// MARKER: a frame fixed in a part, or floating.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Marker {
-    pub place: Place,
-    pub owner: MarkerOwner,
-    /// origin in the part frame
-    pub qp: [f64; 3],
-    pub orientation: Orientation,
-    /// its frame is set by the element that owns it
-    pub floating: bool,
-}
-
-/// JOINT types.
-#[allow(missing_docs)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum JointKind {
-    Fixed, Revolute, Translational, Cylindrical, Spherical, Planar, Universal, Hooke, Convel, Rackpin, Screw,
-}
-
-/// JOINT
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Joint {
-    pub place: Place,
-    pub kind: JointKind,
-    pub i: u32,
-    pub j: u32,
-    /// IC or ICTRAN: initial displacement and velocity along z_J
-    pub ic_translation: [Option<f64>; 2],
-    /// IC or ICROT: initial angle and rate about z_J [rad]
-    pub ic_rotation: [Option<f64>; 2],
-    /// SCREW: translation per revolution
-    pub pitch: Option<f64>,
-    /// RACKPIN: pitch diameter, signed
-    pub pd: Option<f64>,
-}
-
-/// JPRIM types.
-#[allow(missing_docs)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum PrimitiveKind { Atpoint, Inline, Inplane, Orientation, ParallelAxes, Perpendicular }
-
-/// JPRIM
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Primitive {
-    pub place: Place,
-    pub kind: PrimitiveKind,
-    pub i: u32,
-    pub j: u32,
-}
-
-/// What a MOTION drives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Driven {
-    JointTranslation(u32),
-    JointRotation(u32),
-    /// the only freedom of a joint (no keyword given)
-    Joint(u32),
-    /// component 0 X, 1 Y, 2 Z of I from J along J's axes; 3 B1, 4 B2, 5 B3 body 1-2-3 angles of I in J
-    Markers {
-        i: u32,
-        j: u32,
-        component: usize,
-    },
-}
-
-/// Level at which a MOTION prescribes.
-#[allow(missing_docs)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum Level { #[default] Displacement, Velocity, Acceleration }
-
-/// MOTION
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Motion {
-    pub place: Place,
-    pub driven: Driven,
-    pub level: Level,
-    pub function: Formula,
-    pub ic_displacement: Option<f64>,
-    pub ic_velocity: Option<f64>,
-}
-
-/// COUPLER: r1 q1 + r2 q2 + r3 q3 = constant.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Coupler {
-    pub place: Place,
-    pub joints: Vec<u32>,
-    /// per joint: rotation (true) or translation (false); `None` = the joint's only freedom
-    pub rotational: Vec<Option<bool>>,
-    /// as many as joints
-    pub scales: Vec<f64>,
-    pub user: Option<Formula>,
-}
-
-/// GEAR
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Gear {
-    pub place: Place,
-    pub joints: [u32; 2],
-    pub cv: u32,
-}
-
-/// GCON: expression = 0
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct GeneralConstraint {
-    pub place: Place,
-    pub i: Option<u32>,
-    pub function: Formula,
-}
-
-/// SFORCE
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct SingleForce {
-    pub place: Place,
-    pub rotational: bool,
-    pub i: u32,
-    pub j: u32,
-    pub action_only: bool,
-    pub function: Formula,
-}
-
-/// VFORCE, VTORQUE, GFORCE: components in the axes of `rm`, on I; the reaction acts on the part of `jfloat`.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct VectorForce {
-    pub place: Place,
-    pub i: u32,
-    /// floating marker that carries the reaction; `None` = no reaction
-    pub jfloat: Option<u32>,
-    /// axes of the components; ground when absent
-    pub rm: Option<u32>,
-    /// FX, FY, FZ; absent = 0
-    pub force: [Option<Formula>; 3],
-    /// TX, TY, TZ; absent = 0
-    pub torque: [Option<Formula>; 3],
-    /// FUNCTION=USER(…) for all of them
-    pub user: Option<Formula>,
-}
-
-/// SPRINGDAMPER
-#[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
-pub struct SpringDamper {
-    pub place: Place,
-    pub rotational: bool,
-    pub i: u32,
-    pub j: u32,
-    /// K or KT
-    pub stiffness: f64,
-    /// C or CT
-    pub damping: f64,
-    /// FORCE or TORQUE at the free length
-    pub preload: f64,
-    /// LENGTH or ANGLE [rad]
-    pub free: f64,
-}
-
-/// BUSHING: three translations then three rotations, in J axes
-#[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
-pub struct Bushing {
-    pub place: Place,
-    pub i: u32,
-    pub j: u32,
-    /// K, KT
-    pub stiffness: [f64; 6],
-    /// C, CT
-    pub damping: [f64; 6],
-    /// FORCE, TORQUE
-    pub preload: [f64; 6],
-}
-
-/// VARIABLE
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Variable {
-    pub place: Place,
-    pub ic: Option<f64>,
-    pub function: Formula,
-}
-
-/// DIFF
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Differential {
-    pub place: Place,
-    pub ic: [Option<f64>; 2],
-    pub static_hold: bool,
-    pub implicit: bool,
-    pub function: Formula,
-}
-
-/// ARRAY kinds.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub enum ArrayKind {
-    Ic(Vec<f64>),
-    States,
-    Outputs,
-    Inputs(Vec<u32>),
-}
-
-/// ARRAY
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Array {
-    pub place: Place,
-    pub size: Option<usize>,
-    pub kind: ArrayKind,
-}
-
-/// SPLINE
-#[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
-pub struct SplineData {
-    pub place: Place,
-    pub x: Vec<f64>,
-    /// one curve per z   (n_z × n_x)
-    pub y: Vec<Vec<f64>>,
-    /// empty for a single curve
-    pub z: Vec<f64>,
-    pub linear_extrapolate: bool,
-    pub file: Option<String>,
-}
-
-/// What a REQUEST asks.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub enum RequestKind {
-    Displacement {
-        i: u32,
-        j: Option<u32>,
-        rm: Option<u32>,
-    },
-    Velocity {
-        i: u32,
-        j: Option<u32>,
-        rm: Option<u32>,
-    },
-    Acceleration {
-        i: u32,
-        j: Option<u32>,
-        rm: Option<u32>,
-    },
-    Force {
-        i: u32,
-        j: Option<u32>,
-        rm: Option<u32>,
-    },
-    Functions(Box<[Option<Formula>; 8]>),
-    User(Formula),
-}
-
-/// REQUEST
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Request {
-    pub place: Place,
-    pub kind: RequestKind,
-    pub comment: Option<String>,
-    pub title: Vec<String>,
-    pub results_name: Option<String>,
-    pub cnames: Vec<String>,
-    pub cunits: Vec<String>,
-    pub clabels: Vec<String>,
-}
-
-/// UNITS
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Units {
-    pub force: String,
-    pub mass: String,
-    pub length: String,
-    pub time: String,
-    /// Force·UCF = Mass·Acceleration, all in model units
-    pub ucf: f64,
-}
-
-/// INTEGRATOR; `None` = not given
-#[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
-pub struct IntegratorSettings {
-    /// GSTIFF, WSTIFF, HHT, ABAM … in full
-    pub method: Option<String>,
-    /// I3, SI2, SI1
-    pub formulation: Option<String>,
-    pub error: Option<f64>,
-    pub hmax: Option<f64>,
-    pub hmin: Option<f64>,
-    pub hinit: Option<f64>,
-    pub kmax: Option<u32>,
-    pub maxit: Option<u32>,
-    pub alpha: Option<f64>,
-    pub beta: Option<f64>,
-    pub gamma: Option<f64>,
-}
-
-/// EQUILIBRIUM, KINEMATICS, IC and the like: numbers and words by full keyword; empty = defaults
-#[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
-pub struct Settings {
-    pub numbers: BTreeMap<String, f64>,
-    pub words: BTreeMap<String, String>,
+impl Default for Formula {
+    fn default() -> Self {
+        Formula::text("")
+    }
 }
 
 /// The dataset as data.
@@ -450,7 +134,27 @@ pub struct Model {
     pub differentials: ById<Differential>,
     pub arrays: ById<Array>,
     pub splines: ById<SplineData>,
+    pub curves: ById<Curve>,
+    pub points_on_curves: ById<PointOnCurve>,
+    pub curves_on_curves: ById<CurveOnCurve>,
+    pub fields: ById<Field>,
+    pub beams: ById<Beam>,
+    pub nodal_forces: ById<NodalForce>,
+    pub contacts: ById<Contact>,
+    pub frictions: ById<Friction>,
+    pub strings: ById<StringData>,
+    pub matrices: ById<Matrix>,
+    pub linear_systems: ById<LinearSystem>,
+    pub general_systems: ById<GeneralSystem>,
+    pub transfer_functions: ById<TransferFunction>,
+    pub plant_inputs: ById<Plant>,
+    pub plant_outputs: ById<Plant>,
+    pub sensors: ById<Sensor>,
+    pub graphics: ById<Graphics>,
     pub requests: ById<Request>,
+    pub many_requests: ById<ManyRequests>,
+    /// MATERIAL, SECTION, FE_PART … by (statement keyword, number)
+    pub others: BTreeMap<(String, u32), OtherElement>,
     pub integrator: IntegratorSettings,
     pub equilibrium: Settings,
     pub kinematics: Settings,

@@ -1,0 +1,78 @@
+//! Bodies and the frames fixed in them: PART, POINT_MASS, MARKER.
+
+use super::Place;
+
+/// The orientation of a part or marker, as written.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Orientation {
+    /// that of the parent
+    #[default]
+    Aligned,
+    /// body-fixed 3-1-3 angles ψ, θ, φ [rad]
+    Euler([f64; 3]),
+    /// points on the axes, in parent coordinates (ZP/XP, ZG/XG)
+    Points {
+        /// on +z (with `use_x`: only in the x–z half plane)
+        z: Option<[f64; 3]>,
+        /// in the +x half plane (with `use_x`: on +x)
+        x: Option<[f64; 3]>,
+        /// USEXP: x is exact
+        use_x: bool,
+    },
+}
+
+/// PART (a rigid body; ground is the part with `ground`) and POINT_MASS.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[allow(missing_docs)]
+pub struct Part {
+    pub place: Place,
+    pub ground: bool,
+    pub mass: f64,
+    /// marker at the centre of mass
+    pub cm: Option<u32>,
+    /// marker about whose origin and axes `ip` is given; CM when absent
+    pub im: Option<u32>,
+    /// Ixx, Iyy, Izz, and the positive products ∫xy, ∫xz, ∫yz dm
+    pub ip: [f64; 6],
+    /// origin of the part frame in ground
+    pub qg: [f64; 3],
+    /// orientation of the part frame in ground
+    pub orientation: Orientation,
+    /// initial velocity of CM along the axes of `vm` (ground when absent); `None` = not given
+    pub velocity: [Option<f64>; 3],
+    /// initial angular velocity about the axes of `wm` (CM when absent); `None` = not given
+    pub angular_velocity: [Option<f64>; 3],
+    pub vm: Option<u32>,
+    pub wm: Option<u32>,
+    /// EXACT: x, y, z, ψ, θ, φ that assembly should keep
+    pub exact: [bool; 6],
+}
+
+/// What a marker is fixed in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum MarkerOwner {
+    Part(u32),
+    PointMass(u32),
+    /// FLEX_BODY, FE_PART, CURVE …: read, not solved
+    Other(u32),
+}
+
+impl Default for MarkerOwner {
+    fn default() -> Self {
+        MarkerOwner::Part(0)
+    }
+}
+
+/// MARKER: a frame fixed in a part, or floating.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[allow(missing_docs)]
+pub struct Marker {
+    pub place: Place,
+    pub owner: MarkerOwner,
+    /// origin in the part frame
+    pub qp: [f64; 3],
+    pub orientation: Orientation,
+    /// its frame is set by the element that owns it
+    pub floating: bool,
+}
