@@ -11,3 +11,5 @@ pub mod space;
 pub mod model;
 #[cfg(feature = "solver")]
 pub mod numeric;
+#[cfg(feature = "solver")]
+pub mod results;

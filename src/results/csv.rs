@@ -1,0 +1,175 @@
+//! Tables as comma-separated values: names in the first row, units in the second when asked for, then one row per output.
+//!
+//! Numbers have the shortest digits that read back as the same bits, so a table is as good as the run itself.
+
+use super::{Column, Run, Units, digits, malformed, number};
+use crate::diagnostic::Diagnostic;
+
+/// The table of a run; `units`: with a row of units below the names.
+pub fn write(run: &Run, units: bool) -> String {
+    let columns: Vec<&Column> = run
+        .table_columns()
+        .into_iter()
+        .filter_map(|i| run.columns.get(i))
+        .collect();
+    let mut rows = vec![columns.iter().map(|c| c.name.clone()).collect::<Vec<_>>()];
+    if units {
+        rows.push(columns.iter().map(|c| unit_cell(&c.unit)).collect());
+    }
+    let mut text = to_text(&rows);
+    for row in run.table_rows() {
+        for (i, column) in columns.iter().enumerate() {
+            if i > 0 {
+                text.push(',');
+            }
+            text.push_str(&digits(column.values[row]));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A unit in a cell: never empty, so that no reader takes the row for numbers or for a blank line.
+fn unit_cell(unit: &str) -> String {
+    if unit.is_empty() {
+        "-".into()
+    } else {
+        unit.into()
+    }
+}
+
+/// Rows of text cells, quoted where they must be.
+fn to_text(rows: &[Vec<String>]) -> String {
+    let mut writer = ::csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        // Writing to memory with rows of equal length has nothing that could fail.
+        let written = writer.write_record(row);
+        debug_assert!(written.is_ok(), "rows have equal length");
+    }
+    writer
+        .into_inner()
+        .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+        .unwrap_or_default()
+}
+
+/// Reads a table; a second row that holds no number is the row of units.
+///
+/// # Errors
+/// When a row has more or fewer cells than the first, or a cell holds no number; says which line.
+pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
+    let mut reader = ::csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(::csv::Trim::All)
+        .from_reader(bytes);
+    let mut run = Run {
+        units: Units::default(),
+        ..Run::default()
+    };
+    let mut record = ::csv::ByteRecord::new();
+    while reader
+        .read_byte_record(&mut record)
+        .map_err(|e| malformed(0, e.to_string()))?
+    {
+        let line = record.position().map_or(0, |p| p.line() as usize);
+        let cells: Vec<String> = record
+            .iter()
+            .map(|cell| String::from_utf8_lossy(cell).into_owned())
+            .collect();
+        if run.columns.is_empty() {
+            run.columns = cells
+                .into_iter()
+                .map(|name| Column {
+                    name,
+                    ..Column::default()
+                })
+                .collect();
+            continue;
+        }
+        if cells.len() != run.columns.len() {
+            return Err(malformed(
+                line,
+                format!(
+                    "{} cells where the first row has {}",
+                    cells.len(),
+                    run.columns.len()
+                ),
+            ));
+        }
+        let numbers: Vec<Option<f64>> = cells.iter().map(|cell| number(cell)).collect();
+        if run.rows() == 0 && numbers.iter().all(Option::is_none) {
+            for (column, unit) in run.columns.iter_mut().zip(cells) {
+                column.unit = if unit == "-" { String::new() } else { unit };
+            }
+            continue;
+        }
+        for ((column, value), cell) in run.columns.iter_mut().zip(numbers).zip(&cells) {
+            let value = value.ok_or_else(|| {
+                malformed(
+                    line,
+                    format!("`{cell}` in column `{}` is no number", column.name),
+                )
+            })?;
+            column.values.push(value);
+        }
+    }
+    if run.columns.is_empty() {
+        Err(malformed(0, "there is no row of names"))
+    } else {
+        Ok(run)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::Kind;
+
+    fn example() -> Run {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("DX(12,21)", "meter");
+        run.add_column("say \"x\"", "");
+        run.begin(Kind::Input);
+        run.push(&[0.0, 9.0, 9.0]);
+        run.end();
+        run.begin(Kind::Dynamic);
+        run.push(&[0.1 + 0.2, -1e-300, 3.0]);
+        run.push(&[1.0, f64::MAX, 0.0]);
+        run.end();
+        run
+    }
+
+    #[test]
+    fn names_with_commas_are_quoted_and_the_model_as_read_is_left_out() {
+        let text = write(&example(), true);
+        assert_eq!(
+            text.lines().next(),
+            Some("time,\"DX(12,21)\",\"say \"\"x\"\"\"")
+        );
+        assert_eq!(text.lines().nth(1), Some("sec,meter,-"));
+        assert_eq!(text.lines().nth(2), Some("0.30000000000000004,-1e-300,3"));
+        assert_eq!(text.lines().count(), 4);
+    }
+
+    #[test]
+    fn what_is_written_reads_back_to_the_bit() {
+        for units in [false, true] {
+            let (run, back) = (
+                example(),
+                read(write(&example(), units).as_bytes()).unwrap(),
+            );
+            for (a, b) in run.columns.iter().zip(&back.columns) {
+                assert_eq!((&a.name, &a.values[1..]), (&b.name, &b.values[..]));
+                assert_eq!(if units { a.unit.as_str() } else { "" }, b.unit);
+            }
+        }
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_line() {
+        let line = |text: &str| read(text.as_bytes()).unwrap_err().line;
+        assert_eq!(line("time,x\n0,1\n1,oops\n"), 3);
+        assert_eq!(line("time,x\ns,m\n0\n"), 3);
+        assert_eq!(line(""), 0);
+    }
+}

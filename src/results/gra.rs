@@ -1,0 +1,276 @@
+//! Reading `.gra` files: the place of every part at every output, to six digits.
+//!
+//! Card, decoded from real files: a line of identification, the title, a line of counts (parts, markers, graphics, –, joints, …);
+//! one line per part (ground first), per joint one line, per marker two lines, then graphics. Then come frames. A frame begins with a
+//! line that holds one number, its time, and has one line of six numbers per part other than ground (x y z of the part's frame in
+//! ground, 3-1-3 angles in radians), followed by lines for force arrows, which are skipped. The first frame, time −999999, is
+//! the model as it was read; a time of −555555 marks a static equilibrium, which has no time of its own. Numbers stand in
+//! columns of 13 characters after one blank, and may touch.
+
+use super::{Component, Entity, Kind, Run, Units, component_unit, malformed, number};
+use crate::diagnostic::Diagnostic;
+
+const COMPONENTS: [&str; 6] = ["X", "Y", "Z", "PSI", "THETA", "PHI"];
+const INPUT: f64 = -9.99999e5;
+const STATIC: f64 = -5.55555e5;
+
+/// Reads the trajectories of a `.gra` file.
+///
+/// # Errors
+/// When the contents are not of this format; says which line.
+pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
+    let text = String::from_utf8_lossy(bytes);
+    let lines: Vec<&str> = text.lines().collect();
+    let &[identification, title, counts] = lines
+        .first_chunk::<3>()
+        .ok_or_else(|| malformed(0, "too short for a .gra file"))?;
+    if !identification.trim_start().starts_with("A.G") {
+        return Err(malformed(
+            1,
+            "a .gra file begins with its version, such as `A.G8`",
+        ));
+    }
+    let n_parts = (counts
+        .split_whitespace()
+        .next()
+        .and_then(|w| w.parse::<usize>().ok()))
+    .filter(|&n| n >= 1 && n < lines.len())
+    .ok_or_else(|| malformed(3, "the number of parts should stand here"))?;
+    let mut run = Run::new("", title.trim(), units(identification));
+    for (line, number) in lines.iter().zip(1..).skip(4).take(n_parts - 1) {
+        let id = line
+            .split_whitespace()
+            .next()
+            .and_then(|w| w.parse().ok())
+            .ok_or_else(|| malformed(number, "a part's number should stand here"))?;
+        add_part(&mut run, id);
+    }
+    let first = (lines
+        .iter()
+        .position(|line| lone_number(line) == Some(INPUT)))
+    .ok_or_else(|| {
+        malformed(
+            0,
+            "no frame with the model as it was read (time -9.99999E+05)",
+        )
+    })?;
+    frames(&mut run, &lines, first)?;
+    Ok(run)
+}
+
+/// Adds the columns of a part to the run.
+fn add_part(run: &mut Run, id: u64) {
+    let entity = format!("PART_{id}");
+    let name = format!("{entity}_XFORM");
+    let mut components = Vec::new();
+    for component in COMPONENTS {
+        let column = run.add_column(
+            format!("{name}.{component}"),
+            component_unit(component, &run.units),
+        );
+        components.push(Component {
+            name: component.into(),
+            column,
+        });
+    }
+    run.entities.push(Entity {
+        name,
+        entity,
+        kind: "Part".into(),
+        id,
+        components,
+    });
+}
+
+/// Reads all frames from the line of the first on.
+fn frames(run: &mut Run, lines: &[&str], first: usize) -> Result<(), Diagnostic> {
+    let n_parts = run.entities.len();
+    let (mut at, mut last_time, mut kind) = (first, 0.0, None);
+    let mut row = Vec::with_capacity(run.columns.len());
+    while at < lines.len() {
+        let Some(mark) = lone_number(lines[at]) else {
+            at += 1; // force arrows, blank lines
+            continue;
+        };
+        let now = match mark {
+            INPUT => Kind::Input,
+            STATIC => Kind::Static,
+            _ => Kind::Dynamic,
+        };
+        last_time = if now == Kind::Dynamic {
+            mark
+        } else {
+            last_time
+        };
+        row.clear();
+        row.push(last_time);
+        for part in 1..=n_parts {
+            let line = lines
+                .get(at + part)
+                .ok_or_else(|| malformed(lines.len(), "the last frame is not complete"))?;
+            let numbers = columns(line).filter(|n| n.len() == COMPONENTS.len());
+            row.extend(numbers.ok_or_else(|| {
+                malformed(
+                    at + part + 1,
+                    "six numbers, the place of a part, should stand here",
+                )
+            })?);
+        }
+        if kind != Some(now) {
+            run.end();
+            run.begin(now);
+            kind = Some(now);
+        }
+        run.push(&row);
+        at += n_parts + 1;
+    }
+    run.end();
+    Ok(())
+}
+
+/// The number of a line that holds nothing else.
+fn lone_number(line: &str) -> Option<f64> {
+    let text = line.trim();
+    if text.len() <= 13 { number(text) } else { None }
+}
+
+/// The numbers of a line of one blank and columns 13 wide.
+fn columns(line: &str) -> Option<Vec<f64>> {
+    let line = line.trim_end();
+    let cells = line
+        .as_bytes()
+        .get(1..)
+        .filter(|_| line.is_ascii() && line.starts_with(' '))?;
+    cells
+        .chunks(13)
+        .map(|cell| {
+            std::str::from_utf8(cell)
+                .ok()
+                .and_then(|cell| number(cell.trim()))
+        })
+        .collect()
+}
+
+/// Units from the code in the first line, such as `MMKGS_N_RACA`: length, mass, time, force, angle in two characters each.
+fn units(identification: &str) -> Units {
+    let code = identification
+        .split_whitespace()
+        .rev()
+        .nth(1)
+        .unwrap_or_default();
+    units_of_code(code)
+}
+
+/// Units of a code such as `M_KGS_N_RACA`; what it does not know stays SI.
+pub(super) fn units_of_code(code: &str) -> Units {
+    let name = |at: usize, names: &[(&str, &str)], default: &str| {
+        let short = code.get(at..at + 2).unwrap_or_default();
+        names
+            .iter()
+            .find(|n| n.0 == short)
+            .map_or(default, |n| n.1)
+            .to_string()
+    };
+    Units {
+        length: name(
+            0,
+            &[
+                ("M_", "meter"),
+                ("MM", "mm"),
+                ("CM", "cm"),
+                ("KM", "km"),
+                ("IN", "inch"),
+                ("FT", "foot"),
+                ("MI", "mile"),
+            ],
+            "meter",
+        ),
+        mass: name(
+            2,
+            &[
+                ("KG", "kg"),
+                ("G_", "gram"),
+                ("LB", "pound_mass"),
+                ("SL", "slug"),
+                ("OZ", "ounce_mass"),
+            ],
+            "kg",
+        ),
+        time: name(
+            4,
+            &[
+                ("S_", "sec"),
+                ("MS", "millisec"),
+                ("MI", "min"),
+                ("HR", "hour"),
+            ],
+            "sec",
+        ),
+        force: name(
+            6,
+            &[
+                ("N_", "newton"),
+                ("KN", "knewton"),
+                ("PF", "pound_force"),
+                ("DY", "dyne"),
+                ("KF", "kg_force"),
+            ],
+            "newton",
+        ),
+        angle: name(8, &[("RA", "rad"), ("DE", "deg")], "rad"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TWO_PARTS: &str = " A.G8    2024-01-02 03:04:05  MMKGS_N_RACA 1.000000000000000E+03
+two parts and a force
+    3    1    1    0    1    0    0    0    1
+          1         1
+          4         1
+          7         1
+          1         1         1
+          1         1  0.00000E+00  0.00000E+00  0.00000E+00       0
+   0.00000E+00  0.00000E+00  0.00000E+00
+  -9.99999E+05
+   1.00000E+00  2.00000E+00  3.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+ -1.00000E-100-2.0000E+100  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+   9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00
+  -5.55555E+05
+   1.50000E+00  2.00000E+00  3.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+   4.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+   9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00
+   1.00000E-02
+   1.60000E+00  2.00000E+00  3.00000E+00  0.00000E+00  0.00000E+00  5.00000E-01
+   4.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+   9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00  9.00000E+00
+";
+
+    #[test]
+    fn frames_become_rows_and_arrows_of_forces_are_left_out() {
+        let run = read(TWO_PARTS.as_bytes()).unwrap();
+        assert_eq!(run.column("PART_4_XFORM.X"), Some(&[1.0, 1.5, 1.6][..]));
+        assert_eq!(run.column("PART_7_XFORM.X"), Some(&[-1e-100, 4.0, 4.0][..]));
+        assert_eq!(run.column("PART_4_XFORM.PHI").unwrap()[2], 0.5);
+        assert_eq!(
+            run.sequences.iter().map(|s| s.kind).collect::<Vec<_>>(),
+            [Kind::Input, Kind::Static, Kind::Dynamic]
+        );
+        assert_eq!(
+            (run.units.length.as_str(), run.units.angle.as_str()),
+            ("mm", "rad")
+        );
+    }
+
+    #[test]
+    fn a_cut_file_is_an_error_with_its_line_and_never_a_panic() {
+        for cut in 0..TWO_PARTS.len() {
+            if let Err(d) = read(&TWO_PARTS.as_bytes()[..cut]) {
+                assert!(d.line <= 22, "{d}");
+            }
+        }
+        assert!(read(&TWO_PARTS.as_bytes()[..TWO_PARTS.len() - 200]).is_err());
+    }
+}

@@ -1,0 +1,134 @@
+//! The run record and tables as JSON: the same facts as the log, for programs.
+//!
+//! Numbers that are not finite become `null`, as JSON has no word for them.
+
+use super::{Counts, Run, Simulation};
+use serde_json::{Map, Value, json};
+
+/// The record of a run: status, counts, timings, and one entry per simulation.
+pub fn record(run: &Run) -> Value {
+    let r = &run.record;
+    let mut record = json!({
+        "status": r.status.word(),
+        "stop_reason": r.stop_reason,
+        "exit_code": r.status.exit_code(),
+        "model": r.model,
+        "title": run.title,
+        "method": r.method,
+        "error": r.error,
+        "solve_seconds": r.solve_seconds,
+        "read_seconds": r.read_seconds,
+        "write_seconds": r.write_seconds,
+        "repeats": r.repeats,
+        "freedom": r.freedom,
+        "redundant_rows": r.redundant.len(),
+        "redundant": r.redundant,
+        "energy_drift": r.energy_drift,
+        "constraint_drift": r.constraint_drift,
+        "outputs": run.table_rows().count(),
+        "warnings": r.warnings,
+        "versions": { "cognate": env!("CARGO_PKG_VERSION"), "record": 1 },
+        "simulations": r.simulations.iter().map(simulation).collect::<Vec<_>>(),
+    });
+    if let Some(record) = record.as_object_mut() {
+        add_counts(record, &r.counts);
+    }
+    record
+}
+
+fn simulation(s: &Simulation) -> Value {
+    let mut value = json!({
+        "kind": s.kind.name(),
+        "status": s.status.word(),
+        "stop_reason": s.stop_reason,
+        "start": s.start,
+        "end": s.end,
+        "outputs": s.outputs,
+        "method": s.method,
+        "solve_seconds": s.solve_seconds,
+        "worst": s.worst,
+    });
+    if let Some(value) = value.as_object_mut() {
+        add_counts(value, &s.counts);
+    }
+    value
+}
+
+fn add_counts(to: &mut Map<String, Value>, c: &Counts) {
+    to.insert("steps".into(), c.steps.into());
+    to.insert("rejected_steps".into(), c.rejected_steps.into());
+    to.insert("evaluations".into(), c.evaluations.into());
+    to.insert("jacobians".into(), c.jacobians.into());
+    to.insert("factorizations".into(), c.factorizations.into());
+}
+
+/// The table of a run, column by column: `{"columns": [{"name", "unit", "values"}]}`.
+pub fn table(run: &Run) -> Value {
+    let rows: Vec<usize> = run.table_rows().collect();
+    let columns = run
+        .table_columns()
+        .into_iter()
+        .filter_map(|i| run.columns.get(i))
+        .map(|c| {
+            let values: Vec<f64> = rows.iter().map(|&row| c.values[row]).collect();
+            json!({ "name": c.name, "unit": c.unit, "values": values })
+        });
+    json!({ "name": run.name, "title": run.title, "columns": columns.collect::<Vec<_>>() })
+}
+
+/// A run as one document: its table, and which rows belong to which simulation.
+pub fn document(run: &Run) -> String {
+    let mut document = table(run);
+    document["sequences"] = (run.sequences.iter())
+        .map(|s| json!({ "name": s.name, "kind": s.kind.name(), "first_row": s.rows.start, "rows": s.rows.len() }))
+        .collect::<Vec<_>>()
+        .into();
+    text(&document)
+}
+
+/// A value as indented text with a line break at its end.
+pub fn text(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{Kind, Status, Units};
+
+    #[test]
+    fn the_record_has_every_promised_fact() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.record.status = Status::Stopped;
+        run.record.redundant = vec!["JOINT/2 Zi.Xj".into()];
+        run.record.counts = Counts {
+            steps: 7,
+            ..Counts::default()
+        };
+        let record = record(&run);
+        for key in "status stop_reason solve_seconds read_seconds write_seconds method steps rejected_steps evaluations \
+                    jacobians factorizations freedom redundant_rows energy_drift constraint_drift versions simulations"
+            .split_whitespace()
+        {
+            assert!(record.get(key).is_some(), "{key}");
+        }
+        assert_eq!(
+            (
+                &record["steps"],
+                &record["redundant_rows"],
+                &record["status"]
+            ),
+            (&json!(7), &json!(1), &json!("stopped"))
+        );
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_become_null() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("x", "");
+        run.begin(Kind::Dynamic);
+        run.push(&[0.0, f64::INFINITY]);
+        run.end();
+        assert_eq!(table(&run)["columns"][1]["values"], json!([null]));
+    }
+}
