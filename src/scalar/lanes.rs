@@ -93,10 +93,10 @@ impl<const N: usize> Scalar for Lanes<N> {
         self.zip(other, f64::atan2)
     }
     fn powi(self, n: i32) -> Self {
-        self.map(|x| x.powi(n))
+        self.map(|x| Scalar::powi(x, n))
     }
     fn powf(self, exponent: Self) -> Self {
-        self.zip(exponent, f64::powf)
+        self.zip(exponent, Scalar::powf)
     }
     fn rem(self, other: Self) -> Self {
         self.zip(other, |x, y| x % y)

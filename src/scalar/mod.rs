@@ -9,10 +9,12 @@
 mod dual;
 mod jet;
 mod lanes;
+mod power;
 
 pub use dual::Dual;
 pub use jet::Jet;
 pub use lanes::Lanes;
+pub use power::Exponent;
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -259,13 +261,13 @@ impl Scalar for f64 {
     fn log10(self) -> f64 {
         f64::log10(self)
     }
-    #[inline(always)]
+    #[inline]
     fn powi(self, n: i32) -> f64 {
-        f64::powi(self, n)
+        power::whole(self, n)
     }
-    #[inline(always)]
+    #[inline]
     fn powf(self, exponent: f64) -> f64 {
-        f64::powf(self, exponent)
+        power::real(self, exponent)
     }
     #[inline(always)]
     fn abs(self) -> f64 {

@@ -1,0 +1,508 @@
+//! Recording a program: equal parts become one node, constants fold, and nothing is recorded twice.
+//!
+//! Nodes stand in one vector, operands before their users, and a table of hashes finds equal ones: recording is linear
+//! in time. Nothing here depends on the order of a hash map; the same calls make the same program.
+
+use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value, arithmetic_if};
+use super::{Input, Program, schedule};
+use crate::expr::functions::Function;
+use crate::scalar::{Scalar, Table};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// How far a builder may simplify.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Folding {
+    /// Only what keeps every bit of every result, NaN and signed zeros included: the compiled expression is the walked one.
+    Strict,
+    /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `0/x → 0`. For recorded physics, where a zero is
+    /// a part that is not there.
+    Structural,
+}
+
+/// Records a program.
+#[derive(Debug)]
+pub struct Builder {
+    folding: Folding,
+    pub(super) nodes: Vec<Node>,
+    /// operands of nodes with more than three
+    pub(super) arguments: Vec<Value>,
+    pub(super) inputs: Vec<Input>,
+    pub(super) tables: Vec<Arc<dyn Table>>,
+    input_nodes: HashMap<Input, Value>,
+    /// open addressing; `EMPTY` or the index of a node
+    slots: Vec<u32>,
+}
+
+const EMPTY: u32 = u32::MAX;
+
+impl Builder {
+    /// An empty one.
+    pub fn new(folding: Folding) -> Self {
+        Self {
+            folding,
+            nodes: Vec::new(),
+            arguments: Vec::new(),
+            inputs: Vec::new(),
+            tables: Vec::new(),
+            input_nodes: HashMap::new(),
+            slots: vec![EMPTY; 64],
+        }
+    }
+
+    /// How far it simplifies.
+    pub fn folding(&self) -> Folding {
+        self.folding
+    }
+    /// How many nodes are recorded, needed or not.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+    /// Whether nothing is recorded yet.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+    /// The inputs asked for, in the order of asking.
+    pub fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+    /// The number a value is, when it is a constant.
+    pub fn constant_of(&self, v: Value) -> Option<f64> {
+        match self.nodes[v.index()] {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+    /// The input a value is, when it is one.
+    pub fn input_of(&self, v: Value) -> Option<Input> {
+        match self.nodes[v.index()] {
+            Node::Input(k) => Some(self.inputs[k as usize]),
+            _ => None,
+        }
+    }
+
+    /// What the host supplies; the same input is the same value.
+    pub fn input(&mut self, input: Input) -> Value {
+        if let Some(&v) = self.input_nodes.get(&input) {
+            return v;
+        }
+        let k = self.inputs.len() as u32;
+        self.inputs.push(input);
+        let v = self.push(Node::Input(k));
+        self.input_nodes.insert(input, v);
+        v
+    }
+
+    /// A number.
+    pub fn constant(&mut self, x: f64) -> Value {
+        self.intern(Node::Constant(x.to_bits()))
+    }
+
+    /// An operation on one value.
+    pub fn unary(&mut self, op: UnaryOp, x: Value) -> Value {
+        if let Some(c) = self.constant_of(x) {
+            return self.constant(op.apply(c));
+        }
+        match (op, self.nodes[x.index()]) {
+            (UnaryOp::Neg, Node::Unary(UnaryOp::Neg, y)) => y,
+            (UnaryOp::Abs, Node::Unary(UnaryOp::Neg, y)) => self.unary(UnaryOp::Abs, y),
+            (UnaryOp::Abs, Node::Unary(UnaryOp::Abs, _)) => x,
+            (UnaryOp::Not, Node::Unary(UnaryOp::Not, y)) => y,
+            _ => self.intern(Node::Unary(op, x)),
+        }
+    }
+
+    /// Power with a whole exponent.
+    pub fn powi(&mut self, x: Value, n: i32) -> Value {
+        if let Some(c) = self.constant_of(x) {
+            return self.constant(Scalar::powi(c, n));
+        }
+        match n {
+            0 => self.constant(1.0),
+            1 => x,
+            2 => self.binary(BinaryOp::Mul, x, x),
+            _ => self.intern(Node::Whole(x, n)),
+        }
+    }
+
+    /// An operation on two values.
+    pub fn binary(&mut self, op: BinaryOp, a: Value, b: Value) -> Value {
+        let (ca, cb) = (self.constant_of(a), self.constant_of(b));
+        if let (Some(x), Some(y)) = (ca, cb) {
+            return self.constant(op.apply(x, y));
+        }
+        match self.simpler(op, a, b, ca, cb) {
+            Some(v) => v,
+            None => {
+                let swap = matches!(
+                    op,
+                    BinaryOp::Add | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or
+                ) && b < a;
+                let (a, b) = if swap { (b, a) } else { (a, b) };
+                self.intern(Node::Binary(op, a, b))
+            }
+        }
+    }
+
+    /// The same value by less, if the folding allows it. Not both operands are constant.
+    fn simpler(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        ca: Option<f64>,
+        cb: Option<f64>,
+    ) -> Option<Value> {
+        use BinaryOp::{Add, Div, Mul, Pow, Sub};
+        let structural = self.folding == Folding::Structural;
+        let minus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_negative);
+        let plus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_positive);
+        match op {
+            Add if minus_zero(cb) || structural && cb == Some(0.0) => return Some(a),
+            Add if minus_zero(ca) || structural && ca == Some(0.0) => return Some(b),
+            Sub if plus_zero(cb) || structural && cb == Some(0.0) => return Some(a),
+            Sub if minus_zero(ca) || structural && ca == Some(0.0) => {
+                return Some(self.unary(UnaryOp::Neg, b));
+            }
+            Sub if structural && a == b => return Some(self.constant(0.0)),
+            Mul | Div if cb == Some(1.0) => return Some(a),
+            Mul | Div if cb == Some(-1.0) => return Some(self.unary(UnaryOp::Neg, a)),
+            Mul if ca == Some(1.0) => return Some(b),
+            Mul if ca == Some(-1.0) => return Some(self.unary(UnaryOp::Neg, b)),
+            Mul if structural && (ca == Some(0.0) || cb == Some(0.0)) => {
+                return Some(self.constant(0.0));
+            }
+            Div if structural && ca == Some(0.0) => return Some(self.constant(0.0)),
+            Div if structural && a == b => return Some(self.constant(1.0)),
+            // a power of two divides as its reciprocal multiplies, to the bit
+            Div if cb.is_some_and(is_power_of_two) => {
+                let reciprocal = self.constant(1.0 / cb?);
+                return Some(self.binary(Mul, a, reciprocal));
+            }
+            Pow => return self.simpler_power(a, cb?),
+            _ => {}
+        }
+        // minus signs: a + (−b) is a − b to the bit, and so on
+        let negated = |v: Value| match self.nodes[v.index()] {
+            Node::Unary(UnaryOp::Neg, y) => Some(y),
+            _ => None,
+        };
+        let (na, nb) = (negated(a), negated(b));
+        match (op, na, nb) {
+            (Add, _, Some(y)) => Some(self.binary(Sub, a, y)),
+            (Add, Some(y), None) => Some(self.binary(Sub, b, y)),
+            (Sub, _, Some(y)) => Some(self.binary(Add, a, y)),
+            (Mul | Div, Some(x), Some(y)) => Some(self.binary(op, x, y)),
+            (Mul | Div, Some(x), None) => {
+                let product = self.binary(op, x, b);
+                Some(self.unary(UnaryOp::Neg, product))
+            }
+            (Mul | Div, None, Some(y)) => {
+                let product = self.binary(op, a, y);
+                Some(self.unary(UnaryOp::Neg, product))
+            }
+            _ => None,
+        }
+    }
+
+    /// A power with a constant exponent, by the same multiplications and roots that `f64`'s `powf` uses.
+    fn simpler_power(&mut self, a: Value, exponent: f64) -> Option<Value> {
+        use crate::scalar::Exponent;
+        match Exponent::of(exponent) {
+            Exponent::Whole(n) => Some(self.powi(a, n)),
+            Exponent::Half(n) => {
+                let root = self.unary(UnaryOp::Sqrt, a);
+                let whole = self.powi(a, n);
+                Some(self.binary(BinaryOp::Mul, whole, root))
+            }
+            Exponent::Other => None,
+        }
+    }
+
+    /// A comparison, as a condition: 1 or 0.
+    pub fn compare(&mut self, comparison: Comparison, a: Value, b: Value) -> Value {
+        if let (Some(x), Some(y)) = (self.constant_of(a), self.constant_of(b)) {
+            let holds = comparison.apply(x, y);
+            return self.constant(f64::from(u8::from(holds)));
+        }
+        if a == b && comparison == Comparison::Lt {
+            return self.constant(0.0);
+        }
+        if a == b && self.folding == Folding::Structural {
+            return self.constant(1.0);
+        }
+        // "0 < condition" is the condition
+        if comparison == Comparison::Lt && self.constant_of(a) == Some(0.0) && self.is_condition(b)
+        {
+            return b;
+        }
+        let swap = comparison == Comparison::Eq && b < a;
+        let (a, b) = if swap { (b, a) } else { (a, b) };
+        self.intern(Node::Compare(comparison, a, b))
+    }
+
+    /// Whether a value is 0 or 1 by construction.
+    fn is_condition(&self, v: Value) -> bool {
+        match self.nodes[v.index()] {
+            Node::Compare(..) | Node::Unary(UnaryOp::Not, _) => true,
+            Node::Binary(op, ..) => matches!(op, BinaryOp::And | BinaryOp::Or),
+            Node::Constant(bits) => bits == 0 || bits == 1.0f64.to_bits(),
+            _ => false,
+        }
+    }
+
+    /// Both conditions.
+    pub fn and(&mut self, a: Value, b: Value) -> Value {
+        match (self.constant_of(a), self.constant_of(b)) {
+            (Some(0.0), _) | (_, Some(0.0)) => self.constant(0.0),
+            (Some(_), _) => b,
+            (_, Some(_)) => a,
+            _ if a == b => a,
+            _ => self.binary(BinaryOp::And, a, b),
+        }
+    }
+    /// Either condition.
+    pub fn or(&mut self, a: Value, b: Value) -> Value {
+        match (self.constant_of(a), self.constant_of(b)) {
+            (Some(0.0), _) => b,
+            (_, Some(0.0)) => a,
+            (Some(_), _) | (_, Some(_)) => self.constant(1.0),
+            _ if a == b => a,
+            _ => self.binary(BinaryOp::Or, a, b),
+        }
+    }
+    /// The contrary of a condition.
+    pub fn not(&mut self, a: Value) -> Value {
+        self.unary(UnaryOp::Not, a)
+    }
+
+    /// `yes` where the condition is not 0, else `no`.
+    pub fn select(&mut self, condition: Value, yes: Value, no: Value) -> Value {
+        if let Some(c) = self.constant_of(condition) {
+            return if 0.0 < c { yes } else { no };
+        }
+        if yes == no {
+            return yes;
+        }
+        // "condition ? 1 : 0" is the condition
+        let is = |v: Value, c: f64| self.nodes[v.index()] == Node::Constant(c.to_bits());
+        if is(yes, 1.0) && is(no, 0.0) && self.is_condition(condition) {
+            return condition;
+        }
+        if let Node::Unary(UnaryOp::Not, contrary) = self.nodes[condition.index()] {
+            return self.select(contrary, no, yes);
+        }
+        self.intern(Node::Select(condition, yes, no))
+    }
+
+    /// `IF(selector: negative, zero, positive)`; NaN where the selector is NaN.
+    pub fn arithmetic_if(
+        &mut self,
+        selector: Value,
+        negative: Value,
+        zero: Value,
+        positive: Value,
+    ) -> Value {
+        if let Some(s) = self.constant_of(selector) {
+            // which of the three, by the same rule that runs later
+            let pick = arithmetic_if(s, 1.0, 2.0, 3.0);
+            return match pick {
+                1.0 => negative,
+                2.0 => zero,
+                3.0 => positive,
+                _ => self.constant(f64::NAN),
+            };
+        }
+        if self.folding == Folding::Structural && negative == zero && zero == positive {
+            return zero;
+        }
+        let first = self.arguments.len() as u32;
+        self.arguments.extend([selector, negative, zero, positive]);
+        self.intern(Node::If(first))
+    }
+
+    /// Value or derivative of a table at `x`.
+    pub fn lookup(&mut self, table: &Arc<dyn Table>, order: u32, x: Value) -> Value {
+        if let Some(c) = self.constant_of(x) {
+            return self.constant(table.at(c, order));
+        }
+        let k = self
+            .tables
+            .iter()
+            .position(|t| Arc::ptr_eq(t, table))
+            .unwrap_or_else(|| {
+                self.tables.push(table.clone());
+                self.tables.len() - 1
+            });
+        self.intern(Node::Lookup {
+            table: k as u32,
+            order,
+            x,
+        })
+    }
+
+    /// A function of the table as one operation.
+    pub fn call(&mut self, function: Function, args: &[Value]) -> Value {
+        let mut numbers = [0.0; 40];
+        if args.len() <= numbers.len() {
+            let constants =
+                args.iter()
+                    .zip(&mut numbers)
+                    .all(|(&v, slot)| match self.constant_of(v) {
+                        Some(c) => {
+                            *slot = c;
+                            true
+                        }
+                        None => false,
+                    });
+            if constants {
+                return self.constant(function.eval(&numbers[..args.len()]));
+            }
+        }
+        let first = self.arguments.len() as u32;
+        self.arguments.extend_from_slice(args);
+        self.intern(Node::Call {
+            function,
+            first,
+            count: args.len() as u32,
+        })
+    }
+
+    /// The program that computes these values, and nothing else.
+    ///
+    /// Its inputs are those it needs, in the order in which the builder was asked for them.
+    pub fn finish(&self, outputs: &[Value]) -> Program {
+        schedule::program(self, outputs, None)
+    }
+
+    /// As [`Builder::finish`], for inputs that the host lays out itself; what is not needed is not read.
+    ///
+    /// An input that is needed and missing in `layout` is appended to it: compare `program.inputs()`.
+    pub fn finish_with_inputs(&self, outputs: &[Value], layout: &[Input]) -> Program {
+        schedule::program(self, outputs, Some(layout))
+    }
+
+    fn push(&mut self, node: Node) -> Value {
+        let v = Value(self.nodes.len() as u32);
+        self.nodes.push(node);
+        v
+    }
+
+    /// The node, or the equal one that is there already. Arguments of a list node must be the last of the list.
+    fn intern(&mut self, node: Node) -> Value {
+        if (self.nodes.len() + 1) * 4 > self.slots.len() * 3 {
+            self.grow();
+        }
+        let mask = self.slots.len() - 1;
+        let mut slot = self.hash(&node) as usize & mask;
+        loop {
+            let found = self.slots[slot];
+            if found == EMPTY {
+                let v = self.push(node);
+                self.slots[slot] = v.0;
+                return v;
+            }
+            if self.equal(&self.nodes[found as usize], &node) {
+                if let Some(range) = self.list(&node) {
+                    self.arguments.truncate(range.start);
+                }
+                return Value(found);
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+
+    fn grow(&mut self) {
+        let mut slots = vec![EMPTY; self.slots.len() * 2];
+        let mask = slots.len() - 1;
+        for &k in self.slots.iter().filter(|&&k| k != EMPTY) {
+            let mut slot = self.hash(&self.nodes[k as usize]) as usize & mask;
+            while slots[slot] != EMPTY {
+                slot = (slot + 1) & mask;
+            }
+            slots[slot] = k;
+        }
+        self.slots = slots;
+    }
+
+    /// Where the operands of a node stand in the list of arguments.
+    pub(super) fn list(&self, node: &Node) -> Option<std::ops::Range<usize>> {
+        match *node {
+            Node::If(first) => Some(first as usize..first as usize + 4),
+            Node::Call { first, count, .. } => Some(first as usize..(first + count) as usize),
+            _ => None,
+        }
+    }
+
+    /// Calls `f` with every operand of a node, in order.
+    pub(super) fn operands(&self, node: &Node, mut f: impl FnMut(Value)) {
+        match *node {
+            Node::Constant(_) | Node::Input(_) => {}
+            Node::Unary(_, x) | Node::Whole(x, _) | Node::Lookup { x, .. } => f(x),
+            Node::Binary(_, a, b) | Node::Compare(_, a, b) => {
+                f(a);
+                f(b);
+            }
+            Node::Select(c, yes, no) => {
+                f(c);
+                f(yes);
+                f(no);
+            }
+            Node::If(_) | Node::Call { .. } => {
+                for &v in &self.arguments[self.list(node).unwrap_or(0..0)] {
+                    f(v);
+                }
+            }
+        }
+    }
+
+    fn equal(&self, a: &Node, b: &Node) -> bool {
+        match (a, b) {
+            (Node::If(_), Node::If(_)) => self.same_lists(a, b),
+            (Node::Call { function: f, .. }, Node::Call { function: g, .. }) => {
+                f == g && self.same_lists(a, b)
+            }
+            _ => a == b,
+        }
+    }
+
+    fn same_lists(&self, a: &Node, b: &Node) -> bool {
+        match (self.list(a), self.list(b)) {
+            (Some(a), Some(b)) => self.arguments[a] == self.arguments[b],
+            _ => false,
+        }
+    }
+
+    fn hash(&self, node: &Node) -> u64 {
+        let mix = |h: u64, word: u64| (h.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let pair = |a: Value, b: Value| u64::from(a.0) << 32 | u64::from(b.0);
+        let h = match *node {
+            Node::Constant(bits) => mix(1, bits),
+            Node::Input(k) => mix(2, u64::from(k)),
+            Node::Unary(op, x) => mix(mix(3, op as u64), u64::from(x.0)),
+            Node::Whole(x, n) => mix(mix(4, u64::from(x.0)), n as u64),
+            Node::Binary(op, a, b) => mix(mix(5, op as u64), pair(a, b)),
+            Node::Compare(op, a, b) => mix(mix(6, op as u64), pair(a, b)),
+            Node::Select(c, yes, no) => mix(mix(7, u64::from(c.0)), pair(yes, no)),
+            Node::Lookup { table, order, x } => mix(
+                mix(8, u64::from(table) << 8 | u64::from(order)),
+                u64::from(x.0),
+            ),
+            Node::If(_) => self.hash_list(9, node, mix),
+            Node::Call { function, .. } => self.hash_list(mix(10, function as u64), node, mix),
+        };
+        h ^ h >> 29
+    }
+
+    fn hash_list(&self, seed: u64, node: &Node, mix: impl Fn(u64, u64) -> u64) -> u64 {
+        self.arguments[self.list(node).unwrap_or(0..0)]
+            .iter()
+            .fold(seed, |h, v| mix(h, u64::from(v.0)))
+    }
+}
+
+/// Whether dividing by `c` is exactly multiplying by `1/c`.
+fn is_power_of_two(c: f64) -> bool {
+    const FRACTION: u64 = (1 << 52) - 1;
+    c.is_normal() && c.to_bits() & FRACTION == 0 && (1.0 / c).is_normal()
+}

