@@ -2,6 +2,23 @@
 //!
 //! This floor has never heard of a body: it sees numbers, residuals and rates. A method offers steps and an interpolant;
 //! output times, events and files belong to the analysis that drives it.
+//!
+//! ```text
+//! method = ode_method("DOP853", n, &options)          one row of the table of methods
+//! method.start(problem, t, y)
+//! while method.t() < end:
+//!     step = method.step(problem, end)                an accepted step from step.t0 to step.t1, or why there is none
+//!     method.interpolate(problem, t, out)             any time inside it
+//!     method.undo()  or  method.reinitialize(…)       when an event lies inside it
+//! ```
+//!
+//! The requested tolerance is the permitted local error of each unknown relative to the largest magnitude it has had so far
+//! (see [`control::Weights`]).
+
+pub mod control;
+pub mod runge_kutta;
+
+pub use runge_kutta::Dop853;
 
 /// Why an evaluation could not be done: a small code the analysis translates into words ("what" is chosen by the problem).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +45,7 @@ pub trait Ode {
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
         Ok(false)
     }
-    /// `jacobian[i + n·j] = ∂fᵢ/∂yⱼ` (by columns), `dfdt[i] = ∂fᵢ/∂t`.
+    /// `jacobian[i + n·j] = ∂fᵢ/∂yⱼ` (by columns), `dfdt[i] = ∂fᵢ/∂t`. Explicit methods never ask for it.
     ///
     /// # Errors
     /// When it has no finite value there.
@@ -39,7 +56,7 @@ pub trait Ode {
         jacobian: &mut [f64],
         dfdt: &mut [f64],
     ) -> Result<(), Failure>;
-    /// Typical magnitude of each unknown, below which its error is measured absolutely   (n)
+    /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)
     fn typical(&self, typical: &mut [f64]);
 }
 
@@ -66,9 +83,22 @@ pub trait Dae {
         cj: f64,
         values: &mut [f64],
     ) -> Result<(), Failure>;
-    /// How each unknown is treated by the error norm and the order of its constraint   (n)
+    /// A consistent start: given the differential unknowns in `y`, sets its algebraic unknowns and all rates `ydot`
+    /// so that `F(t, y, ydot) = 0` (and, for higher index, its hidden constraints hold).
+    ///
+    /// # Errors
+    /// When there is none near `y`.
+    fn consistent(&mut self, t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure>;
+    /// How each unknown is treated by the error norm   (n)
     fn kinds(&self) -> Vec<Kind>;
-    /// Typical magnitude of each unknown, below which its error is measured absolutely   (n)
+    /// How the entries of rows and unknowns grow as the step shrinks; see [`Levels`].
+    fn levels(&self) -> Levels {
+        Levels {
+            rows: vec![0; self.size()],
+            unknowns: vec![0; self.size()],
+        }
+    }
+    /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)
     fn typical(&self, typical: &mut [f64]);
 }
 
@@ -83,4 +113,236 @@ pub enum Kind {
     Algebraic,
     /// its rate does not occur, but its error is controlled
     AlgebraicControlled,
+}
+
+/// Powers of the step that balance the Newton matrix of a [`Dae`] of higher index.
+///
+/// Row `i` is multiplied by `h^rows[i]`, and unknown `j` is solved for as `h^unknowns[j] · yⱼ`, so that the matrix stays well conditioned
+/// as `h → 0`. For positions, velocities and multipliers (index 3) and the rows that belong to them:
+///
+/// ```text
+/// unknowns  q 0   v 1   λ 2   (μ of a stabilized index-2 form 1)
+/// rows      q̇ − v (+ Gᵀμ) = 0: 1     M v̇ − f + Gᵀλ = 0: 2     g(q) = 0: 0     (G v = 0: 1)
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Levels {
+    /// power of each row   (n)
+    pub rows: Vec<u8>,
+    /// power of each unknown   (n)
+    pub unknowns: Vec<u8>,
+}
+
+/// What is asked of a method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// E: permitted local error of each unknown, relative to its magnitude
+    pub tolerance: f64,
+    /// part of the typical magnitude below which errors are measured absolutely
+    pub floor: f64,
+    /// first step; found from the problem when absent   [s]
+    pub h_initial: Option<f64>,
+    /// longest step   [s]
+    pub h_max: f64,
+    /// a step shorter than this ends the integration   [s]
+    pub h_min: f64,
+    /// highest order of methods of variable order
+    pub max_order: usize,
+    /// Newton iterations permitted per step
+    pub max_newton: usize,
+    /// attempted steps permitted in all, rejected ones included
+    pub max_steps: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            tolerance: 1e-6,
+            floor: 1e-3,
+            h_initial: None,
+            h_max: f64::INFINITY,
+            h_min: 0.0,
+            max_order: 5,
+            max_newton: 10,
+            max_steps: usize::MAX,
+        }
+    }
+}
+
+/// An accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// where it began   [s]
+    pub t0: f64,
+    /// where it ended   [s]
+    pub t1: f64,
+    /// its length   [s]
+    pub h: f64,
+    /// order of the method in it
+    pub order: usize,
+    /// attempts rejected before it
+    pub rejected: usize,
+}
+
+/// Why a method could not go on, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// the cause
+    pub reason: Reason,
+    /// end of the last accepted step   [s]
+    pub t: f64,
+    /// length of the last attempt   [s]
+    pub h: f64,
+}
+
+/// The cause of a [`Stop`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// the problem said that it has no value, however short the step
+    Evaluation(Failure),
+    /// a rate or residual with this index was not a number, however short the step
+    NotFinite(usize),
+    /// the invariants could not be reached, however short the step
+    Projection(Failure),
+    /// the error of this unknown stayed above its tolerance, however short the step
+    ErrorTest(usize),
+    /// Newton's iteration did not converge, however short the step; this row was worst
+    Newton(usize),
+    /// the Newton matrix is singular: nothing determines this unknown
+    Singular(usize),
+    /// as many steps as permitted
+    TooManySteps,
+}
+
+/// What an integration has cost so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// accepted steps
+    pub steps: usize,
+    /// rejected attempts
+    pub rejected: usize,
+    /// evaluations of the rate or the residual
+    pub evaluations: usize,
+    /// evaluations of the Jacobian
+    pub jacobians: usize,
+    /// factorizations of the Newton matrix
+    pub factorizations: usize,
+    /// Newton iterations
+    pub newton_iterations: usize,
+}
+
+/// What every method offers for a problem of type `P`.
+///
+/// A new method provides: its state at the end of the last accepted step (`t`, `y`, `ydot`); a step that never passes `t_limit`, that shortens
+/// itself when the problem fails, and that gives up with a reason; an interpolant over that step whose order befits the method; one level of undo;
+/// a restart that keeps the magnitudes seen so far; and counts. After `start` nothing allocates.
+pub trait Method<P: ?Sized> {
+    /// Begins at `(t, y)` with nothing known about the past.
+    ///
+    /// # Errors
+    /// When the problem cannot be evaluated there.
+    fn start(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop>;
+    /// Begins anew at `(t, y)` after an event; magnitudes and counts are kept.
+    ///
+    /// # Errors
+    /// When the problem cannot be evaluated there.
+    fn reinitialize(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop>;
+    /// One accepted step, not beyond `t_limit`, which must lie after `t`.
+    ///
+    /// # Errors
+    /// When no step can be taken; the state is that of the last accepted step.
+    fn step(&mut self, problem: &mut P, t_limit: f64) -> Result<Step, Stop>;
+    /// Goes back to the beginning of the last accepted step; the next step will be no longer than up to its own `t_limit`.
+    /// Only the last step can be undone.
+    fn undo(&mut self);
+    /// The solution at `t` inside the last accepted step.
+    ///
+    /// # Errors
+    /// When a further evaluation that the interpolant needs fails.
+    fn interpolate(&mut self, problem: &mut P, t: f64, y: &mut [f64]) -> Result<(), Failure>;
+    /// The derivative of the interpolant at `t` inside the last accepted step.
+    ///
+    /// # Errors
+    /// When a further evaluation that the interpolant needs fails.
+    fn interpolate_rate(
+        &mut self,
+        problem: &mut P,
+        t: f64,
+        ydot: &mut [f64],
+    ) -> Result<(), Failure>;
+    /// Proposes the length of the next step.
+    fn propose(&mut self, h: f64);
+    /// End of the last accepted step.
+    fn t(&self) -> f64;
+    /// The solution there   (n)
+    fn y(&self) -> &[f64];
+    /// Its rate there   (n)
+    fn ydot(&self) -> &[f64];
+    /// What it has cost so far.
+    fn stats(&self) -> &Stats;
+    /// Whether the steps are limited by stability rather than accuracy, so that an implicit method would do better.
+    fn stiff(&self) -> bool {
+        false
+    }
+}
+
+/// One row of the table of methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MethodRow {
+    /// its name
+    pub name: &'static str,
+    /// in a few words
+    pub summary: &'static str,
+    /// which equations it treats
+    pub form: Form,
+    /// whether it solves no equations, so that stiff problems are beyond it
+    pub explicit: bool,
+    /// its (highest) order
+    pub order: usize,
+}
+
+/// The form in which a method wants its problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// `ẏ = f(t, y)`, see [`Ode`]
+    Ode,
+    /// `F(t, y, ẏ) = 0`, see [`Dae`]
+    Dae,
+}
+
+/// Writes the table of methods, and the constructors that read it.
+macro_rules! methods {
+    (
+        ode { $($ode:ident = $ode_name:literal, $ode_explicit:literal, $ode_order:literal, $ode_summary:literal;)* }
+        dae { $($dae:ident = $dae_name:literal, $dae_explicit:literal, $dae_order:literal, $dae_summary:literal;)* }
+    ) => {
+        /// All methods. The first of each form is the default of its kind.
+        pub const METHODS: &[MethodRow] = &[
+            $(MethodRow { name: $ode_name, summary: $ode_summary, form: Form::Ode, explicit: $ode_explicit, order: $ode_order },)*
+            $(MethodRow { name: $dae_name, summary: $dae_summary, form: Form::Dae, explicit: $dae_explicit, order: $dae_order },)*
+        ];
+
+        /// The method of that name for problems `ẏ = f(t, y)` of `n` unknowns.
+        pub fn ode_method<P: Ode + ?Sized>(name: &str, n: usize, options: &Options) -> Option<Box<dyn Method<P>>> {
+            match name {
+                $($ode_name => Some(Box::new($ode::new(n, options))),)*
+                _ => None,
+            }
+        }
+
+        /// The method of that name for problems `F(t, y, ẏ) = 0` of `n` unknowns.
+        pub fn dae_method<P: Dae + ?Sized>(name: &str, _n: usize, _options: &Options) -> Option<Box<dyn Method<P>>> {
+            match name {
+                $($dae_name => Some(Box::new($dae::new(_n, _options))),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+methods! {
+    ode {
+        Dop853 = "DOP853", true, 8, "explicit Runge–Kutta of Dormand and Prince, 8(5,3), projected onto invariants";
+    }
+    dae {
+    }
 }

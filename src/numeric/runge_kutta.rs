@@ -1,0 +1,536 @@
+//! Explicit Runge–Kutta of order 8 for what is not stiff, projected onto invariants: DOP853.
+//!
+//! ```text
+//! kᵢ = f(t + cᵢ h, y + h Σ_{j<i} aᵢⱼ kⱼ)        i = 1 … 12                                  (1)
+//! y₁ = project(y + h Σ bᵢ kᵢ)                                                              (2)
+//! e₅ = h Σ eᵢ kᵢ,   e₃ = h Σ (bᵢ − b̂ᵢ) kᵢ,   error = s ‖e₅‖² / √(‖e₅‖² + ‖e₃‖²/100)        (3)
+//! y(t + θh) = y + θ(r₁ + (1−θ)(r₂ + θ(r₃ + (1−θ)(r₄ + θ(r₅ + (1−θ)(r₆ + θ r₇))))))         (4)
+//! ```
+//!
+//! The factor s = 20 in (3) is measured: over pendulum, double pendulum, Kepler and Euler top, requests 1e-3 … 1e-11, it brings the error at the end
+//! of a run to about the request (0.1 to 10 times) and makes it fall in proportion; the work for a given true error does not depend on it.
+//!
+//! The error test (3) needs no rate at the new point. So the new point is projected first and its rate, which is `k₁` of the next step, is
+//! evaluated once on the invariants: projection costs no evaluation. The interpolant (4) is of order 7 and needs three more evaluations;
+//! they are made when the first interpolation inside a step is asked for.
+//!
+//! *Stiffness*: `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` beyond 6.1, the edge of the stability region, in most steps of a run of steps means
+//! that stability holds the step down; [`Method::stiff`] then says so and the integration goes on.
+//! *Failures*: a stage where the problem fails, or a number that is not finite, shortens the step; no sensible step left is a [`Stop`].
+//!
+//! Source: Dormand & Prince 1980; coefficients, error and dense output of Hairer, Nørsett & Wanner, Solving ODEs I, II.5–II.10 (program DOP853).
+#![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
+
+use super::control::{self, Pi, Weights, worst, worst_index};
+use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
+
+/// Order of the method.
+const ORDER: usize = 8;
+/// s of (3).
+const ERROR_SCALE: f64 = 20.0;
+/// `h |λ|` at the edge of the stability region.
+const STABILITY: f64 = 6.1;
+/// Steps beyond the edge before the problem is called stiff.
+const STIFF_STEPS: u32 = 15;
+/// Calm steps in a row after which they are forgotten.
+const CALM_STEPS: u32 = 6;
+
+/// `out = y + h (a₁ k₁ + a₂ k₂ + …)`: a row of the tableau as one loop.
+macro_rules! row {
+    ($out:ident = $y:ident + $h:ident * ($k0:ident $a0:literal $(, $k:ident $a:literal)*)) => {{
+        let n = $y.len();
+        let ($out, $k0) = (&mut $out[..n], &$k0[..n]);
+        $(let $k = &$k[..n];)*
+        for i in 0..n {
+            $out[i] = $y[i] + $h * ($a0 * $k0[i] $(+ $a * $k[i])*);
+        }
+    }};
+}
+
+/// Explicit Runge–Kutta of order 8 with projection; see the file's card.
+#[derive(Clone, Debug)]
+pub struct Dop853 {
+    options: Options,
+    weights: Weights,
+    control: Pi,
+    stats: Stats,
+    /// beginning and length of the last step
+    t0: f64,
+    h: f64,
+    /// end of the last accepted step
+    t1: f64,
+    /// whether (t1, y1, f1) is the state, or (t0, y0, f0)
+    advanced: bool,
+    /// step proposed for the next attempt
+    h_next: f64,
+    /// the last attempt was rejected, or this is the first step
+    calm: bool,
+    first: bool,
+    beyond_edge: u32,
+    within_edge: u32,
+    /// state and rate at t0 and t1   (n each)
+    y0: Vec<f64>,
+    f0: Vec<f64>,
+    y1: Vec<f64>,
+    f1: Vec<f64>,
+    /// argument of a stage; after the step that of the twelfth   (n)
+    stage: Vec<f64>,
+    /// k₂ … k₁₂   (11 × n)
+    k: [Vec<f64>; 11],
+    /// whether `dense` belongs to the last step
+    dense_ready: bool,
+    /// r₁ … r₇ of (4)   (7 × n)
+    dense: [Vec<f64>; 7],
+}
+
+/// Why an attempt came to nothing.
+enum Trouble {
+    Error(f64),
+    Reason(Reason, bool),
+}
+
+impl Dop853 {
+    /// The method for `n` unknowns.
+    pub fn new(n: usize, options: &Options) -> Self {
+        let zeros = || vec![0.0; n];
+        Dop853 {
+            options: options.clone(),
+            weights: Weights::new(n, options),
+            control: Pi::new(8.0, 0.02, 0.85, 1.0 / 3.0, 6.0),
+            stats: Stats::default(),
+            t0: 0.0,
+            h: 0.0,
+            t1: 0.0,
+            advanced: false,
+            h_next: 0.0,
+            calm: false,
+            first: true,
+            beyond_edge: 0,
+            within_edge: 0,
+            y0: zeros(),
+            f0: zeros(),
+            y1: zeros(),
+            f1: zeros(),
+            stage: zeros(),
+            k: std::array::from_fn(|_| zeros()),
+            dense_ready: false,
+            dense: std::array::from_fn(|_| zeros()),
+        }
+    }
+
+    fn begin<P: Ode + ?Sized>(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
+        self.t0 = t;
+        self.advanced = false;
+        self.y0.copy_from_slice(y);
+        self.weights.see(y);
+        self.control.reset();
+        (self.calm, self.first) = (false, true);
+        (self.beyond_edge, self.within_edge) = (0, 0);
+        self.stats.evaluations += 1;
+        let stop = |reason| Stop { reason, t, h: 0.0 };
+        problem
+            .rate(t, &self.y0, &mut self.f0)
+            .map_err(|f| stop(Reason::Evaluation(f)))?;
+        if !worst(self.f0.iter().copied()).is_finite() {
+            return Err(stop(Reason::NotFinite(worst_index(
+                self.f0.iter().copied(),
+            ))));
+        }
+        let starter = control::Starter {
+            order: ORDER,
+            options: &self.options,
+            weights: &self.weights,
+        };
+        self.h_next = starter.first_step(
+            t,
+            &self.y0,
+            &self.f0,
+            &mut self.stage,
+            &mut self.f1,
+            |t, y, f| {
+                self.stats.evaluations += 1;
+                problem.rate(t, y, f)
+            },
+        );
+        Ok(())
+    }
+
+    /// The twelve stages (1), the new point (2) before its projection, and its error (3).
+    fn attempt<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> Result<f64, Failure> {
+        let (t, n) = (self.t0, self.y0.len());
+        let (y, stage) = (&self.y0[..n], &mut self.stage);
+        let k1 = &self.f0;
+        let [k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12] = &mut self.k;
+        let evaluations = &mut self.stats.evaluations;
+        macro_rules! stage {
+            ($out:ident at $c:literal: $($row:tt)*) => {
+                row!(stage = y + h * ($($row)*));
+                *evaluations += 1;
+                problem.rate(t + $c * h, &stage[..n], &mut $out[..n])?;
+            };
+        }
+        stage!(k2 at 0.05260015195876773: k1 0.05260015195876773);
+        stage!(k3 at 0.0789002279381516: k1 0.0197250569845379, k2 0.0591751709536137);
+        stage!(k4 at 0.1183503419072274: k1 0.02958758547680685, k3 0.08876275643042054);
+        stage!(k5 at 0.2816496580927726: k1 0.2413651341592667, k3 -0.8845494793282861, k4 0.924834003261792);
+        stage!(k6 at 0.3333333333333333: k1 0.037037037037037035, k4 0.17082860872947386, k5 0.12546768756682242);
+        stage!(k7 at 0.25: k1 0.037109375, k4 0.17025221101954405, k5 0.06021653898045596, k6 -0.017578125);
+        stage!(k8 at 0.3076923076923077: k1 0.03709200011850479, k4 0.17038392571223998, k5 0.10726203044637328,
+            k6 -0.015319437748624402, k7 0.008273789163814023);
+        stage!(k9 at 0.6512820512820513: k1 0.6241109587160757, k4 -3.3608926294469414, k5 -0.868219346841726,
+            k6 27.59209969944671, k7 20.154067550477894, k8 -43.48988418106996);
+        stage!(k10 at 0.6: k1 0.47766253643826434, k4 -2.4881146199716677, k5 -0.590290826836843, k6 21.230051448181193,
+            k7 15.279233632882423, k8 -33.28821096898486, k9 -0.020331201708508627);
+        stage!(k11 at 0.8571428571428571: k1 -0.9371424300859873, k4 5.186372428844064, k5 1.0914373489967295,
+            k6 -8.149787010746927, k7 -18.52006565999696, k8 22.739487099350505, k9 2.4936055526796523, k10 -3.0467644718982196);
+        stage!(k12 at 1.0: k1 2.273310147516538, k4 -10.53449546673725, k5 -2.0008720582248625, k6 -17.9589318631188,
+            k7 27.94888452941996, k8 -2.8589982771350235, k9 -8.87285693353063, k10 12.360567175794303, k11 0.6433927460157636);
+
+        let (k1, k6, k7, k8, k9, k10) =
+            (&k1[..n], &k6[..n], &k7[..n], &k8[..n], &k9[..n], &k10[..n]);
+        let (k11, k12, y1, magnitude) = (
+            &k11[..n],
+            &k12[..n],
+            &mut self.y1[..n],
+            &self.weights.magnitude()[..n],
+        );
+        let (mut worst5, mut worst3, mut sum) = (0.0, 0.0, 0.0);
+        for i in 0..n {
+            let slope = 0.054293734116568765 * k1[i]
+                + 4.450312892752409 * k6[i]
+                + 1.8915178993145003 * k7[i]
+                - 5.801203960010585 * k8[i]
+                + 0.3111643669578199 * k9[i]
+                - 0.1521609496625161 * k10[i]
+                + 0.20136540080403034 * k11[i]
+                + 0.04471061572777259 * k12[i];
+            let e5 = 0.01312004499419488 * k1[i]
+                - 1.2251564463762044 * k6[i]
+                - 0.4957589496572502 * k7[i]
+                + 1.6643771824549864 * k8[i]
+                - 0.35032884874997366 * k9[i]
+                + 0.3341791187130175 * k10[i]
+                + 0.08192320648511571 * k11[i]
+                - 0.022355307863886294 * k12[i];
+            let e3 = slope
+                - 0.2440944881889764 * k1[i]
+                - 0.7338466882816118 * k9[i]
+                - 0.022058823529411766 * k12[i];
+            y1[i] = y[i] + h * slope;
+            let size = y1[i].abs();
+            let w = h / if size > magnitude[i] {
+                size
+            } else {
+                magnitude[i]
+            };
+            let (e5, e3) = ((e5 * w).abs(), (e3 * w).abs());
+            sum += e3 + e5;
+            worst5 = if e5 > worst5 { e5 } else { worst5 };
+            worst3 = if e3 > worst3 { e3 } else { worst3 };
+        }
+        if !sum.is_finite() {
+            return Ok(f64::NAN);
+        }
+        let blend = worst5 * worst5 + 0.01 * worst3 * worst3;
+        let scale = ERROR_SCALE / self.weights.tolerance();
+        Ok(if blend > 0.0 {
+            scale * worst5 * worst5 / blend.sqrt()
+        } else {
+            0.0
+        })
+    }
+
+    /// Attempts a step of length `h` to `t1`; on success (t1, y1, f1) is the state.
+    fn advance<P: Ode + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        h: f64,
+        t1: f64,
+    ) -> Result<f64, Trouble> {
+        let evaluation = |f: Failure| Trouble::Reason(Reason::Evaluation(f), f.recoverable);
+        let error = self.attempt(problem, h).map_err(evaluation)?;
+        if error.is_nan() {
+            // the first bad number in the order of evaluation; later ones are its children
+            let bad = |row: &Vec<f64>| row.iter().position(|x| !x.is_finite());
+            let index = self.k.iter().find_map(bad).or_else(|| bad(&self.y1));
+            return Err(Trouble::Reason(Reason::NotFinite(index.unwrap_or(0)), true));
+        }
+        if error > 1.0 {
+            return Err(Trouble::Error(error));
+        }
+        problem
+            .project(t1, &mut self.y1)
+            .map_err(|f| Trouble::Reason(Reason::Projection(f), f.recoverable))?;
+        self.stats.evaluations += 1;
+        problem
+            .rate(t1, &self.y1, &mut self.f1)
+            .map_err(evaluation)?;
+        if !worst(self.f1.iter().copied()).is_finite() {
+            return Err(Trouble::Reason(
+                Reason::NotFinite(worst_index(self.f1.iter().copied())),
+                true,
+            ));
+        }
+        Ok(error)
+    }
+
+    /// Watches `h |λ|` against the edge of the stability region.
+    fn watch_stiffness(&mut self) {
+        let k12 = &self.k[10];
+        let (mut rates, mut states) = (0.0, 0.0);
+        for i in 0..self.y1.len() {
+            let m = 1.0 / self.weights.magnitude()[i];
+            let (df, dy) = ((self.f1[i] - k12[i]) * m, (self.y1[i] - self.stage[i]) * m);
+            rates += df * df;
+            states += dy * dy;
+        }
+        if states > 0.0 && self.h * self.h * rates > STABILITY * STABILITY * states {
+            self.beyond_edge += 1;
+            self.within_edge = 0;
+        } else {
+            self.within_edge += 1;
+            if self.within_edge >= CALM_STEPS {
+                self.beyond_edge = 0;
+            }
+        }
+    }
+
+    /// The unknown that an error estimate accuses.
+    fn worst_unknown(&self) -> usize {
+        let [.., k9, _, _, k12] = &self.k;
+        let e = self
+            .y1
+            .iter()
+            .zip(&self.y0)
+            .zip(self.weights.magnitude())
+            .zip(self.f0.iter().zip(k9).zip(k12));
+        let h = self.h;
+        worst_index(e.map(|(((y1, y0), m), ((k1, k9), k12))| {
+            ((y1 - y0)
+                - h * (0.2440944881889764 * k1
+                    + 0.7338466882816118 * k9
+                    + 0.022058823529411766 * k12))
+                / m
+        }))
+    }
+
+    /// The coefficients of (4), with three evaluations.
+    fn prepare_dense<P: Ode + ?Sized>(&mut self, problem: &mut P) -> Result<(), Failure> {
+        if self.dense_ready {
+            return Ok(());
+        }
+        let (t, h, n) = (self.t0, self.h, self.y0.len());
+        let (y, stage) = (&self.y0[..n], &mut self.stage);
+        let (k1, k13) = (&self.f0, &self.f1);
+        // k₂ … k₄ are not needed any more
+        let [k14, k15, k16, _, k6, k7, k8, k9, k10, k11, k12] = &mut self.k;
+        macro_rules! stage {
+            ($out:ident at $c:literal: $($row:tt)*) => {
+                row!(stage = y + h * ($($row)*));
+                self.stats.evaluations += 1;
+                problem.rate(t + $c * h, &stage[..n], &mut $out[..n])?;
+            };
+        }
+        stage!(k14 at 0.1: k1 0.056167502283047954, k7 0.25350021021662483, k8 -0.2462390374708025, k9 -0.12419142326381637,
+            k10 0.15329179827876568, k11 0.00820105229563469, k12 0.007567897660545699, k13 -0.008298);
+        stage!(k15 at 0.2: k1 0.03183464816350214, k6 0.028300909672366776, k7 0.053541988307438566, k8 -0.05492374857139099,
+            k11 -0.00010834732869724932, k12 0.0003825710908356584, k13 -0.00034046500868740456, k14 0.1413124436746325);
+        stage!(k16 at 0.7777777777777778: k1 -0.42889630158379194, k6 -4.697621415361164, k7 7.683421196062599, k8 4.06898981839711,
+            k9 0.3567271874552811, k13 -0.0013990241651590145, k14 2.9475147891527724, k15 -9.15095847217987);
+
+        let [r1, r2, r3, r4, r5, r6, r7] = &mut self.dense;
+        for i in 0..n {
+            let rise = self.y1[i] - y[i];
+            r1[i] = rise;
+            r2[i] = h * k1[i] - rise;
+            r3[i] = rise - h * k13[i] - r2[i];
+        }
+        stage[..n].fill(0.0);
+        let zero = &stage[..n];
+        row!(r4 = zero + h * (k1 -8.428938276109013, k6 0.5667149535193777, k7 -3.0689499459498917, k8 2.38466765651207,
+            k9 2.117034582445028, k10 -0.871391583777973, k11 2.2404374302607883, k12 0.6315787787694688, k13 -0.08899033645133331,
+            k14 18.148505520854727, k15 -9.194632392478356, k16 -4.436036387594894));
+        row!(r5 = zero + h * (k1 10.427508642579134, k6 242.28349177525817, k7 165.20045171727028, k8 -374.5467547226902,
+            k9 -22.113666853125306, k10 7.733432668472264, k11 -30.674084731089398, k12 -9.332130526430229, k13 15.697238121770845,
+            k14 -31.139403219565178, k15 -9.35292435884448, k16 35.81684148639408));
+        row!(r6 = zero + h * (k1 19.985053242002433, k6 -387.0373087493518, k7 -189.17813819516758, k8 527.8081592054236,
+            k9 -11.57390253995963, k10 6.8812326946963, k11 -1.0006050966910838, k12 0.7777137798053443, k13 -2.778205752353508,
+            k14 -60.19669523126412, k15 84.32040550667716, k16 11.99229113618279));
+        row!(r7 = zero + h * (k1 -25.69393346270375, k6 -154.18974869023643, k7 -231.5293791760455, k8 357.6391179106141,
+            k9 93.40532418362432, k10 -37.45832313645163, k11 104.0996495089623, k12 29.8402934266605, k13 -43.53345659001114,
+            k14 96.32455395918828, k15 -39.17726167561544, k16 -149.72683625798564));
+        self.dense_ready = true;
+        Ok(())
+    }
+}
+
+impl<P: Ode + ?Sized> Method<P> for Dop853 {
+    fn start(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
+        self.stats = Stats::default();
+        self.weights.reset(|typical| problem.typical(typical));
+        self.begin(problem, t, y)
+    }
+
+    fn reinitialize(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
+        self.begin(problem, t, y)
+    }
+
+    fn step(&mut self, problem: &mut P, t_limit: f64) -> Result<Step, Stop> {
+        if self.advanced {
+            std::mem::swap(&mut self.y0, &mut self.y1);
+            std::mem::swap(&mut self.f0, &mut self.f1);
+            self.t0 = self.t1;
+            self.advanced = false;
+        }
+        self.dense_ready = false;
+        let shortest = control::shortest(self.t0, t_limit, &self.options);
+        let mut cause = Reason::TooManySteps;
+        let mut rejected = 0;
+        loop {
+            let (h, at_limit) = control::fit(self.t0, self.h_next.min(self.options.h_max), t_limit);
+            let stop = |reason| {
+                Err(Stop {
+                    reason,
+                    t: self.t0,
+                    h,
+                })
+            };
+            if self.stats.steps + self.stats.rejected >= self.options.max_steps {
+                return stop(Reason::TooManySteps);
+            }
+            if h < shortest && (rejected > 0 || !at_limit) {
+                return stop(cause);
+            }
+            let t1 = if at_limit { t_limit } else { self.t0 + h };
+            self.h = h;
+            match self.advance(problem, h, t1) {
+                Ok(error) => {
+                    let factor =
+                        self.control
+                            .accepted(error, self.calm, self.first && rejected == 0);
+                    // a step that the limit cut short says little against the one that was proposed
+                    self.h_next = if h < self.h_next {
+                        (h * factor).max(self.h_next)
+                    } else {
+                        h * factor
+                    };
+                    (self.calm, self.first) = (false, false);
+                    self.t1 = t1;
+                    self.advanced = true;
+                    self.weights.see(&self.y1);
+                    self.watch_stiffness();
+                    self.stats.steps += 1;
+                    return Ok(Step {
+                        t0: self.t0,
+                        t1,
+                        h,
+                        order: ORDER,
+                        rejected,
+                    });
+                }
+                Err(Trouble::Error(error)) => {
+                    self.h_next = h * self.control.rejected(error);
+                    cause = Reason::ErrorTest(self.worst_unknown());
+                }
+                Err(Trouble::Reason(reason, recoverable)) => {
+                    cause = reason;
+                    if !recoverable {
+                        return Err(Stop {
+                            reason,
+                            t: self.t0,
+                            h,
+                        });
+                    }
+                    self.h_next = h * 0.25;
+                }
+            }
+            self.calm = true;
+            rejected += 1;
+            self.stats.rejected += 1;
+        }
+    }
+
+    fn undo(&mut self) {
+        if self.advanced {
+            self.advanced = false;
+            self.h_next = self.h;
+            self.dense_ready = false;
+        }
+    }
+
+    fn interpolate(&mut self, problem: &mut P, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        if t == self.t1 && self.advanced {
+            y.copy_from_slice(&self.y1);
+            return Ok(());
+        }
+        if t == self.t0 || !self.advanced {
+            y.copy_from_slice(&self.y0);
+            return Ok(());
+        }
+        self.prepare_dense(problem)?;
+        let s = (t - self.t0) / self.h;
+        let c = 1.0 - s;
+        let [r1, r2, r3, r4, r5, r6, r7] = &self.dense;
+        for i in 0..y.len() {
+            y[i] = self.y0[i]
+                + s * (r1[i]
+                    + c * (r2[i]
+                        + s * (r3[i] + c * (r4[i] + s * (r5[i] + c * (r6[i] + s * r7[i]))))));
+        }
+        Ok(())
+    }
+
+    fn interpolate_rate(
+        &mut self,
+        problem: &mut P,
+        t: f64,
+        ydot: &mut [f64],
+    ) -> Result<(), Failure> {
+        if !self.advanced {
+            ydot.copy_from_slice(&self.f0);
+            return Ok(());
+        }
+        self.prepare_dense(problem)?;
+        let s = (t - self.t0) / self.h;
+        for (i, rate) in ydot.iter_mut().enumerate() {
+            // value and slope of (4) by Horner's rule; the factors alternate between θ and 1 − θ
+            let (mut p, mut slope) = (0.0, 0.0);
+            for (j, r) in self.dense.iter().enumerate().rev() {
+                p += r[i];
+                let (factor, sign) = if j % 2 == 0 {
+                    (s, 1.0)
+                } else {
+                    (1.0 - s, -1.0)
+                };
+                slope = slope * factor + p * sign;
+                p *= factor;
+            }
+            *rate = slope / self.h;
+        }
+        Ok(())
+    }
+
+    fn propose(&mut self, h: f64) {
+        self.h_next = h;
+    }
+
+    fn t(&self) -> f64 {
+        if self.advanced { self.t1 } else { self.t0 }
+    }
+
+    fn y(&self) -> &[f64] {
+        if self.advanced { &self.y1 } else { &self.y0 }
+    }
+
+    fn ydot(&self) -> &[f64] {
+        if self.advanced { &self.f1 } else { &self.f0 }
+    }
+
+    fn stats(&self) -> &Stats {
+        &self.stats
+    }
+
+    fn stiff(&self) -> bool {
+        self.beyond_edge >= STIFF_STEPS
+    }
+}
