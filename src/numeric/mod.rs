@@ -139,11 +139,11 @@ pub struct Options {
     pub tolerance: f64,
     /// part of the typical magnitude below which errors are measured absolutely
     pub floor: f64,
-    /// first step; found from the problem when absent   [s]
+    /// first step; found from the problem when absent, in s
     pub h_initial: Option<f64>,
-    /// longest step   [s]
+    /// longest step, in s
     pub h_max: f64,
-    /// a step shorter than this ends the integration   [s]
+    /// a step shorter than this ends the integration, in s
     pub h_min: f64,
     /// highest order of methods of variable order
     pub max_order: usize,
@@ -171,11 +171,11 @@ impl Default for Options {
 /// An accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// where it began   [s]
+    /// where it began, in s
     pub t0: f64,
-    /// where it ended   [s]
+    /// where it ended, in s
     pub t1: f64,
-    /// its length   [s]
+    /// its length, in s
     pub h: f64,
     /// order of the method in it
     pub order: usize,
@@ -188,9 +188,9 @@ pub struct Step {
 pub struct Stop {
     /// the cause
     pub reason: Reason,
-    /// end of the last accepted step   [s]
+    /// end of the last accepted step, in s
     pub t: f64,
-    /// length of the last attempt   [s]
+    /// length of the last attempt, in s
     pub h: f64,
 }
 

@@ -196,10 +196,10 @@ impl Pendulum {
 
     /// Position of the mass (x to the right, y upward) and its velocity from `START` after 10 s: elliptic functions in 30 digits.
     pub const AFTER_10: [f64; 4] = [
-        -2.750_874_625_761_168_6e-1,
-        -9.614_192_050_991_251e-1,
-        4.175_598_100_951_729,
-        -1.194_749_054_560_475_3,
+        -0.2750874625761169,
+        -0.9614192050991252,
+        4.175598100951729,
+        -1.1947490545604753,
     ];
 
     /// Position and velocity of the mass.
@@ -242,12 +242,12 @@ impl DoublePendulum {
     pub const START: [f64; 4] = [0.0; 4];
     /// Joint point, tip, rates after 5 s: two formulations in extended precision agree to 5e-16.
     pub const AFTER_5: [f64; 6] = [
-        9.080_244_304_330_555e-1,
-        -4.189_172_158_514_437_7e-1,
-        1.855_221_937_758_089_1,
-        -7.395_679_325_467_959e-1,
-        4.910_950_024_004_455,
-        -5.424_710_593_158_876,
+        0.9080244304330555,
+        -0.41891721585144376,
+        1.8552219377580892,
+        -0.7395679325467959,
+        4.910950024004455,
+        -5.424710593158876,
     ];
 
     /// Joint point, tip, rates.
@@ -319,9 +319,9 @@ impl EulerTop {
     pub const START: [f64; 3] = [0.01, 5.0, 0.01];
     /// Body rates after 10 s, extended precision.
     pub const AFTER_10: [f64; 3] = [
-        1.271_487_062_946_208_4e-2,
-        4.999_993_833_202_685,
-        1.097_979_864_909_427_7e-2,
+        0.012714870629462085,
+        4.999993833202685,
+        0.010979798649094277,
     ];
 }
 
