@@ -9,3 +9,4 @@ pub mod interpolation;
 pub mod measures;
 pub mod program;
 pub mod signature;
+pub mod spline;
