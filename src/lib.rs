@@ -13,3 +13,8 @@ pub mod model;
 pub mod numeric;
 #[cfg(feature = "solver")]
 pub mod results;
+
+#[cfg(feature = "cli")]
+pub mod cli;
+#[cfg(feature = "cli")]
+pub mod report;

@@ -1,0 +1,288 @@
+//! What a picture of curves shows: names, units, points, ranges. How it is drawn is said in `svg.rs` and `terminal.rs`.
+//!
+//! Values that are not finite leave a gap. Curves with more points than a picture has columns are thinned to the least and greatest
+//! value of each column, so that no peak is lost and files stay small.
+
+use crate::diagnostic::{Diagnostic, near_names};
+use crate::results::Run;
+
+/// Curves over a common x.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plot {
+    /// above the picture; may be empty
+    pub title: String,
+    /// what x is, with its unit
+    pub x_label: String,
+    /// what y is, with its unit; empty: taken from the curves
+    pub y_label: String,
+    /// the curves, in the order of the legend
+    pub curves: Vec<Curve>,
+}
+
+/// One line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// in the legend
+    pub name: String,
+    /// of y; empty: unknown or none
+    pub unit: String,
+    /// (x, y) in the order they are joined
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Most curves that are shown when none are chosen.
+const MOST_CURVES: usize = 8;
+
+impl Plot {
+    /// The named columns of a run over its first column, or over `x`; without names the first few.
+    ///
+    /// # Errors
+    /// When the run has no such column; says which are near.
+    pub fn of_run(run: &Run, x: Option<&str>, names: &[String]) -> Result<Plot, Diagnostic> {
+        let find = |name: &str| run.find(name).ok_or_else(|| unknown_column(run, name));
+        let x = x.map_or(Ok(0), find)?;
+        let x_column = run
+            .columns
+            .get(x)
+            .ok_or_else(|| unknown_column(run, "time"))?;
+        let chosen = match names {
+            [] => run
+                .table_columns()
+                .into_iter()
+                .filter(|&c| c != x)
+                .take(MOST_CURVES)
+                .collect(),
+            names => names
+                .iter()
+                .map(|n| find(n))
+                .collect::<Result<Vec<_>, _>>()?,
+        };
+        let rows: Vec<usize> = run.table_rows().collect();
+        let curves = chosen.into_iter().map(|c| {
+            let column = &run.columns[c];
+            let points = rows
+                .iter()
+                .map(|&row| (x_column.values[row], column.values[row]))
+                .collect();
+            Curve {
+                name: column.name.clone(),
+                unit: column.unit.clone(),
+                points,
+            }
+        });
+        let title = if run.title.is_empty() {
+            run.name.clone()
+        } else {
+            run.title.clone()
+        };
+        let x_label = with_unit(&x_column.name, &x_column.unit);
+        Ok(Plot {
+            title,
+            x_label,
+            y_label: String::new(),
+            curves: curves.collect(),
+        })
+    }
+
+    /// The common unit of the curves, if they have one.
+    fn common_unit(&self) -> Option<&str> {
+        let first = self.curves.first()?.unit.as_str();
+        self.curves.iter().all(|c| c.unit == first).then_some(first)
+    }
+
+    /// What stands beside the y axis.
+    pub fn y_axis(&self) -> String {
+        match (
+            self.y_label.as_str(),
+            self.curves.as_slice(),
+            self.common_unit(),
+        ) {
+            ("", [only], _) => with_unit(&only.name, &only.unit),
+            ("", _, Some(unit)) if !unit.is_empty() => format!("[{unit}]"),
+            (given, ..) => given.to_owned(),
+        }
+    }
+
+    /// What stands in the legend: names, with units where they differ. A single curve is named by the axis.
+    pub fn legend(&self) -> Vec<String> {
+        let units = self.common_unit().is_none();
+        match self.curves.as_slice() {
+            [_] if self.y_label.is_empty() => Vec::new(),
+            curves => curves
+                .iter()
+                .map(|c| {
+                    if units {
+                        with_unit(&c.name, &c.unit)
+                    } else {
+                        c.name.clone()
+                    }
+                })
+                .collect(),
+        }
+    }
+
+    /// Least and greatest x and y of the finite points, widened where there is nothing between them.
+    ///
+    /// # Errors
+    /// When there is no finite point.
+    pub fn ranges(&self) -> Result<((f64, f64), (f64, f64)), Diagnostic> {
+        let range = |coordinate: fn(&(f64, f64)) -> f64| {
+            let finite = self
+                .curves
+                .iter()
+                .flat_map(|c| &c.points)
+                .filter(|p| is_finite(p))
+                .map(coordinate);
+            let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            });
+            (low <= high).then(|| widened(low, high))
+        };
+        match (range(|p| p.0), range(|p| p.1)) {
+            (Some(x), Some(y)) => Ok((x, y)),
+            _ => Err(Diagnostic::error(
+                "empty_plot",
+                "there is no finite value to show",
+            )),
+        }
+    }
+}
+
+/// The range itself, or one around it where its ends are the same number but for rounding.
+fn widened(low: f64, high: f64) -> (f64, f64) {
+    // Numbers beyond these have no place between two neighbours for ticks.
+    const LARGEST: f64 = 1e300;
+    const SMALLEST: f64 = 1e-290;
+    let (low, high) = (low.clamp(-LARGEST, LARGEST), high.clamp(-LARGEST, LARGEST));
+    let scale = low.abs().max(high.abs());
+    let by = if scale > SMALLEST { 0.1 * scale } else { 1.0 };
+    if high - low <= (1e-12 * scale).max(SMALLEST) {
+        (low - by, high + by)
+    } else {
+        (low, high)
+    }
+}
+
+fn is_finite(p: &(f64, f64)) -> bool {
+    p.0.is_finite() && p.1.is_finite()
+}
+
+/// `name [unit]`
+pub fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name} [{unit}]")
+    }
+}
+
+fn unknown_column(run: &Run, name: &str) -> Diagnostic {
+    let names: Vec<&str> = run.columns.iter().map(|c| c.name.as_str()).collect();
+    let near = near_names(name, names.iter().copied());
+    let advice = if near.is_empty() {
+        format!("columns: {}", names.join("  "))
+    } else {
+        format!("did you mean {}?", near.join(" or "))
+    };
+    Diagnostic::error("unknown_column", format!("there is no column `{name}`")).help(advice)
+}
+
+/// A curve in pieces without gaps, thinned to what a picture with this many columns over the range of x can show.
+pub fn pieces(points: &[(f64, f64)], x: (f64, f64), columns: u32) -> Vec<Vec<(f64, f64)>> {
+    let parts = points
+        .split(|p| !is_finite(p))
+        .filter(|piece| !piece.is_empty());
+    parts.map(|piece| thinned(piece, x, columns)).collect()
+}
+
+/// Of each column of the picture the first, least, greatest and last point, in their order.
+fn thinned(points: &[(f64, f64)], x: (f64, f64), columns: u32) -> Vec<(f64, f64)> {
+    if points.len() <= 4 * columns as usize {
+        return points.to_vec();
+    }
+    let column = |p: &(f64, f64)| ((p.0 - x.0) / (x.1 - x.0) * f64::from(columns)) as i64;
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    for group in points.chunk_by(|a, b| column(a) == column(b)) {
+        let least = (0..group.len())
+            .min_by(|&a, &b| group[a].1.total_cmp(&group[b].1))
+            .unwrap_or(0);
+        let greatest = (0..group.len())
+            .max_by(|&a, &b| group[a].1.total_cmp(&group[b].1))
+            .unwrap_or(0);
+        let mut chosen = [0, least, greatest, group.len() - 1];
+        chosen.sort_unstable();
+        for (k, &i) in chosen.iter().enumerate() {
+            if k == 0 || chosen[k - 1] != i {
+                kept.push(group[i]);
+            }
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{Kind, Units};
+
+    #[test]
+    fn thinning_keeps_every_peak_and_the_ends() {
+        let mut points: Vec<(f64, f64)> = (0..100_000)
+            .map(|i| (f64::from(i), (f64::from(i) * 1e-3).sin()))
+            .collect();
+        points[54_321].1 = 9.0;
+        points[12_345].1 = -9.0;
+        let kept = thinned(&points, (0.0, 99_999.0), 500);
+        assert!(kept.len() <= 2004, "{}", kept.len());
+        assert!(kept.contains(&(54_321.0, 9.0)) && kept.contains(&(12_345.0, -9.0)));
+        assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
+        assert!(kept.windows(2).all(|w| w[0].0 < w[1].0));
+    }
+
+    #[test]
+    fn values_that_are_not_finite_cut_the_curve() {
+        let points = [
+            (0.0, 1.0),
+            (1.0, f64::NAN),
+            (2.0, 3.0),
+            (3.0, 4.0),
+            (f64::INFINITY, 5.0),
+        ];
+        assert_eq!(
+            pieces(&points, (0.0, 3.0), 100),
+            [vec![(0.0, 1.0)], vec![(2.0, 3.0), (3.0, 4.0)]]
+        );
+    }
+
+    #[test]
+    fn a_constant_has_a_range_around_it() {
+        let plot = |y: f64| Plot {
+            curves: vec![Curve {
+                points: vec![(0.0, y), (1.0, y)],
+                ..Curve::default()
+            }],
+            ..Plot::default()
+        };
+        assert_eq!(plot(5.0).ranges().unwrap().1, (4.5, 5.5));
+        assert_eq!(plot(0.0).ranges().unwrap().1, (-1.0, 1.0));
+        assert!(plot(f64::NAN).ranges().is_err());
+    }
+
+    #[test]
+    fn a_column_that_is_not_there_is_answered_with_a_near_one() {
+        let mut run = Run::new("r", "", Units::default());
+        run.add_column("DX(12,21)", "mm");
+        run.begin(Kind::Dynamic);
+        run.push(&[0.0, 1.0]);
+        run.end();
+        let d = Plot::of_run(&run, None, &["DX(12,22)".into()]).unwrap_err();
+        assert_eq!(
+            (d.code, d.help[0].as_str()),
+            ("unknown_column", "did you mean DX(12,21)?")
+        );
+        assert_eq!(
+            Plot::of_run(&run, None, &[]).unwrap().y_axis(),
+            "DX(12,21) [mm]"
+        );
+    }
+}
