@@ -1,0 +1,432 @@
+//! One ordered pass over a text: finds its first mistake, or what each of its names and numbers means.
+//!
+//! The grammar says what the language is and makes the tree; but a grammar that fails knows neither kind nor cause. So the
+//! tokens are first led through an automaton with a stack of open calls and groups, from left to right, without recursion.
+//! It reports the first mistake it meets, by the rules of the language reference: names when they are read, the syntax of a
+//! whole argument list before the number of its arguments, that before what its identifiers must be. A text that passes is
+//! one that the grammar accepts (the fuzz target `parse` holds them to that), and is nested no deeper than recursion can go.
+
+use super::ast::{Callee, Constant, Dialect};
+use super::signature::{Choice, Element, Kind as ArgumentKind, LARGEST_IDENTIFIER};
+use super::symbols::{Profile, Symbol, symbol};
+use super::token::{Fault, Kind, Lexer, Token};
+use crate::diagnostic::Span;
+use std::collections::BTreeSet;
+
+/// Most characters of a text.
+pub const MOST_CHARACTERS: usize = 1_000_000;
+/// Most calls, IFs and groups inside one another.
+pub const DEEPEST_NESTING: usize = 256;
+/// Most levels of the tree that recursion follows: the nesting, and chains of signs and powers.
+const DEEPEST_TREE: usize = 512;
+
+/// What I-DEAS bounds, so that hosts may bound it too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// calls, IFs and groups inside one another
+    pub nesting: usize,
+    /// operators, brackets, names, numbers and separators
+    pub symbols: usize,
+    /// different identifiers of one kind of element
+    pub elements: usize,
+    /// lines
+    pub lines: usize,
+    /// characters
+    pub characters: usize,
+}
+
+impl Limits {
+    /// Only what keeps the reader safe.
+    pub const NONE: Limits = Limits {
+        nesting: DEEPEST_NESTING,
+        symbols: usize::MAX,
+        elements: usize::MAX,
+        lines: usize::MAX,
+        characters: MOST_CHARACTERS,
+    };
+    /// Those of I-DEAS Mechanism Design.
+    pub const IDEAS: Limits = Limits {
+        nesting: 10,
+        symbols: 1000,
+        elements: 25,
+        lines: 20,
+        characters: 500,
+    };
+}
+
+impl Profile {
+    /// The limits that this profile keeps.
+    pub fn limits(self) -> Limits {
+        match self {
+            Profile::Adams => Limits::NONE,
+            Profile::Ideas => Limits::IDEAS,
+        }
+    }
+}
+
+/// The meaning of a number or a name, in the order of the text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Atom {
+    Number { literal: f64, degrees: bool },
+    Constant(Constant),
+    Callee(Callee),
+}
+
+/// What an open parenthesis belongs to.
+#[derive(Clone, Copy, Debug)]
+enum Open {
+    Group,
+    Call(Callee),
+    /// the number of the part that is being read: 0 the selector, 1 to 3 the branches
+    If(u8),
+}
+
+/// An open parenthesis and the argument that is being read inside it.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    open: Open,
+    /// the name; the parenthesis of a group
+    name: Span,
+    /// place of its first argument in `Check::arguments`
+    first: usize,
+    /// levels of the tree outside
+    depth: usize,
+}
+
+/// What identifiers are checked by.
+#[derive(Clone, Copy, Debug)]
+struct Argument {
+    start: usize,
+    end: usize,
+    tokens: u32,
+}
+
+struct Check<'a> {
+    text: &'a str,
+    lexer: Lexer<'a>,
+    dialect: Dialect,
+    profile: Profile,
+    limits: Limits,
+    atoms: Vec<Atom>,
+    frames: Vec<Frame>,
+    /// arguments of all open calls, those of inner calls last
+    arguments: Vec<Argument>,
+    /// levels of the tree that the next operand lies under
+    depth: usize,
+    elements: BTreeSet<(Element, u32)>,
+    symbols: usize,
+    /// up to where lines and characters have been counted, and how many
+    counted: Counted,
+}
+
+/// Lines and characters up to a place in the text.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counted {
+    bytes: usize,
+    characters: usize,
+    line_breaks: usize,
+}
+
+/// The meaning of all numbers and names of a text, or its first mistake.
+pub(crate) fn check(
+    text: &str,
+    dialect: Dialect,
+    profile: Profile,
+    limits: Limits,
+) -> Result<Vec<Atom>, Fault> {
+    if let Some(span) = character_after(text, MOST_CHARACTERS) {
+        return Err(Fault::new("limit_length", span));
+    }
+    let mut check = Check {
+        text,
+        lexer: Lexer::new(text, dialect == Dialect::Function),
+        dialect,
+        profile,
+        limits,
+        atoms: Vec::new(),
+        frames: Vec::new(),
+        arguments: Vec::new(),
+        depth: 0,
+        elements: BTreeSet::new(),
+        symbols: 0,
+        counted: Counted::default(),
+    };
+    check.run()?;
+    Ok(check.atoms)
+}
+
+/// The place of the character after the first `n`, if there is one.
+fn character_after(text: &str, n: usize) -> Option<Span> {
+    if text.len() <= n {
+        return None;
+    }
+    let (at, c) = text.char_indices().nth(n)?;
+    Some(Span::new(at, at + c.len_utf8()))
+}
+
+impl Check<'_> {
+    fn run(&mut self) -> Result<(), Fault> {
+        let mut token = self.next()?;
+        loop {
+            // an operand: signs and opening parentheses, then a number, a constant, or F(
+            token = match token.kind {
+                Kind::Plus | Kind::Minus => self.deeper(token)?,
+                Kind::Open => {
+                    self.open(Open::Group, token.span)?;
+                    self.next()?
+                }
+                Kind::Number { literal, degrees } => {
+                    self.atoms.push(Atom::Number { literal, degrees });
+                    let after = self.next()?;
+                    match self.after_operand(after)? {
+                        Some(token) => token,
+                        None => return Ok(()),
+                    }
+                }
+                Kind::Name => match self.name(token)? {
+                    Some(token) => token,
+                    None => return Ok(()),
+                },
+                Kind::End => return Err(self.unexpected_end()),
+                Kind::Comma | Kind::Close if self.at_start_of_argument() => {
+                    return Err(Fault::new("empty_argument", token.span));
+                }
+                _ => return Err(Fault::new("unexpected_token", token.span)),
+            };
+        }
+    }
+
+    /// A constant with what follows it, or the beginning of a call; the token that the next operand begins with.
+    fn name(&mut self, name: Token) -> Result<Option<Token>, Fault> {
+        let text = &self.text[name.span.start..name.span.end];
+        let Some(meaning) = symbol(text, self.dialect, self.profile) else {
+            return Err(Fault::new("unknown_name", name.span));
+        };
+        let open = match meaning {
+            Symbol::Constant(c) => {
+                self.atoms.push(Atom::Constant(c));
+                let after = self.next()?;
+                return match after.kind {
+                    Kind::Open => Err(Fault::new("not_callable", after.span)),
+                    _ => self.after_operand(after),
+                };
+            }
+            Symbol::If => Open::If(0),
+            Symbol::Callee(callee) => {
+                self.atoms.push(Atom::Callee(callee));
+                Open::Call(callee)
+            }
+        };
+        self.open(open, name.span)?;
+        if self.next()?.kind != Kind::Open {
+            return Err(Fault::new("missing_arguments", name.span));
+        }
+        self.begin_argument();
+        let first = self.next()?;
+        match (first.kind, open) {
+            (Kind::Close, Open::Call(_)) => Err(Fault::new("arity", name.span)),
+            _ => Ok(Some(first)),
+        }
+    }
+
+    /// Closing parentheses, then an operator, a separator or the end; the token that the next operand begins with.
+    fn after_operand(&mut self, mut token: Token) -> Result<Option<Token>, Fault> {
+        loop {
+            let unexpected = Err(Fault::new("unexpected_token", token.span));
+            match token.kind {
+                Kind::Plus | Kind::Minus | Kind::Times | Kind::Over => {
+                    self.depth = self.level();
+                    return self.next().map(Some);
+                }
+                Kind::Power => return self.deeper(token).map(Some),
+                Kind::Comma | Kind::Colon => {
+                    match (self.frames.last_mut().map(|f| &mut f.open), token.kind) {
+                        (Some(Open::Call(_)), Kind::Comma) => {}
+                        (Some(Open::If(part @ 0)), Kind::Colon) => *part = 1,
+                        (Some(Open::If(part @ (1 | 2))), Kind::Comma) => *part += 1,
+                        _ => return unexpected,
+                    }
+                    self.begin_argument();
+                    return self.next().map(Some);
+                }
+                Kind::Close => {
+                    let Some(frame) = self.frames.pop() else {
+                        return unexpected;
+                    };
+                    match frame.open {
+                        Open::If(part) if part < 3 => return unexpected,
+                        Open::Call(callee) => self.close_call(callee, &frame)?,
+                        Open::If(_) | Open::Group => {}
+                    }
+                    self.arguments.truncate(frame.first);
+                    self.depth = frame.depth;
+                    token = self.next()?;
+                }
+                Kind::End if self.frames.is_empty() => return Ok(None),
+                Kind::End => return Err(self.unexpected_end()),
+                Kind::Number { .. } | Kind::Name | Kind::Open => return unexpected,
+            }
+        }
+    }
+
+    /// Number of arguments, then identifiers and selectors from left to right.
+    fn close_call(&mut self, callee: Callee, frame: &Frame) -> Result<(), Fault> {
+        let count = self.arguments.len() - frame.first;
+        let (least, most) = callee.arity();
+        if !(least..=most).contains(&count) {
+            return Err(Fault::new("arity", frame.name));
+        }
+        for k in 0..count {
+            self.integer(callee.argument(k), self.arguments[frame.first + k])?;
+        }
+        Ok(())
+    }
+
+    fn integer(&mut self, kind: ArgumentKind, argument: Argument) -> Result<(), Fault> {
+        if kind == ArgumentKind::Number {
+            return Ok(());
+        }
+        let span = Span::new(argument.start, argument.end);
+        let text = &self.text[argument.start..argument.end];
+        if argument.tokens != 1 || !text.bytes().all(|b| b.is_ascii_digit()) {
+            return Err(Fault::new("integer_required", span));
+        }
+        let out_of_range = Fault::new("out_of_range", span);
+        let Ok(n) = text.parse::<u32>() else {
+            return Err(out_of_range);
+        };
+        let fits = match kind {
+            ArgumentKind::Number => true,
+            ArgumentKind::Selector(choice) => choice.allows(n),
+            ArgumentKind::Identifier { zero: true, .. } => {
+                Choice::Range(0, LARGEST_IDENTIFIER).allows(n)
+            }
+            ArgumentKind::Identifier { zero: false, .. } => {
+                Choice::Range(1, LARGEST_IDENTIFIER).allows(n)
+            }
+        };
+        if !fits {
+            return Err(out_of_range);
+        }
+        if let ArgumentKind::Identifier { element, .. } = kind
+            && n > 0
+            && self.limits.elements < usize::MAX
+        {
+            self.elements.insert((element, n));
+            let of_this_kind = self
+                .elements
+                .range((element, 0)..=(element, u32::MAX))
+                .count();
+            if of_this_kind > self.limits.elements {
+                return Err(Fault::new("limit_elements", span));
+            }
+        }
+        Ok(())
+    }
+
+    fn open(&mut self, open: Open, name: Span) -> Result<(), Fault> {
+        if self.frames.len() >= self.limits.nesting.min(DEEPEST_NESTING)
+            || self.depth >= DEEPEST_TREE
+        {
+            return Err(Fault::new("limit_nesting", name));
+        }
+        self.frames.push(Frame {
+            open,
+            name,
+            first: self.arguments.len(),
+            depth: self.depth,
+        });
+        self.depth += 1;
+        Ok(())
+    }
+
+    /// The tree level of a fresh term here.
+    fn level(&self) -> usize {
+        self.frames.last().map_or(0, |f| f.depth + 1)
+    }
+
+    /// A sign or `**`: what follows lies one level deeper.
+    fn deeper(&mut self, token: Token) -> Result<Token, Fault> {
+        self.depth += 1;
+        if self.depth > DEEPEST_TREE {
+            return Err(Fault::new("limit_nesting", token.span));
+        }
+        self.next()
+    }
+
+    fn begin_argument(&mut self) {
+        self.depth = self.level();
+        self.arguments.push(Argument {
+            start: 0,
+            end: 0,
+            tokens: 0,
+        });
+    }
+
+    /// Whether the token just read is the first of an argument. (It has been counted already.)
+    fn at_start_of_argument(&self) -> bool {
+        let in_call = matches!(
+            self.frames.last(),
+            Some(Frame {
+                open: Open::Call(_) | Open::If(_),
+                ..
+            })
+        );
+        in_call && self.arguments.last().is_some_and(|a| a.tokens == 1)
+    }
+
+    fn unexpected_end(&self) -> Fault {
+        let end = self.text.trim_end_matches([' ', '\t', '\r', '\n']).len();
+        Fault::new("unexpected_end", Span::new(end, end))
+    }
+
+    /// The next token, counted.
+    fn next(&mut self) -> Result<Token, Fault> {
+        let token = self.lexer.next();
+        self.keep_to_length(
+            token
+                .as_ref()
+                .map_or_else(|fault| fault.span, |token| token.span),
+        )?;
+        let token = token?;
+        if token.kind != Kind::End {
+            self.symbols += 1;
+            if self.symbols > self.limits.symbols {
+                return Err(Fault::new("limit_symbols", token.span));
+            }
+        }
+        // only the argument that is being read counts tokens, and it lies in the innermost call
+        if let Some(argument) = self.arguments.last_mut() {
+            if argument.tokens == 0 {
+                argument.start = token.span.start;
+            }
+            if !matches!(token.kind, Kind::Comma | Kind::Colon | Kind::Close)
+                || argument.tokens == 0
+            {
+                argument.end = token.span.end;
+                argument.tokens = argument.tokens.saturating_add(1);
+            }
+        }
+        Ok(token)
+    }
+
+    /// Lines and characters up to the end of this token.
+    fn keep_to_length(&mut self, span: Span) -> Result<(), Fault> {
+        if self.limits.lines == usize::MAX && self.limits.characters >= MOST_CHARACTERS {
+            return Ok(());
+        }
+        for c in self.text[self.counted.bytes..span.end].chars() {
+            let place = Span::new(self.counted.bytes, self.counted.bytes + c.len_utf8());
+            if self.counted.characters >= self.limits.characters {
+                return Err(Fault::new("limit_length", place));
+            }
+            if self.counted.line_breaks >= self.limits.lines {
+                return Err(Fault::new("limit_lines", place));
+            }
+            self.counted.bytes = place.end;
+            self.counted.characters += 1;
+            self.counted.line_breaks += usize::from(c == '\n');
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,208 @@
+//! What names mean: one table of constants, functions, measures and interpolations per language, made from their rows.
+
+use super::ast::{Callee, Constant, Dialect};
+use super::functions::{Function, ParameterKind};
+use super::interpolation::Interpolation;
+use super::measures;
+use super::signature::{self, Choice, Element, Kind};
+use std::cmp::Ordering;
+use std::sync::OnceLock;
+
+/// Whose habits are followed beyond the common language.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Profile {
+    /// no limits but those that keep the reader safe
+    #[default]
+    Adams,
+    /// the limits of I-DEAS (nesting, symbols, elements, length), and AKIMA as another name of AKISPL
+    Ideas,
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symbol {
+    /// a named number, never followed by parentheses
+    Constant(Constant),
+    /// the arithmetic IF
+    If,
+    /// something with arguments
+    Callee(Callee),
+}
+
+/// Names of a language in the order of [`compare`], with their meaning.
+type Table = Vec<(&'static str, Symbol)>;
+
+/// The meaning of a name, in upper or lower case.
+pub fn symbol(name: &str, dialect: Dialect, profile: Profile) -> Option<Symbol> {
+    let table = table(dialect);
+    match table.binary_search_by(|entry| compare(entry.0, name)) {
+        Ok(k) => Some(table[k].1),
+        Err(_) if is_akima(name, dialect) && profile == Profile::Ideas => {
+            Some(Symbol::Callee(Callee::Interpolation(Interpolation::Akispl)))
+        }
+        Err(_) => None,
+    }
+}
+
+/// Every name of a language with its meaning, in alphabetical order: for completion, highlighting and near names.
+pub fn names(dialect: Dialect) -> &'static [(&'static str, Symbol)] {
+    table(dialect)
+}
+
+fn is_akima(name: &str, dialect: Dialect) -> bool {
+    dialect == Dialect::Function && name.eq_ignore_ascii_case("AKIMA")
+}
+
+fn table(dialect: Dialect) -> &'static Table {
+    static TABLES: [OnceLock<Table>; 2] = [OnceLock::new(), OnceLock::new()];
+    TABLES[dialect as usize].get_or_init(|| {
+        let functions = Function::ALL.iter().filter(|f| f.row().dialect == dialect);
+        let mut table: Table = functions
+            .map(|&f| (f.name(), Symbol::Callee(Callee::Function(f))))
+            .collect();
+        match dialect {
+            Dialect::Expression => table.push(("t", Symbol::Constant(Constant::Time))),
+            Dialect::Function => {
+                table.push(("IF", Symbol::If));
+                table.extend(CONSTANTS.map(|(name, c)| (name, Symbol::Constant(c))));
+                table.extend(
+                    measures::rows()
+                        .iter()
+                        .map(|r| (r.name, Symbol::Callee(Callee::Measure(r.measure)))),
+                );
+                table.extend(
+                    Interpolation::ALL
+                        .iter()
+                        .map(|&f| (f.name(), Symbol::Callee(Callee::Interpolation(f)))),
+                );
+            }
+        }
+        table.sort_by(|a, b| compare(a.0, b.0));
+        table
+    })
+}
+
+const CONSTANTS: [(&str, Constant); 5] = [
+    ("TIME", Constant::Time),
+    ("PI", Constant::Pi),
+    ("DTOR", Constant::Dtor),
+    ("RTOD", Constant::Rtod),
+    ("MODE", Constant::Mode),
+];
+
+/// Alphabetical order without regard to case.
+fn compare(a: &str, b: &str) -> Ordering {
+    a.bytes()
+        .map(|b| b.to_ascii_uppercase())
+        .cmp(b.bytes().map(|b| b.to_ascii_uppercase()))
+}
+
+impl Constant {
+    /// As it is written in a language.
+    pub fn name(self, dialect: Dialect) -> &'static str {
+        match (self, dialect) {
+            (Constant::Time, Dialect::Expression) => "t",
+            (Constant::Time, Dialect::Function) => "TIME",
+            (Constant::Pi, _) => "PI",
+            (Constant::Dtor, _) => "DTOR",
+            (Constant::Rtod, _) => "RTOD",
+            (Constant::Mode, _) => "MODE",
+        }
+    }
+}
+
+impl Callee {
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Callee::Function(f) => f.name(),
+            Callee::Measure(m) => m.name(),
+            Callee::Interpolation(f) => f.name(),
+        }
+    }
+    /// Fewest and most arguments.
+    pub fn arity(self) -> (usize, usize) {
+        let range = match self {
+            Callee::Function(f) => f.arity(),
+            Callee::Measure(m) => return signature::arity(m.row().arguments),
+            Callee::Interpolation(f) => f.arity(),
+        };
+        (*range.start(), *range.end())
+    }
+    /// What the `k`-th argument may be (`k` from 0).
+    pub fn argument(self, k: usize) -> Kind {
+        match self {
+            Callee::Function(f) => kind_of(f.parameter_kind(k), Element::Array),
+            Callee::Interpolation(f @ Interpolation::Curve) => {
+                kind_of(f.parameter_kind(k), Element::Curve)
+            }
+            Callee::Interpolation(f) => kind_of(f.parameter_kind(k), Element::Spline),
+            Callee::Measure(m) => m.row().arguments.get(k).map_or(Kind::Number, |a| a.kind),
+        }
+    }
+    /// `NAME(i[, j])`
+    pub fn signature(self) -> String {
+        match self {
+            Callee::Function(f) => f.signature(),
+            Callee::Measure(m) => signature::signature(m.name(), m.row().arguments),
+            Callee::Interpolation(f) => f.signature(),
+        }
+    }
+    /// Whether the value depends on what was before, so that a host has to keep a history.
+    pub fn needs_history(self) -> bool {
+        match self {
+            Callee::Function(f) => f == Function::Delay,
+            Callee::Measure(m) => m.needs_history(),
+            Callee::Interpolation(_) => false,
+        }
+    }
+}
+
+/// A parameter of a function of numbers or of data in the terms of a signature.
+fn kind_of(kind: ParameterKind, element: Element) -> Kind {
+    match kind {
+        ParameterKind::Number => Kind::Number,
+        ParameterKind::Integer(first, u32::MAX) => Kind::Identifier {
+            element,
+            zero: first == 0,
+        },
+        ParameterKind::Integer(first, last) => Kind::Selector(Choice::Range(first, last)),
+        ParameterKind::OneOf(list) => Kind::Selector(Choice::OneOf(list)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_means_one_thing() {
+        for dialect in [Dialect::Function, Dialect::Expression] {
+            for pair in names(dialect).windows(2) {
+                assert_eq!(
+                    compare(pair[0].0, pair[1].0),
+                    Ordering::Less,
+                    "{} {}",
+                    pair[0].0,
+                    pair[1].0
+                );
+            }
+            for &(name, meaning) in names(dialect) {
+                assert_eq!(
+                    symbol(&name.to_lowercase(), dialect, Profile::Adams),
+                    Some(meaning)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_languages_keep_their_names_apart() {
+        let known = |name, dialect| symbol(name, dialect, Profile::Adams).is_some();
+        assert!(known("TIME", Dialect::Function) && !known("TIME", Dialect::Expression));
+        assert!(known("t", Dialect::Expression) && !known("t", Dialect::Function));
+        assert!(!known("ln", Dialect::Function) && known("ln", Dialect::Expression));
+        assert!(!known("AKIMA", Dialect::Function));
+        assert!(symbol("akima", Dialect::Function, Profile::Ideas).is_some());
+    }
+}
