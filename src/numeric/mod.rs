@@ -16,6 +16,7 @@
 //! (see [`control::Weights`]).
 
 pub mod control;
+pub mod event;
 pub mod runge_kutta;
 
 pub use runge_kutta::Dop853;

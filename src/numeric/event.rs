@@ -1,0 +1,449 @@
+//! The first root of switching functions inside a step.
+//!
+//! The functions `g(t)` are all evaluated at once, on the interpolant of an accepted step. Each has a *side*, the sign it had last; an event is the
+//! first time at which one of them is on its other side.
+//!
+//! ```text
+//! 1  sample     t0 < s₁ < … < s_m < t1; the first interval at whose end a function has changed sides holds the event
+//! 2  dips       where |g| has a minimum between samples of one sign, the vertex of the parabola through three of them is sampled too:
+//!               so a function that crosses and returns between two samples (a double root) is seen
+//! 3  bracket    at `a` no function has crossed, at `b` one has; the next point is the earliest secant root of those that have, drawn
+//!               to the middle as far as needed to keep the bracket of bisection (method ITP)
+//! 4  end        b − a is a few units in the last place; the event is at `b`, where the sign is the new one
+//! ```
+//!
+//! Since the event is put at `b`, integration restarts with a clear sign, and what has just switched does not switch again by rounding.
+//! A value of exactly zero is on no side: a function that starts there takes the side it leaves to, without an event; one that touches zero
+//! and goes back has not crossed; one that stays at zero says nothing.
+//!
+//! Source of ITP: Oliveira & Takahashi, ACM TOMS 47 (2020).
+
+/// Interior samples per step.
+const SAMPLES: usize = 4;
+/// Further samples at dips, per step.
+const DIPS: usize = 8;
+
+/// Which crossings count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// both
+    #[default]
+    Either,
+    /// from negative to positive
+    Rising,
+    /// from positive to negative
+    Falling,
+}
+
+/// Finds the first event of several switching functions, step after step.
+#[derive(Clone, Debug)]
+pub struct Locator {
+    /// which crossings count   (n)
+    direction: Vec<Direction>,
+    /// sign last seen, 0 when never clear   (n)
+    side: Vec<i8>,
+    /// functions that crossed at the last event
+    crossed: Vec<usize>,
+    /// times and values of the samples of this step, in order   (SAMPLES + DIPS + 2, each n)
+    times: Vec<f64>,
+    values: Vec<Vec<f64>>,
+    /// values at both ends of the bracket and at the trial point   (n each)
+    at_a: Vec<f64>,
+    at_b: Vec<f64>,
+    at_x: Vec<f64>,
+}
+
+impl Locator {
+    /// A locator for `n` functions, all crossings counting.
+    pub fn new(n: usize) -> Self {
+        let room = SAMPLES + DIPS + 2;
+        Locator {
+            direction: vec![Direction::Either; n],
+            side: vec![0; n],
+            crossed: Vec::with_capacity(n),
+            times: Vec::with_capacity(room),
+            values: vec![vec![0.0; n]; room],
+            at_a: vec![0.0; n],
+            at_b: vec![0.0; n],
+            at_x: vec![0.0; n],
+        }
+    }
+
+    /// Lets only some crossings of function `k` count.
+    pub fn set_direction(&mut self, k: usize, direction: Direction) {
+        self.direction[k] = direction;
+    }
+
+    /// Takes the values at the start, or where integration goes on after an event.
+    pub fn begin(&mut self, values: &[f64]) {
+        self.values[0].copy_from_slice(values);
+        for (side, value) in self.side.iter_mut().zip(values) {
+            *side = sign(*value);
+        }
+    }
+
+    /// The side of each function: +1, −1, or 0 while it has been exactly zero   (n)
+    pub fn sides(&self) -> &[i8] {
+        &self.side
+    }
+
+    /// The functions that crossed at the event last found.
+    pub fn crossed(&self) -> &[usize] {
+        &self.crossed
+    }
+
+    /// Looks for the first event in `(t0, t1]`; `g(t, values)` evaluates all functions there.
+    ///
+    /// The values at `t0` are those of [`Locator::begin`], or of the end of the step scanned before. After an event the
+    /// next scan begins at it. A value that is not a number is on no side.
+    ///
+    /// # Errors
+    /// Those of `g`.
+    pub fn scan<E>(
+        &mut self,
+        t0: f64,
+        t1: f64,
+        mut g: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Option<f64>, E> {
+        self.crossed.clear();
+        if self.side.is_empty() {
+            return Ok(None);
+        }
+        // 1: samples, up to the first at which something has crossed
+        self.times.clear();
+        self.times.push(t0);
+        let mut found = false;
+        for i in 1..=SAMPLES + 1 {
+            let t = if i > SAMPLES {
+                t1
+            } else {
+                t0 + (t1 - t0) * i as f64 / (SAMPLES + 1) as f64
+            };
+            g(t, &mut self.values[i])?;
+            self.times.push(t);
+            if self.has_crossed(i) {
+                found = true;
+                break;
+            }
+            self.adopt_sides(i);
+        }
+        // 2: dips before that; they may insert samples before the last one
+        let dip = self.find_dip(&mut g)?;
+        let last = self.times.len() - 1;
+        let Some(i) = dip.or(found.then_some(last)) else {
+            self.values.swap(0, last);
+            return Ok(None);
+        };
+        // 3 and 4
+        let t = self.close_in(i, &mut g)?;
+        for k in 0..self.side.len() {
+            if counts(self.direction[k], self.side[k], sign(self.at_b[k])) {
+                self.crossed.push(k);
+            }
+            if sign(self.at_b[k]) != 0 {
+                self.side[k] = sign(self.at_b[k]);
+            }
+        }
+        self.values[0].copy_from_slice(&self.at_b);
+        Ok(Some(t))
+    }
+
+    /// Whether a crossing that counts is seen at sample `i`.
+    fn has_crossed(&self, i: usize) -> bool {
+        any_crossed(&self.direction, &self.side, &self.values[i])
+    }
+
+    /// Functions that come off zero, or cross where it does not count, take their new side.
+    fn adopt_sides(&mut self, i: usize) {
+        for (side, value) in self.side.iter_mut().zip(&self.values[i]) {
+            if sign(*value) != 0 {
+                *side = sign(*value);
+            }
+        }
+    }
+
+    /// Samples the vertices of parabolas that reach across zero; gives the sample that has crossed, put into its place.
+    fn find_dip<E>(
+        &mut self,
+        g: &mut impl FnMut(f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Option<usize>, E> {
+        let mut added = 0;
+        let mut i = 1;
+        while i + 1 < self.times.len() && added < DIPS {
+            let Some(t) = (0..self.side.len()).find_map(|k| self.vertex(i, k)) else {
+                i += 1;
+                continue;
+            };
+            let place = if t < self.times[i] { i } else { i + 1 };
+            let end = self.times.len();
+            g(t, &mut self.values[end])?;
+            self.times.insert(place, t);
+            self.values[place..=end].rotate_right(1);
+            added += 1;
+            // sides are those at the beginning of the dip, since nothing before it has crossed
+            let (before, here) = (&self.values[place - 1], &self.values[place]);
+            let crossed = |k: usize| counts(self.direction[k], sign(before[k]), sign(here[k]));
+            if (0..self.side.len()).any(crossed) {
+                for k in 0..self.side.len() {
+                    if sign(self.values[place - 1][k]) != 0 {
+                        self.side[k] = sign(self.values[place - 1][k]);
+                    }
+                }
+                return Ok(Some(place));
+            }
+            i = i.saturating_sub(1).max(1);
+        }
+        Ok(None)
+    }
+
+    /// Where the parabola of function `k` through samples i − 1, i, i + 1 of one sign has its vertex, when that lies across zero.
+    fn vertex(&self, i: usize, k: usize) -> Option<f64> {
+        let [f0, f1, f2] = [
+            self.values[i - 1][k],
+            self.values[i][k],
+            self.values[i + 1][k],
+        ];
+        let s = sign(f1);
+        if s == 0 || sign(f0) != s || sign(f2) != s || f1.abs() > f0.abs() || f1.abs() > f2.abs() {
+            return None;
+        }
+        let (h0, h2) = (
+            self.times[i - 1] - self.times[i],
+            self.times[i + 1] - self.times[i],
+        );
+        let (d0, d2) = ((f0 - f1) / h0, (f2 - f1) / h2);
+        let bend = (d2 - d0) / (h2 - h0);
+        let slope = d0 - bend * h0;
+        let x = -0.5 * slope / bend;
+        let least = f1 + 0.5 * slope * x;
+        let inside = x > h0 && x < h2 && x.abs() > 1e-3 * (h2 - h0);
+        // the parabola is an estimate: a near miss is worth a look
+        let across = sign(least) != s || least.abs() < 0.1 * f1.abs();
+        (inside && across).then(|| self.times[i] + x)
+    }
+
+    /// Shrinks the bracket between samples i − 1 and i onto the first crossing; the values there are left in `at_b`.
+    fn close_in<E>(
+        &mut self,
+        i: usize,
+        g: &mut impl FnMut(f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<f64, E> {
+        let (mut a, mut b) = (self.times[i - 1], self.times[i]);
+        self.at_a.copy_from_slice(&self.values[i - 1]);
+        self.at_b.copy_from_slice(&self.values[i]);
+        let resolution = 4.0 * f64::EPSILON * a.abs().max(b.abs());
+        let bisections = ((b - a) / resolution).log2().ceil().max(0.0);
+        let mut radius = resolution * 0.5 * (bisections + 1.0).exp2();
+        let whole = b - a;
+        while b - a > resolution {
+            let middle = a + 0.5 * (b - a);
+            // earliest secant root of what has crossed, a little towards the middle
+            let mut x = b;
+            for k in 0..self.side.len() {
+                let (fa, fb) = (self.at_a[k], self.at_b[k]);
+                if counts(self.direction[k], self.side[k], sign(fb)) {
+                    x = x.min(a + (b - a) * (fa / (fa - fb)).clamp(0.0, 1.0));
+                }
+            }
+            let nudge = (0.2 / whole * (b - a) * (b - a)).max(0.5 * resolution);
+            x = if nudge < (middle - x).abs() {
+                x + nudge.copysign(middle - x)
+            } else {
+                middle
+            };
+            // not farther from the middle than bisection permits
+            let room = (radius - 0.5 * (b - a)).max(0.0);
+            x = x.clamp(middle - room, middle + room);
+            if !(x > a && x < b) {
+                x = middle;
+            }
+            if !(x > a && x < b) {
+                break;
+            }
+            g(x, &mut self.at_x)?;
+            if any_crossed(&self.direction, &self.side, &self.at_x) {
+                b = x;
+                std::mem::swap(&mut self.at_b, &mut self.at_x);
+            } else {
+                a = x;
+                std::mem::swap(&mut self.at_a, &mut self.at_x);
+                // crossings that do not count, and functions leaving zero
+                for (side, value) in self.side.iter_mut().zip(&self.at_a) {
+                    if sign(*value) != 0 {
+                        *side = sign(*value);
+                    }
+                }
+            }
+            radius *= 0.5;
+        }
+        Ok(b)
+    }
+}
+
+fn sign(x: f64) -> i8 {
+    if x > 0.0 {
+        1
+    } else if x < 0.0 {
+        -1
+    } else {
+        0
+    }
+}
+
+/// Whether going from side to sign is a crossing that counts.
+fn counts(direction: Direction, side: i8, sign: i8) -> bool {
+    side * sign < 0
+        && match direction {
+            Direction::Either => true,
+            Direction::Rising => sign > 0,
+            Direction::Falling => sign < 0,
+        }
+}
+
+fn any_crossed(direction: &[Direction], side: &[i8], values: &[f64]) -> bool {
+    let mut each = direction.iter().zip(side).zip(values);
+    each.any(|((d, s), v)| counts(*d, *s, sign(*v)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All events of scalar functions over equal steps, with the number of evaluations.
+    fn events(
+        functions: &[fn(f64) -> f64],
+        steps: &[f64],
+        set: impl Fn(&mut Locator),
+    ) -> (Vec<(f64, Vec<usize>)>, usize) {
+        let mut locator = Locator::new(functions.len());
+        set(&mut locator);
+        let at = |t: f64| functions.iter().map(|f| f(t)).collect::<Vec<_>>();
+        locator.begin(&at(steps[0]));
+        let (mut found, mut evaluations) = (vec![], 0);
+        for pair in steps.windows(2) {
+            let mut t0 = pair[0];
+            while t0 < pair[1] {
+                let event = locator.scan(t0, pair[1], |t, values| {
+                    evaluations += 1;
+                    for (value, f) in values.iter_mut().zip(functions) {
+                        *value = f(t);
+                    }
+                    Ok::<(), ()>(())
+                });
+                match event.unwrap() {
+                    Some(t) => {
+                        found.push((t, locator.crossed().to_vec()));
+                        t0 = t;
+                    }
+                    None => break,
+                }
+            }
+        }
+        (found, evaluations)
+    }
+
+    #[test]
+    fn every_zero_of_the_cosine_is_found_to_the_last_place() {
+        let steps: Vec<f64> = (0..=10).map(f64::from).collect();
+        let (found, evaluations) = events(&[f64::cos], &steps, |_| ());
+        assert_eq!(found.len(), 3);
+        for (i, (t, crossed)) in found.iter().enumerate() {
+            let exact = std::f64::consts::PI * (i as f64 + 0.5);
+            assert!((t - exact).abs() < 8.0 * f64::EPSILON * exact);
+            assert_eq!(crossed, &[0]);
+        }
+        assert!(evaluations < 50 + 3 * 20, "{evaluations} evaluations");
+    }
+
+    #[test]
+    fn the_earliest_of_several_comes_first() {
+        let functions: [fn(f64) -> f64; 3] = [|t| t - 0.7, |t| 0.3 - t, |t| (t - 0.3) * 1e9];
+        let (found, _) = events(&functions, &[0.0, 1.0], |_| ());
+        assert_eq!(found.len(), 2);
+        assert!((found[0].0 - 0.3).abs() < 1e-15 && (found[1].0 - 0.7).abs() < 1e-15);
+        assert_eq!(found[0].1, [1, 2]);
+        assert_eq!(found[1].1, [0]);
+    }
+
+    #[test]
+    fn directions_choose() {
+        let steps = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+        let (rising, _) = events(&[f64::sin], &steps, |l| {
+            l.set_direction(0, Direction::Rising)
+        });
+        let (falling, _) = events(&[f64::sin], &steps, |l| {
+            l.set_direction(0, Direction::Falling)
+        });
+        assert_eq!((rising.len(), falling.len()), (1, 1));
+        assert!((rising[0].0 - 2.0 * std::f64::consts::PI).abs() < 1e-14);
+        assert!((falling[0].0 - std::f64::consts::PI).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_dip_between_samples_is_two_events_and_a_touch_is_none() {
+        // below zero for 2 % of the step, between two samples
+        let (found, _) = events(&[|t| (t - 0.5) * (t - 0.5) - 1e-4], &[0.0, 1.0], |_| ());
+        assert_eq!(found.len(), 2);
+        assert!((found[0].0 - 0.49).abs() < 1e-14 && (found[1].0 - 0.51).abs() < 1e-14);
+        let (found, _) = events(&[|t| (t - 0.5) * (t - 0.5)], &[0.0, 1.0], |_| ());
+        assert!(found.is_empty());
+        let (found, _) = events(&[|t| -(t - 0.47) * (t - 0.47) + 1e-6], &[0.0, 1.0], |_| ());
+        assert_eq!(found.len(), 2);
+    }
+
+    #[test]
+    fn a_near_miss_does_not_hide_a_later_crossing() {
+        let functions: [fn(f64) -> f64; 2] = [|t| (t - 0.5) * (t - 0.5) + 1e-4, |t| 0.95 - t];
+        let (found, _) = events(&functions, &[0.0, 1.0], |_| ());
+        assert_eq!(found.len(), 1);
+        assert!((found[0].0 - 0.95).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_has_just_switched_does_not_switch_again() {
+        // the restart is at the event itself, where the value is nearly zero
+        let (found, _) = events(&[|t| (t - 0.25).sin()], &[0.0, 1.0, 2.0, 3.0], |_| ());
+        assert_eq!(found.len(), 1);
+        // begins exactly at zero: no event; leaves upward, comes back
+        let (found, _) = events(&[|t| t * (1.0 - t)], &[0.0, 0.4, 0.8, 1.2], |_| ());
+        assert_eq!(found.len(), 1);
+        assert!((found[0].0 - 1.0).abs() < 1e-15);
+        // stays at zero
+        let (found, _) = events(&[|_| 0.0], &[0.0, 1.0], |_| ());
+        assert!(found.is_empty());
+    }
+
+    #[test]
+    fn steep_flat_and_jumping_functions_are_bracketed() {
+        let functions: [fn(f64) -> f64; 4] = [
+            |t| (t - 0.3).powi(9),
+            |t| (1e6 * (t - 0.3)).tanh(),
+            |t| if t < 0.3 { -1e-9 } else { 1e9 },
+            |t| (t - 0.3).cbrt(),
+        ];
+        for (i, f) in functions.iter().enumerate() {
+            let (found, evaluations) = events(&[*f], &[0.0, 1.0], |_| ());
+            assert_eq!(found.len(), 1, "function {i}");
+            let allowed = if i == 0 { 1e-10 } else { 1e-15 };
+            assert!(
+                (found[0].0 - 0.3).abs() < allowed,
+                "function {i}: {}",
+                found[0].0
+            );
+            assert!(evaluations < 80, "function {i}: {evaluations} evaluations");
+        }
+    }
+
+    #[test]
+    fn not_a_number_is_no_event_and_errors_pass_through() {
+        let (found, _) = events(
+            &[|t| if t > 0.5 { f64::NAN } else { 1.0 }],
+            &[0.0, 1.0],
+            |_| (),
+        );
+        assert!(found.is_empty());
+        let mut locator = Locator::new(1);
+        locator.begin(&[1.0]);
+        assert_eq!(locator.scan(0.0, 1.0, |_, _| Err("no")), Err("no"));
+    }
+}
