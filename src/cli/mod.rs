@@ -1,1 +1,160 @@
-//! The command line: one verb per file.
+//! The command line: one command, one verb, one file.
+//!
+//! A verb collects what it has to say and returns how it ended; only this file knows exit codes and streams. What was asked for goes
+//! to standard output, everything about it (mistakes, warnings, progress) to standard error.
+
+mod convert;
+pub mod interrupt;
+mod plot;
+pub mod progress;
+pub mod render;
+
+use crate::diagnostic::Diagnostic;
+use clap::{Parser, Subcommand};
+use render::Sources;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// The ADAMS function language and the multibody solver that speaks it.
+#[derive(Parser)]
+#[command(name = "cognate", version, disable_help_subcommand = true, arg_required_else_help = true, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Convert(convert::Args),
+    Plot(plot::Args),
+}
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 done, 1 our mistake, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia),
+5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed, 130 interrupted.";
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// everything was done
+    Done,
+    /// a mistake of ours
+    Bug,
+    /// the command was not understood
+    Usage,
+    /// the input has mistakes: syntax, names, files
+    Input,
+    /// the model cannot work: freedom, contradiction, inertia
+    Model,
+    /// no equilibrium was found
+    NoEquilibrium,
+    /// the integration stopped early
+    Stopped,
+    /// a limit of time, memory or steps was reached
+    Limit,
+    /// a check that was asked for failed
+    CheckFailed,
+    /// the user interrupted it
+    Interrupted,
+}
+
+impl Exit {
+    /// Its number.
+    pub fn code(self) -> u8 {
+        match self {
+            Exit::Done => 0,
+            Exit::Bug => 1,
+            Exit::Usage => 2,
+            Exit::Input => 3,
+            Exit::Model => 4,
+            Exit::NoEquilibrium => 5,
+            Exit::Stopped => 6,
+            Exit::Limit => 7,
+            Exit::CheckFailed => 8,
+            Exit::Interrupted => 130,
+        }
+    }
+}
+
+/// Why a command could not be done: its exit code, what to say, and the texts that the places in it refer to.
+pub struct Failure {
+    /// the exit code
+    pub exit: Exit,
+    /// all mistakes
+    pub diagnostics: Vec<Diagnostic>,
+    /// texts that were read
+    pub sources: Sources,
+}
+
+impl From<Diagnostic> for Failure {
+    /// A mistake in the input.
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self {
+            exit: Exit::Input,
+            diagnostics: vec![diagnostic],
+            sources: Sources::default(),
+        }
+    }
+}
+
+impl Failure {
+    /// The command was understood but contradicts itself.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self {
+            exit: Exit::Usage,
+            ..Self::from(Diagnostic::error("usage", message))
+        }
+    }
+}
+
+/// What verbs return.
+pub type Outcome = Result<Exit, Failure>;
+
+/// Runs the command that the arguments of the process ask for.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
+        Verb::Convert(args) => convert::run(args),
+        Verb::Plot(args) => plot::run(args),
+    });
+    let exit = match std::panic::catch_unwind(verb) {
+        Ok(Ok(exit)) => exit,
+        Ok(Err(failure)) => {
+            complain(&failure.diagnostics, &failure.sources);
+            failure.exit
+        }
+        Err(_) => {
+            complain(
+                &[Diagnostic::error("bug", "this is a mistake in cognate")
+                    .help("please report what you ran and what stands above")],
+                &Sources::default(),
+            );
+            Exit::Bug
+        }
+    };
+    ExitCode::from(exit.code())
+}
+
+/// Says what is wrong, on standard error.
+pub fn complain(diagnostics: &[Diagnostic], sources: &Sources) {
+    let text = render::render(diagnostics, sources, render::colour_on_stderr());
+    // Where nobody listens there is nothing to say.
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// Says on standard error what was done beside what was asked for.
+pub fn remark(message: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "{message}");
+}
+
+/// Prints what was asked for. When the reader has gone away (`| head`), the program ends quietly.
+pub fn say(text: &str) {
+    let mut out = std::io::stdout().lock();
+    if out
+        .write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .is_err()
+    {
+        std::process::exit(Exit::Done.code().into());
+    }
+}

@@ -176,13 +176,16 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-fn unknown_column(run: &Run, name: &str) -> Diagnostic {
+/// What to say when a run has no column of this name: which are near, or all there are.
+pub fn unknown_column(run: &Run, name: &str) -> Diagnostic {
     let names: Vec<&str> = run.columns.iter().map(|c| c.name.as_str()).collect();
     let near = near_names(name, names.iter().copied());
-    let advice = if near.is_empty() {
-        format!("columns: {}", names.join("  "))
-    } else {
-        format!("did you mean {}?", near.join(" or "))
+    const MOST_NAMES: usize = 12;
+    let first = names[..names.len().min(MOST_NAMES)].join("  ");
+    let advice = match (near.is_empty(), names.len()) {
+        (false, _) => format!("did you mean {}?", near.join(" or ")),
+        (true, n) if n > MOST_NAMES => format!("columns: {first}  … ({n} in all)"),
+        (true, _) => format!("columns: {first}"),
     };
     Diagnostic::error("unknown_column", format!("there is no column `{name}`")).help(advice)
 }

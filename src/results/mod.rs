@@ -403,6 +403,23 @@ impl Run {
             last.rows.end = rows;
         }
     }
+    /// Keeps the rows of some sequences; all others go.
+    pub fn keep_sequences(&mut self, keep: impl Fn(&Sequence) -> bool) {
+        self.sequences.retain(keep);
+        for column in &mut self.columns {
+            let kept = self
+                .sequences
+                .iter()
+                .filter_map(|s| column.values.get(s.rows.clone()));
+            column.values = kept.flatten().copied().collect();
+        }
+        let mut at = 0;
+        for sequence in &mut self.sequences {
+            let length = sequence.rows.len();
+            sequence.rows = at..at + length;
+            at += length;
+        }
+    }
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |c| c.values.len())

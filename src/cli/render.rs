@@ -1,0 +1,265 @@
+//! Diagnostics as people read them: the source line, a caret below the place, and advice.
+
+use crate::diagnostic::{Diagnostic, Severity};
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use serde_json::{Value, json};
+use std::io::IsTerminal;
+
+/// Texts that places refer to, by the name of their file; the name is empty for a text that has none.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    texts: Vec<(String, String)>,
+}
+
+impl Sources {
+    /// One text without a file.
+    pub fn of(text: impl Into<String>) -> Self {
+        let mut sources = Self::default();
+        sources.add("", text);
+        sources
+    }
+    /// Adds the text of a file.
+    pub fn add(&mut self, file: impl Into<String>, text: impl Into<String>) {
+        self.texts.push((file.into(), text.into()));
+    }
+    fn text(&self, file: Option<&str>) -> Option<&str> {
+        self.texts
+            .iter()
+            .find(|t| t.0 == file.unwrap_or_default())
+            .map(|t| t.1.as_str())
+    }
+}
+
+/// Most diagnostics that are shown in full; a broken file can have thousands.
+const MOST_SHOWN: usize = 50;
+
+/// The diagnostics as text, one after another.
+pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
+    let renderer = if colour {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    let mut text = String::new();
+    for diagnostic in diagnostics.iter().take(MOST_SHOWN) {
+        text += &renderer.render(&[group(diagnostic, sources)]);
+        text += "\n";
+    }
+    if diagnostics.len() > MOST_SHOWN {
+        text += &format!("… and {} more\n", diagnostics.len() - MOST_SHOWN);
+    }
+    text
+}
+
+fn group<'a>(d: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
+    let level = match d.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
+    };
+    let message = d
+        .element
+        .as_ref()
+        .map_or_else(|| d.message.clone(), |e| format!("{e}: {}", d.message));
+    let place = excerpt(d, sources);
+    let title = match (&place, &d.file) {
+        (None, Some(file)) if d.line > 0 => {
+            level.primary_title(format!("{file}:{}:{}: {message}", d.line, d.column))
+        }
+        (None, Some(file)) => level.primary_title(format!("{file}: {message}")),
+        (None, None) if d.line > 0 => {
+            level.primary_title(format!("line {}, column {}: {message}", d.line, d.column))
+        }
+        _ => level.primary_title(message),
+    };
+    let mut group = Group::with_title(title.id(d.code));
+    if let Some(Excerpt {
+        lines,
+        first_line,
+        range,
+    }) = place
+    {
+        let snippet = Snippet::source(lines)
+            .line_start(first_line)
+            .path(d.file.as_deref());
+        group = group.element(snippet.annotation(AnnotationKind::Primary.span(range)));
+    }
+    group.elements(d.help.iter().map(|advice| Level::HELP.message(advice)))
+}
+
+/// The lines that a place lies on, and the place within them.
+struct Excerpt<'a> {
+    lines: &'a str,
+    first_line: usize,
+    range: std::ops::Range<usize>,
+}
+
+/// Longest piece of a line that is shown around a place, in bytes.
+const WIDEST: usize = 400;
+
+fn excerpt<'a>(d: &Diagnostic, sources: &'a Sources) -> Option<Excerpt<'a>> {
+    let text = sources.text(d.file.as_deref())?;
+    let (start, end) = match d.span {
+        Some(span) => (span.start.min(text.len()), span.end.min(text.len())),
+        None if d.line > 0 => {
+            let line_start = text
+                .split_inclusive('\n')
+                .take(d.line - 1)
+                .map(str::len)
+                .sum::<usize>();
+            let line = text.get(line_start..)?.split('\n').next()?;
+            let before = line
+                .chars()
+                .take(d.column.saturating_sub(1))
+                .map(char::len_utf8)
+                .sum::<usize>();
+            let word = line[before..]
+                .chars()
+                .take_while(|c| c.is_alphanumeric() || *c == '_')
+                .map(char::len_utf8)
+                .sum::<usize>();
+            (line_start + before, line_start + before + word)
+        }
+        None => return None,
+    };
+    let (start, end) = (
+        floor_boundary(text, start),
+        floor_boundary(text, end.max(start)),
+    );
+    let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
+    let line_end = text[end..].find('\n').map_or(text.len(), |i| end + i);
+    // One statement can be a line of a megabyte: what is far from the place is left out.
+    let (from, to) = (
+        floor_boundary(text, line_start.max(start.saturating_sub(WIDEST))),
+        floor_boundary(text, line_end.min(start + WIDEST)),
+    );
+    let end = end.min(to).max(start);
+    let first_line = 1 + text[..from].matches('\n').count();
+    let lines = text[from..to].trim_end_matches('\r');
+    Some(Excerpt {
+        lines,
+        first_line,
+        range: (start - from).min(lines.len())..(end - from).min(lines.len()),
+    })
+}
+
+/// The nearest place at or before this one that no character crosses.
+fn floor_boundary(text: &str, mut at: usize) -> usize {
+    at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// Whether colours are wanted on standard error: it is a terminal, and NO_COLOR is not set.
+pub fn colour_on_stderr() -> bool {
+    std::io::stderr().is_terminal() && colours_allowed()
+}
+
+/// Whether colours are wanted on standard output.
+pub fn colour_on_stdout() -> bool {
+    std::io::stdout().is_terminal() && colours_allowed()
+}
+
+fn colours_allowed() -> bool {
+    std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}
+
+/// The diagnostics for programs: an array of objects with the same facts.
+pub fn as_json(diagnostics: &[Diagnostic]) -> Value {
+    let one = |d: &Diagnostic| {
+        let severity = match d.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
+        json!({
+            "code": d.code, "severity": severity, "message": d.message, "file": d.file, "line": d.line, "column": d.column,
+            "start": d.span.map(|s| s.start), "end": d.span.map(|s| s.end), "element": d.element, "help": d.help,
+        })
+    };
+    diagnostics.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::Span;
+
+    fn plain(d: Diagnostic, sources: &Sources) -> String {
+        render(&[d], sources, false)
+    }
+
+    #[test]
+    fn a_caret_stands_below_the_place_and_advice_below_it() {
+        let text = "STEP(TIME,0,0,1)";
+        let d = Diagnostic::error("arity", "STEP takes 5 arguments, 4 given")
+            .at(text, Span::new(0, 4))
+            .help("STEP(x, x0, h0, x1, h1)");
+        let shown = plain(d, &Sources::of(text));
+        let lines: Vec<&str> = shown.lines().collect();
+        assert_eq!(lines[0], "error[arity]: STEP takes 5 arguments, 4 given");
+        let at = lines.iter().position(|l| l.contains(text)).unwrap();
+        assert_eq!(lines[at].find("STEP"), lines[at + 1].find("^^^^"));
+        assert!(shown.contains("help: STEP(x, x0, h0, x1, h1)"), "{shown}");
+    }
+
+    #[test]
+    fn places_in_files_show_file_line_and_element() {
+        let text = "title\nPART/1, GROUND\nSFORCE/3, FUNCTION=SQR(2)\n";
+        let mut sources = Sources::default();
+        sources.add("a.adm", text);
+        let start = text.find("SQR").unwrap();
+        let mut d = Diagnostic::error("unknown_name", "there is no function SQR")
+            .at(text, Span::new(start, start + 3))
+            .element("SFORCE/3");
+        d.file = Some("a.adm".into());
+        let shown = plain(d.clone(), &sources);
+        assert!(
+            shown.contains("a.adm:3:20") && shown.contains("SFORCE/3: there is no function SQR"),
+            "{shown}"
+        );
+        assert!(!shown.contains("GROUND"), "{shown}");
+        let without_text = plain(d, &Sources::default());
+        assert!(
+            without_text.contains("a.adm:3:20: SFORCE/3"),
+            "{without_text}"
+        );
+    }
+
+    #[test]
+    fn every_place_in_every_text_can_be_shown() {
+        for text in [
+            "",
+            "\n",
+            "ä€𝕏",
+            "a\r\nb\r\n",
+            "x\n\n\ny",
+            &"1+".repeat(5000),
+        ] {
+            let sources = Sources::of(text);
+            for (start, end) in [
+                (0, 0),
+                (0, 1),
+                (1, 2),
+                (2, 99),
+                (3, 1),
+                (9999, 9999),
+                (5000, 10_000),
+            ] {
+                let d = Diagnostic {
+                    span: Some(Span { start, end }),
+                    ..Diagnostic::error("x", "y")
+                };
+                assert!(plain(d, &sources).contains("error[x]: y"));
+            }
+            let d = Diagnostic {
+                line: 2,
+                column: 7,
+                ..Diagnostic::error("x", "y")
+            };
+            assert!(plain(d, &sources).contains("error[x]"));
+        }
+    }
+}
