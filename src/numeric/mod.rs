@@ -17,6 +17,7 @@
 
 pub mod control;
 pub mod event;
+pub mod rank;
 pub mod runge_kutta;
 
 pub use runge_kutta::Dop853;

@@ -1,0 +1,399 @@
+//! Which rows of a matrix depend on which: rank, independent rows, combinations, free directions, least-norm solutions.
+//!
+//! ```text
+//! rows      aᵢ = dᵢ âᵢ,  |âᵢ| = 1                                        (1)
+//! pivots    Householder reflections on the rows, one row per pivot:
+//!           Â = L Qᵀ,  L m × r lower trapezoidal                          (2)
+//! chosen    the first row, in the order given, whose part outside the rows chosen so far is at least a tenth of the largest such part
+//! stop      when that largest part is below the tolerance: the rank is the number of rows chosen
+//! row       aₖ = Σ cⱼ aⱼ over independent j:   L₁ᵀ ĉ = ℓₖ                 (3)
+//! solution  x = Q z,  z = argmin |L z − b̂|                                (4)
+//! ```
+//!
+//! *Preference for the order given*: of two rows that say the same the first counts as independent, so that what is reported as superfluous is what came later.
+//!
+//! *Tolerance*: a row of a mechanism at a configuration that satisfies its constraints to 1e-10 … 1e-12 depends on others up to errors of that
+//! size, however many bodies lie between; rows that differ because a user typed six or seven digits differ by 1e-7 and more. [`TOLERANCE`] lies between.
+//! [`Rank::margin`] tells how clear the decision was, for a caller that wants to warn. Rows are compared by direction, so their units do not matter;
+//! columns of different units should be scaled alike by the caller (a length of the mechanism).
+
+/// Part of a row outside the others, relative to its length, below which it depends on them.
+pub const TOLERANCE: f64 = 1e-8;
+/// Length of a row relative to the longest, below which it is empty.
+const EMPTY: f64 = 1e-13;
+/// Preference for earlier rows: they may have this part of the largest remainder.
+const PREFERENCE: f64 = 0.1;
+
+/// A row that depends on others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dependence {
+    /// the dependent row
+    pub row: usize,
+    /// independent rows and their factors: `a[row] = Σ factor · a[independent row]`; empty for an empty row
+    pub combination: Vec<(usize, f64)>,
+    /// length of what the combination leaves over, relative to the length of the row
+    pub remainder: f64,
+}
+
+/// The rank decision over an `m × n` matrix.
+#[derive(Clone, Debug)]
+pub struct Rank {
+    n: usize,
+    /// number of independent rows
+    rank: usize,
+    /// rows in the order of choice, then the dependent ones in the order given   (m)
+    order: Vec<usize>,
+    /// lengths dᵢ of (1), by row   (m)
+    length: Vec<f64>,
+    /// rows of L, by row; beyond the rank what is left of the row   (m × n)
+    l: Vec<Vec<f64>>,
+    /// Householder vectors v, I − v vᵀ with |v|² = 2   (rank × n)
+    reflections: Vec<Vec<f64>>,
+    /// smallest part of a row that was kept, largest part that was dropped
+    margin: (f64, f64),
+}
+
+impl Rank {
+    /// Decides over the matrix with the given `rows`, each of length `n`.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a [f64]>, n: usize, tolerance: f64) -> Self {
+        let mut l: Vec<Vec<f64>> = rows.into_iter().map(<[f64]>::to_vec).collect();
+        let m = l.len();
+        let mut length: Vec<f64> = l.iter().map(|row| norm(row)).collect();
+        let longest = length
+            .iter()
+            .copied()
+            .filter(|d| d.is_finite())
+            .fold(0.0, f64::max);
+        for (row, d) in l.iter_mut().zip(&mut length) {
+            if *d > EMPTY * longest && d.is_finite() {
+                row.iter_mut().for_each(|a| *a /= *d);
+            } else {
+                row.fill(0.0);
+                *d = 1.0;
+            }
+        }
+
+        let mut remaining: Vec<usize> = (0..m).collect();
+        let (mut chosen, mut reflections) = (Vec::new(), Vec::new());
+        let (mut kept, mut dropped) = (1.0f64, 0.0f64);
+        while !remaining.is_empty() {
+            let k = chosen.len();
+            let part = |i: &usize| norm(&l[*i][k.min(n)..]);
+            let largest = remaining.iter().map(part).fold(0.0, f64::max);
+            if k == n || largest <= tolerance {
+                dropped = largest;
+                break;
+            }
+            let at = remaining
+                .iter()
+                .position(|i| part(i) >= PREFERENCE * largest)
+                .unwrap_or(0);
+            let pivot = remaining.remove(at);
+            kept = kept.min(part(&pivot));
+            let v = reflection(&l[pivot], k);
+            for i in remaining.iter().chain([&pivot]) {
+                reflect(&v, &mut l[*i]);
+            }
+            l[pivot][k + 1..].fill(0.0);
+            reflections.push(v);
+            chosen.push(pivot);
+        }
+        let rank = chosen.len();
+        chosen.extend(remaining);
+        Rank {
+            n,
+            rank,
+            order: chosen,
+            length,
+            l,
+            reflections,
+            margin: (kept, dropped),
+        }
+    }
+
+    /// Number of independent rows.
+    pub fn rank(&self) -> usize {
+        self.rank
+    }
+
+    /// Independent rows, ascending.
+    pub fn independent(&self) -> Vec<usize> {
+        let mut rows = self.order[..self.rank].to_vec();
+        rows.sort_unstable();
+        rows
+    }
+
+    /// Smallest part of a row that was taken for independent, and largest that was taken for dependent, relative to the rows' lengths.
+    pub fn margin(&self) -> (f64, f64) {
+        self.margin
+    }
+
+    /// Dependent rows, ascending, each with its combination of independent ones (3).
+    pub fn dependent(&self) -> Vec<Dependence> {
+        let r = self.rank;
+        let mut found = Vec::new();
+        for row in &self.order[r..] {
+            let target = &self.l[*row];
+            // back substitution with L₁ᵀ
+            let mut c = target[..r].to_vec();
+            for j in (0..r).rev() {
+                let pivot = &self.l[self.order[j]];
+                c[j] /= pivot[j];
+                for i in 0..j {
+                    c[i] -= pivot[i] * c[j];
+                }
+            }
+            let mut combination: Vec<(usize, f64)> = (0..r)
+                .filter(|j| c[*j].abs() > TOLERANCE)
+                .map(|j| {
+                    (
+                        self.order[j],
+                        c[j] * self.length[*row] / self.length[self.order[j]],
+                    )
+                })
+                .collect();
+            combination.sort_unstable_by_key(|(row, _)| *row);
+            found.push(Dependence {
+                row: *row,
+                combination,
+                remainder: norm(&target[r..]),
+            });
+        }
+        found.sort_unstable_by_key(|d| d.row);
+        found
+    }
+
+    /// Directions `x` with `A x = 0`, one per unknown that the rows leave free: orthonormal   ((n − rank) × n)
+    pub fn free_directions(&self) -> Vec<Vec<f64>> {
+        (self.rank..self.n)
+            .map(|k| {
+                let mut x = vec![0.0; self.n];
+                x[k] = 1.0;
+                self.leave_basis(&mut x);
+                x
+            })
+            .collect()
+    }
+
+    /// The same directions, combined so that each has a one at an unknown of its own and zeros at those of the others: as sparse as can be had cheaply.
+    /// Gives these unknowns beside the directions.
+    pub fn free_motions(&self) -> Vec<(usize, Vec<f64>)> {
+        let mut motions = self.free_directions();
+        let mut own = Vec::new();
+        for i in 0..motions.len() {
+            let rest = motions[i].iter().enumerate();
+            let largest = rest.fold((0, 0.0), |best: (usize, f64), (j, x)| {
+                if x.abs() > best.1 * (1.0 + 1e-9) {
+                    (j, x.abs())
+                } else {
+                    best
+                }
+            });
+            let j = largest.0;
+            let scale = motions[i][j];
+            motions[i].iter_mut().for_each(|x| *x /= scale);
+            let pivot = motions[i].clone();
+            for (k, other) in motions.iter_mut().enumerate() {
+                if k != i {
+                    let factor = other[j];
+                    other
+                        .iter_mut()
+                        .zip(&pivot)
+                        .for_each(|(x, p)| *x -= factor * p);
+                    other[j] = 0.0;
+                }
+            }
+            own.push(j);
+        }
+        for x in motions.iter_mut().flatten() {
+            if x.abs() < 1e-13 {
+                *x = 0.0;
+            }
+        }
+        let mut motions: Vec<_> = own.into_iter().zip(motions).collect();
+        motions.sort_unstable_by_key(|(j, _)| *j);
+        motions
+    }
+
+    /// The shortest `x` that satisfies `A x = b` best (4), each row counting by its direction. Gives the row with the largest distance left, and that
+    /// distance `|aᵢ x − bᵢ|`: zero up to rounding when the rows do not contradict each other.
+    pub fn least_norm(&self, b: &[f64], x: &mut [f64]) -> (usize, f64) {
+        let (m, r) = (self.order.len(), self.rank);
+        // argmin |L z − b̂| by reflections on the columns of L, rows in the order of choice
+        let mut columns: Vec<Vec<f64>> = (0..r)
+            .map(|j| self.order.iter().map(|i| self.l[*i][j]).collect())
+            .collect();
+        let mut rest: Vec<f64> = self.order.iter().map(|i| b[*i] / self.length[*i]).collect();
+        for k in 0..r {
+            let v = reflection(&columns[k], k);
+            for column in &mut columns[k..] {
+                reflect(&v, column);
+            }
+            reflect(&v, &mut rest);
+        }
+        x.fill(0.0);
+        for k in (0..r).rev() {
+            let known: f64 = (k + 1..r).map(|j| columns[j][k] * x[j]).sum();
+            x[k] = (rest[k] - known) / columns[k][k];
+        }
+        let z = x[..r].to_vec();
+        self.leave_basis(x);
+        let distance = |i: usize| {
+            let row = &self.l[i];
+            (row[..r].iter().zip(&z).map(|(l, z)| l * z).sum::<f64>() * self.length[i] - b[i]).abs()
+        };
+        (0..m).map(|i| (i, distance(i))).fold(
+            (0, 0.0),
+            |worst, (i, d)| if d > worst.1 { (i, d) } else { worst },
+        )
+    }
+
+    /// `x ← Q x`
+    fn leave_basis(&self, x: &mut [f64]) {
+        for v in self.reflections.iter().rev() {
+            reflect(v, x);
+        }
+    }
+}
+
+/// Length of a vector, without overflow.
+fn norm(x: &[f64]) -> f64 {
+    let largest = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    if largest == 0.0 || !largest.is_finite() {
+        return largest;
+    }
+    largest
+        * x.iter()
+            .map(|x| (x / largest) * (x / largest))
+            .sum::<f64>()
+            .sqrt()
+}
+
+/// The Householder vector that turns `x[k..]` into its first component.
+fn reflection(x: &[f64], k: usize) -> Vec<f64> {
+    let mut v = x.to_vec();
+    v[..k].fill(0.0);
+    let length = norm(&v);
+    v[k] += if v[k] < 0.0 { -length } else { length };
+    let size = norm(&v);
+    if size > 0.0 {
+        v.iter_mut()
+            .for_each(|v| *v *= std::f64::consts::SQRT_2 / size);
+    }
+    v
+}
+
+/// `x ← (I − v vᵀ) x`
+fn reflect(v: &[f64], x: &mut [f64]) {
+    let along: f64 = v.iter().zip(&*x).map(|(v, x)| v * x).sum();
+    x.iter_mut().zip(v).for_each(|(x, v)| *x -= along * v);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn of(rows: &[&[f64]], n: usize) -> Rank {
+        Rank::of(rows.iter().copied(), n, TOLERANCE)
+    }
+
+    #[test]
+    fn later_rows_are_the_superfluous_ones() {
+        let rank = of(
+            &[
+                &[1.0, 0.0, 0.0],
+                &[0.0, 2.0, 0.0],
+                &[3.0, 4.0, 0.0],
+                &[0.0, 0.0, 0.0],
+                &[0.0, 0.0, 1e-3],
+            ],
+            3,
+        );
+        assert_eq!((rank.rank(), rank.independent()), (3, vec![0, 1, 4]));
+        let dependent = rank.dependent();
+        assert_eq!((dependent[0].row, dependent[1].row), (2, 3));
+        assert_eq!(dependent[0].combination.len(), 2);
+        for ((row, factor), expected) in dependent[0].combination.iter().zip([(0, 3.0), (1, 2.0)]) {
+            assert_eq!(*row, expected.0);
+            assert!((factor - expected.1).abs() < 1e-14);
+        }
+        assert!(dependent[1].combination.is_empty());
+    }
+
+    #[test]
+    fn a_free_motion_has_a_one_of_its_own() {
+        let rank = of(&[&[1.0, 1.0, 0.0, 0.0], &[0.0, 0.0, 1.0, -2.0]], 4);
+        let motions = rank.free_motions();
+        assert_eq!(motions.len(), 2);
+        for (j, motion) in &motions {
+            assert!((motion[*j] - 1.0).abs() < 1e-14);
+            assert!(
+                (motion[0] + motion[1]).abs() < 1e-14
+                    && (motion[2] - 2.0 * motion[3]).abs() < 1e-14
+            );
+            assert_eq!(motion.iter().filter(|x| **x != 0.0).count(), 2);
+        }
+    }
+
+    #[test]
+    fn contradiction_is_measured() {
+        let rank = of(&[&[1.0, 1.0], &[2.0, 2.0]], 2);
+        let mut x = [0.0; 2];
+        let (_, distance) = rank.least_norm(&[2.0, 4.0], &mut x);
+        assert!(distance < 1e-14 && (x[0] - 1.0).abs() < 1e-14 && (x[1] - 1.0).abs() < 1e-14);
+        let (row, distance) = rank.least_norm(&[2.0, 6.0], &mut x);
+        assert_eq!(row, 1);
+        assert!((distance - 1.0).abs() < 1e-14, "{distance}");
+    }
+
+    #[test]
+    fn empty_and_odd_shapes_are_fine() {
+        assert_eq!(of(&[], 3).rank(), 0);
+        assert_eq!(of(&[], 3).free_directions().len(), 3);
+        assert_eq!(of(&[&[], &[]], 0).rank(), 0);
+        assert_eq!(of(&[&[0.0, 0.0]], 2).dependent().len(), 1);
+        assert_eq!(of(&[&[f64::NAN, 0.0], &[1.0, 0.0]], 2).independent(), [1]);
+    }
+
+    proptest! {
+        /// A product of random factors has the rank of the thinner one, and everything that is claimed of it holds.
+        #[test]
+        fn random_products_have_the_rank_they_were_given(
+            m in 1usize..9, n in 1usize..9, r in 0usize..6,
+            numbers in proptest::collection::vec(-1.0f64..1.0, 200),
+        ) {
+            let r = r.min(m).min(n);
+            let mut draw = numbers.iter().cycle().copied();
+            let left: Vec<Vec<f64>> = (0..m).map(|_| draw.by_ref().take(r).collect()).collect();
+            let right: Vec<Vec<f64>> = (0..r).map(|_| draw.by_ref().take(n).collect()).collect();
+            let rows: Vec<Vec<f64>> = left
+                .iter()
+                .map(|l| (0..n).map(|j| l.iter().zip(&right).map(|(a, b)| a * b[j]).sum()).collect())
+                .collect();
+            let rank = Rank::of(rows.iter().map(Vec::as_slice), n, TOLERANCE);
+            prop_assume!(rank.margin().0 > 1e-4);
+            prop_assert!(rank.rank() <= r);
+            prop_assert_eq!(rank.rank() + rank.dependent().len(), m);
+            for d in rank.dependent() {
+                for (j, a) in rows[d.row].iter().enumerate() {
+                    let sum: f64 = d.combination.iter().map(|(k, c)| c * rows[*k][j]).sum();
+                    prop_assert!((sum - a).abs() < 1e-7);
+                }
+            }
+            for x in rank.free_directions() {
+                for row in &rows {
+                    prop_assert!(row.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>().abs() < 1e-12);
+                }
+            }
+            // least norm: solves consistent equations, orthogonal to the free directions
+            let b: Vec<f64> = rows.iter().map(|row| row.iter().enumerate().map(|(j, a)| a * (j as f64 - 1.5)).sum()).collect();
+            let mut x = vec![0.0; n];
+            let (_, distance) = rank.least_norm(&b, &mut x);
+            prop_assert!(distance < 1e-9, "{}", distance);
+            for free in rank.free_directions() {
+                prop_assert!(free.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>().abs() < 1e-9);
+            }
+        }
+    }
+}
