@@ -6,6 +6,7 @@
 mod advice;
 pub mod ast;
 mod check;
+pub mod compile;
 pub mod functions;
 pub mod interpolation;
 pub mod measures;

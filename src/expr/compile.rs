@@ -1,0 +1,517 @@
+//! From trees to straight-line code: names resolved, constants folded, equal parts shared across all expressions.
+//!
+//! A [`Compiler`] takes one [`Ast`] after the other; what they have in common is computed once. Nothing is rearranged: the
+//! program yields the bits that the walker yields. Functions with a body longer than an operation stay one operation, so
+//! that the machine can run them with their constants prepared; the others expand into operations.
+
+use super::ast::{Ast, BinaryOp as Written, Callee, Constant, Node, NodeIx};
+use super::functions::{Family, Function};
+use super::interpolation::Bindings;
+use super::program::{BinaryOp, Builder, Folding, Input, Program, Sym, UnaryOp, Value};
+use crate::diagnostic::{Diagnostic, Span};
+use std::cell::RefCell;
+use std::f64::consts::PI;
+
+/// A value of the past that a program reads as [`Input::Delayed`]: `DELAY(expression, delay, history, options)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Delay {
+    /// what is delayed
+    pub expression: Value,
+    /// by how much; less than 0 counts as 0
+    pub delay: Value,
+    /// what it was before the start
+    pub history: Value,
+    /// array of options, 0 for none
+    pub options: u32,
+}
+
+/// Compiles expressions that share their parts.
+///
+/// ```ignore
+/// let mut compiler = Compiler::new(&bindings);
+/// let outputs = asts.iter().map(|ast| compiler.add(ast)).collect::<Result<Vec<_>, _>>()?;
+/// let program = compiler.finish(&outputs);
+/// ```
+#[derive(Debug)]
+pub struct Compiler<'a> {
+    bindings: &'a Bindings,
+    builder: RefCell<Builder>,
+    delays: Vec<Delay>,
+}
+
+/// The program of some expressions: one output each.
+///
+/// # Errors
+///
+/// As [`Compiler::add`].
+pub fn compile(asts: &[&Ast], bindings: &Bindings) -> Result<Program, Diagnostic> {
+    let mut compiler = Compiler::new(bindings);
+    let outputs = asts
+        .iter()
+        .map(|ast| compiler.add(ast))
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(compiler.finish(&outputs))
+}
+
+/// The value of a literal; the suffix D makes it degrees.
+pub fn literal_value(literal: f64, degrees: bool) -> f64 {
+    if degrees {
+        literal * PI / 180.0
+    } else {
+        literal
+    }
+}
+
+/// The value of a named number, unless the host knows it.
+pub fn constant_value(constant: Constant) -> Option<f64> {
+    match constant {
+        Constant::Pi => Some(PI),
+        Constant::Dtor => Some(PI / 180.0),
+        Constant::Rtod => Some(180.0 / PI),
+        Constant::Time | Constant::Mode => None,
+    }
+}
+
+impl<'a> Compiler<'a> {
+    /// A compiler that finds splines and curves in `bindings`.
+    pub fn new(bindings: &'a Bindings) -> Self {
+        Self {
+            bindings,
+            builder: RefCell::new(Builder::new(Folding::Strict)),
+            delays: Vec::new(),
+        }
+    }
+
+    /// What has been recorded; for adding derivatives or own operations.
+    pub fn builder(&self) -> &RefCell<Builder> {
+        &self.builder
+    }
+    /// The delayed values asked for so far; the `k`-th is [`Input::Delayed`]`(k)`.
+    pub fn delays(&self) -> &[Delay] {
+        &self.delays
+    }
+    /// The program of these values.
+    pub fn finish(&self, outputs: &[Value]) -> Program {
+        self.builder.borrow().finish(outputs)
+    }
+
+    /// Records an expression. Equal parts of earlier ones are used again.
+    ///
+    /// # Errors
+    ///
+    /// `unknown_element` for a spline or curve that is not bound, `domain` where a part outside every IF has no value
+    /// whatever the inputs are. The span is that of the operator or function name.
+    pub fn add(&mut self, ast: &Ast) -> Result<Value, Diagnostic> {
+        let conditional = conditional(ast);
+        let mut values: Vec<Option<Value>> = Vec::with_capacity(ast.nodes.len());
+        for (k, node) in ast.nodes.iter().enumerate() {
+            let span = ast.spans.get(k).copied().unwrap_or_default();
+            let value = match conditional[k] {
+                Reach::Never => None,
+                reach => {
+                    let always = reach == Reach::Always;
+                    Some(
+                        self.node(node, &values, always)
+                            .map_err(|d| place(d, span))?,
+                    )
+                }
+            };
+            values.push(value);
+        }
+        match values.get(ast.root as usize) {
+            Some(&Some(value)) => Ok(value),
+            _ => Err(Diagnostic::error(
+                "unexpected_end",
+                "the expression is empty",
+            )),
+        }
+    }
+
+    /// The value of a node whose operands have theirs. `always`: it is evaluated whatever the inputs are.
+    fn node(
+        &mut self,
+        node: &Node,
+        values: &[Option<Value>],
+        always: bool,
+    ) -> Result<Value, Diagnostic> {
+        let of = |ix: NodeIx| {
+            let value = values.get(ix as usize).copied().flatten();
+            value.ok_or_else(|| {
+                Diagnostic::error("unexpected_token", "an operand stands after its operator")
+            })
+        };
+        let value = match *node {
+            Node::Number { literal, degrees } => self
+                .builder
+                .get_mut()
+                .constant(literal_value(literal, degrees)),
+            Node::Constant(constant) => match (constant_value(constant), constant) {
+                (Some(c), _) => self.builder.get_mut().constant(c),
+                (None, Constant::Mode) => self.builder.get_mut().input(Input::Mode),
+                (None, _) => self.builder.get_mut().input(Input::Time),
+            },
+            Node::Negate(x) => self.builder.get_mut().unary(UnaryOp::Neg, of(x)?),
+            Node::Plus(x) => of(x)?,
+            Node::Binary(op, a, b) => {
+                let (a, b) = (of(a)?, of(b)?);
+                let builder = self.builder.get_mut();
+                if always && op == Written::Div && builder.constant_of(b) == Some(0.0) {
+                    return Err(domain("division by zero"));
+                }
+                builder.binary(operation(op), a, b)
+            }
+            Node::If {
+                selector,
+                negative,
+                zero,
+                positive,
+            } => {
+                let [selector, negative, zero, positive] =
+                    [of(selector)?, of(negative)?, of(zero)?, of(positive)?];
+                self.builder
+                    .get_mut()
+                    .arithmetic_if(selector, negative, zero, positive)
+            }
+            Node::Call { callee, ref args } => {
+                let args = args.iter().map(|&a| of(a)).collect::<Result<Vec<_>, _>>()?;
+                self.call(callee, &args, always)?
+            }
+        };
+        match self.builder.get_mut().constant_of(value) {
+            Some(c) if always && !c.is_finite() => Err(not_finite(node, c)),
+            _ => Ok(value),
+        }
+    }
+
+    fn call(&mut self, callee: Callee, args: &[Value], always: bool) -> Result<Value, Diagnostic> {
+        let builder = self.builder.get_mut();
+        let known: Vec<f64> = args
+            .iter()
+            .map(|&a| builder.constant_of(a).unwrap_or(f64::NAN))
+            .collect();
+        match callee {
+            Callee::Function(Function::Delay) => Ok(self.delay(args, &known)),
+            Callee::Function(function) => {
+                if let (true, Some(reason)) = (always, function.violation(&known)) {
+                    return Err(domain(reason));
+                }
+                Ok(self.function(function, args))
+            }
+            Callee::Measure(measure) => {
+                let mut ids = [0; 4];
+                for (id, &x) in ids.iter_mut().zip(&known) {
+                    // a literal, checked by the parser; `as` saturates
+                    *id = x as u32;
+                }
+                Ok(builder.input(Input::Measure(measure, ids)))
+            }
+            Callee::Interpolation(interpolation) => {
+                let bound = self.bindings.bind(interpolation, &known)?;
+                Ok(self.expand(args, |args| bound.eval(args)))
+            }
+        }
+    }
+
+    /// A function as one operation where that pays, else as the operations of its body.
+    fn function(&mut self, function: Function, args: &[Value]) -> Value {
+        let builder = self.builder.get_mut();
+        match function {
+            // MAX(a, b, c) is MAX(MAX(a, b), c)
+            Function::Max | Function::Min if args.len() > 2 => {
+                let first = builder.call(function, &args[..2]);
+                args[2..]
+                    .iter()
+                    .fold(first, |m, &x| builder.call(function, &[m, x]))
+            }
+            Function::Max | Function::Min | Function::Atan2 | Function::Dim | Function::Sign => {
+                builder.call(function, args)
+            }
+            Function::Shf => self.expand(args, |args| function.eval(args)),
+            _ if function.row().family == Family::Utility => builder.call(function, args),
+            _ => self.expand(args, |args| function.eval(args)),
+        }
+    }
+
+    /// Records what a formula does with these values.
+    fn expand(&mut self, args: &[Value], formula: impl for<'b> Fn(&[Sym<'b>]) -> Sym<'b>) -> Value {
+        let result = {
+            let args: Vec<Sym> = args.iter().map(|&a| Sym::of(a, &self.builder)).collect();
+            match formula(&args) {
+                Sym::Recorded(value, _) => Ok(value),
+                Sym::Constant(c) => Err(c),
+            }
+        };
+        result.unwrap_or_else(|c| self.builder.get_mut().constant(c))
+    }
+
+    fn delay(&mut self, args: &[Value], known: &[f64]) -> Value {
+        let &[expression, delay, history, ..] = args else {
+            return self.builder.get_mut().constant(f64::NAN);
+        };
+        let options = known.get(3).map_or(0, |&x| x as u32);
+        let wanted = Delay {
+            expression,
+            delay,
+            history,
+            options,
+        };
+        let k = self
+            .delays
+            .iter()
+            .position(|d| *d == wanted)
+            .unwrap_or_else(|| {
+                self.delays.push(wanted);
+                self.delays.len() - 1
+            });
+        self.builder.get_mut().input(Input::Delayed(k as u32))
+    }
+}
+
+/// When a node is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Reach {
+    /// it does not belong to the expression
+    Never,
+    /// in a branch of an IF
+    Sometimes,
+    Always,
+}
+
+/// When each node is evaluated.
+fn conditional(ast: &Ast) -> Vec<Reach> {
+    let mut reach = vec![Reach::Never; ast.nodes.len()];
+    if let Some(root) = reach.get_mut(ast.root as usize) {
+        *root = Reach::Always;
+    }
+    for k in (0..ast.nodes.len()).rev() {
+        let here = reach[k];
+        if here == Reach::Never {
+            continue;
+        }
+        let mut mark = |ix: NodeIx, when: Reach| {
+            if let Some(r) = reach.get_mut(ix as usize) {
+                *r = (*r).max(when);
+            }
+        };
+        match &ast.nodes[k] {
+            Node::Number { .. } | Node::Constant(_) => {}
+            Node::Negate(x) | Node::Plus(x) => mark(*x, here),
+            Node::Binary(_, a, b) => {
+                mark(*a, here);
+                mark(*b, here);
+            }
+            Node::If {
+                selector,
+                negative,
+                zero,
+                positive,
+            } => {
+                mark(*selector, here);
+                for branch in [negative, zero, positive] {
+                    mark(*branch, Reach::Sometimes);
+                }
+            }
+            Node::Call { args, .. } => args.iter().for_each(|&a| mark(a, here)),
+        }
+    }
+    reach
+}
+
+fn operation(op: Written) -> BinaryOp {
+    match op {
+        Written::Add => BinaryOp::Add,
+        Written::Sub => BinaryOp::Sub,
+        Written::Mul => BinaryOp::Mul,
+        Written::Div => BinaryOp::Div,
+        Written::Pow => BinaryOp::Pow,
+    }
+}
+
+fn domain(reason: &str) -> Diagnostic {
+    Diagnostic::error("domain", reason)
+}
+
+fn not_finite(node: &Node, c: f64) -> Diagnostic {
+    let what = match node {
+        Node::Call {
+            callee: Callee::Function(f),
+            ..
+        } => f.name(),
+        Node::Binary(Written::Pow, ..) => "this power",
+        Node::Binary(Written::Div, ..) => "this quotient",
+        Node::Number { .. } => "this number",
+        _ => "this",
+    };
+    domain(&if c.is_nan() {
+        format!("{what} has no value")
+    } else {
+        format!("{what} is not finite")
+    })
+}
+
+fn place(diagnostic: Diagnostic, span: Span) -> Diagnostic {
+    Diagnostic {
+        span: diagnostic.span.or(Some(span)),
+        ..diagnostic
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::ast::Dialect;
+    use crate::expr::interpolation::Interpolation;
+    use crate::expr::measures::Measure;
+    use crate::expr::program::Work;
+
+    /// A tree written node by node.
+    struct Tree(Vec<Node>);
+
+    impl Tree {
+        fn push(&mut self, node: Node) -> NodeIx {
+            self.0.push(node);
+            self.0.len() as u32 - 1
+        }
+        fn number(&mut self, literal: f64) -> NodeIx {
+            self.push(Node::Number {
+                literal,
+                degrees: false,
+            })
+        }
+        fn time(&mut self) -> NodeIx {
+            self.push(Node::Constant(Constant::Time))
+        }
+        fn call(&mut self, callee: Callee, args: &[NodeIx]) -> NodeIx {
+            self.push(Node::Call {
+                callee,
+                args: args.to_vec(),
+            })
+        }
+        fn ast(self) -> Ast {
+            let spans = (0..self.0.len()).map(|k| Span::new(k, k + 1)).collect();
+            let root = self.0.len() as u32 - 1;
+            Ast {
+                dialect: Dialect::Function,
+                nodes: self.0,
+                spans,
+                root,
+            }
+        }
+    }
+
+    fn at(program: &Program, time: f64) -> f64 {
+        let mut out = [0.0];
+        program.run(&[time], &mut Work::default(), &mut out);
+        out[0]
+    }
+
+    #[test]
+    fn equal_parts_of_several_expressions_are_shared() {
+        // DX(1,2) + sin t and DX(1,2)·sin t
+        let make = |op: Written| {
+            let mut t = Tree(Vec::new());
+            let (one, two) = (t.number(1.0), t.number(2.0));
+            let dx = t.call(Callee::Measure(Measure::Dx), &[one, two]);
+            let time = t.time();
+            let sine = t.call(Callee::Function(Function::Sin), &[time]);
+            t.push(Node::Binary(op, dx, sine));
+            t.ast()
+        };
+        let (sum, product) = (make(Written::Add), make(Written::Mul));
+        let program = compile(&[&sum, &product], &Bindings::default()).unwrap();
+        assert_eq!(
+            program.inputs(),
+            [Input::Measure(Measure::Dx, [1, 2, 0, 0]), Input::Time]
+        );
+        assert_eq!(program.n_operations(), 3);
+        let mut out = [0.0; 2];
+        program.run(&[3.0, 0.5], &mut Work::default(), &mut out);
+        assert_eq!(out, [3.0 + 0.5f64.sin(), 3.0 * 0.5f64.sin()]);
+    }
+
+    #[test]
+    fn what_has_no_value_is_an_error_unless_a_branch_hides_it() {
+        let root_of_minus_one = |t: &mut Tree| {
+            let minus = t.number(-1.0);
+            t.call(Callee::Function(Function::Sqrt), &[minus])
+        };
+        let mut t = Tree(Vec::new());
+        root_of_minus_one(&mut t);
+        let error = compile(&[&t.ast()], &Bindings::default()).unwrap_err();
+        assert_eq!((error.code, error.span), ("domain", Some(Span::new(1, 2))));
+
+        let mut t = Tree(Vec::new());
+        let negative = root_of_minus_one(&mut t);
+        let (selector, zero) = (t.time(), t.number(7.0));
+        t.push(Node::If {
+            selector,
+            negative,
+            zero,
+            positive: selector,
+        });
+        let program = compile(&[&t.ast()], &Bindings::default()).unwrap();
+        assert!(at(&program, -1.0).is_nan());
+        assert_eq!((at(&program, 0.0), at(&program, 2.5)), (7.0, 2.5));
+        assert!(at(&program, f64::NAN).is_nan());
+
+        let mut t = Tree(Vec::new());
+        let (time, zero) = (t.time(), t.number(0.0));
+        t.push(Node::Binary(Written::Div, time, zero));
+        assert_eq!(
+            compile(&[&t.ast()], &Bindings::default())
+                .unwrap_err()
+                .message,
+            "division by zero"
+        );
+
+        // STEP with its ends exchanged has no value, whatever x is
+        let mut t = Tree(Vec::new());
+        let (x, one, two) = (t.time(), t.number(1.0), t.number(2.0));
+        t.call(Callee::Function(Function::Step), &[x, two, one, one, two]);
+        assert_eq!(
+            compile(&[&t.ast()], &Bindings::default()).unwrap_err().code,
+            "domain"
+        );
+    }
+
+    #[test]
+    fn delays_are_inputs_that_say_what_they_need() {
+        let mut t = Tree(Vec::new());
+        let (x, delay, history) = (t.time(), t.number(0.5), t.number(0.0));
+        let a = t.call(Callee::Function(Function::Delay), &[x, delay, history]);
+        let b = t.call(Callee::Function(Function::Delay), &[x, delay, history]);
+        t.push(Node::Binary(Written::Add, a, b));
+        let bindings = Bindings::default();
+        let mut compiler = Compiler::new(&bindings);
+        let value = compiler.add(&t.ast()).unwrap();
+        assert_eq!(compiler.delays().len(), 1);
+        assert_eq!(compiler.finish(&[value]).inputs(), [Input::Delayed(0)]);
+    }
+
+    #[test]
+    fn unbound_data_are_named() {
+        let mut t = Tree(Vec::new());
+        let (x, z, id) = (t.time(), t.number(0.0), t.number(12.0));
+        t.call(Callee::Interpolation(Interpolation::Akispl), &[x, z, id]);
+        let error = compile(&[&t.ast()], &Bindings::default()).unwrap_err();
+        assert_eq!(error.message, "there is no spline 12");
+    }
+
+    #[test]
+    fn many_arguments_of_max_are_pairs() {
+        let mut t = Tree(Vec::new());
+        let args: Vec<NodeIx> = (0..100)
+            .map(|k| {
+                if k == 50 {
+                    t.time()
+                } else {
+                    t.number(f64::from(k % 7))
+                }
+            })
+            .collect();
+        t.call(Callee::Function(Function::Max), &args);
+        let program = compile(&[&t.ast()], &Bindings::default()).unwrap();
+        assert_eq!((at(&program, 3.0), at(&program, 9.0)), (6.0, 9.0));
+        assert!(at(&program, f64::NAN).is_nan());
+    }
+}
