@@ -2,12 +2,18 @@
 
 use super::ast::Dialect;
 use super::token::Fault;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Span};
 
 /// The diagnostic for the first mistake of a text.
 pub(crate) fn explain(text: &str, _dialect: Dialect, fault: &Fault) -> Diagnostic {
-    let mut said = Diagnostic::error(fault.code, "").at(text, fault.span);
+    at(text, fault.code, "", fault.span)
+}
+
+/// An error at a place of an expression, whose columns count all characters of the text.
+pub(crate) fn at(text: &str, code: &'static str, message: impl Into<String>, span: Span) -> Diagnostic {
+    let mut said = Diagnostic::error(code, message).at(text, span);
+    let before = text.get(..span.start).unwrap_or(text);
     said.line = 1;
-    said.column = text[..fault.span.start].chars().count() + 1;
+    said.column = before.chars().count() + 1;
     said
 }

@@ -17,6 +17,7 @@ pub mod signature;
 pub mod spline;
 mod symbols;
 mod token;
+pub mod walk;
 
 pub use check::{DEEPEST_NESTING, Limits, MOST_CHARACTERS};
 pub use parse::{parse, parse_with_limits};

@@ -25,15 +25,32 @@ enum Piece {
 
 impl fmt::Display for Ast {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rest = vec![Piece::Node(self.root, Level::Sum)];
+        Written {
+            ast: self,
+            ix: self.root,
+        }
+        .fmt(f)
+    }
+}
+
+/// A node with all that is below it.
+pub(super) struct Written<'a> {
+    pub ast: &'a Ast,
+    pub ix: NodeIx,
+}
+
+impl fmt::Display for Written<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ast = self.ast;
+        let mut rest = vec![Piece::Node(self.ix, Level::Sum)];
         while let Some(piece) = rest.pop() {
             match piece {
                 Piece::Text(text) => f.write_str(text)?,
-                Piece::Node(ix, place) if self.level(ix) < place => {
+                Piece::Node(ix, place) if ast.level(ix) < place => {
                     f.write_str("(")?;
                     rest.extend([Piece::Text(")"), Piece::Node(ix, Level::Sum)]);
                 }
-                Piece::Node(ix, _) => self.begin(ix, f, &mut rest)?,
+                Piece::Node(ix, _) => ast.begin(ix, f, &mut rest)?,
             }
         }
         Ok(())

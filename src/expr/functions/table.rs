@@ -371,7 +371,9 @@ functions! {
     "step5(x, 0, 0, dx, 1) a sin(2 pi P),  P = f0 x + (f1 - f0)/(2 (x1 - x0)) (x - x0)^2 between x0 and x1, of constant slope outside"
     {
         let fade = step(x, S::zero(), S::zero(), dx, S::one(), quintic);
-        fade * a * sweep_turns(x, x0, f0, x1, f1).scale(2.0 * PI).sin()
+        // whole turns are left out exactly, before 2 pi rounds them
+        let turns = sweep_turns(x, x0, f0, x1, f1);
+        fade * a * (turns - turns.round()).scale(2.0 * PI).sin()
     }
     forbid x1.le(x0) => "x0 must be less than x1",
     forbid dx.le(S::zero()) => "dx must be positive",

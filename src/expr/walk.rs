@@ -1,0 +1,319 @@
+//! The walker: the meaning of an expression, read off its tree one node at a time.
+//!
+//! It is the reference that programs are tested against, and the explainer: where it finds no value it names the operation on
+//! the taken path that has none, with the numbers it was given. Only the selected branch of an IF is looked at. Division by
+//! zero, overflow and arguments outside a domain are errors here, never infinities that travel on.
+//!
+//! The same walk with everything unknown that is not constant finds the mistakes that can be known before any value is.
+
+use super::ast::{Ast, BinaryOp, Callee, Constant, Node, NodeIx};
+use super::functions::Function;
+use super::interpolation::{Bindings, Interpolation};
+use super::program::Input;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::scalar::Scalar;
+
+/// What an expression asks for its numbers.
+pub trait Host {
+    /// The value of an input; `None` when it has none here.
+    fn input(&self, input: Input) -> Option<f64>;
+    /// The splines and curves that may be named.
+    fn bindings(&self) -> Option<&Bindings> {
+        None
+    }
+}
+
+/// A closure that knows inputs is a host without curves.
+impl<F: Fn(Input) -> Option<f64>> Host for F {
+    fn input(&self, input: Input) -> Option<f64> {
+        self(input)
+    }
+}
+
+/// Why an expression has no value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trouble {
+    /// `domain`, `missing_value`, `needs_history`, `unknown_element` or `out_of_range`
+    pub code: &'static str,
+    /// the node that has no value
+    pub node: NodeIx,
+    /// its place in the text
+    pub span: Span,
+    /// what is wrong, with the numbers
+    pub message: String,
+    /// advice
+    pub help: Vec<String>,
+}
+
+impl Trouble {
+    /// As a diagnostic about the text the tree was read from.
+    pub fn diagnostic(&self, text: &str) -> Diagnostic {
+        let mut said = super::advice::at(text, self.code, self.message.clone(), self.span);
+        said.help = self.help.clone();
+        said
+    }
+}
+
+/// The value of an expression.
+///
+/// # Errors
+/// The first operation on the taken path that has no value.
+pub fn value(ast: &Ast, host: &dyn Host) -> Result<f64, Trouble> {
+    Walk::new(ast, Some(host)).run(|_, _| ())
+}
+
+/// The value of every node on the taken path; `None` for the others. The last one found is that of the whole.
+///
+/// # Errors
+/// The first operation on the taken path that has no value.
+pub fn values(ast: &Ast, host: &dyn Host) -> Result<Vec<Option<f64>>, Trouble> {
+    let mut values = vec![None; ast.nodes.len()];
+    Walk::new(ast, Some(host)).run(|ix, value| values[ix as usize] = Some(value))?;
+    Ok(values)
+}
+
+/// Looks for operations that have no value whatever the inputs are, on paths that are certainly taken.
+///
+/// # Errors
+/// The first such operation.
+pub fn check_constants(ast: &Ast) -> Result<(), Trouble> {
+    Walk::new(ast, None).run(|_, _| ()).map(|_| ())
+}
+
+/// What is still to be done, last first.
+enum Task {
+    Evaluate(NodeIx),
+    /// the operands are on the stack of values
+    Apply(NodeIx),
+    /// the selector is on the stack of values
+    Choose(NodeIx),
+    /// the value of the branch is on the stack of values
+    Chosen(NodeIx),
+}
+
+struct Walk<'a> {
+    ast: &'a Ast,
+    /// nobody: all inputs are unknown, and an unknown number is NaN
+    host: Option<&'a dyn Host>,
+    tasks: Vec<Task>,
+    values: Vec<f64>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(ast: &'a Ast, host: Option<&'a dyn Host>) -> Self {
+        Self { ast, host, tasks: vec![Task::Evaluate(ast.root)], values: Vec::new() }
+    }
+
+    fn run(mut self, mut found: impl FnMut(NodeIx, f64)) -> Result<f64, Trouble> {
+        while let Some(task) = self.tasks.pop() {
+            let (ix, value) = match task {
+                Task::Evaluate(ix) => match self.begin(ix)? {
+                    Some(value) => (ix, value),
+                    None => continue,
+                },
+                Task::Choose(ix) => {
+                    self.choose(ix);
+                    continue;
+                }
+                Task::Apply(ix) => (ix, self.apply(ix)?),
+                Task::Chosen(ix) => (ix, self.values.pop().unwrap_or(f64::NAN)),
+            };
+            found(ix, value);
+            self.values.push(value);
+        }
+        Ok(self.values.pop().unwrap_or(f64::NAN))
+    }
+
+    /// The value of a leaf, or the tasks of a node.
+    fn begin(&mut self, ix: NodeIx) -> Result<Option<f64>, Trouble> {
+        match *self.ast.node(ix) {
+            Node::Number { literal, degrees: false } => return Ok(Some(literal)),
+            Node::Number { literal, degrees: true } => return Ok(Some(literal * std::f64::consts::PI / 180.0)),
+            Node::Constant(c) => return self.constant(ix, c).map(Some),
+            Node::Negate(x) | Node::Plus(x) => self.tasks.extend([Task::Apply(ix), Task::Evaluate(x)]),
+            Node::Binary(_, a, b) => self.tasks.extend([Task::Apply(ix), Task::Evaluate(b), Task::Evaluate(a)]),
+            Node::If { selector, .. } => self.tasks.extend([Task::Choose(ix), Task::Evaluate(selector)]),
+            Node::Call { callee: Callee::Measure(m), ref args } => {
+                let mut identifiers = [0; 4];
+                for (identifier, &arg) in identifiers.iter_mut().zip(args) {
+                    *identifier = self.integer(arg);
+                }
+                return self.input(ix, Input::Measure(m, identifiers)).map(Some);
+            }
+            Node::Call { callee: Callee::Function(Function::Delay), .. } => return self.delayed(ix).map(Some),
+            Node::Call { ref args, .. } => {
+                self.tasks.push(Task::Apply(ix));
+                self.tasks.extend(args.iter().rev().map(|&arg| Task::Evaluate(arg)));
+            }
+        }
+        Ok(None)
+    }
+
+    fn constant(&self, ix: NodeIx, c: Constant) -> Result<f64, Trouble> {
+        match c {
+            Constant::Pi => Ok(std::f64::consts::PI),
+            Constant::Dtor => Ok(std::f64::consts::PI / 180.0),
+            Constant::Rtod => Ok(180.0 / std::f64::consts::PI),
+            Constant::Time => self.input(ix, Input::Time),
+            Constant::Mode => self.input(ix, Input::Mode),
+        }
+    }
+
+    /// A literal that the check has found to be a whole number.
+    fn integer(&self, ix: NodeIx) -> u32 {
+        match *self.ast.node(ix) {
+            Node::Number { literal, .. } => literal as u32,
+            _ => 0,
+        }
+    }
+
+    fn input(&self, ix: NodeIx, input: Input) -> Result<f64, Trouble> {
+        let Some(host) = self.host else { return Ok(f64::NAN) };
+        match host.input(input) {
+            Some(value) if value.is_finite() => Ok(value),
+            Some(value) => Err(self.trouble("domain", ix, format!("{} is {value}", self.ast.written(ix)))),
+            None => Err(self.trouble("missing_value", ix, format!("{} has no value here", self.ast.written(ix)))),
+        }
+    }
+
+    /// A delayed value: from the host, which alone knows the past.
+    fn delayed(&self, ix: NodeIx) -> Result<f64, Trouble> {
+        let Some(host) = self.host else { return Ok(f64::NAN) };
+        let number = self.ast.delays().position(|delay| delay == ix).unwrap_or(0);
+        host.input(Input::Delayed(number as u32)).ok_or_else(|| {
+            let mut trouble = self.trouble("needs_history", ix, "DELAY needs the values of the past".to_string());
+            trouble.help.push("a simulation keeps them; a single evaluation has none".to_string());
+            trouble
+        })
+    }
+
+    /// The selected branch; when the selector is unknown none may be taken, and the value is unknown.
+    fn choose(&mut self, ix: NodeIx) {
+        let Node::If { negative, zero, positive, .. } = *self.ast.node(ix) else { return };
+        let selector = self.values.pop().unwrap_or(f64::NAN);
+        if selector.is_nan() {
+            self.values.push(f64::NAN);
+            self.tasks.push(Task::Chosen(ix));
+            return;
+        }
+        let branch = if selector < 0.0 {
+            negative
+        } else if selector > 0.0 {
+            positive
+        } else {
+            zero
+        };
+        self.tasks.extend([Task::Chosen(ix), Task::Evaluate(branch)]);
+    }
+
+    /// The value of an operation on the numbers at the end of the stack.
+    fn apply(&mut self, ix: NodeIx) -> Result<f64, Trouble> {
+        let count = match self.ast.node(ix) {
+            Node::Call { args, .. } => args.len(),
+            Node::Binary(..) => 2,
+            _ => 1,
+        };
+        let first = self.values.len().saturating_sub(count);
+        let value = self.operation(ix, &self.values[first..])?;
+        self.values.truncate(first);
+        Ok(value)
+    }
+
+    fn operation(&self, ix: NodeIx, operands: &[f64]) -> Result<f64, Trouble> {
+        let value = match (self.ast.node(ix), operands) {
+            (Node::Negate(_), &[x]) => -x,
+            (Node::Plus(_), &[x]) => x,
+            (Node::Binary(BinaryOp::Div, ..), &[_, 0.0]) => return Err(self.out_of_domain(ix, operands)),
+            (Node::Binary(op, ..), &[a, b]) => op.apply(a, b),
+            (Node::Call { callee: Callee::Function(f), .. }, args) => match f.violation(args) {
+                Some(_) => return Err(self.out_of_domain(ix, operands)),
+                None => f.eval(args),
+            },
+            (&Node::Call { callee: Callee::Interpolation(f), .. }, args) => match self.host {
+                Some(host) => self.interpolated(ix, f, args, host)?,
+                None => return Ok(f64::NAN),
+            },
+            _ => f64::NAN,
+        };
+        if operands.iter().any(|x| x.is_nan()) {
+            return Ok(f64::NAN);
+        }
+        if value.is_finite() { Ok(value) } else { Err(self.out_of_domain(ix, operands)) }
+    }
+
+    fn interpolated(&self, ix: NodeIx, function: Interpolation, args: &[f64], host: &dyn Host) -> Result<f64, Trouble> {
+        let empty = Bindings::default();
+        match host.bindings().unwrap_or(&empty).bind(function, args) {
+            Ok(bound) => Ok(bound.eval(args)),
+            Err(said) => {
+                let mut trouble = self.trouble(said.code, ix, said.message);
+                trouble.help = said.help;
+                Err(trouble)
+            }
+        }
+    }
+
+    fn trouble(&self, code: &'static str, node: NodeIx, message: String) -> Trouble {
+        let span = self.ast.spans.get(node as usize).copied().unwrap_or_default();
+        Trouble { code, node, span, message, help: Vec::new() }
+    }
+
+    /// What was computed of which numbers, why it has no value, and when.
+    fn out_of_domain(&self, ix: NodeIx, operands: &[f64]) -> Trouble {
+        let shown = |x: &f64| if x.is_nan() { "…".to_string() } else { x.to_string() };
+        let list = || operands.iter().map(shown).collect::<Vec<_>>().join(", ");
+        let (what, why) = match (self.ast.node(ix), operands) {
+            (Node::Binary(op, ..), [a, b]) => {
+                let why = match op {
+                    BinaryOp::Div if *b == 0.0 => "division by zero",
+                    BinaryOp::Pow if *a == 0.0 => "zero has no power with a negative exponent",
+                    BinaryOp::Pow if *a < 0.0 && b.fract() != 0.0 => "a negative number has whole powers only",
+                    _ => "too large for a number",
+                };
+                (format!("{} {} {}", shown(a), op.symbol(), shown(b)), why)
+            }
+            (Node::Call { callee: Callee::Function(f), .. }, args) => {
+                let what = match args {
+                    [x] => format!("{} of {}", f.name(), shown(x)),
+                    _ => format!("{}({})", f.name(), list()),
+                };
+                (what, f.violation(args).unwrap_or("too large for a number"))
+            }
+            (Node::Call { callee, .. }, _) => (format!("{}({})", callee.name(), list()), "outside the curve"),
+            _ => (list(), "not a number"),
+        };
+        let when = match self.host.and_then(|host| host.input(Input::Time)) {
+            Some(time) => format!(" at {} = {time}", Constant::Time.name(self.ast.dialect)),
+            None => String::new(),
+        };
+        self.trouble("domain", ix, format!("{what} has no value{when}: {why}"))
+    }
+}
+
+impl BinaryOp {
+    /// The value for two numbers.
+    fn apply(self, a: f64, b: f64) -> f64 {
+        match self {
+            BinaryOp::Add => a + b,
+            BinaryOp::Sub => a - b,
+            BinaryOp::Mul => a * b,
+            BinaryOp::Div => a / b,
+            BinaryOp::Pow => Scalar::powf(a, b),
+        }
+    }
+}
+
+impl Ast {
+    /// The calls of DELAY in the order in which their values are numbered.
+    pub fn delays(&self) -> impl Iterator<Item = NodeIx> + '_ {
+        (0..).zip(&self.nodes).filter_map(|(ix, node)| match node {
+            Node::Call { callee: Callee::Function(Function::Delay), .. } => Some(ix),
+            _ => None,
+        })
+    }
+
+    /// A node as it would be written.
+    pub fn written(&self, ix: NodeIx) -> String {
+        super::print::Written { ast: self, ix }.to_string()
+    }
+}
