@@ -26,7 +26,13 @@ fn rows(file: &str) -> Option<Vec<BTreeMap<String, String>>> {
     };
     let mut lines = text.lines().map(|l| l.split('\t'));
     let header: Vec<&str> = lines.next()?.collect();
-    let row = |cells: std::str::Split<'_, char>| header.iter().zip(cells).map(|(h, c)| (h.to_string(), c.to_string())).collect();
+    let row = |cells: std::str::Split<'_, char>| {
+        header
+            .iter()
+            .zip(cells)
+            .map(|(h, c)| (h.to_string(), c.to_string()))
+            .collect()
+    };
     Some(lines.map(row).collect())
 }
 
@@ -62,7 +68,10 @@ fn compare(got: f64, expected: f64, largest: f64) -> Result<(), String> {
     if (got - expected).abs() <= allowed {
         return Ok(());
     }
-    Err(format!("got {got:?}, expected {expected:?}, off by {:e} of it", ((got - expected) / expected).abs()))
+    Err(format!(
+        "got {got:?}, expected {expected:?}, off by {:e} of it",
+        ((got - expected) / expected).abs()
+    ))
 }
 
 /// A host made of a time, marker states and splines.
@@ -77,7 +86,9 @@ impl Host for World {
     fn input(&self, input: Input) -> Option<f64> {
         match input {
             Input::Time => Some(self.time),
-            Input::Measure(m, arguments) => kinematic_of(m, arguments, |id| self.markers.get(&id).copied()),
+            Input::Measure(m, arguments) => {
+                kinematic_of(m, arguments, |id| self.markers.get(&id).copied())
+            }
             _ => None,
         }
     }
@@ -94,7 +105,8 @@ fn json(text: &str) -> Result<serde_json::Map<String, Json>, String> {
 }
 
 fn numbers(json: Option<&Json>) -> Vec<f64> {
-    json.and_then(Json::as_array).map_or(vec![], |a| a.iter().filter_map(Json::as_f64).collect())
+    json.and_then(Json::as_array)
+        .map_or(vec![], |a| a.iter().filter_map(Json::as_f64).collect())
 }
 
 fn markers(text: &str) -> Result<BTreeMap<u32, MarkerState<f64>>, String> {
@@ -113,7 +125,10 @@ fn markers(text: &str) -> Result<BTreeMap<u32, MarkerState<f64>>, String> {
         if let [psi, theta, phi] = numbers(m.get("e313"))[..] {
             state.R_GM = from_313(psi, theta, phi);
         }
-        let rows = m.get("A").and_then(Json::as_array).map(|rows| rows.iter().map(|r| numbers(Some(r))).collect::<Vec<_>>());
+        let rows = m
+            .get("A")
+            .and_then(Json::as_array)
+            .map(|rows| rows.iter().map(|r| numbers(Some(r))).collect::<Vec<_>>());
         if let Some(rows) = rows {
             state.R_GM = Mat3(std::array::from_fn(|i| std::array::from_fn(|j| rows[i][j])));
         }
@@ -128,13 +143,33 @@ fn splines(text: &str) -> Result<Bindings, String> {
         let z = numbers(s.get("z"));
         let y = match z.is_empty() {
             true => vec![numbers(s.get("y"))],
-            false => s.get("y").and_then(Json::as_array).map_or(vec![], |a| a.iter().map(|c| numbers(Some(c))).collect()),
+            false => s
+                .get("y")
+                .and_then(Json::as_array)
+                .map_or(vec![], |a| a.iter().map(|c| numbers(Some(c))).collect()),
         };
-        let word = |key: &str| s.get(key).and_then(Json::as_str).unwrap_or_default().to_string();
-        let ends = if word("end") == "not-a-knot" { Ends::NotAKnot } else { Ends::Natural };
-        let extrapolation = if word("extrap") == "linear" { Extrapolation::Linear } else { Extrapolation::Parabolic };
-        let spline = Spline::new(numbers(s.get("x")), z, y, ends, extrapolation).map_err(|e| e.to_string())?;
-        bindings.splines.insert(id.parse().map_err(|e| format!("{id}: {e}"))?, Arc::new(spline));
+        let word = |key: &str| {
+            s.get(key)
+                .and_then(Json::as_str)
+                .unwrap_or_default()
+                .to_string()
+        };
+        let ends = if word("end") == "not-a-knot" {
+            Ends::NotAKnot
+        } else {
+            Ends::Natural
+        };
+        let extrapolation = if word("extrap") == "linear" {
+            Extrapolation::Linear
+        } else {
+            Extrapolation::Parabolic
+        };
+        let spline = Spline::new(numbers(s.get("x")), z, y, ends, extrapolation)
+            .map_err(|e| e.to_string())?;
+        bindings.splines.insert(
+            id.parse().map_err(|e| format!("{id}: {e}"))?,
+            Arc::new(spline),
+        );
     }
     Ok(bindings)
 }
@@ -144,7 +179,10 @@ fn run(row: &BTreeMap<String, String>, dialect: Dialect, world: World) -> Result
     let ast = tree(&text, dialect)?;
     check_constants(&ast).map_err(|e| e.diagnostic(&text).to_string())?;
     let values = values(&ast, &world).map_err(|e| e.diagnostic(&text).to_string())?;
-    let largest = values.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let largest = values
+        .iter()
+        .flatten()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
     let got = values[ast.root as usize].unwrap_or(f64::NAN);
     compare(got, number(row, "expected")?, largest)
 }
@@ -152,26 +190,56 @@ fn run(row: &BTreeMap<String, String>, dialect: Dialect, world: World) -> Result
 #[test]
 fn functions_have_the_stated_values() {
     all_rows("functions", |row| {
-        run(row, Dialect::Function, World { time: number(row, "time")?, ..World::default() })
+        run(
+            row,
+            Dialect::Function,
+            World {
+                time: number(row, "time")?,
+                ..World::default()
+            },
+        )
     });
 }
 
 #[test]
 fn expression_functions_have_the_stated_values() {
-    all_rows("ideas", |row| run(row, Dialect::Expression, World { time: number(row, "t")?, ..World::default() }));
+    all_rows("ideas", |row| {
+        run(
+            row,
+            Dialect::Expression,
+            World {
+                time: number(row, "t")?,
+                ..World::default()
+            },
+        )
+    });
 }
 
 #[test]
 fn measures_of_markers_have_the_stated_values() {
     all_rows("markers", |row| {
-        run(row, Dialect::Function, World { markers: markers(&row["markers"])?, ..World::default() })
+        run(
+            row,
+            Dialect::Function,
+            World {
+                markers: markers(&row["markers"])?,
+                ..World::default()
+            },
+        )
     });
 }
 
 #[test]
 fn splines_have_the_stated_values() {
     all_rows("splines", |row| {
-        run(row, Dialect::Function, World { bindings: splines(&row["splines"])?, ..World::default() })
+        run(
+            row,
+            Dialect::Function,
+            World {
+                bindings: splines(&row["splines"])?,
+                ..World::default()
+            },
+        )
     });
 }
 
@@ -179,12 +247,26 @@ fn splines_have_the_stated_values() {
 fn malformed_texts_give_the_stated_kind_and_column() {
     all_rows("errors", |row| {
         let text = text_of(row);
-        let profile = if row["note"].starts_with("compat limits on") { Profile::Ideas } else { Profile::Adams };
-        let world = World { time: 0.5, ..World::default() };
+        let profile = if row["note"].starts_with("compat limits on") {
+            Profile::Ideas
+        } else {
+            Profile::Adams
+        };
+        let world = World {
+            time: 0.5,
+            ..World::default()
+        };
         let said = parse(&text, Dialect::Function, profile)
             .and_then(|ast| value(&ast, &world).map_err(|e| e.diagnostic(&text)))
-            .map_or_else(|e| format!("{} at {}", e.code, e.column), |v| format!("the value {v}"));
+            .map_or_else(
+                |e| format!("{} at {}", e.code, e.column),
+                |v| format!("the value {v}"),
+            );
         let expected = format!("{} at {}", row["kind"], row["column"]);
-        if said == expected { Ok(()) } else { Err(format!("got {said}, expected {expected}")) }
+        if said == expected {
+            Ok(())
+        } else {
+            Err(format!("got {said}, expected {expected}"))
+        }
     });
 }

@@ -10,7 +10,12 @@ pub(crate) fn explain(text: &str, _dialect: Dialect, fault: &Fault) -> Diagnosti
 }
 
 /// An error at a place of an expression, whose columns count all characters of the text.
-pub(crate) fn at(text: &str, code: &'static str, message: impl Into<String>, span: Span) -> Diagnostic {
+pub(crate) fn at(
+    text: &str,
+    code: &'static str,
+    message: impl Into<String>,
+    span: Span,
+) -> Diagnostic {
     let mut said = Diagnostic::error(code, message).at(text, span);
     let before = text.get(..span.start).unwrap_or(text);
     said.line = 1;

@@ -101,7 +101,12 @@ struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     fn new(ast: &'a Ast, host: Option<&'a dyn Host>) -> Self {
-        Self { ast, host, tasks: vec![Task::Evaluate(ast.root)], values: Vec::new() }
+        Self {
+            ast,
+            host,
+            tasks: vec![Task::Evaluate(ast.root)],
+            values: Vec::new(),
+        }
     }
 
     fn run(mut self, mut found: impl FnMut(NodeIx, f64)) -> Result<f64, Trouble> {
@@ -127,23 +132,43 @@ impl<'a> Walk<'a> {
     /// The value of a leaf, or the tasks of a node.
     fn begin(&mut self, ix: NodeIx) -> Result<Option<f64>, Trouble> {
         match *self.ast.node(ix) {
-            Node::Number { literal, degrees: false } => return Ok(Some(literal)),
-            Node::Number { literal, degrees: true } => return Ok(Some(literal * std::f64::consts::PI / 180.0)),
+            Node::Number {
+                literal,
+                degrees: false,
+            } => return Ok(Some(literal)),
+            Node::Number {
+                literal,
+                degrees: true,
+            } => return Ok(Some(literal * std::f64::consts::PI / 180.0)),
             Node::Constant(c) => return self.constant(ix, c).map(Some),
-            Node::Negate(x) | Node::Plus(x) => self.tasks.extend([Task::Apply(ix), Task::Evaluate(x)]),
-            Node::Binary(_, a, b) => self.tasks.extend([Task::Apply(ix), Task::Evaluate(b), Task::Evaluate(a)]),
-            Node::If { selector, .. } => self.tasks.extend([Task::Choose(ix), Task::Evaluate(selector)]),
-            Node::Call { callee: Callee::Measure(m), ref args } => {
+            Node::Negate(x) | Node::Plus(x) => {
+                self.tasks.extend([Task::Apply(ix), Task::Evaluate(x)])
+            }
+            Node::Binary(_, a, b) => {
+                self.tasks
+                    .extend([Task::Apply(ix), Task::Evaluate(b), Task::Evaluate(a)])
+            }
+            Node::If { selector, .. } => self
+                .tasks
+                .extend([Task::Choose(ix), Task::Evaluate(selector)]),
+            Node::Call {
+                callee: Callee::Measure(m),
+                ref args,
+            } => {
                 let mut identifiers = [0; 4];
                 for (identifier, &arg) in identifiers.iter_mut().zip(args) {
                     *identifier = self.integer(arg);
                 }
                 return self.input(ix, Input::Measure(m, identifiers)).map(Some);
             }
-            Node::Call { callee: Callee::Function(Function::Delay), .. } => return self.delayed(ix).map(Some),
+            Node::Call {
+                callee: Callee::Function(Function::Delay),
+                ..
+            } => return self.delayed(ix).map(Some),
             Node::Call { ref args, .. } => {
                 self.tasks.push(Task::Apply(ix));
-                self.tasks.extend(args.iter().rev().map(|&arg| Task::Evaluate(arg)));
+                self.tasks
+                    .extend(args.iter().rev().map(|&arg| Task::Evaluate(arg)));
             }
         }
         Ok(None)
@@ -168,28 +193,52 @@ impl<'a> Walk<'a> {
     }
 
     fn input(&self, ix: NodeIx, input: Input) -> Result<f64, Trouble> {
-        let Some(host) = self.host else { return Ok(f64::NAN) };
+        let Some(host) = self.host else {
+            return Ok(f64::NAN);
+        };
         match host.input(input) {
             Some(value) if value.is_finite() => Ok(value),
-            Some(value) => Err(self.trouble("domain", ix, format!("{} is {value}", self.ast.written(ix)))),
-            None => Err(self.trouble("missing_value", ix, format!("{} has no value here", self.ast.written(ix)))),
+            Some(value) => {
+                Err(self.trouble("domain", ix, format!("{} is {value}", self.ast.written(ix))))
+            }
+            None => Err(self.trouble(
+                "missing_value",
+                ix,
+                format!("{} has no value here", self.ast.written(ix)),
+            )),
         }
     }
 
     /// A delayed value: from the host, which alone knows the past.
     fn delayed(&self, ix: NodeIx) -> Result<f64, Trouble> {
-        let Some(host) = self.host else { return Ok(f64::NAN) };
+        let Some(host) = self.host else {
+            return Ok(f64::NAN);
+        };
         let number = self.ast.delays().position(|delay| delay == ix).unwrap_or(0);
         host.input(Input::Delayed(number as u32)).ok_or_else(|| {
-            let mut trouble = self.trouble("needs_history", ix, "DELAY needs the values of the past".to_string());
-            trouble.help.push("a simulation keeps them; a single evaluation has none".to_string());
+            let mut trouble = self.trouble(
+                "needs_history",
+                ix,
+                "DELAY needs the values of the past".to_string(),
+            );
+            trouble
+                .help
+                .push("a simulation keeps them; a single evaluation has none".to_string());
             trouble
         })
     }
 
     /// The selected branch; when the selector is unknown none may be taken, and the value is unknown.
     fn choose(&mut self, ix: NodeIx) {
-        let Node::If { negative, zero, positive, .. } = *self.ast.node(ix) else { return };
+        let Node::If {
+            negative,
+            zero,
+            positive,
+            ..
+        } = *self.ast.node(ix)
+        else {
+            return;
+        };
         let selector = self.values.pop().unwrap_or(f64::NAN);
         if selector.is_nan() {
             self.values.push(f64::NAN);
@@ -203,7 +252,8 @@ impl<'a> Walk<'a> {
         } else {
             zero
         };
-        self.tasks.extend([Task::Chosen(ix), Task::Evaluate(branch)]);
+        self.tasks
+            .extend([Task::Chosen(ix), Task::Evaluate(branch)]);
     }
 
     /// The value of an operation on the numbers at the end of the stack.
@@ -223,13 +273,27 @@ impl<'a> Walk<'a> {
         let value = match (self.ast.node(ix), operands) {
             (Node::Negate(_), &[x]) => -x,
             (Node::Plus(_), &[x]) => x,
-            (Node::Binary(BinaryOp::Div, ..), &[_, 0.0]) => return Err(self.out_of_domain(ix, operands)),
+            (Node::Binary(BinaryOp::Div, ..), &[_, 0.0]) => {
+                return Err(self.out_of_domain(ix, operands));
+            }
             (Node::Binary(op, ..), &[a, b]) => op.apply(a, b),
-            (Node::Call { callee: Callee::Function(f), .. }, args) => match f.violation(args) {
+            (
+                Node::Call {
+                    callee: Callee::Function(f),
+                    ..
+                },
+                args,
+            ) => match f.violation(args) {
                 Some(_) => return Err(self.out_of_domain(ix, operands)),
                 None => f.eval(args),
             },
-            (&Node::Call { callee: Callee::Interpolation(f), .. }, args) => match self.host {
+            (
+                &Node::Call {
+                    callee: Callee::Interpolation(f),
+                    ..
+                },
+                args,
+            ) => match self.host {
                 Some(host) => self.interpolated(ix, f, args, host)?,
                 None => return Ok(f64::NAN),
             },
@@ -238,10 +302,20 @@ impl<'a> Walk<'a> {
         if operands.iter().any(|x| x.is_nan()) {
             return Ok(f64::NAN);
         }
-        if value.is_finite() { Ok(value) } else { Err(self.out_of_domain(ix, operands)) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.out_of_domain(ix, operands))
+        }
     }
 
-    fn interpolated(&self, ix: NodeIx, function: Interpolation, args: &[f64], host: &dyn Host) -> Result<f64, Trouble> {
+    fn interpolated(
+        &self,
+        ix: NodeIx,
+        function: Interpolation,
+        args: &[f64],
+        host: &dyn Host,
+    ) -> Result<f64, Trouble> {
         let empty = Bindings::default();
         match host.bindings().unwrap_or(&empty).bind(function, args) {
             Ok(bound) => Ok(bound.eval(args)),
@@ -254,32 +328,60 @@ impl<'a> Walk<'a> {
     }
 
     fn trouble(&self, code: &'static str, node: NodeIx, message: String) -> Trouble {
-        let span = self.ast.spans.get(node as usize).copied().unwrap_or_default();
-        Trouble { code, node, span, message, help: Vec::new() }
+        let span = self
+            .ast
+            .spans
+            .get(node as usize)
+            .copied()
+            .unwrap_or_default();
+        Trouble {
+            code,
+            node,
+            span,
+            message,
+            help: Vec::new(),
+        }
     }
 
     /// What was computed of which numbers, why it has no value, and when.
     fn out_of_domain(&self, ix: NodeIx, operands: &[f64]) -> Trouble {
-        let shown = |x: &f64| if x.is_nan() { "…".to_string() } else { x.to_string() };
+        let shown = |x: &f64| {
+            if x.is_nan() {
+                "…".to_string()
+            } else {
+                x.to_string()
+            }
+        };
         let list = || operands.iter().map(shown).collect::<Vec<_>>().join(", ");
         let (what, why) = match (self.ast.node(ix), operands) {
             (Node::Binary(op, ..), [a, b]) => {
                 let why = match op {
                     BinaryOp::Div if *b == 0.0 => "division by zero",
                     BinaryOp::Pow if *a == 0.0 => "zero has no power with a negative exponent",
-                    BinaryOp::Pow if *a < 0.0 && b.fract() != 0.0 => "a negative number has whole powers only",
+                    BinaryOp::Pow if *a < 0.0 && b.fract() != 0.0 => {
+                        "a negative number has whole powers only"
+                    }
                     _ => "too large for a number",
                 };
                 (format!("{} {} {}", shown(a), op.symbol(), shown(b)), why)
             }
-            (Node::Call { callee: Callee::Function(f), .. }, args) => {
+            (
+                Node::Call {
+                    callee: Callee::Function(f),
+                    ..
+                },
+                args,
+            ) => {
                 let what = match args {
                     [x] => format!("{} of {}", f.name(), shown(x)),
                     _ => format!("{}({})", f.name(), list()),
                 };
                 (what, f.violation(args).unwrap_or("too large for a number"))
             }
-            (Node::Call { callee, .. }, _) => (format!("{}({})", callee.name(), list()), "outside the curve"),
+            (Node::Call { callee, .. }, _) => (
+                format!("{}({})", callee.name(), list()),
+                "outside the curve",
+            ),
             _ => (list(), "not a number"),
         };
         let when = match self.host.and_then(|host| host.input(Input::Time)) {
@@ -307,7 +409,10 @@ impl Ast {
     /// The calls of DELAY in the order in which their values are numbered.
     pub fn delays(&self) -> impl Iterator<Item = NodeIx> + '_ {
         (0..).zip(&self.nodes).filter_map(|(ix, node)| match node {
-            Node::Call { callee: Callee::Function(Function::Delay), .. } => Some(ix),
+            Node::Call {
+                callee: Callee::Function(Function::Delay),
+                ..
+            } => Some(ix),
             _ => None,
         })
     }
