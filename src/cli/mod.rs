@@ -3,7 +3,10 @@
 //! A verb collects what it has to say and returns how it ended; only this file knows exit codes and streams. What was asked for goes
 //! to standard output, everything about it (mistakes, warnings, progress) to standard error.
 
+pub mod card;
 mod convert;
+pub mod data;
+mod functions;
 pub mod interrupt;
 mod plot;
 pub mod progress;
@@ -26,6 +29,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Verb {
     Convert(convert::Args),
+    Functions(functions::Args),
     Plot(plot::Args),
 }
 
@@ -115,6 +119,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Convert(args) => convert::run(args),
+        Verb::Functions(args) => functions::run(args),
         Verb::Plot(args) => plot::run(args),
     });
     let exit = match std::panic::catch_unwind(verb) {

@@ -6,6 +6,9 @@
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::results::Run;
 
+/// From the least to the greatest.
+pub type Range = (f64, f64);
+
 /// Curves over a common x.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
@@ -125,7 +128,7 @@ impl Plot {
     ///
     /// # Errors
     /// When there is no finite point.
-    pub fn ranges(&self) -> Result<((f64, f64), (f64, f64)), Diagnostic> {
+    pub fn ranges(&self) -> Result<(Range, Range), Diagnostic> {
         let range = |coordinate: fn(&(f64, f64)) -> f64| {
             let finite = self
                 .curves

@@ -1,0 +1,84 @@
+//! `cognate functions`: the names of the language, and what each is.
+
+use super::card::{self, Card};
+use super::{Exit, Outcome, say};
+use crate::diagnostic::{Diagnostic, near_names};
+use crate::results::json;
+use serde_json::Value;
+
+/// List the functions of the language, or explain one
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate functions
+  cognate functions STEP5
+  cognate functions --json")]
+pub struct Args {
+    /// Name of a function, constant or variable
+    name: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args) -> Outcome {
+    let cards = match &args.name {
+        None => card::all(),
+        Some(name) => of_name(name)?,
+    };
+    match (args.json, &args.name) {
+        (true, _) => say(&json::text(
+            &cards.iter().map(Card::json).collect::<Value>(),
+        )),
+        (false, Some(_)) => say(&text(&cards)),
+        (false, None) => say(&list(&cards)),
+    }
+    Ok(Exit::Done)
+}
+
+/// The cards of a name.
+///
+/// # Errors
+/// When no language knows it; says which are near.
+pub fn of_name(name: &str) -> Result<Vec<Card>, Diagnostic> {
+    let cards = card::of(name.trim().trim_end_matches("()"));
+    if !cards.is_empty() {
+        return Ok(cards);
+    }
+    let all = card::all();
+    let near = near_names(name, all.iter().map(|c| c.name));
+    let unknown = Diagnostic::error("unknown_name", format!("the language has no `{name}`"));
+    Err(if near.is_empty() {
+        unknown.help("`cognate functions` lists all names")
+    } else {
+        unknown.help(format!("did you mean {}?", near.join(" or ")))
+    })
+}
+
+/// Cards below each other; where both languages have the name, each says which it is.
+pub fn text(cards: &[Card]) -> String {
+    let one = |c: &Card| {
+        if cards.len() > 1 {
+            format!("{}: {}", c.group, c.text())
+        } else {
+            c.text()
+        }
+    };
+    cards.iter().map(one).collect::<Vec<_>>().join("\n")
+}
+
+/// One line per name, by group.
+fn list(cards: &[Card]) -> String {
+    let mut text = String::new();
+    for group in cards.chunk_by(|a, b| a.group == b.group) {
+        text += &format!(
+            "{}{}\n",
+            if text.is_empty() { "" } else { "\n" },
+            group[0].group
+        );
+        for card in group {
+            text += &format!("  {:44}  {}\n", card.signature, card.summary());
+        }
+    }
+    text
+}
