@@ -54,6 +54,10 @@ impl Builder {
     pub fn folding(&self) -> Folding {
         self.folding
     }
+    /// From now on simplifies so far; what is recorded stays.
+    pub fn set_folding(&mut self, folding: Folding) {
+        self.folding = folding;
+    }
     /// How many nodes are recorded, needed or not.
     pub fn len(&self) -> usize {
         self.nodes.len()
@@ -389,7 +393,7 @@ impl Builder {
     }
 
     /// The node, or the equal one that is there already. Arguments of a list node must be the last of the list.
-    fn intern(&mut self, node: Node) -> Value {
+    pub(super) fn intern(&mut self, node: Node) -> Value {
         if (self.nodes.len() + 1) * 4 > self.slots.len() * 3 {
             self.grow();
         }
@@ -439,6 +443,11 @@ impl Builder {
         match *node {
             Node::Constant(_) | Node::Input(_) => {}
             Node::Unary(_, x) | Node::Whole(x, _) | Node::Lookup { x, .. } => f(x),
+            Node::Partial { call, .. } => {
+                for &v in &self.arguments[self.list(&self.nodes[call.index()]).unwrap_or(0..0)] {
+                    f(v);
+                }
+            }
             Node::Binary(_, a, b) | Node::Compare(_, a, b) => {
                 f(a);
                 f(b);
@@ -488,6 +497,7 @@ impl Builder {
                 mix(8, u64::from(table) << 8 | u64::from(order)),
                 u64::from(x.0),
             ),
+            Node::Partial { call, k } => mix(mix(11, u64::from(call.0)), u64::from(k)),
             Node::If(_) => self.hash_list(9, node, mix),
             Node::Call { function, .. } => self.hash_list(mix(10, function as u64), node, mix),
         };

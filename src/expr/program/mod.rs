@@ -15,6 +15,9 @@
 //! ```
 
 mod builder;
+mod expand;
+mod gradient;
+mod guard;
 mod operation;
 mod record;
 mod schedule;
@@ -28,7 +31,7 @@ pub use record::{Condition, Sym};
 use super::functions::Function;
 use super::measures::Measure;
 use crate::scalar::{Scalar, Table};
-use operation::{Node, arithmetic_if, from_mask, truth};
+use operation::{arithmetic_if, from_mask, partial, truth};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -66,26 +69,8 @@ enum Code {
     },
     /// a: position of the arguments in `lists`
     Call(Function, u32),
-}
-
-impl Code {
-    fn of(node: &Node) -> Code {
-        match *node {
-            Node::Unary(op, _) => Code::Unary(op),
-            Node::Whole(_, n) => Code::Whole(n),
-            Node::Binary(op, ..) => Code::Binary(op),
-            Node::Compare(op, ..) => Code::Compare(op),
-            Node::Select(..) => Code::Select,
-            Node::If(_) => Code::If,
-            Node::Lookup { table, order, .. } => Code::Lookup { table, order },
-            Node::Call {
-                function, count, ..
-            } => Code::Call(function, count),
-            Node::Constant(_) | Node::Input(_) => {
-                unreachable!("constants and inputs are registers, not instructions")
-            }
-        }
-    }
+    /// a: position of the arguments in `lists`; derivative with respect to the last
+    Partial(Function, u32, u32),
 }
 
 /// One operation: operands and result are registers.
@@ -186,6 +171,74 @@ impl Program {
             .collect()
     }
 
+    /// Records this program into a builder: the values of its outputs there.
+    pub fn record(&self, builder: &mut Builder) -> Vec<Value> {
+        let mut values: Vec<Value> = self
+            .constants
+            .iter()
+            .map(|&c| builder.constant(c))
+            .collect();
+        values.extend(
+            self.used
+                .iter()
+                .map(|&k| builder.input(self.inputs[k as usize])),
+        );
+        let none = values
+            .first()
+            .copied()
+            .unwrap_or_else(|| builder.constant(f64::NAN));
+        values.resize(self.size as usize, none);
+        let mut arguments = Vec::new();
+        for instruction in &self.code {
+            let Instruction {
+                code,
+                to,
+                a,
+                b,
+                c,
+                d,
+            } = *instruction;
+            let r = |k: u32| values[k as usize];
+            arguments.clear();
+            if let Code::Call(_, count) | Code::Partial(_, count, _) = code {
+                arguments.extend(
+                    self.lists[a as usize..(a + count) as usize]
+                        .iter()
+                        .map(|&k| r(k)),
+                );
+            }
+            values[to as usize] = match code {
+                Code::Unary(op) => builder.unary(op, r(a)),
+                Code::Whole(n) => builder.powi(r(a), n),
+                Code::Binary(op) => builder.binary(op, r(a), r(b)),
+                Code::Compare(op) => builder.compare(op, r(a), r(b)),
+                Code::Select => builder.select(r(a), r(b), r(c)),
+                Code::If => builder.arithmetic_if(r(a), r(b), r(c), r(d)),
+                Code::Lookup { table, order } => {
+                    builder.lookup(&self.tables[table as usize], order, r(a))
+                }
+                Code::Call(function, _) => builder.call(function, &arguments),
+                Code::Partial(function, _, k) => builder.partial_of(function, &arguments, k),
+            };
+        }
+        self.outputs.iter().map(|&r| values[r as usize]).collect()
+    }
+
+    /// The same outputs, then for each of them its partial derivatives with respect to `inputs`, in that order.
+    ///
+    /// One reverse sweep per output is appended at once; it costs about as much as the value. The layout of the inputs stays.
+    pub fn with_gradient(&self, inputs: &[Input]) -> Program {
+        let mut builder = Builder::new(Folding::Strict);
+        let layout = &self.inputs;
+        let mut outputs = self.record(&mut builder);
+        let variables: Vec<Value> = inputs.iter().map(|&i| builder.input(i)).collect();
+        for k in 0..outputs.len() {
+            let gradient = builder.gradient(outputs[k], &variables);
+            outputs.extend(gradient);
+        }
+        builder.finish_with_inputs(&outputs, layout)
+    }
+
     /// Runs over plain numbers. Allocates nothing once `work` has been used with this program.
     ///
     /// # Panics
@@ -258,29 +311,35 @@ impl Program {
             Code::Lookup { table, order } => r(a).lookup(&self.tables[table as usize], order),
             Code::Call(function, count) => {
                 let arguments = &self.lists[a as usize..(a + count) as usize];
-                call(function, arguments, registers)
+                gathered(arguments, registers, |args| function.eval(args))
+            }
+            Code::Partial(function, count, k) => {
+                let arguments = &self.lists[a as usize..(a + count) as usize];
+                gathered(arguments, registers, |args| {
+                    partial(function, args, k as usize)
+                })
             }
         };
     }
 }
 
-/// A function of the table, its arguments gathered from the registers.
-fn call<S: Scalar>(function: Function, arguments: &[u32], registers: &[S]) -> S {
-    fn gathered<S: Scalar, const N: usize>(
-        function: Function,
+/// A function of arguments that are gathered from the registers.
+fn gathered<S: Scalar>(arguments: &[u32], registers: &[S], function: impl FnOnce(&[S]) -> S) -> S {
+    fn few<S: Scalar, const N: usize>(
         arguments: &[u32],
         registers: &[S],
+        function: impl FnOnce(&[S]) -> S,
     ) -> S {
         let mut numbers = [S::zero(); N];
         for (number, &k) in numbers.iter_mut().zip(arguments) {
             *number = registers[k as usize];
         }
-        function.eval(&numbers[..arguments.len().min(N)])
+        function(&numbers[..arguments.len().min(N)])
     }
     match arguments.len() {
-        0..=8 => gathered::<S, 8>(function, arguments, registers),
-        9..=40 => gathered::<S, 40>(function, arguments, registers),
-        _ => function.eval(
+        0..=8 => few::<S, 8>(arguments, registers, function),
+        9..=40 => few::<S, 40>(arguments, registers, function),
+        _ => function(
             &arguments
                 .iter()
                 .map(|&k| registers[k as usize])

@@ -1,7 +1,7 @@
 //! What a program can do: the operations, each meaning the same over every number.
 
 use crate::expr::functions::Function;
-use crate::scalar::{Mask, Scalar};
+use crate::scalar::{Dual, Mask, Scalar};
 
 /// A value in a [`super::Builder`]: the index of the node that yields it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -147,6 +147,29 @@ pub(crate) fn arithmetic_if<S: Scalar>(selector: S, negative: S, zero: S, positi
     )
 }
 
+/// The `k`-th partial derivative of a function: its row over a dual.
+#[inline]
+pub(crate) fn partial<S: Scalar>(function: Function, args: &[S], k: usize) -> S {
+    fn over_duals<S: Scalar, const N: usize>(function: Function, args: &[S], k: usize) -> S {
+        let mut duals = [Dual::<1, S>::constant(0.0); N];
+        for (dual, &x) in duals.iter_mut().zip(args) {
+            *dual = Dual {
+                re: x,
+                eps: [S::zero()],
+            };
+        }
+        if let Some(dual) = duals.get_mut(k) {
+            dual.eps = [S::one()];
+        }
+        function.eval(&duals[..args.len().min(N)]).eps[0]
+    }
+    if args.len() <= 8 {
+        over_duals::<S, 8>(function, args, k)
+    } else {
+        over_duals::<S, 40>(function, args, k)
+    }
+}
+
 /// One node of a builder. Operands stand before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
@@ -171,5 +194,10 @@ pub(crate) enum Node {
         function: Function,
         first: u32,
         count: u32,
+    },
+    /// the `k`-th partial derivative of a call
+    Partial {
+        call: Value,
+        k: u32,
     },
 }

@@ -58,7 +58,7 @@ pub(super) fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Inp
         let mut operands = [0; 4];
         let mut n = 0;
         let first_in_list = lists.len() as u32;
-        let is_call = matches!(node, Node::Call { .. });
+        let is_call = matches!(node, Node::Call { .. } | Node::Partial { .. });
         builder.operands(&node, |v| {
             let register = registers[v.index()];
             if is_call {
@@ -79,7 +79,7 @@ pub(super) fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Inp
         registers[k as usize] = to;
         let [a, b, c, d] = operands;
         code.push(Instruction {
-            code: Code::of(&node),
+            code: code_of(builder, &node),
             to,
             a,
             b,
@@ -196,6 +196,30 @@ impl Allocation {
         {
             self.free.push(register);
             self.last_use[v.index()] = NONE - 1;
+        }
+    }
+}
+
+fn code_of(builder: &Builder, node: &Node) -> Code {
+    match *node {
+        Node::Unary(op, _) => Code::Unary(op),
+        Node::Whole(_, n) => Code::Whole(n),
+        Node::Binary(op, ..) => Code::Binary(op),
+        Node::Compare(op, ..) => Code::Compare(op),
+        Node::Select(..) => Code::Select,
+        Node::If(_) => Code::If,
+        Node::Lookup { table, order, .. } => Code::Lookup { table, order },
+        Node::Call {
+            function, count, ..
+        } => Code::Call(function, count),
+        Node::Partial { call, k } => match builder.nodes[call.index()] {
+            Node::Call {
+                function, count, ..
+            } => Code::Partial(function, count, k),
+            _ => unreachable!("only calls have partial derivatives as nodes"),
+        },
+        Node::Constant(_) | Node::Input(_) => {
+            unreachable!("constants and inputs are registers, not instructions")
         }
     }
 }

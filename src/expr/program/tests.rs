@@ -3,6 +3,7 @@
 use super::*;
 use crate::scalar::{Dual, Jet, Lanes};
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
 use std::cell::RefCell;
 
 /// Inputs of the random formulas.
@@ -17,6 +18,7 @@ enum Formula {
     Whole(i32, Box<Formula>),
     Binary(BinaryOp, Box<Formula>, Box<Formula>),
     Select(Comparison, Box<[Formula; 4]>),
+    If(Box<[Formula; 4]>),
     Call(Function, Vec<Formula>),
 }
 
@@ -34,6 +36,15 @@ impl Formula {
                     op.apply(a.eval(inputs), b.eval(inputs)),
                     yes.eval(inputs),
                     no.eval(inputs),
+                )
+            }
+            Formula::If(x) => {
+                let [selector, negative, zero, positive] = &**x;
+                arithmetic_if(
+                    selector.eval(inputs),
+                    negative.eval(inputs),
+                    zero.eval(inputs),
+                    positive.eval(inputs),
                 )
             }
             Formula::Call(f, args) => {
@@ -74,13 +85,14 @@ fn formula() -> impl Strategy<Value = Formula> {
         ]);
         let comparison = prop::sample::select(vec![Comparison::Lt, Comparison::Le, Comparison::Eq]);
         let function = prop::sample::select(Function::ALL.to_vec());
+        let four = [inner.clone(), inner.clone(), inner.clone(), inner.clone()];
         let boxed = inner.clone().prop_map(Box::new);
         prop_oneof![
             2 => (unary, boxed.clone()).prop_map(|(op, x)| Formula::Unary(op, x)),
             1 => (-4..6, boxed.clone()).prop_map(|(n, x)| Formula::Whole(n, x)),
             6 => (binary, boxed.clone(), boxed).prop_map(|(op, a, b)| Formula::Binary(op, a, b)),
-            1 => (comparison, [inner.clone(), inner.clone(), inner.clone(), inner.clone()])
-                .prop_map(|(op, x)| Formula::Select(op, Box::new(x))),
+            1 => (comparison, four.clone()).prop_map(|(op, x)| Formula::Select(op, Box::new(x))),
+            1 => four.prop_map(|x| Formula::If(Box::new(x))),
             2 => (function, prop::collection::vec(inner, 9)).prop_map(|(f, mut args)| {
                 let (least, most) = (*f.arity().start(), *f.arity().end());
                 args.truncate(least.max(args.len().min(most)));
@@ -111,6 +123,10 @@ fn record(formula: &Formula, builder: &mut Builder) -> Value {
             let [a, b, yes, no] = [0, 1, 2, 3].map(|k| record(&x[k], builder));
             let condition = builder.compare(*op, a, b);
             builder.select(condition, yes, no)
+        }
+        Formula::If(x) => {
+            let [selector, negative, zero, positive] = [0, 1, 2, 3].map(|k| record(&x[k], builder));
+            builder.arithmetic_if(selector, negative, zero, positive)
         }
         Formula::Call(f, args) => {
             let args: Vec<Value> = args.iter().map(|a| record(a, builder)).collect();
@@ -208,6 +224,97 @@ proptest! {
     }
 }
 
+/// Value and derivatives of a formula by duals and by the adjoint, where both are numbers.
+fn two_gradients(f: &Formula, x: &[f64; N]) -> Option<([f64; N], [f64; N])> {
+    let duals: Vec<Dual<N>> = (0..N).map(|k| Dual::variable(x[k], k)).collect();
+    let want = f.eval(&duals);
+    let mut builder = Builder::new(Folding::Strict);
+    let output = record(f, &mut builder);
+    let program = builder
+        .finish_with_inputs(&[output], &layout())
+        .with_gradient(&layout());
+    let mut out = [0.0; N + 1];
+    program.run(x, &mut Work::default(), &mut out);
+    assert!(same_bits(out[0], want.re), "{} {}", out[0], want.re);
+    let got: [f64; N] = std::array::from_fn(|k| out[k + 1]);
+    (want.re.is_finite() && want.eps.iter().chain(&got).all(|x| x.is_finite()))
+        .then_some((got, want.eps))
+}
+
+#[test]
+fn adjoints_agree_with_duals() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let (mut compared, mut varying) = (0, 0);
+    for _ in 0..4000 {
+        let f = formula().new_tree(&mut runner).unwrap().current();
+        let x = point().new_tree(&mut runner).unwrap().current();
+        let Some((got, want)) = two_gradients(&f, &x) else {
+            continue;
+        };
+        compared += 1;
+        varying += usize::from(want.iter().any(|&d| d != 0.0));
+        let scale = want.iter().chain(&got).fold(1.0f64, |m, d| m.max(d.abs()));
+        for k in 0..N {
+            assert!(
+                (got[k] - want[k]).abs() <= 1e-9 * scale,
+                "{f:?} at {x:?}: {got:?} {want:?}"
+            );
+        }
+    }
+    assert!(compared > 2000 && varying > 700, "{compared} {varying}");
+}
+
+#[test]
+fn a_branch_without_a_value_does_not_spoil_derivatives() {
+    // IF(x − 1: sqrt(1 − x), 0, sqrt(x − 1) y)
+    let mut b = Builder::new(Folding::Strict);
+    let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
+    let [zero, one] = [0.0, 1.0].map(|c| b.constant(c));
+    let (below, above) = (
+        b.binary(BinaryOp::Sub, one, x),
+        b.binary(BinaryOp::Sub, x, one),
+    );
+    let (low, high) = (b.unary(UnaryOp::Sqrt, below), b.unary(UnaryOp::Sqrt, above));
+    let high = b.binary(BinaryOp::Mul, high, y);
+    let f = b.arithmetic_if(above, low, zero, high);
+    let program = b
+        .finish(&[f])
+        .with_gradient(&[Input::Slot(0), Input::Slot(1), Input::Time]);
+    let mut out = [0.0; 4];
+    program.run(&[1.25, 3.0], &mut Work::default(), &mut out);
+    assert_eq!(out, [1.5, 3.0, 0.5, 0.0]);
+    program.run(&[0.75, 3.0], &mut Work::default(), &mut out);
+    assert_eq!(out, [0.5, -1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn gradients_have_gradients() {
+    // STEP(x, 0, 0, 1, y): second derivatives through the partials of the call
+    let mut b = Builder::new(Folding::Strict);
+    let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
+    let [zero, one] = [0.0, 1.0].map(|c| b.constant(c));
+    let step = b.call(Function::Step, &[x, zero, zero, one, y]);
+    let slope = b.gradient(step, &[x])[0];
+    let second = b.gradient(slope, &[x, y]);
+    let mut out = [0.0; 4];
+    b.finish(&[step, slope, second[0], second[1]]).run(
+        &[0.25, 2.0],
+        &mut Work::default(),
+        &mut out,
+    );
+    let u = 0.25;
+    let want = [
+        2.0 * u * u * (3.0 - 2.0 * u),
+        12.0 * u * (1.0 - u),
+        2.0 * (6.0 - 12.0 * u),
+        6.0 * u * (1.0 - u),
+    ];
+    assert!(
+        out.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-14),
+        "{out:?} {want:?}"
+    );
+}
+
 /// Whether the value may depend on the sign of a zero or on an exact comparison with one.
 fn has_sign_of_zero(f: &Formula) -> bool {
     match f {
@@ -221,7 +328,7 @@ fn has_sign_of_zero(f: &Formula) -> bool {
             ) || has_sign_of_zero(a)
                 || has_sign_of_zero(b)
         }
-        Formula::Select(..) | Formula::Call(..) => true,
+        Formula::Select(..) | Formula::If(_) | Formula::Call(..) => true,
     }
 }
 

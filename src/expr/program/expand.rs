@@ -1,0 +1,103 @@
+//! Rewriting recorded values: calls of table functions, and their partial derivatives, as the operations of their rows.
+
+use super::operation::{Node, Value, partial};
+use super::{Builder, Folding, Sym};
+use std::cell::RefCell;
+
+/// What is expanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Expand {
+    /// partial derivatives of calls
+    Partials,
+    /// calls and their partial derivatives
+    Calls,
+}
+
+impl Builder {
+    /// The same values with calls or their partial derivatives expanded.
+    pub(super) fn expanded(&mut self, values: &[Value], what: Expand) -> Vec<Value> {
+        let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
+        let mut needed = vec![false; n];
+        for v in values {
+            needed[v.index()] = true;
+        }
+        let mut any = false;
+        for k in (0..n).rev() {
+            if needed[k] {
+                let node = self.nodes[k];
+                any |= what.concerns(&node);
+                self.operands(&node, |v| needed[v.index()] = true);
+            }
+        }
+        if !any {
+            return values.to_vec();
+        }
+        // the recording scalar needs the builder in a cell
+        let cell = RefCell::new(std::mem::replace(self, Builder::new(Folding::Strict)));
+        let mut images: Vec<Value> = (0..n as u32).map(Value).collect();
+        for k in (0..n).filter(|&k| needed[k]) {
+            images[k] = image(&cell, Value(k as u32), &images, what);
+        }
+        *self = cell.into_inner();
+        values.iter().map(|v| images[v.index()]).collect()
+    }
+}
+
+impl Expand {
+    fn concerns(self, node: &Node) -> bool {
+        match node {
+            Node::Partial { .. } => true,
+            Node::Call { .. } => self == Expand::Calls,
+            _ => false,
+        }
+    }
+}
+
+/// The node over the images of its operands.
+fn image(cell: &RefCell<Builder>, v: Value, images: &[Value], what: Expand) -> Value {
+    let of = |v: Value| images[v.index()];
+    let mut builder = cell.borrow_mut();
+    let node = builder.nodes[v.index()];
+    let mut arguments = Vec::new();
+    builder.operands(&node, |v| arguments.push(of(v)));
+    match node {
+        Node::Constant(_) | Node::Input(_) => v,
+        Node::Unary(op, x) => builder.unary(op, of(x)),
+        Node::Whole(x, n) => builder.powi(of(x), n),
+        Node::Binary(op, a, b) => builder.binary(op, of(a), of(b)),
+        Node::Compare(op, a, b) => builder.compare(op, of(a), of(b)),
+        Node::Select(c, yes, no) => builder.select(of(c), of(yes), of(no)),
+        Node::If(_) => {
+            builder.arithmetic_if(arguments[0], arguments[1], arguments[2], arguments[3])
+        }
+        Node::Lookup { table, order, x } => {
+            let table = builder.tables[table as usize].clone();
+            builder.lookup(&table, order, of(x))
+        }
+        Node::Call { function, .. } if what == Expand::Partials => {
+            builder.call(function, &arguments)
+        }
+        Node::Call { function, .. } => {
+            drop(builder);
+            record(cell, &arguments, |args| function.eval(args))
+        }
+        Node::Partial { call, k } => {
+            let Node::Call { function, .. } = builder.nodes[call.index()] else {
+                unreachable!("only calls have partial derivatives as nodes")
+            };
+            drop(builder);
+            record(cell, &arguments, |args| partial(function, args, k as usize))
+        }
+    }
+}
+
+/// Records what a formula does with these values.
+fn record(
+    cell: &RefCell<Builder>,
+    args: &[Value],
+    formula: impl for<'b> Fn(&[Sym<'b>]) -> Sym<'b>,
+) -> Value {
+    let args: Vec<Sym> = args.iter().map(|&a| Sym::of(a, cell)).collect();
+    let result = formula(&args);
+    result.value(&mut cell.borrow_mut())
+}
