@@ -1,0 +1,5 @@
+//! Laws of single elements: joints, rows, forces. One law, one file; each knows marker frames only and could not tell
+//! which coordinates lie behind them.
+
+pub mod joint;
+pub mod row;

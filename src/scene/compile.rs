@@ -1,0 +1,457 @@
+//! Model → Scene, in named passes: frames, ties, forest, links, rows, forces.
+
+use super::forest::{self, Candidate, Carried};
+use super::{Coordinate, Link, LinkIx, LinkMotion, MarkerOnLink, PartOnLink, Row, RowKind, Source};
+use crate::diagnostic::Diagnostic;
+use crate::model::{MarkerOwner, Model, Orientation, Part};
+use crate::physics::joint::{Motion, Tie, quarter_x};
+use crate::space::{Frame, Mat3, Vec3, rotation};
+use std::collections::BTreeMap;
+
+/// What the passes have found so far. Errors collect; none ends a pass.
+pub(super) struct Compiler<'m> {
+    pub model: &'m Model,
+    pub errors: Vec<Diagnostic>,
+    pub parts: Vec<PartOnLink>,
+    pub part_of: BTreeMap<MarkerOwnerKey, Option<usize>>,
+    pub markers: Vec<MarkerOnLink>,
+    pub marker_of: BTreeMap<u32, usize>,
+    pub links: Vec<Link>,
+    pub coordinates: Vec<Coordinate>,
+    pub rows: Vec<Row>,
+    pub n_q: usize,
+    pub n_v: usize,
+    /// initial positions of the forest from the dataset's part frames   (n_q)
+    pub q: Vec<f64>,
+    /// driven joint freedoms: (joint, rotational) → index of the motion
+    pub driven: BTreeMap<(u32, bool), usize>,
+    /// joint → its coordinates in the forest, with translation/rotation
+    pub joint_coordinates: BTreeMap<u32, Vec<usize>>,
+}
+
+/// Key of a part: (is a point mass, number).
+pub(super) type MarkerOwnerKey = (bool, u32);
+
+/// A tie of the model: what it is, where, and its name.
+pub(super) struct NamedTie {
+    pub kind: Tie,
+    pub i: u32,
+    pub j: u32,
+    pub name: String,
+    pub joint: Option<u32>,
+}
+
+/// Orientation of a part or marker against its parent.
+pub(crate) fn orientation(o: &Orientation, origin: [f64; 3]) -> Result<Mat3<f64>, String> {
+    let from = |p: &Option<[f64; 3]>| p.map(|p| Vec3(p) - Vec3(origin));
+    let r = match o {
+        Orientation::Aligned => Mat3::identity(),
+        Orientation::Euler([psi, theta, phi]) => rotation::from_313(*psi, *theta, *phi),
+        Orientation::Points { z, x, use_x } => {
+            let fallback = |given: Vec3<f64>, first: usize| {
+                let axis = Vec3::<f64>::axis(first);
+                if axis.cross(given).norm() > 1e-9 * given.norm() { axis } else { Vec3::axis((first + 1) % 3) }
+            };
+            let frame = if *use_x {
+                let x = from(x).ok_or("USEXP needs XP")?;
+                let z = from(z).unwrap_or_else(|| fallback(x, 2));
+                // x exact: y = z × x, z = x × y; by cyclic exchange of the axes
+                let m = rotation::from_z_and_x(x, z.cross(x).cross(x).times(-1.0));
+                m.map(|m| {
+                    let (x, z) = (m.column(2), m.column(0));
+                    Mat3::from_columns(x, z.cross(x), z)
+                })
+            } else {
+                let z = from(z).unwrap_or_else(|| Vec3::axis(2));
+                let x = from(x).unwrap_or_else(|| fallback(z, 0));
+                rotation::from_z_and_x(z, x)
+            };
+            frame.ok_or("the points that should give its axes coincide with its origin or lie on one line")?
+        }
+    };
+    Ok(rotation::snapped(&r))
+}
+
+impl<'m> Compiler<'m> {
+    pub fn new(model: &'m Model) -> Self {
+        Self {
+            model,
+            errors: Vec::new(),
+            parts: Vec::new(),
+            part_of: BTreeMap::new(),
+            markers: Vec::new(),
+            marker_of: BTreeMap::new(),
+            links: Vec::new(),
+            coordinates: Vec::new(),
+            rows: Vec::new(),
+            n_q: 0,
+            n_v: 0,
+            q: Vec::new(),
+            driven: BTreeMap::new(),
+            joint_coordinates: BTreeMap::new(),
+        }
+    }
+
+    pub fn error(&mut self, element: &str, message: impl Into<String>) {
+        self.errors.push(Diagnostic::error("model", message).element(element));
+    }
+
+    /// Parts and markers with the frames of the dataset; nothing is carried yet.
+    pub fn frames(&mut self) {
+        let model = self.model;
+        let all = model.parts.iter().map(|(id, p)| (false, *id, p));
+        let all = all.chain(model.point_masses.iter().map(|(id, p)| (true, *id, p)));
+        for (point_mass, id, part) in all {
+            if part.ground {
+                self.part_of.insert((point_mass, id), None);
+                continue;
+            }
+            let initial = match orientation(&part.orientation, part.qg) {
+                Ok(rotation) => Frame { rotation, position: Vec3(part.qg) },
+                Err(why) => {
+                    self.error(&part_name(point_mass, id), why);
+                    Frame::identity()
+                }
+            };
+            self.part_of.insert((point_mass, id), Some(self.parts.len()));
+            self.parts.push(PartOnLink { id, point_mass, link: None, frame: Frame::identity(), initial });
+        }
+        for (&id, marker) in &model.markers {
+            if marker.floating {
+                continue;
+            }
+            let key = match marker.owner {
+                MarkerOwner::Part(p) => (false, p),
+                MarkerOwner::PointMass(p) => (true, p),
+                MarkerOwner::Other(_) => continue,
+            };
+            let name = format!("MARKER/{id}");
+            let Some(&part) = self.part_of.get(&key) else {
+                self.error(&name, format!("its part {} does not exist", part_name(key.0, key.1)));
+                continue;
+            };
+            match orientation(&marker.orientation, marker.qp) {
+                Ok(rotation) => {
+                    self.marker_of.insert(id, self.markers.len());
+                    let frame = Frame { rotation, position: Vec3(marker.qp) };
+                    self.markers.push(MarkerOnLink { id, link: None, frame, part });
+                }
+                Err(why) => self.error(&name, why),
+            }
+        }
+    }
+
+    /// Index of a marker; an error names the element that asks when there is none.
+    pub fn marker(&mut self, id: u32, asked_by: &str) -> Option<usize> {
+        let found = self.marker_of.get(&id).copied();
+        if found.is_none() {
+            let why = match self.model.markers.get(&id) {
+                Some(m) if m.floating => "is FLOATING and has no frame of its own",
+                Some(_) => "belongs to something that is not solved here",
+                None => "does not exist",
+            };
+            self.errors.push(Diagnostic::error("unknown_marker", format!("MARKER/{id} {why}")).element(asked_by));
+        }
+        found
+    }
+
+    /// Pose of a marker in ground as the dataset has it.
+    pub fn initial_frame(&self, marker: usize) -> Frame<f64> {
+        let m = &self.markers[marker];
+        m.part.map_or(m.frame, |p| self.parts[p].initial.compose(&m.frame))
+    }
+
+    /// Grows the forest and makes its links. `cut` says which ties must be rows.
+    pub fn forest(&mut self, ties: &[NamedTie], cut: impl Fn(&NamedTie) -> bool, preferred: &dyn Fn(&NamedTie) -> bool) {
+        let mut candidates = Vec::new();
+        for (tie, t) in ties.iter().enumerate() {
+            let (Some(i), Some(j)) = (self.marker(t.i, &t.name), self.marker(t.j, &t.name)) else { continue };
+            let point = |m: usize| self.markers[m].part.is_some_and(|p| self.parts[p].point_mass);
+            candidates.push(Candidate {
+                tie,
+                kind: t.kind,
+                i: self.markers[i].part,
+                j: self.markers[j].part,
+                cut: cut(t) || point(i) || point(j),
+                preferred: preferred(t),
+            });
+        }
+        let order = forest::grow(self.parts.len(), &candidates);
+        let mut carrying = vec![false; ties.len()];
+        for placed in order {
+            let end = match placed.by {
+                Carried::Free => self.carry_free(placed.part),
+                Carried::Forward(t) | Carried::Backward(t) => {
+                    carrying[t] = true;
+                    self.carry(&ties[t], matches!(placed.by, Carried::Backward(_)))
+                }
+            };
+            self.attach(placed.part, end);
+        }
+        for m in 0..self.markers.len() {
+            if let Some(p) = self.markers[m].part {
+                self.markers[m].link = self.parts[p].link;
+                self.markers[m].frame = self.parts[p].frame.compose(&self.markers[m].frame);
+                let r = &mut self.markers[m].frame.rotation;
+                *r = rotation::snapped(r);
+            }
+        }
+        for (t, tie) in ties.iter().enumerate() {
+            if !carrying[t] {
+                self.close(tie);
+            }
+        }
+    }
+
+    /// Links for the chain of a tie; returns the last link and the part's frame on it.
+    fn carry(&mut self, tie: &NamedTie, backward: bool) -> (LinkIx, Frame<f64>) {
+        let (i, j) = (self.marker_of[&tie.i], self.marker_of[&tie.j]);
+        let chain = tie.kind.motions().unwrap_or(&[]);
+        let relative = self.initial_frame(j).inverse().compose(&self.initial_frame(i)); // X_JI
+        let fitted = fit(chain, &relative);
+        let (from, to) = if backward { (i, j) } else { (j, i) };
+        // the carrier's marker, on the carrier's link
+        let carrier = self.markers[from].part;
+        let (mut parent, mut placement) = match carrier {
+            None => (None, self.markers[from].frame),
+            Some(p) => (self.parts[p].link, self.parts[p].frame.compose(&self.markers[from].frame)),
+        };
+        let steps: Vec<usize> = if backward { (0..chain.len()).rev().collect() } else { (0..chain.len()).collect() };
+        let sign = if backward { -1.0 } else { 1.0 };
+        let mut own = vec![Vec::new(); chain.len()];
+        // coordinates are numbered in the order of the joint's table, whichever way it is passed
+        for (k, motion) in chain.iter().enumerate() {
+            for f in 0..motion.freedoms() {
+                let angular = !matches!(motion, Motion::Slide(_));
+                let name = format!("{} {}", tie.name, variable_name(chain, k, f));
+                own[k].push(self.coordinates.len());
+                let q = self.n_q;
+                let source = match (motion, tie.joint.and_then(|id| self.driven.get(&(id, angular)))) {
+                    (Motion::Slide(2) | Motion::Turn(2), Some(&motion)) => Source::Driven(motion),
+                    _ => {
+                        self.n_v += 1;
+                        Source::Free { q, v: self.n_v - 1 }
+                    }
+                };
+                if let (Source::Free { .. }, false) = (source, matches!(motion, Motion::Ball)) {
+                    self.q.push(fitted[k][0]);
+                    self.n_q += 1;
+                }
+                self.coordinates.push(Coordinate { name, joint: tie.joint, angular, source, link: 0 });
+            }
+            if matches!(motion, Motion::Ball) {
+                let x = if backward { rotation::to_quaternion(&relative.rotation.transpose()) } else { quaternion(&fitted[k]) };
+                self.q.extend(x);
+                self.n_q += 4;
+            }
+        }
+        if let Some(id) = tie.joint {
+            self.joint_coordinates.insert(id, own.iter().flatten().copied().collect());
+        }
+        for k in steps {
+            let motion = match chain[k] {
+                Motion::QuarterX => {
+                    let quarter = if backward { quarter_x().transpose() } else { quarter_x() };
+                    placement = placement.compose(&Frame { rotation: quarter, position: Vec3::zero() });
+                    continue;
+                }
+                Motion::Slide(axis) => LinkMotion::Slide { axis, sign, coordinate: own[k][0] },
+                Motion::Turn(axis) => LinkMotion::Turn { axis, sign, coordinate: own[k][0] },
+                Motion::Ball => LinkMotion::Ball { coordinate: own[k][0], quaternion: self.quaternion_of(own[k][0]) },
+            };
+            parent = self.push_link(parent, placement, motion, &own[k]);
+            placement = Frame::identity();
+        }
+        if chain.is_empty() {
+            parent = self.push_link(parent, placement, LinkMotion::Rigid, &[]);
+            placement = Frame::identity();
+        }
+        // what is left of the placement (a trailing quarter turn) belongs to the part's frame on the last link
+        (parent, placement.compose(&self.markers[to].frame.inverse()))
+    }
+
+    fn quaternion_of(&self, coordinate: usize) -> usize {
+        match self.coordinates[coordinate].source {
+            Source::Free { q, .. } => q,
+            Source::Driven(_) => unreachable!("no motion drives the rotation of a ball"),
+        }
+    }
+
+    /// Links for a part that nothing carries: three slides along ground axes and a ball at its centre of mass.
+    fn carry_free(&mut self, part: usize) -> (LinkIx, Frame<f64>) {
+        let p = &self.parts[part];
+        let (id, point_mass) = (p.id, p.point_mass);
+        let name = part_name(point_mass, id);
+        let data = self.part_data(part);
+        let cm = data.cm.and_then(|m| self.marker_of.get(&m)).map(|&m| self.markers[m].frame);
+        let centre = cm.unwrap_or_else(Frame::identity); // X_PC
+        let start = self.parts[part].initial.compose(&centre);
+        let mut parent = None;
+        for axis in 0..3 {
+            let source = Source::Free { q: self.n_q, v: self.n_v };
+            let name = format!("{name} {}", ["x", "y", "z"][axis]);
+            self.coordinates.push(Coordinate { name, joint: None, angular: false, source, link: 0 });
+            self.q.push(start.position.0[axis]);
+            (self.n_q, self.n_v) = (self.n_q + 1, self.n_v + 1);
+            let coordinate = self.coordinates.len() - 1;
+            let motion = LinkMotion::Slide { axis, sign: 1.0, coordinate };
+            parent = self.push_link(parent, Frame::identity(), motion, &[coordinate]);
+        }
+        if point_mass {
+            let rotation = start.rotation;
+            let x = Frame { rotation, position: Vec3::zero() };
+            return (parent, x.compose(&centre.inverse()));
+        }
+        let first = self.coordinates.len();
+        for axis in 0..3 {
+            let source = Source::Free { q: self.n_q, v: self.n_v };
+            let name = format!("{name} rotation {}", ["x", "y", "z"][axis]);
+            self.coordinates.push(Coordinate { name, joint: None, angular: true, source, link: 0 });
+            self.n_v += 1;
+        }
+        let motion = LinkMotion::Ball { coordinate: first, quaternion: self.n_q };
+        self.q.extend(rotation::to_quaternion(&start.rotation));
+        self.n_q += 4;
+        parent = self.push_link(parent, Frame::identity(), motion, &[first, first + 1, first + 2]);
+        (parent, centre.inverse())
+    }
+
+    fn push_link(&mut self, parent: LinkIx, placement: Frame<f64>, motion: LinkMotion, own: &[usize]) -> LinkIx {
+        let placement = Frame { rotation: rotation::snapped(&placement.rotation), ..placement };
+        let (moment, inertia) = (Vec3::zero(), Mat3::zero());
+        self.links.push(Link { parent, placement, motion, mass: 0.0, moment, inertia });
+        for &c in own {
+            self.coordinates[c].link = self.links.len() - 1;
+        }
+        Some(self.links.len() - 1)
+    }
+
+    pub fn part_data(&self, part: usize) -> &'m Part {
+        let p = &self.parts[part];
+        if p.point_mass { &self.model.point_masses[&p.id] } else { &self.model.parts[&p.id] }
+    }
+
+    /// Puts a part with its inertia on its link.
+    fn attach(&mut self, part: usize, (link, frame): (LinkIx, Frame<f64>)) {
+        let frame = Frame { rotation: rotation::snapped(&frame.rotation), ..frame };
+        self.parts[part].link = link;
+        self.parts[part].frame = frame;
+        let data = self.part_data(part);
+        let name = part_name(self.parts[part].point_mass, self.parts[part].id);
+        if data.mass == 0.0 && data.ip == [0.0; 6] {
+            return;
+        }
+        let ucf = self.model.units.as_ref().map_or(1.0, |u| u.ucf);
+        let Some(cm) = data.cm.or(data.im) else {
+            if data.mass > 0.0 {
+                self.error(&name, "has mass but no CM marker: say where its centre of mass is");
+            }
+            return;
+        };
+        let (Some(c), Some(i)) = (self.marker(cm, &name), self.marker(data.im.unwrap_or(cm), &name)) else { return };
+        let (X_PC, X_PI) = (self.markers[c].frame, self.markers[i].frame);
+        if self.markers[c].part != Some(part) {
+            self.error(&name, format!("its CM marker MARKER/{cm} belongs to another part"));
+            return;
+        }
+        // IM → CM by the parallel axis rule, then to the link's origin
+        let [xx, yy, zz, xy, xz, yz] = data.ip;
+        let given = Mat3([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]);
+        let R_LI = frame.rotation * X_PI.rotation;
+        let about_im = R_LI * given * R_LI.transpose();
+        let d = frame.rotation.apply(X_PI.position - X_PC.position);
+        let about_cm = about_im - steiner(data.mass, d);
+        let p_LC = frame.point(X_PC.position);
+        let about_link = about_cm + steiner(data.mass, p_LC);
+        let Some(k) = link else { return };
+        let l = &mut self.links[k];
+        l.mass += data.mass / ucf;
+        l.moment += p_LC.times(data.mass / ucf);
+        l.inertia = l.inertia + about_link.times(1.0 / ucf);
+    }
+
+    /// Rows for a tie that closes a loop.
+    fn close(&mut self, tie: &NamedTie) {
+        let (Some(i), Some(j)) = (self.marker_of.get(&tie.i).copied(), self.marker_of.get(&tie.j).copied()) else {
+            return;
+        };
+        for law in tie.kind.rows() {
+            let kind = RowKind::Markers { law, i, j, motion: None };
+            self.rows.push(Row { element: tie.name.clone(), equation: law.name(), kind });
+        }
+    }
+}
+
+/// `m (|d|² 1 − d dᵀ)`
+fn steiner(mass: f64, d: Vec3<f64>) -> Mat3<f64> {
+    let n2 = d.norm2();
+    Mat3(std::array::from_fn(|i| {
+        std::array::from_fn(|j| mass * (if i == j { n2 } else { 0.0 } - d.0[i] * d.0[j]))
+    }))
+}
+
+/// "PART/3" or "POINT_MASS/3"
+pub(crate) fn part_name(point_mass: bool, id: u32) -> String {
+    format!("{}/{id}", if point_mass { "POINT_MASS" } else { "PART" })
+}
+
+/// What the `k`-th motion of a chain measures.
+fn variable_name(chain: &[Motion], k: usize, freedom: usize) -> String {
+    let several = |turn: bool| chain.iter().filter(|m| matches!(m, Motion::Turn(_)) == turn && m.freedoms() == 1).count() > 1;
+    let axis = |k: usize| ["x", "y", "z"][k];
+    match chain[k] {
+        Motion::Slide(a) if several(false) => format!("{} distance", axis(a)),
+        Motion::Slide(_) => "distance".into(),
+        Motion::Turn(_) if several(true) => {
+            format!("angle {}", 1 + chain[..k].iter().filter(|m| matches!(m, Motion::Turn(_))).count())
+        }
+        Motion::Turn(_) => "angle".into(),
+        Motion::Ball => format!("rotation {}", axis(freedom)),
+        Motion::QuarterX => String::new(),
+    }
+}
+
+fn quaternion(fitted: &[f64]) -> [f64; 4] {
+    [fitted[0], fitted[1], fitted[2], fitted[3]]
+}
+
+/// Coordinates of a chain that bring it as near as may be to the frame `X_JI`: numbers per motion (a quaternion for a ball).
+///
+/// Slides take their component of the position; a turn takes the angle that brings the axis of the next turn where it
+/// should be, the last one the angle that is left.
+fn fit(chain: &[Motion], frame: &Frame<f64>) -> Vec<Vec<f64>> {
+    let mut left = *frame;
+    let mut found = Vec::with_capacity(chain.len());
+    for (k, motion) in chain.iter().enumerate() {
+        match *motion {
+            Motion::Slide(a) => {
+                found.push(vec![left.position.0[a]]);
+                left.position.0[a] = 0.0;
+            }
+            Motion::QuarterX => {
+                found.push(Vec::new());
+                left.rotation = quarter_x().transpose() * left.rotation;
+            }
+            Motion::Ball => found.push(rotation::to_quaternion(&left.rotation).to_vec()),
+            Motion::Turn(a) => {
+                // a direction that later motions leave alone, before and after this turn
+                let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+                let mut fixed = Vec3::<f64>::axis(b);
+                let next = chain[k + 1..].iter().find_map(|m| if let Motion::Turn(n) = m { Some(*n) } else { None });
+                let mut target = left.rotation.column(b);
+                if let Some(next) = next {
+                    fixed = Vec3::axis(next);
+                    if chain[k + 1..].contains(&Motion::QuarterX) {
+                        fixed = quarter_x().apply(fixed);
+                    }
+                    target = left.rotation.column(next);
+                }
+                let angle = (target.0[c] * fixed.0[b] - target.0[b] * fixed.0[c])
+                    .atan2(target.0[b] * fixed.0[b] + target.0[c] * fixed.0[c]);
+                found.push(vec![angle]);
+                left.rotation = rotation::about_axis(a, -angle) * left.rotation;
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,97 @@
+//! Which joint carries which part; everything else becomes a row.
+//!
+//! The forest grows from ground: of all joints between a carried and an uncarried part, the one with the fewest
+//! coordinates goes first, and among equals the one whose carrier is nearest to ground. A part that nothing reaches starts
+//! a tree of its own, free in ground. The choice depends on the model alone, not on the order of its statements beyond
+//! ties, which the smaller number wins.
+
+use crate::physics::joint::Tie;
+use std::collections::BTreeSet;
+
+/// A joint or primitive between two bodies (indices of parts; `None` = ground).
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// position in the list of ties
+    pub tie: usize,
+    /// what it is
+    pub kind: Tie,
+    /// part of the I marker
+    pub i: Option<usize>,
+    /// part of the J marker
+    pub j: Option<usize>,
+    /// must not carry a part
+    pub cut: bool,
+    /// better carries a part: something refers to its displacement
+    pub preferred: bool,
+}
+
+/// How a part is carried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carried {
+    /// by a tie, from J to I
+    Forward(usize),
+    /// by a tie, from I to J
+    Backward(usize),
+    /// by nothing
+    Free,
+}
+
+/// One part in the order in which links are made: carriers first.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    /// the part
+    pub part: usize,
+    /// what carries it
+    pub carrier: Option<usize>,
+    /// by which tie
+    pub by: Carried,
+}
+
+/// Grows the forest over `n_parts` parts.
+pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
+    let mut depth: Vec<Option<usize>> = vec![None; n_parts];
+    let mut order = Vec::with_capacity(n_parts);
+    let mut edges_of: Vec<Vec<usize>> = vec![Vec::new(); n_parts + 1];
+    let slot = |p: Option<usize>| p.map_or(n_parts, |k| k);
+    for (e, c) in candidates.iter().enumerate() {
+        if !c.cut && c.i != c.j && c.kind.motions().is_some() {
+            edges_of[slot(c.i)].push(e);
+            edges_of[slot(c.j)].push(e);
+        }
+    }
+    // the frontier, cheapest first: (coordinates, not preferred, depth of the carrier, candidate)
+    let mut frontier: BTreeSet<(usize, bool, usize, usize)> = BTreeSet::new();
+    let mut reach = |from: Option<usize>, at: usize, frontier: &mut BTreeSet<_>| {
+        for &e in &edges_of[slot(from)] {
+            let c = &candidates[e];
+            let cost = c.kind.motions().map_or(0, |m| m.iter().map(|x| x.freedoms()).sum());
+            frontier.insert((cost, !c.preferred, at, e));
+        }
+    };
+    reach(None, 0, &mut frontier);
+    let mut next_free = 0;
+    loop {
+        while let Some((_, _, at, e)) = frontier.pop_first() {
+            let c = &candidates[e];
+            let known = |p: Option<usize>| p.is_none_or(|k| depth[k].is_some());
+            let (part, carrier, by) = match (known(c.j), known(c.i)) {
+                (true, false) => (c.i, c.j, Carried::Forward(c.tie)),
+                (false, true) => (c.j, c.i, Carried::Backward(c.tie)),
+                _ => continue,
+            };
+            let Some(part) = part else { continue };
+            depth[part] = Some(at + 1);
+            order.push(Placed { part, carrier, by });
+            reach(Some(part), at + 1, &mut frontier);
+        }
+        while next_free < n_parts && depth[next_free].is_some() {
+            next_free += 1;
+        }
+        if next_free == n_parts {
+            return order;
+        }
+        depth[next_free] = Some(1);
+        order.push(Placed { part: next_free, carrier: None, by: Carried::Free });
+        reach(Some(next_free), 1, &mut frontier);
+    }
+}

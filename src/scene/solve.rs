@@ -1,0 +1,203 @@
+//! From mass matrix, rows and loads to accelerations and multipliers.
+//!
+//! ```text
+//! M v̇ = f + Gᵀ λ        M = Lᵀ D L, without fill on a forest (eliminating from the leaves)
+//! G v̇ = γ               S λ = γ − G M⁻¹ f,   S = G M⁻¹ Gᵀ = Σ u uᵀ / D,   u = L⁻ᵀ Gᵀ
+//! ```
+//!
+//! Written for known zeros: a term that is known to be zero is not computed. A pivot of S that has lost twelve digits
+//! counts as zero and its multiplier too, so that rows which become dependent in passing do no harm.
+//!
+//! Source: Featherstone, chapters 6.5 and 8.
+
+use crate::scalar::Scalar;
+
+/// `M = Lᵀ D L` of a forest.
+pub struct MassFactor<S> {
+    /// per freedom: (carrying freedom, L)
+    pub l: Vec<Vec<(usize, S)>>,
+    /// 1/D per freedom
+    pub inverse_d: Vec<S>,
+}
+
+/// Pivots of S smaller than this times the diagonal they started from count as zero.
+pub const RANK_TOLERANCE: f64 = 1e-12;
+
+impl<S: Scalar> MassFactor<S> {
+    /// Factors the mass matrix given by rows of (carrying freedom, entry), own entry first, nearest carrier next.
+    pub fn new(mut rows: Vec<Vec<(usize, S)>>) -> Self {
+        let n = rows.len();
+        let mut inverse_d = vec![S::zero(); n];
+        for k in (0..n).rev() {
+            let row = std::mem::take(&mut rows[k]);
+            let d = row[0].1;
+            inverse_d[k] = S::one() / d;
+            let mut scaled = Vec::with_capacity(row.len() - 1);
+            for (at, &(i, m_ki)) in row.iter().enumerate().skip(1) {
+                if m_ki.is_known_zero() {
+                    continue;
+                }
+                let a = m_ki * inverse_d[k];
+                for &(j, m_kj) in &row[at..] {
+                    if let Some(entry) = rows[i].iter_mut().find(|e| e.0 == j) {
+                        entry.1 -= a * m_kj;
+                    }
+                }
+                scaled.push((i, a));
+            }
+            rows[k] = scaled;
+        }
+        Self { l: rows, inverse_d }
+    }
+
+    /// `x ← L⁻ᵀ x`
+    pub fn half(&self, x: &mut [S]) {
+        for i in (0..x.len()).rev() {
+            if x[i].is_known_zero() {
+                continue;
+            }
+            for &(j, l) in &self.l[i] {
+                let t = l * x[i];
+                x[j] -= t;
+            }
+        }
+    }
+
+    /// `x ← L⁻¹ D⁻¹ x`
+    pub fn finish(&self, x: &mut [S]) {
+        for i in 0..x.len() {
+            let mut s = x[i] * self.inverse_d[i];
+            for &(j, l) in &self.l[i] {
+                s -= l * x[j];
+            }
+            x[i] = s;
+        }
+    }
+}
+
+/// Accelerations and multipliers. `g[r]`: sparse row r of G; `gamma[r]` its right side; `f`: loads, overwritten by v̇.
+///
+/// Returns λ, with `M v̇ = f + Gᵀ λ`.
+pub fn accelerations<S: Scalar>(m: &MassFactor<S>, g: &[Vec<(usize, S)>], gamma: &[S], f: &mut [S]) -> Vec<S> {
+    let n = f.len();
+    m.half(f);
+    let u: Vec<Vec<(usize, S)>> = g
+        .iter()
+        .map(|row| {
+            let mut x = vec![S::zero(); n];
+            for &(k, value) in row {
+                x[k] += value;
+            }
+            m.half(&mut x);
+            x.into_iter().enumerate().filter(|e| !e.1.is_known_zero()).collect()
+        })
+        .collect();
+    // (u/D, for one side of the products)
+    let scaled: Vec<Vec<(usize, S)>> =
+        u.iter().map(|row| row.iter().map(|&(k, x)| (k, x * m.inverse_d[k])).collect()).collect();
+    let rhs: Vec<S> = scaled
+        .iter()
+        .zip(gamma)
+        .map(|(row, &gamma)| row.iter().fold(gamma, |s, &(k, x)| s - x * f[k]))
+        .collect();
+    let mut s: Vec<Vec<S>> = Vec::with_capacity(g.len());
+    for (r, row) in u.iter().enumerate() {
+        s.push((0..=r).map(|c| sparse_dot(row, &scaled[c])).collect());
+    }
+    let lambda = solve_symmetric(s, rhs);
+    for (row, &l) in u.iter().zip(&lambda) {
+        for &(k, x) in row {
+            f[k] += x * l;
+        }
+    }
+    m.finish(f);
+    lambda
+}
+
+/// Product of two rows given by ascending indices.
+fn sparse_dot<S: Scalar>(a: &[(usize, S)], b: &[(usize, S)]) -> S {
+    let (mut i, mut j, mut sum) = (0, 0, S::zero());
+    while i < a.len() && j < b.len() {
+        match a[i].0.cmp(&b[j].0) {
+            std::cmp::Ordering::Less => i += 1,
+            std::cmp::Ordering::Greater => j += 1,
+            std::cmp::Ordering::Equal => {
+                sum += a[i].1 * b[j].1;
+                i += 1;
+                j += 1;
+            }
+        }
+    }
+    sum
+}
+
+/// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ` in the given order;
+/// what depends on earlier rows gets the value zero.
+pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
+    let n = b.len();
+    let mut inverse = vec![S::zero(); n];
+    let mut dependent = Vec::with_capacity(n);
+    // a[i][k] holds L_ik D_k until row i is finished, then L_ik
+    for i in 0..n {
+        let start = a[i][i];
+        for k in 0..i {
+            let mut s = a[i][k];
+            for j in 0..k {
+                if !a[i][j].is_known_zero() && !a[k][j].is_known_zero() {
+                    s -= a[i][j] * a[k][j];
+                }
+            }
+            a[i][k] = s;
+        }
+        let mut d = start;
+        for k in 0..i {
+            if a[i][k].is_known_zero() {
+                continue;
+            }
+            let l = a[i][k] * inverse[k];
+            d -= l * a[i][k];
+            b[i] = b[i] - l * b[k];
+            a[i][k] = l;
+        }
+        let tiny = d.le(start.scale(RANK_TOLERANCE));
+        inverse[i] = S::choose(tiny, S::zero, || S::one() / d);
+        dependent.push(tiny);
+    }
+    for i in (0..n).rev() {
+        let mut x = b[i] * inverse[i];
+        for k in i + 1..n {
+            if !a[k][i].is_known_zero() {
+                x -= a[k][i] * b[k];
+            }
+        }
+        b[i] = S::choose(dependent[i], S::zero, || x);
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dependent_rows_get_zero_and_the_rest_is_solved() {
+        // rows 0 and 1 are the same equation
+        let a = vec![vec![2.0], vec![2.0, 2.0], vec![0.5, 0.5, 3.0]];
+        let x = solve_symmetric(a, vec![1.0, 1.0, 2.0]);
+        assert_eq!(x[1], 0.0);
+        approx::assert_relative_eq!(2.0 * x[0] + 0.5 * x[2], 1.0, max_relative = 1e-14);
+        approx::assert_relative_eq!(0.5 * x[0] + 3.0 * x[2], 2.0, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn a_forest_factors_without_fill() {
+        // freedom 0 carries 1 and 2
+        let rows = vec![vec![(0, 5.0)], vec![(1, 2.0), (0, 1.0)], vec![(2, 3.0), (0, -1.0)]];
+        let m = MassFactor::new(rows);
+        let mut x = vec![1.0, 2.0, 3.0];
+        accelerations(&m, &[], &[], &mut x);
+        approx::assert_relative_eq!(5.0 * x[0] + x[1] - x[2], 1.0, max_relative = 1e-14);
+        approx::assert_relative_eq!(x[0] + 2.0 * x[1], 2.0, max_relative = 1e-14);
+        approx::assert_relative_eq!(-x[0] + 3.0 * x[2], 3.0, max_relative = 1e-14);
+    }
+}
