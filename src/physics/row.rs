@@ -10,7 +10,11 @@
 //! Dot(a, b)      axis_a(I) · axis_b(J)
 //! EqualDots      x_I · y_J − y_I · x_J
 //! Angle          x_I · (cos f y_J − sin f x_J) = sin(θ − f),  θ the angle about z_J, f a given function
+//! BodyAngle(k)   β_k − f for k = 0, 1, 2: body-fixed 1-2-3 angles, R_JI = Rx(β₁) Ry(β₂) Rz(β₃)
 //! ```
+//!
+//! `BodyAngle` is written as sin(β − f) too, with the common factor cos β₂ left in for β₁ and β₃, so that nothing is
+//! singular but the angles themselves (β₂ = ±90°).
 
 use crate::scalar::Scalar;
 use crate::space::Frame;
@@ -28,6 +32,8 @@ pub enum Law {
     EqualDots,
     /// the angle of I about z of J is what `drive` says
     Angle,
+    /// a body 1-2-3 angle of I in J (0, 1, 2) is what `drive` says
+    BodyAngle(usize),
 }
 
 impl Law {
@@ -50,6 +56,18 @@ impl Law {
                 let (s, c) = drive.unwrap_or_else(S::zero).sin_cos();
                 across * c - along * s
             }
+            Law::BodyAngle(k) => {
+                // R_JI: R[0][2] = sin β₂, R[1][2] = −sin β₁ cos β₂, R[2][2] = cos β₁ cos β₂,
+                //       R[0][1] = −cos β₂ sin β₃, R[0][0] = cos β₂ cos β₃
+                let r = |row: usize, column: usize| j.rotation.column(row).dot(i.rotation.column(column));
+                let (y, x) = match k {
+                    0 => (-r(1, 2), r(2, 2)),
+                    1 => (r(0, 2), (r(0, 0).square() + r(0, 1).square()).sqrt()),
+                    _ => (-r(0, 1), r(0, 0)),
+                };
+                let (s, c) = drive.unwrap_or_else(S::zero).sin_cos();
+                y * c - x * s
+            }
         }
     }
 
@@ -62,6 +80,7 @@ impl Law {
             Law::Dot(a, b) => format!("{}i.{}j", axis(a), axis(b)),
             Law::EqualDots => "Xi.Yj-Yi.Xj".into(),
             Law::Angle => "Angle".into(),
+            Law::BodyAngle(k) => format!("B{}", k + 1),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Model → Scene, in named passes: frames, ties, forest, links, rows, forces.
 
 use super::forest::{self, Candidate, Carried};
-use super::{Coordinate, Link, LinkIx, LinkMotion, MarkerOnLink, PartOnLink, Row, RowKind, Source};
+use super::{ConstraintElement, Coordinate, Link, LinkIx, LinkMotion, MarkerOnLink, PartOnLink, Row, RowKind, Source};
 use crate::diagnostic::Diagnostic;
 use crate::model::{MarkerOwner, Model, Orientation, Part};
 use crate::physics::joint::{Motion, Tie, quarter_x};
@@ -19,6 +19,7 @@ pub(super) struct Compiler<'m> {
     pub links: Vec<Link>,
     pub coordinates: Vec<Coordinate>,
     pub rows: Vec<Row>,
+    pub constraints: Vec<ConstraintElement>,
     pub n_q: usize,
     pub n_v: usize,
     /// initial positions of the forest from the dataset's part frames   (n_q)
@@ -38,6 +39,7 @@ pub(super) struct NamedTie {
     pub i: u32,
     pub j: u32,
     pub name: String,
+    pub id: u32,
     pub joint: Option<u32>,
 }
 
@@ -55,12 +57,8 @@ pub(crate) fn orientation(o: &Orientation, origin: [f64; 3]) -> Result<Mat3<f64>
             let frame = if *use_x {
                 let x = from(x).ok_or("USEXP needs XP")?;
                 let z = from(z).unwrap_or_else(|| fallback(x, 2));
-                // x exact: y = z × x, z = x × y; by cyclic exchange of the axes
-                let m = rotation::from_z_and_x(x, z.cross(x).cross(x).times(-1.0));
-                m.map(|m| {
-                    let (x, z) = (m.column(2), m.column(0));
-                    Mat3::from_columns(x, z.cross(x), z)
-                })
+                // from_z_and_x with the roles of z and x exchanged: its y is x × z, ours z × x
+                rotation::from_z_and_x(x, z).map(|m| Mat3::from_columns(m.column(2), -m.column(1), m.column(0)))
             } else {
                 let z = from(z).unwrap_or_else(|| Vec3::axis(2));
                 let x = from(x).unwrap_or_else(|| fallback(z, 0));
@@ -84,6 +82,7 @@ impl<'m> Compiler<'m> {
             links: Vec::new(),
             coordinates: Vec::new(),
             rows: Vec::new(),
+            constraints: Vec::new(),
             n_q: 0,
             n_v: 0,
             q: Vec::new(),
@@ -177,13 +176,15 @@ impl<'m> Compiler<'m> {
             });
         }
         let order = forest::grow(self.parts.len(), &candidates);
-        let mut carrying = vec![false; ties.len()];
+        let mut carrying = vec![None; ties.len()];
         for placed in order {
             let end = match placed.by {
                 Carried::Free => self.carry_free(placed.part),
                 Carried::Forward(t) | Carried::Backward(t) => {
-                    carrying[t] = true;
-                    self.carry(&ties[t], matches!(placed.by, Carried::Backward(_)))
+                    let backward = matches!(placed.by, Carried::Backward(_));
+                    let end = self.carry(&ties[t], backward);
+                    carrying[t] = end.0.map(|link| (link, backward));
+                    end
                 }
             };
             self.attach(placed.part, end);
@@ -197,9 +198,19 @@ impl<'m> Compiler<'m> {
             }
         }
         for (t, tie) in ties.iter().enumerate() {
-            if !carrying[t] {
+            let first = self.rows.len();
+            if carrying[t].is_none() {
                 self.close(tie);
             }
+            let markers = self.marker_of.get(&tie.i).copied().zip(self.marker_of.get(&tie.j).copied());
+            self.constraints.push(ConstraintElement {
+                keyword: if tie.joint.is_some() { "JOINT" } else { "JPRIM" },
+                id: tie.id,
+                markers,
+                carries: carrying[t],
+                rows: first..self.rows.len(),
+                coordinate: None,
+            });
         }
     }
 
@@ -216,51 +227,51 @@ impl<'m> Compiler<'m> {
             None => (None, self.markers[from].frame),
             Some(p) => (self.parts[p].link, self.parts[p].frame.compose(&self.markers[from].frame)),
         };
+        // numbered in the order of the links, so that what carries comes first; kept in the order of the joint's table
         let steps: Vec<usize> = if backward { (0..chain.len()).rev().collect() } else { (0..chain.len()).collect() };
         let sign = if backward { -1.0 } else { 1.0 };
         let mut own = vec![Vec::new(); chain.len()];
-        // coordinates are numbered in the order of the joint's table, whichever way it is passed
-        for (k, motion) in chain.iter().enumerate() {
-            for f in 0..motion.freedoms() {
-                let angular = !matches!(motion, Motion::Slide(_));
-                let name = format!("{} {}", tie.name, variable_name(chain, k, f));
-                own[k].push(self.coordinates.len());
-                let q = self.n_q;
-                let source = match (motion, tie.joint.and_then(|id| self.driven.get(&(id, angular)))) {
-                    (Motion::Slide(2) | Motion::Turn(2), Some(&motion)) => Source::Driven(motion),
-                    _ => {
-                        self.n_v += 1;
-                        Source::Free { q, v: self.n_v - 1 }
-                    }
-                };
-                if let (Source::Free { .. }, false) = (source, matches!(motion, Motion::Ball)) {
-                    self.q.push(fitted[k][0]);
-                    self.n_q += 1;
-                }
-                self.coordinates.push(Coordinate { name, joint: tie.joint, angular, source, link: 0 });
-            }
-            if matches!(motion, Motion::Ball) {
-                let x = if backward { rotation::to_quaternion(&relative.rotation.transpose()) } else { quaternion(&fitted[k]) };
-                self.q.extend(x);
-                self.n_q += 4;
-            }
-        }
-        if let Some(id) = tie.joint {
-            self.joint_coordinates.insert(id, own.iter().flatten().copied().collect());
-        }
         for k in steps {
+            let first = self.coordinates.len();
             let motion = match chain[k] {
                 Motion::QuarterX => {
                     let quarter = if backward { quarter_x().transpose() } else { quarter_x() };
                     placement = placement.compose(&Frame { rotation: quarter, position: Vec3::zero() });
                     continue;
                 }
-                Motion::Slide(axis) => LinkMotion::Slide { axis, sign, coordinate: own[k][0] },
-                Motion::Turn(axis) => LinkMotion::Turn { axis, sign, coordinate: own[k][0] },
-                Motion::Ball => LinkMotion::Ball { coordinate: own[k][0], quaternion: self.quaternion_of(own[k][0]) },
+                Motion::Slide(axis) => LinkMotion::Slide { axis, sign, coordinate: first },
+                Motion::Turn(axis) => LinkMotion::Turn { axis, sign, coordinate: first },
+                Motion::Ball => LinkMotion::Ball { coordinate: first, quaternion: self.n_q },
             };
+            let angular = !matches!(chain[k], Motion::Slide(_));
+            let drive = tie.joint.and_then(|id| self.driven.get(&(id, angular))).copied();
+            let fixed_axis = matches!(chain[k], Motion::Slide(2) | Motion::Turn(2));
+            for f in 0..chain[k].freedoms() {
+                let name = format!("{} {}", tie.name, variable_name(chain, k, f));
+                let source = match drive {
+                    Some(motion) if fixed_axis => Source::Driven(motion),
+                    _ => {
+                        self.n_v += 1;
+                        Source::Free { q: self.n_q, v: self.n_v - 1 }
+                    }
+                };
+                own[k].push(self.coordinates.len());
+                self.coordinates.push(Coordinate { name, joint: tie.joint, angular, source, link: 0 });
+                if let (Source::Free { .. }, LinkMotion::Slide { .. } | LinkMotion::Turn { .. }) = (source, motion) {
+                    self.q.push(fitted[k][0]);
+                    self.n_q += 1;
+                }
+            }
+            if let LinkMotion::Ball { .. } = motion {
+                let backward_turn = relative.rotation.transpose();
+                self.q.extend(if backward { rotation::to_quaternion(&backward_turn) } else { quaternion(&fitted[k]) });
+                self.n_q += 4;
+            }
             parent = self.push_link(parent, placement, motion, &own[k]);
             placement = Frame::identity();
+        }
+        if let Some(id) = tie.joint {
+            self.joint_coordinates.insert(id, own.iter().flatten().copied().collect());
         }
         if chain.is_empty() {
             parent = self.push_link(parent, placement, LinkMotion::Rigid, &[]);
@@ -268,13 +279,6 @@ impl<'m> Compiler<'m> {
         }
         // what is left of the placement (a trailing quarter turn) belongs to the part's frame on the last link
         (parent, placement.compose(&self.markers[to].frame.inverse()))
-    }
-
-    fn quaternion_of(&self, coordinate: usize) -> usize {
-        match self.coordinates[coordinate].source {
-            Source::Free { q, .. } => q,
-            Source::Driven(_) => unreachable!("no motion drives the rotation of a ball"),
-        }
     }
 
     /// Links for a part that nothing carries: three slides along ground axes and a ball at its centre of mass.

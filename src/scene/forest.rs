@@ -61,7 +61,7 @@ pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
     }
     // the frontier, cheapest first: (coordinates, not preferred, depth of the carrier, candidate)
     let mut frontier: BTreeSet<(usize, bool, usize, usize)> = BTreeSet::new();
-    let mut reach = |from: Option<usize>, at: usize, frontier: &mut BTreeSet<_>| {
+    let reach = |from: Option<usize>, at: usize, frontier: &mut BTreeSet<_>| {
         for &e in &edges_of[slot(from)] {
             let c = &candidates[e];
             let cost = c.kind.motions().map_or(0, |m| m.iter().map(|x| x.freedoms()).sum());

@@ -3,13 +3,25 @@
 //! Parts hang on a forest of links, one primitive motion each; what closes loops is a row. Numbers are indices here, names
 //! live in one list, and everything a run does not need has been left out before it starts.
 
+pub mod build;
 pub mod compile;
+pub mod equations;
+pub mod forces;
 pub mod forest;
-pub mod record;
+mod formula;
+pub mod layout;
+pub mod solve;
 pub mod sweep;
 
+use crate::expr::measures::Measure;
+use crate::expr::program::Program;
+use crate::model::Level;
 use crate::physics::row::Law;
 use crate::space::{Frame, Mat3, Vec3};
+use forces::ForceElement;
+use layout::Layout;
+use std::collections::BTreeMap;
+use sweep::Freedom;
 
 /// Index of a link in [`Scene::links`]; `None` is ground.
 pub type LinkIx = Option<usize>;
@@ -153,4 +165,113 @@ pub enum RowKind {
         /// the sum in the assembled configuration
         constant: f64,
     },
+}
+
+/// An expression of the model, compiled.
+#[derive(Clone, Debug)]
+pub struct Formula {
+    /// where it stands: "SFORCE/3 FUNCTION"
+    pub name: String,
+    /// its text, for messages
+    pub text: String,
+    /// its code; asks for its inputs by [`Input`](crate::expr::program::Input)
+    pub program: Program,
+}
+
+/// A MOTION.
+#[derive(Clone, Debug)]
+pub struct SceneMotion {
+    /// user's number
+    pub id: u32,
+    /// what its function is: displacement, velocity or acceleration
+    pub level: Level,
+    /// index in [`Scene::formulas`]
+    pub formula: usize,
+    /// place in x of the displacement (velocity and acceleration level), and of the velocity after it (acceleration level)
+    pub state: Option<usize>,
+    /// the coordinate it drives; `None`: it is a row
+    pub coordinate: Option<usize>,
+}
+
+/// A DIFF: `ẋ = function`.
+#[derive(Clone, Debug)]
+pub struct SceneDifferential {
+    /// user's number
+    pub id: u32,
+    /// place in x
+    pub state: usize,
+    /// index in [`Scene::formulas`]
+    pub formula: usize,
+    /// value at the start
+    pub initial: f64,
+    /// frozen in statics
+    pub static_hold: bool,
+}
+
+/// A constraint element: whose reaction can be asked for.
+#[derive(Clone, Debug)]
+pub struct ConstraintElement {
+    /// statement keyword: JOINT, JPRIM, MOTION …
+    pub keyword: &'static str,
+    /// user's number
+    pub id: u32,
+    /// I and J markers, where it has them
+    pub markers: Option<(usize, usize)>,
+    /// it carries a link: the last link of its chain, and whether it is passed from I to J
+    pub carries: Option<(usize, bool)>,
+    /// its rows, indices in [`Scene::rows`]
+    pub rows: std::ops::Range<usize>,
+    /// MOTION on a coordinate: which
+    pub coordinate: Option<usize>,
+}
+
+/// What must be computed: dense, flat, constant.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// rigid bodies and massless steps, carriers first
+    pub links: Vec<Link>,
+    /// velocity coordinates of the forest
+    pub coordinates: Vec<Coordinate>,
+    /// one scalar freedom per coordinate, in the same order
+    pub freedoms: Vec<Freedom>,
+    /// per freedom: the nearest freedom that carries it
+    pub carrier: Vec<Option<usize>>,
+    /// per link: the last freedom that moves it
+    pub last_freedom: Vec<Option<usize>>,
+    /// parts and where they sit
+    pub parts: Vec<PartOnLink>,
+    /// markers and where they sit
+    pub markers: Vec<MarkerOnLink>,
+    /// user's marker number → index
+    pub marker_of: BTreeMap<u32, usize>,
+    /// constraint equations, those that depend on others included
+    pub rows: Vec<Row>,
+    /// whether a row takes part (not when it depends on earlier ones); empty: all do
+    pub active: Vec<bool>,
+    /// constraint elements
+    pub constraints: Vec<ConstraintElement>,
+    /// forces
+    pub forces: Vec<ForceElement>,
+    /// motions
+    pub motions: Vec<SceneMotion>,
+    /// differential equations
+    pub differentials: Vec<SceneDifferential>,
+    /// user's VARIABLE number → formula
+    pub variables: BTreeMap<u32, usize>,
+    /// user's ARRAY number → numbers
+    pub arrays: BTreeMap<u32, Vec<f64>>,
+    /// all expressions
+    pub formulas: Vec<Formula>,
+    /// angles whose turns are counted, in the order of their places in the layout
+    pub counted: Vec<(Measure, [u32; 4])>,
+    /// in ground axes
+    pub gravity: Vec3<f64>,
+    /// value of MODE
+    pub mode: f64,
+    /// places of unknowns
+    pub layout: Layout,
+    /// positions from the dataset, before assembly   (n_q)
+    pub initial_q: Vec<f64>,
+    /// a typical length of the mechanism, for tolerances and scales
+    pub length: f64,
 }

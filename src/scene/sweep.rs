@@ -227,8 +227,8 @@ pub struct Freedom {
     pub sign: f64,
     /// place in v; `None` when a motion drives it
     pub v: Option<usize>,
-    /// coordinate
-    pub coordinate: usize,
+    /// a third of a ball
+    pub in_ball: bool,
 }
 
 impl Freedom {

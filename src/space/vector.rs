@@ -96,6 +96,12 @@ impl<S: Scalar> SubAssign for Vec3<S> {
     }
 }
 
+impl<S: Scalar> Default for Vec3<S> {
+    fn default() -> Self {
+        Self::zero()
+    }
+}
+
 /// A 3×3 matrix, stored by rows: `m.0[row][column]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat3<S>(pub [[S; 3]; 3]);

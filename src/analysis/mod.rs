@@ -1,0 +1,4 @@
+//! What to do with a scene: assemble, move, balance, integrate, linearize, verify.
+
+pub mod assemble;
+pub mod system;

@@ -1,0 +1,52 @@
+//! SPRINGDAMPER: a linear spring and damper along a line or about an axis.
+//!
+//! | parameter | symbol | keyword | unit | default |
+//! |---|---|---|---|---|
+//! | stiffness | k | K, KT | force/length, torque/rad | 0 |
+//! | damping | c | C, CT | force·time/length, torque·time/rad | 0 |
+//! | free length or angle | l₀ | LENGTH, ANGLE | length, rad | 0 |
+//! | preload | f₀ | FORCE, TORQUE | force, torque | 0 |
+//!
+//! ```text
+//! translation   F = −c ḋ − k (d − l₀) + f₀      on I along the unit vector from J to I; d their distance
+//! rotation      T = −c θ̇ − k (θ − l₀) + f₀      on I about z_J; θ the angle of I about z_J, turns counted
+//! ```
+//!
+//! Singular where I and J coincide in translation: the direction, and with it the force, is zero there.
+
+use super::action::{Action, line_of_sight};
+use crate::scalar::Scalar;
+use crate::space::{MarkerState, Vec3};
+
+/// Its numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct SpringDamper {
+    /// about z_J rather than along the line
+    pub rotational: bool,
+    /// k
+    pub stiffness: f64,
+    /// c
+    pub damping: f64,
+    /// l₀
+    pub free: f64,
+    /// f₀
+    pub preload: f64,
+}
+
+impl SpringDamper {
+    fn law<S: Scalar>(&self, x: S, rate: S) -> S {
+        S::constant(self.preload) - rate.scale(self.damping) - (x - S::constant(self.free)).scale(self.stiffness)
+    }
+
+    /// On I. `angle`: of I about z_J with its turns, used by the rotational one.
+    pub fn action<S: Scalar>(&self, i: &MarkerState<S>, j: &MarkerState<S>, angle: impl FnOnce() -> S) -> Action<S> {
+        if self.rotational {
+            let z_J = j.R_GM.column(2);
+            let rate = (i.w_GM - j.w_GM).dot(z_J);
+            return Action { force: Vec3::zero(), torque: z_J.times(self.law(angle(), rate)) };
+        }
+        let (u, length) = line_of_sight(i, j);
+        let rate = (i.v_GM - j.v_GM).dot(u);
+        Action { force: u.times(self.law(length, rate)), torque: Vec3::zero() }
+    }
+}

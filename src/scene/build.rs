@@ -1,0 +1,430 @@
+//! The last passes of compilation: what drives, what pushes, what is counted; and the finished [`Scene`].
+
+use super::compile::{Compiler, NamedTie, part_name};
+use super::forces::{ForceElement, ForceLaw};
+use super::layout::Layout;
+use super::sweep::Freedom;
+use super::{
+    ConstraintElement, Formula, LinkIx, LinkMotion, Row, RowKind, Scene, SceneDifferential, SceneMotion, Source,
+};
+use crate::diagnostic::Diagnostic;
+use crate::expr::measures::Measure;
+use crate::expr::program::Input;
+use crate::model::{ArrayKind, Driven, Formula as ModelFormula, JointKind, Level, MarkerOwner, Model, VectorForce};
+use crate::physics::bushing::Bushing;
+use crate::physics::joint::Tie;
+use crate::physics::row::Law;
+use crate::physics::spring_damper::SpringDamper;
+use crate::space::Vec3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How a scene is made.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// make rows of all joints: the absolute-coordinate formulation, for comparison
+    pub cut_all: bool,
+    /// value of MODE: 1 kinematic, 3 initial conditions, 4 dynamic, 5 static
+    pub mode: u32,
+    /// expressions to be evaluated beside those of the model: (name, text)
+    pub extra: Vec<(String, String)>,
+}
+
+/// Keeps an element of a model unless it has been switched off.
+fn active<'m, T>(model: &'m Model, keyword: &'m str, all: &'m BTreeMap<u32, T>) -> impl Iterator<Item = (u32, &'m T)> {
+    all.iter().filter(move |(id, _)| !model.inactive.contains(&(keyword.to_string(), **id))).map(|(id, x)| (*id, x))
+}
+
+impl Scene {
+    /// Makes the scene of a model.
+    ///
+    /// # Errors
+    /// Everything that keeps the model from being solved, all at once.
+    pub fn compile(model: &Model, options: &Options) -> Result<Scene, Vec<Diagnostic>> {
+        let mut c = Compiler::new(model);
+        let mut b = Builder { scene: Scene::default(), model };
+        c.frames();
+        b.scene.mode = f64::from(options.mode);
+        b.data();
+        let drives = b.motions(&mut c);
+        let ties = ties(model);
+        let coupled: BTreeSet<u32> = coupled_joints(model);
+        let driven: BTreeSet<u32> = drives.iter().filter_map(|d| d.joint).collect();
+        let preferred = |t: &NamedTie| t.joint.is_some_and(|j| coupled.contains(&j) || driven.contains(&j));
+        c.forest(&ties, |_| options.cut_all, &preferred);
+        b.driven_rows(&mut c, &drives);
+        b.links(&mut c);
+        b.forces(&mut c);
+        b.systems(&mut c);
+        for (name, text) in &options.extra {
+            b.formula(&mut c, name, &ModelFormula::text(text.clone()));
+        }
+        b.counted();
+        if c.errors.is_empty() { Ok(b.scene) } else { Err(c.errors) }
+    }
+}
+
+/// The joints and primitives of a model that are switched on.
+fn ties(model: &Model) -> Vec<NamedTie> {
+    let joints = active(model, "JOINT", &model.joints)
+        .filter(|(_, j)| !Tie::Joint(j.kind).rows().is_empty())
+        .map(|(id, j)| NamedTie {
+            kind: Tie::Joint(j.kind),
+            i: j.i,
+            j: j.j,
+            name: format!("JOINT/{id}"),
+            id,
+            joint: Some(id),
+        });
+    let primitives = active(model, "JPRIM", &model.primitives).map(|(id, p)| NamedTie {
+        kind: Tie::Primitive(p.kind),
+        i: p.i,
+        j: p.j,
+        name: format!("JPRIM/{id}"),
+        id,
+        joint: None,
+    });
+    joints.chain(primitives).collect()
+}
+
+/// Joints whose displacement something refers to.
+fn coupled_joints(model: &Model) -> BTreeSet<u32> {
+    let couplers = active(model, "COUPLER", &model.couplers).flat_map(|(_, c)| c.joints.clone());
+    let gears = active(model, "GEAR", &model.gears).flat_map(|(_, g)| g.joints);
+    couplers.chain(gears).collect()
+}
+
+/// What a motion drives, resolved.
+struct Drive {
+    motion: usize,
+    joint: Option<u32>,
+    law: Law,
+    markers: (u32, u32),
+    name: String,
+}
+
+struct Builder<'m> {
+    scene: Scene,
+    model: &'m Model,
+}
+
+impl<'m> Builder<'m> {
+    /// Gravity and arrays of numbers.
+    fn data(&mut self) {
+        self.scene.gravity = Vec3(self.model.gravity);
+        for (&id, array) in &self.model.arrays {
+            if let ArrayKind::Ic(numbers) = &array.kind {
+                self.scene.arrays.insert(id, numbers.clone());
+            }
+        }
+    }
+
+    /// Compiles an expression; its index in the scene's formulas.
+    fn formula(&mut self, c: &mut Compiler, name: &str, formula: &ModelFormula) -> usize {
+        let text = match formula {
+            ModelFormula::Expression { text, .. } => text.clone(),
+            ModelFormula::User { .. } => {
+                c.errors.push(
+                    Diagnostic::error("user_routine", "USER needs a routine that is not part of the dataset")
+                        .element(name)
+                        .help("register a closure for it through the library, or switch the element off"),
+                );
+                "0".into()
+            }
+        };
+        match super::formula::compile(&text, self.model) {
+            Ok(program) => {
+                self.scene.formulas.push(Formula { name: name.to_string(), text, program });
+                self.scene.formulas.len() - 1
+            }
+            Err(mut diagnostics) => {
+                for d in &mut diagnostics {
+                    d.element = Some(name.to_string());
+                    if let ModelFormula::Expression { line, .. } = formula {
+                        d.line = *line + d.line.saturating_sub(1);
+                    }
+                }
+                c.errors.append(&mut diagnostics);
+                usize::MAX
+            }
+        }
+    }
+
+    fn motions(&mut self, c: &mut Compiler) -> Vec<Drive> {
+        let mut drives = Vec::new();
+        for (id, motion) in active(self.model, "MOTION", &self.model.motions) {
+            let name = format!("MOTION/{id}");
+            let formula = self.formula(c, &format!("{name} FUNCTION"), &motion.function);
+            let m = self.scene.motions.len();
+            let places = match motion.level {
+                Level::Displacement => 0,
+                Level::Velocity => 1,
+                Level::Acceleration => 2,
+            };
+            let state = (places > 0).then_some(self.scene.layout.n_x);
+            self.scene.layout.n_x += places;
+            self.scene.motions.push(SceneMotion { id, level: motion.level, formula, state, coordinate: None });
+            let (joint, turn) = match motion.driven {
+                Driven::JointTranslation(j) => (j, false),
+                Driven::JointRotation(j) => (j, true),
+                Driven::Joint(j) => (j, self.model.joints.get(&j).is_some_and(|j| j.kind == JointKind::Revolute)),
+                Driven::Markers { i, j, component } => {
+                    let law = match component {
+                        0..=2 => Law::Along(component),
+                        _ => Law::BodyAngle(component - 3),
+                    };
+                    drives.push(Drive { motion: m, joint: None, law, markers: (i, j), name });
+                    continue;
+                }
+            };
+            let allowed = match self.model.joints.get(&joint).map(|j| j.kind) {
+                Some(JointKind::Revolute) => turn,
+                Some(JointKind::Translational) => !turn,
+                Some(JointKind::Cylindrical) => true,
+                Some(_) => false,
+                None => {
+                    c.error(&name, format!("JOINT/{joint} does not exist"));
+                    continue;
+                }
+            };
+            if !allowed {
+                let what = if turn { "rotation" } else { "translation" };
+                c.error(&name, format!("JOINT/{joint} has no {what} to drive: a motion needs a revolute, translational or cylindrical joint"));
+                continue;
+            }
+            let j = &self.model.joints[&joint];
+            let law = if turn { Law::Angle } else { Law::Along(2) };
+            if c.driven.insert((joint, turn), m).is_some() {
+                c.error(&name, format!("JOINT/{joint} is driven twice"));
+            }
+            drives.push(Drive { motion: m, joint: Some(joint), law, markers: (j.i, j.j), name });
+        }
+        drives
+    }
+
+    /// Motions that no coordinate took: rows.
+    fn driven_rows(&mut self, c: &mut Compiler, drives: &[Drive]) {
+        for (k, coordinate) in c.coordinates.iter().enumerate() {
+            if let Source::Driven(m) = coordinate.source {
+                self.scene.motions[m].coordinate = Some(k);
+            }
+        }
+        for drive in drives {
+            let id = self.scene.motions[drive.motion].id;
+            let coordinate = self.scene.motions[drive.motion].coordinate;
+            let first = c.rows.len();
+            let (i, j) = (c.marker(drive.markers.0, &drive.name), c.marker(drive.markers.1, &drive.name));
+            if let (None, Some(i), Some(j)) = (coordinate, i, j) {
+                let kind = RowKind::Markers { law: drive.law, i, j, motion: Some(drive.motion) };
+                c.rows.push(Row { element: drive.name.clone(), equation: drive.law.name(), kind });
+            }
+            let rows = first..c.rows.len();
+            let markers = i.zip(j);
+            c.constraints.push(ConstraintElement { keyword: "MOTION", id, markers, carries: None, rows, coordinate });
+        }
+    }
+
+    /// Takes over what the forest is, and the freedoms in order.
+    fn links(&mut self, c: &mut Compiler) {
+        let s = &mut self.scene;
+        s.links = std::mem::take(&mut c.links);
+        s.coordinates = std::mem::take(&mut c.coordinates);
+        s.rows = std::mem::take(&mut c.rows);
+        s.constraints = std::mem::take(&mut c.constraints);
+        s.parts = c.parts.clone();
+        s.markers = c.markers.clone();
+        s.marker_of = c.marker_of.clone();
+        s.initial_q = std::mem::take(&mut c.q);
+        (s.layout.n_q, s.layout.n_v) = (c.n_q, c.n_v);
+        for (k, coordinate) in s.coordinates.iter().enumerate() {
+            let (axis, sign, turn, in_ball) = match s.links[coordinate.link].motion {
+                LinkMotion::Slide { axis, sign, .. } => (axis, sign, false, false),
+                LinkMotion::Turn { axis, sign, .. } => (axis, sign, true, false),
+                LinkMotion::Ball { coordinate, .. } => (k - coordinate, 1.0, true, true),
+                LinkMotion::Rigid => unreachable!("a rigid link has no coordinates"),
+            };
+            let v = match coordinate.source {
+                Source::Free { v, .. } => Some(v),
+                Source::Driven(_) => None,
+            };
+            s.freedoms.push(Freedom { link: coordinate.link, axis, turn, sign, v, in_ball });
+        }
+        let mut last = vec![None; s.links.len()];
+        s.carrier = vec![None; s.freedoms.len()];
+        for l in 0..s.links.len() {
+            let mut nearest = s.links[l].parent.and_then(|p| last[p]);
+            for k in (0..s.freedoms.len()).filter(|&k| s.freedoms[k].link == l) {
+                s.carrier[k] = nearest;
+                nearest = Some(k);
+            }
+            last[l] = nearest;
+        }
+        s.last_freedom = last;
+        let reach = s.parts.iter().map(|p| p.initial.position.norm());
+        let arms = s.markers.iter().map(|m| m.frame.position.norm());
+        let length = reach.chain(arms).filter(|x| x.is_finite()).fold(0.0, f64::max);
+        s.length = if length > 0.0 { length } else { 1.0 };
+    }
+
+    /// The link of the part that owns a marker, also a floating one.
+    fn owner(&self, c: &mut Compiler, marker: u32, name: &str) -> Option<LinkIx> {
+        let owner = self.model.markers.get(&marker).map(|m| m.owner);
+        let key = match owner {
+            Some(MarkerOwner::Part(p)) => (false, p),
+            Some(MarkerOwner::PointMass(p)) => (true, p),
+            _ => {
+                c.error(name, format!("MARKER/{marker} does not exist or has no part"));
+                return None;
+            }
+        };
+        match c.part_of.get(&key) {
+            Some(part) => Some(part.and_then(|p| c.parts[p].link)),
+            None => {
+                c.error(name, format!("{} does not exist", part_name(key.0, key.1)));
+                None
+            }
+        }
+    }
+
+    fn forces(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, f) in active(model, "SFORCE", &model.sforces) {
+            let name = format!("SFORCE/{id}");
+            let formula = self.formula(c, &format!("{name} FUNCTION"), &f.function);
+            let (Some(i), Some(j)) = (c.marker(f.i, &name), c.marker(f.j, &name)) else { continue };
+            let reaction = (!f.action_only).then(|| self.scene.markers[j].link);
+            let law = ForceLaw::Single { rotational: f.rotational, action_only: f.action_only, formula };
+            self.scene.forces.push(ForceElement { keyword: "SFORCE", id, i, j: Some(j), floating: 0, reaction, law });
+        }
+        let vectors = active(model, "VFORCE", &model.vforces).map(|f| ("VFORCE", f));
+        let vectors = vectors.chain(active(model, "VTORQUE", &model.vtorques).map(|f| ("VTORQUE", f)));
+        for (keyword, (id, f)) in vectors.chain(active(model, "GFORCE", &model.gforces).map(|f| ("GFORCE", f))) {
+            self.vector(c, keyword, id, f);
+        }
+        for (id, s) in active(model, "SPRINGDAMPER", &model.spring_dampers) {
+            let law = SpringDamper {
+                rotational: s.rotational,
+                stiffness: s.stiffness,
+                damping: s.damping,
+                free: s.free,
+                preload: s.preload,
+            };
+            self.between(c, "SPRINGDAMPER", id, (s.i, s.j), ForceLaw::SpringDamper(law));
+        }
+        for (id, b) in active(model, "BUSHING", &model.bushings) {
+            let law = Bushing { stiffness: b.stiffness, damping: b.damping, preload: b.preload };
+            self.between(c, "BUSHING", id, (b.i, b.j), ForceLaw::Bushing(law));
+        }
+    }
+
+    /// An element between I and J that reacts on J's part.
+    fn between(&mut self, c: &mut Compiler, keyword: &'static str, id: u32, ij: (u32, u32), law: ForceLaw) {
+        let name = format!("{keyword}/{id}");
+        let (Some(i), Some(j)) = (c.marker(ij.0, &name), c.marker(ij.1, &name)) else { return };
+        let reaction = Some(self.scene.markers[j].link);
+        self.scene.forces.push(ForceElement { keyword, id, i, j: Some(j), floating: 0, reaction, law });
+    }
+
+    fn vector(&mut self, c: &mut Compiler, keyword: &'static str, id: u32, f: &VectorForce) {
+        let name = format!("{keyword}/{id}");
+        if let Some(user) = &f.user {
+            self.formula(c, &format!("{name} FUNCTION"), user);
+        }
+        let mut formulas = [None; 6];
+        for (k, part) in f.force.iter().chain(&f.torque).enumerate() {
+            if let Some(part) = part {
+                let component = ["FX", "FY", "FZ", "TX", "TY", "TZ"][k];
+                formulas[k] = Some(self.formula(c, &format!("{name} {component}"), part));
+            }
+        }
+        let Some(i) = c.marker(f.i, &name) else { return };
+        let rm = match f.rm {
+            Some(rm) => match c.marker(rm, &name) {
+                Some(rm) => Some(rm),
+                None => return,
+            },
+            None => None,
+        };
+        let reaction = f.jfloat.and_then(|j| self.owner(c, j, &name));
+        let floating = f.jfloat.unwrap_or(0);
+        let law = ForceLaw::Vector { rm, formulas };
+        self.scene.forces.push(ForceElement { keyword, id, i, j: None, floating, reaction, law });
+    }
+
+    /// VARIABLE and DIFF.
+    fn systems(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, variable) in active(model, "VARIABLE", &model.variables) {
+            let f = self.formula(c, &format!("VARIABLE/{id} FUNCTION"), &variable.function);
+            self.scene.variables.insert(id, f);
+        }
+        for (id, d) in active(model, "DIFF", &model.differentials) {
+            let name = format!("DIFF/{id}");
+            if d.implicit {
+                c.error(&name, "IMPLICIT differential equations are not solved yet");
+            }
+            let formula = self.formula(c, &format!("{name} FUNCTION"), &d.function);
+            let state = self.scene.layout.n_x;
+            self.scene.layout.n_x += 1;
+            let initial = d.ic[0].unwrap_or(0.0);
+            let static_hold = d.static_hold;
+            self.scene.differentials.push(SceneDifferential { id, state, formula, initial, static_hold });
+        }
+    }
+
+    /// Angles whose turns are counted, wherever they are asked for.
+    fn counted(&mut self) {
+        let mut found: BTreeSet<(Measure, [u32; 4])> = BTreeSet::new();
+        for f in &self.scene.formulas {
+            for input in f.program.inputs() {
+                if let Input::Measure(m, ids) = input
+                    && m.needs_history()
+                {
+                    found.insert((*m, *ids));
+                }
+            }
+        }
+        for f in &self.scene.forces {
+            let id = |m: usize| self.scene.markers[m].id;
+            let ids = [id(f.i), f.j.map_or(0, id), 0, 0];
+            match f.law {
+                ForceLaw::SpringDamper(SpringDamper { rotational: true, .. }) => {
+                    found.insert((Measure::Az, ids));
+                }
+                ForceLaw::Bushing(_) => {
+                    found.extend([Measure::Ax, Measure::Ay, Measure::Az].map(|m| (m, ids)));
+                }
+                _ => {}
+            }
+        }
+        self.scene.counted = found.into_iter().collect();
+        self.scene.layout.n_turns = self.scene.counted.len();
+    }
+}
+
+/// Places of the unknowns by name, for messages: the names of q, v and x.
+pub fn unknown_names(scene: &Scene) -> Vec<String> {
+    let l: Layout = scene.layout;
+    let mut names = vec![String::new(); l.n_q + l.n_v + l.n_x];
+    for c in &scene.coordinates {
+        if let Source::Free { q, v } = c.source {
+            names[q] = c.name.clone();
+            names[l.n_q + v] = format!("rate of {}", c.name);
+        }
+    }
+    for link in &scene.links {
+        if let LinkMotion::Ball { coordinate, quaternion } = link.motion {
+            for k in 0..4 {
+                names[quaternion + k] = format!("{} (Euler parameter {k})", scene.coordinates[coordinate].name);
+            }
+        }
+    }
+    for d in &scene.differentials {
+        names[l.n_q + l.n_v + d.state] = format!("DIFF/{}", d.id);
+    }
+    for m in &scene.motions {
+        if let Some(s) = m.state {
+            names[l.n_q + l.n_v + s] = format!("MOTION/{} displacement", m.id);
+        }
+    }
+    names
+}

@@ -1,0 +1,76 @@
+//! The force elements of a scene: which law, between which markers, reacting on what.
+
+use super::LinkIx;
+use super::equations::Equations;
+use crate::expr::measures::Measure;
+use crate::physics::action::{self, Action};
+use crate::physics::bushing::Bushing;
+use crate::physics::spring_damper::SpringDamper;
+use crate::scalar::Scalar;
+
+/// A force between markers.
+#[derive(Clone, Debug)]
+pub struct ForceElement {
+    /// statement keyword: SFORCE, BUSHING …
+    pub keyword: &'static str,
+    /// user's number
+    pub id: u32,
+    /// marker acted on
+    pub i: usize,
+    /// J marker; `None` where the element has a floating one, which moves with I
+    pub j: Option<usize>,
+    /// number of the floating J marker, 0 where there is none
+    pub floating: u32,
+    /// what feels the reaction, at the origin of I; `None`: nothing does
+    pub reaction: Option<LinkIx>,
+    /// its law
+    pub law: ForceLaw,
+}
+
+/// The laws.
+#[derive(Clone, Debug)]
+pub enum ForceLaw {
+    /// SFORCE
+    Single {
+        /// ROTATION
+        rotational: bool,
+        /// ACTIONONLY
+        action_only: bool,
+        /// index in the formulas
+        formula: usize,
+    },
+    /// VFORCE, VTORQUE, GFORCE
+    Vector {
+        /// marker whose axes the components have; `None` = ground
+        rm: Option<usize>,
+        /// indices in the formulas: FX FY FZ TX TY TZ
+        formulas: [Option<usize>; 6],
+    },
+    /// SPRINGDAMPER
+    SpringDamper(SpringDamper),
+    /// BUSHING
+    Bushing(Bushing),
+}
+
+impl ForceElement {
+    /// The action on I, ground axes.
+    pub fn action<S: Scalar>(&self, at: &Equations<'_, S>) -> Action<S> {
+        let i = at.marker(self.i);
+        let j = self.j.map_or_else(crate::space::MarkerState::ground, |j| at.marker(j));
+        let angle = |measure: Measure| at.angle_between(measure, self.i, self.j);
+        match &self.law {
+            ForceLaw::Single { rotational, action_only, formula } => {
+                action::single_force(*rotational, *action_only, &i, &j, at.formula(*formula))
+            }
+            ForceLaw::Vector { rm, formulas } => {
+                let axes = rm.map_or_else(crate::space::MarkerState::ground, |m| at.marker(m));
+                let c = formulas.map(|f| f.map_or_else(S::zero, |f| at.formula(f)));
+                action::vector_force(&axes, [c[0], c[1], c[2]], [c[3], c[4], c[5]])
+            }
+            ForceLaw::SpringDamper(law) => law.action(&i, &j, || angle(Measure::Az)),
+            ForceLaw::Bushing(law) => {
+                law.action(&i, &j, [angle(Measure::Ax), angle(Measure::Ay), angle(Measure::Az)])
+            }
+        }
+    }
+}
