@@ -115,6 +115,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         self.t
     }
 
+    /// Velocities of the free coordinates   (n_v)
+    pub fn velocities(&self) -> &[S] {
+        &self.v
+    }
+
     /// Value, rate and acceleration that a motion prescribes.
     fn drive(&self, m: usize) -> Jet<S> {
         let motion = &self.scene.motions[m];
@@ -270,8 +275,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     // ---- dynamics -------------------------------------------------------------------------------------------------
 
-    /// Whether a row takes part.
-    fn is_active(&self, r: usize) -> bool {
+    /// Whether a row takes part (it does not where it depends on earlier ones).
+    pub fn is_active(&self, r: usize) -> bool {
         self.scene.active.get(r).copied().unwrap_or(true)
     }
 

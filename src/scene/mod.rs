@@ -10,6 +10,7 @@ pub mod forces;
 pub mod forest;
 mod formula;
 pub mod layout;
+pub mod programs;
 pub mod solve;
 pub mod sweep;
 

@@ -1,0 +1,381 @@
+//! Putting the mechanism together: positions that satisfy all rows, which rows depend on others, velocities that fit.
+//!
+//! Positions move from those of the dataset by the least change that closes the loops. Rank is found there by
+//! orthogonalizing the rows in order, translations first; a row that depends on earlier ones is left out, and is no
+//! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
+
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use crate::scene::equations::{Equations, row_name};
+use crate::scene::programs::weights;
+use crate::scene::{RowKind, Scene, Source};
+use nalgebra::{DMatrix, DVector};
+
+/// Rows whose part orthogonal to earlier rows is smaller than this, relative to themselves, depend on them.
+pub const DEPENDENT: f64 = 1e-8;
+/// A row holds when it is smaller than this (lengths relative to the size of the mechanism).
+pub const CLOSED: f64 = 1e-10;
+
+/// A dependent row and what it depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Redundant {
+    /// index of the row
+    pub row: usize,
+    /// its name: "JOINT/7 Zi.Xj"
+    pub name: String,
+    /// rows it is a combination of, with factors, largest first
+    pub combination: Vec<(usize, f64)>,
+}
+
+/// What assembly found.
+#[derive(Clone, Debug, Default)]
+pub struct Assembly {
+    /// rows that depend on others
+    pub redundant: Vec<Redundant>,
+    /// freedoms of the assembled mechanism, from the rank
+    pub freedom: usize,
+    /// iterations it took
+    pub iterations: usize,
+    /// largest change of a coordinate
+    pub moved: f64,
+}
+
+fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<f64> {
+    let mut n = Vec::with_capacity(scene.layout.len());
+    n.push(t);
+    n.extend_from_slice(q);
+    n.extend_from_slice(v);
+    n.extend_from_slice(x);
+    n.resize(scene.layout.len(), 0.0);
+    n
+}
+
+/// Values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
+pub fn rows_at(scene: &Scene, t: f64, q: &[f64], x: &[f64]) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
+    let l = scene.layout;
+    let at = Equations::new(scene, &numbers(scene, t, q, &vec![0.0; l.n_v], x));
+    let m = scene.rows.len();
+    let (mut g, mut gradient, mut drift) = (DVector::zeros(m), DMatrix::zeros(m, l.n_v), DVector::zeros(m));
+    for r in 0..m {
+        let row = at.row(r);
+        g[r] = row.value;
+        drift[r] = row.drift;
+        for (v, x) in row.gradient {
+            gradient[(r, v)] += x;
+        }
+    }
+    (g, gradient, drift)
+}
+
+/// Size of a row's residual as compared with [`CLOSED`].
+fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
+    let length = match &scene.rows[r].kind {
+        RowKind::Markers { law, .. } => law.is_length(),
+        RowKind::Linear { .. } => false,
+    };
+    (if length { value / scene.length } else { value }).abs()
+}
+
+/// Least-norm solution of `A x = b` in the metric W, with small singular values left out.
+fn least_change(a: &DMatrix<f64>, w: &[f64], b: &DVector<f64>) -> DVector<f64> {
+    let mut scaled = a.clone();
+    for (v, weight) in w.iter().enumerate() {
+        scaled.column_mut(v).scale_mut(weight.sqrt());
+    }
+    if scaled.nrows() == 0 || scaled.ncols() == 0 {
+        return DVector::zeros(w.len());
+    }
+    let svd = scaled.svd(true, true);
+    let largest = svd.singular_values.max();
+    let mut x = svd.solve(b, largest * 1e-9).unwrap_or_else(|_| DVector::zeros(w.len()));
+    for (v, weight) in w.iter().enumerate() {
+        x[v] *= weight.sqrt();
+    }
+    x
+}
+
+/// Positions that satisfy all rows at time `t`, starting from `q`; finds which rows depend on others.
+///
+/// # Errors
+/// When the rows contradict each other: which, and by how much.
+pub fn positions(scene: &mut Scene, t: f64, q: &mut [f64], x: &[f64]) -> Result<Assembly, Vec<Diagnostic>> {
+    let w = weights(scene);
+    let mover = Mover::new(scene);
+    let mut found = Assembly::default();
+    let start = q.to_vec();
+    let worst = |scene: &Scene, g: &DVector<f64>| (0..g.len()).map(|r| relative(scene, r, g[r])).fold(0.0, f64::max);
+    let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
+    let mut size = worst(scene, &g);
+    while size > 1e-13 && found.iterations < 100 {
+        let step = least_change(&gradient, &w, &(-&g));
+        let longest = step.iter().enumerate().map(|(v, s)| s.abs() / w[v].sqrt()).fold(0.0, f64::max);
+        let mut damping = (0.5 / longest).min(1.0);
+        let mut better = false;
+        while damping > 1e-6 {
+            let mut trial = q.to_vec();
+            mover.displace(&mut trial, (&step * damping).as_slice());
+            let (g1, gradient1, _) = rows_at(scene, t, &trial, x);
+            if g1.norm() < g.norm() {
+                q.copy_from_slice(&trial);
+                (g, gradient, better) = (g1, gradient1, true);
+                break;
+            }
+            damping *= 0.5;
+        }
+        found.iterations += 1;
+        size = worst(scene, &g);
+        if !better {
+            break;
+        }
+    }
+    if !size.is_finite() || size > CLOSED {
+        return Err(contradictions(scene, &g));
+    }
+    found.moved = q.iter().zip(&start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let (independent, redundant) = rank(scene, &gradient, &w);
+    scene.active = (0..scene.rows.len()).map(|r| independent.contains(&r)).collect();
+    found.freedom = scene.layout.n_v - independent.len();
+    found.redundant = redundant;
+    Ok(found)
+}
+
+/// The rows that do not hold, worst first.
+fn contradictions(scene: &Scene, g: &DVector<f64>) -> Vec<Diagnostic> {
+    let mut bad: Vec<usize> = (0..g.len()).filter(|&r| relative(scene, r, g[r]) > CLOSED || !g[r].is_finite()).collect();
+    bad.sort_by(|&a, &b| relative(scene, b, g[b]).total_cmp(&relative(scene, a, g[a])));
+    bad.into_iter()
+        .take(20)
+        .map(|r| {
+            let row = &scene.rows[r];
+            Diagnostic::error("assembly", format!("cannot be satisfied: {} is off by {:.3e}", row.equation, g[r]))
+                .element(row.element.clone())
+                .help("move the parts nearer to where the joints want them, or remove a constraint that contradicts")
+        })
+        .collect()
+}
+
+/// Independent rows, and for each other row what it is a combination of.
+///
+/// Modified Gram–Schmidt in order, lengths before angles, with the orthogonalization done twice.
+pub fn rank(scene: &Scene, gradient: &DMatrix<f64>, w: &[f64]) -> (Vec<usize>, Vec<Redundant>) {
+    let mut order: Vec<usize> = (0..scene.rows.len()).collect();
+    let rotational = |r: usize| !matches!(&scene.rows[r].kind, RowKind::Markers { law, .. } if law.is_length());
+    order.sort_by_key(|&r| (rotational(r), r));
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut independent: Vec<usize> = Vec::new();
+    let mut redundant = Vec::new();
+    let scaled = |r: usize| DVector::from_iterator(w.len(), (0..w.len()).map(|v| gradient[(r, v)] * w[v].sqrt()));
+    for r in order {
+        let row = scaled(r);
+        let size = row.norm();
+        let mut rest = row.clone();
+        for _ in 0..2 {
+            for b in &basis {
+                let along = b.dot(&rest);
+                rest.axpy(-along, b, 1.0);
+            }
+        }
+        // a row that moves nothing (a mechanism without freedoms there) depends on none
+        let scale = size.max(1e-6 * w.iter().map(|w| w.sqrt()).fold(0.0, f64::max));
+        if rest.norm() > DEPENDENT * scale {
+            basis.push(&rest / rest.norm());
+            independent.push(r);
+        } else {
+            let combination = combination(&independent.iter().map(|&k| scaled(k)).collect::<Vec<_>>(), &row);
+            let mut combination: Vec<(usize, f64)> =
+                combination.into_iter().enumerate().map(|(k, f)| (independent[k], f)).filter(|c| c.1.abs() > 1e-6).collect();
+            combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
+            redundant.push(Redundant { row: r, name: row_name(&scene.rows[r]), combination });
+        }
+    }
+    independent.sort_unstable();
+    (independent, redundant)
+}
+
+/// Factors that make `row` of `rows`, in the least-squares sense.
+fn combination(rows: &[DVector<f64>], row: &DVector<f64>) -> Vec<f64> {
+    if rows.is_empty() || row.is_empty() {
+        return Vec::new();
+    }
+    let a = DMatrix::from_columns(rows);
+    a.svd(true, true).solve(row, 1e-10).map(|x| x.iter().copied().collect()).unwrap_or_default()
+}
+
+/// Velocities nearest to those the dataset gives that satisfy the rows: given ones first, then the rest as small as may be.
+///
+/// # Errors
+/// When the motions ask for velocities that the rows forbid.
+pub fn velocities(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Result<Vec<f64>, Vec<Diagnostic>> {
+    let n = scene.layout.n_v;
+    let (_, gradient, drift) = rows_at(scene, t, q, x);
+    let wishes = Wishes::collect(scene, model, t, q, x);
+    // v = v₀ + N z, with N the null space of the rows
+    let w = vec![1.0; n];
+    let v0 = least_change(&gradient, &w, &(-&drift));
+    let left = &gradient * &v0 + &drift;
+    let scale = 1.0 + drift.amax().max(gradient.amax());
+    if let Some(r) = (0..left.len()).find(|&r| left[r].abs() > 1e-8 * scale) {
+        return Err(vec![
+            Diagnostic::error("assembly", format!("the prescribed velocities contradict it by {:.3e}", left[r]))
+                .element(row_name(&scene.rows[r])),
+        ]);
+    }
+    let mut v = v0;
+    let mut space = null_space(&gradient, n);
+    // each level of wishes as well as may be within what the levels before leave free
+    for (a, b) in [&wishes.given, &wishes.rest] {
+        if space.ncols() == 0 || a.nrows() == 0 {
+            continue;
+        }
+        let reduced = a * &space;
+        let z = least_change(&reduced, &vec![1.0; space.ncols()], &(b - a * &v));
+        v += &space * z;
+        space = &space * null_space(&reduced, space.ncols());
+    }
+    // without rounding dust where the dataset says zero
+    let size = v.amax();
+    Ok(v.iter().map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x }).collect())
+}
+
+/// An orthonormal basis of what a matrix maps to zero, by columns.
+pub fn null_space(a: &DMatrix<f64>, n: usize) -> DMatrix<f64> {
+    if a.nrows() == 0 || n == 0 {
+        return DMatrix::identity(n, n);
+    }
+    // the eigenvectors of AᵀA to its small eigenvalues, from the SVD of a square extension
+    let mut square = DMatrix::zeros(a.nrows().max(n), n);
+    square.view_mut((0, 0), (a.nrows(), n)).copy_from(a);
+    let svd = square.svd(false, true);
+    let Some(v_t) = svd.v_t else { return DMatrix::zeros(n, 0) };
+    let largest = svd.singular_values.max();
+    let free: Vec<usize> = (0..n).filter(|&k| svd.singular_values[k] <= 1e-9 * largest).collect();
+    DMatrix::from_fn(n, free.len(), |i, j| v_t[(free[j], i)])
+}
+
+/// Linear equations that velocities should satisfy: (matrix, right side).
+type Equation = (DMatrix<f64>, DVector<f64>);
+
+/// Wishes of the dataset: those given, and zero for all that is not.
+struct Wishes {
+    given: Equation,
+    rest: Equation,
+}
+
+impl Wishes {
+    fn collect(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Self {
+        let n = scene.layout.n_v;
+        // velocities are linear in v: one evaluation per coordinate, and one for what motions prescribe
+        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(n + 1);
+        let mut targets: Vec<(bool, f64)> = Vec::new();
+        for k in 0..=n {
+            let mut v = vec![0.0; n];
+            if k > 0 {
+                v[k - 1] = 1.0;
+            }
+            let at = Equations::new(scene, &numbers(scene, t, q, &v, x));
+            let (values, wanted) = part_velocities(scene, model, &at);
+            let origin = columns.first();
+            let column = match origin {
+                Some(zero) => values.iter().zip(zero).map(|(a, b)| a - b).collect(),
+                None => values,
+            };
+            columns.push(column);
+            targets = wanted;
+        }
+        let level = |given: bool| {
+            let rows: Vec<usize> = (0..targets.len()).filter(|&r| targets[r].0 == given).collect();
+            let a = DMatrix::from_fn(rows.len(), n, |i, j| columns[j + 1][rows[i]]);
+            let b = DVector::from_iterator(rows.len(), rows.iter().map(|&r| targets[r].1 - columns[0][r]));
+            (a, b)
+        };
+        Self { given: level(true), rest: level(false) }
+    }
+}
+
+/// Velocity components of all parts as the dataset would give them, and (given, value) of what it gives; then joint rates.
+fn part_velocities(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> (Vec<f64>, Vec<(bool, f64)>) {
+    let mut values = Vec::new();
+    let mut wanted = Vec::new();
+    for part in &scene.parts {
+        let data = if part.point_mass { model.point_masses.get(&part.id) } else { model.parts.get(&part.id) };
+        let Some(data) = data else { continue };
+        let frame = |m: Option<u32>| m.and_then(|m| scene.marker_of.get(&m)).map(|&m| at.marker(m));
+        let Some(cm) = frame(data.cm) else { continue };
+        let axes_v = frame(data.vm).map_or_else(crate::space::Mat3::identity, |m| m.R_GM);
+        let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
+        for k in 0..3 {
+            values.push(axes_v.column(k).dot(cm.v_GM));
+            wanted.push((data.velocity[k].is_some(), data.velocity[k].unwrap_or(0.0)));
+        }
+        for k in 0..3 {
+            values.push(axes_w.column(k).dot(cm.w_GM));
+            wanted.push((data.angular_velocity[k].is_some(), data.angular_velocity[k].unwrap_or(0.0)));
+        }
+    }
+    for c in &scene.coordinates {
+        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else { continue };
+        let rate = if c.angular { joint.ic_rotation[1] } else { joint.ic_translation[1] };
+        if let (Some(rate), Source::Free { v, .. }) = (rate, c.source) {
+            values.push(at.velocities()[v]);
+            wanted.push((true, rate));
+        }
+    }
+    (values, wanted)
+}
+
+/// Moves positions along tangents.
+#[derive(Debug)]
+pub struct Mover {
+    simple: Vec<(usize, usize)>,
+    balls: Vec<(usize, usize)>,
+}
+
+impl Mover {
+    /// For the coordinates of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut this = Self { simple: Vec::new(), balls: Vec::new() };
+        for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
+            if let (Source::Free { q, v }, false) = (c.source, f.in_ball) {
+                this.simple.push((q, v));
+            }
+        }
+        for link in &scene.links {
+            if let crate::scene::LinkMotion::Ball { coordinate, quaternion } = link.motion
+                && let Some(v) = scene.freedoms[coordinate].v
+            {
+                this.balls.push((quaternion, v));
+            }
+        }
+        this
+    }
+
+    /// `q ← q ⊕ Δ`; Δ as velocities over a unit of time   (n_v)
+    pub fn displace(&self, q: &mut [f64], change: &[f64]) {
+        for &(k, v) in &self.simple {
+            q[k] += change[v];
+        }
+        for &(k, v) in &self.balls {
+            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
+            let (a, b, c) = (0.5 * change[v], 0.5 * change[v + 1], 0.5 * change[v + 2]);
+            q[k] = w - x * a - y * b - z * c;
+            q[k + 1] = x + w * a + y * c - z * b;
+            q[k + 2] = y + w * b + z * a - x * c;
+            q[k + 3] = z + w * c + x * b - y * a;
+        }
+        self.normalize(q);
+    }
+
+    /// Scales quaternions to unit length; tells whether that changed any.
+    pub fn normalize(&self, q: &mut [f64]) -> bool {
+        let mut changed = false;
+        for &(k, _) in &self.balls {
+            let n2: f64 = q[k..k + 4].iter().map(|x| x * x).sum();
+            if (n2 - 1.0).abs() > 4.0 * f64::EPSILON {
+                let f = 1.0 / n2.sqrt();
+                q[k..k + 4].iter_mut().for_each(|x| *x *= f);
+                changed = true;
+            }
+        }
+        changed
+    }
+}

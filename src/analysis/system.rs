@@ -1,0 +1,172 @@
+//! A scene as a system of ordinary differential equations: what the methods of `numeric` see.
+//!
+//! y = (q, v, x): positions and velocities of the forest and states of differential equations. The rate is one recorded
+//! program; rows that close loops hold at acceleration level within a step, and each accepted step is projected back onto
+//! them in position and velocity.
+
+use crate::diagnostic::Diagnostic;
+use crate::expr::program::{Program, Work};
+use crate::numeric::{Failure, Ode};
+use crate::scalar::Dual;
+use crate::scene::layout::Layout;
+use crate::scene::programs::{self, record};
+use crate::scene::{Scene, Source};
+
+use super::assemble::Mover;
+
+/// Directions of a dual number in one sweep of the Jacobian.
+const WIDTH: usize = 8;
+
+/// A scene with its programs, ready to be integrated.
+#[derive(Debug)]
+pub struct System {
+    /// what is computed
+    pub scene: Scene,
+    rate: Program,
+    projection: Option<Program>,
+    /// what the programs read: t | q | v | x | turns
+    pub numbers: Vec<f64>,
+    work: Work,
+    dual_work: Work<Dual<WIDTH>>,
+    dual_numbers: Vec<Dual<WIDTH>>,
+    dual_out: Vec<Dual<WIDTH>>,
+    change: Vec<f64>,
+    mover: Mover,
+}
+
+/// A model whose equations cannot be written down.
+pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
+    what.into_iter().map(|w| Diagnostic::error("unsupported", w)).collect()
+}
+
+impl System {
+    /// Records the programs of a scene.
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub fn new(scene: Scene) -> Result<Self, Vec<Diagnostic>> {
+        let rate = record(&scene, |at| at.rates()).map_err(complaints)?;
+        let any = (0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true));
+        let projection = if any {
+            Some(record(&scene, |at| programs::projection(&scene, at, at.velocities())).map_err(complaints)?)
+        } else {
+            None
+        };
+        let l = scene.layout;
+        let mover = Mover::new(&scene);
+        Ok(Self {
+            rate,
+            projection,
+            numbers: vec![0.0; l.len()],
+            work: Work::default(),
+            dual_work: Work::default(),
+            dual_numbers: Vec::new(),
+            dual_out: Vec::new(),
+            change: vec![0.0; 2 * l.n_v],
+            mover,
+            scene,
+        })
+    }
+
+    /// Number of operations of one evaluation of the rate.
+    pub fn operations(&self) -> usize {
+        self.rate.n_operations()
+    }
+
+    fn set(&mut self, t: f64, y: &[f64]) {
+        self.numbers[Layout::TIME] = t;
+        let places = self.scene.layout.y();
+        self.numbers[places].copy_from_slice(y);
+    }
+}
+
+impl Ode for System {
+    fn size(&self) -> usize {
+        self.scene.layout.y().len()
+    }
+
+    fn rate(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y);
+        self.rate.run(&self.numbers, &mut self.work, ydot);
+        // a sum is finite only if all its terms are
+        let sum: f64 = ydot.iter().map(|x| x * 0.0).sum();
+        if sum == 0.0 {
+            return Ok(());
+        }
+        let what = ydot.iter().position(|x| !x.is_finite()).unwrap_or(0);
+        Err(Failure { what, recoverable: true })
+    }
+
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        let l = self.scene.layout;
+        let changed = self.mover.normalize(&mut y[..l.n_q]);
+        let Some(program) = self.projection.take() else { return Ok(changed) };
+        let mut last = f64::INFINITY;
+        let mut outcome = Err(Failure { what: 0, recoverable: true });
+        for _ in 0..8 {
+            self.set(t, y);
+            program.run(&self.numbers, &mut self.work, &mut self.change);
+            let (dq, dv) = self.change.split_at(l.n_v);
+            let size = dq.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            if !size.is_finite() || size > 2.0 * last {
+                break;
+            }
+            last = size;
+            let dq = dq.to_vec();
+            for (v, d) in y[l.n_q..l.n_q + l.n_v].iter_mut().zip(dv) {
+                *v += d;
+            }
+            if size > 0.0 {
+                self.mover.displace(&mut y[..l.n_q], &dq);
+            }
+            // the velocities were corrected with the gradient before this displacement
+            if size < 1e-11 {
+                outcome = Ok(true);
+                break;
+            }
+        }
+        self.projection = Some(program);
+        outcome
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64], dfdt: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y);
+        let n = y.len();
+        self.dual_numbers.clear();
+        self.dual_numbers.extend(self.numbers.iter().map(|&x| Dual { re: x, eps: [0.0; WIDTH] }));
+        self.dual_out.resize(n, Dual { re: 0.0, eps: [0.0; WIDTH] });
+        // unknowns are numbers 1 … n of the row, time is number 0
+        for first in (0..=n).step_by(WIDTH) {
+            let last = (first + WIDTH).min(n + 1);
+            for k in first..last {
+                self.dual_numbers[k].eps[k - first] = 1.0;
+            }
+            self.rate.eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
+            for k in first..last {
+                self.dual_numbers[k].eps[k - first] = 0.0;
+                let column = if k == 0 { &mut *dfdt } else { &mut jacobian[n * (k - 1)..n * k] };
+                for (entry, out) in column.iter_mut().zip(&self.dual_out) {
+                    *entry = out.eps[k - first];
+                }
+            }
+        }
+        match jacobian.iter().position(|x| !x.is_finite()) {
+            Some(e) => Err(Failure { what: e % n.max(1), recoverable: true }),
+            None => Ok(()),
+        }
+    }
+
+    fn typical(&self, typical: &mut [f64]) {
+        let l = self.scene.layout;
+        typical.fill(1.0);
+        for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
+            if let Source::Free { q, v } = c.source
+                && !c.angular
+                && !f.in_ball
+            {
+                typical[q] = self.scene.length;
+                typical[l.n_q + v] = self.scene.length;
+            }
+        }
+    }
+}
