@@ -8,6 +8,7 @@ use super::{
     ConstraintElement, Formula, LinkIx, LinkMotion, Row, RowKind, Scene, SceneDifferential, SceneMotion, Source,
 };
 use crate::diagnostic::Diagnostic;
+use crate::expr::interpolation::Bindings;
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
 use crate::model::{ArrayKind, Driven, Formula as ModelFormula, JointKind, Level, MarkerOwner, Model, VectorForce};
@@ -41,7 +42,8 @@ impl Scene {
     /// Everything that keeps the model from being solved, all at once.
     pub fn compile(model: &Model, options: &Options) -> Result<Scene, Vec<Diagnostic>> {
         let mut c = Compiler::new(model);
-        let mut b = Builder { scene: Scene::default(), model };
+        let (bindings, unusable) = super::formula::bindings(model);
+        let mut b = Builder { scene: Scene::default(), model, bindings, unusable };
         c.frames();
         b.scene.mode = f64::from(options.mode);
         b.data();
@@ -105,6 +107,9 @@ struct Drive {
 struct Builder<'m> {
     scene: Scene,
     model: &'m Model,
+    bindings: Bindings,
+    /// splines that cannot be used: told when something asks for one
+    unusable: Vec<Diagnostic>,
 }
 
 impl<'m> Builder<'m> {
@@ -131,19 +136,18 @@ impl<'m> Builder<'m> {
                 "0".into()
             }
         };
-        match super::formula::compile(&text, self.model) {
+        match super::formula::compile(&text, &self.bindings) {
             Ok(program) => {
                 self.scene.formulas.push(Formula { name: name.to_string(), text, program });
                 self.scene.formulas.len() - 1
             }
-            Err(mut diagnostics) => {
-                for d in &mut diagnostics {
-                    d.element = Some(name.to_string());
-                    if let ModelFormula::Expression { line, .. } = formula {
-                        d.line = *line + d.line.saturating_sub(1);
-                    }
+            Err(mut d) => {
+                d.element = Some(name.to_string());
+                if d.code == "unknown_element" {
+                    c.errors.append(&mut self.unusable);
                 }
-                c.errors.append(&mut diagnostics);
+                c.errors.push(d);
+                // never evaluated: a scene with errors is not made
                 usize::MAX
             }
         }

@@ -1,10 +1,39 @@
-//! Expressions of the model as programs.
+//! Expressions of the model as programs: splines and arrays they name are found in the model.
 
 use crate::diagnostic::Diagnostic;
+use crate::expr::ast::Dialect;
+use crate::expr::check::Profile;
+use crate::expr::compile;
+use crate::expr::interpolation::{Bindings, Spline};
+use crate::expr::parse;
 use crate::expr::program::Program;
+use crate::expr::spline::{Ends, Extrapolation};
 use crate::model::Model;
+use std::sync::Arc;
+
+/// The splines of a model, for the expressions that name them; what is wrong with those that cannot be used.
+pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
+    let mut bindings = Bindings::default();
+    let mut errors = Vec::new();
+    for (&id, s) in &model.splines {
+        let extrapolation =
+            if s.linear_extrapolate { Extrapolation::Linear } else { Extrapolation::Parabolic };
+        match Spline::new(s.x.clone(), s.z.clone(), s.y.clone(), Ends::Natural, extrapolation) {
+            Ok(spline) => {
+                bindings.splines.insert(id, Arc::new(spline));
+            }
+            Err(why) => errors
+                .push(Diagnostic::error("spline_data", why.to_string()).element(format!("SPLINE/{id}"))),
+        }
+    }
+    (bindings, errors)
+}
 
 /// Compiles the text of an expression.
-pub(super) fn compile(text: &str, _model: &Model) -> Result<Program, Vec<Diagnostic>> {
-    Err(vec![Diagnostic::error("not_ready", format!("expression {text}"))])
+///
+/// # Errors
+/// What the language has to say about it; columns count from the beginning of the text.
+pub(super) fn compile(text: &str, bindings: &Bindings) -> Result<Program, Diagnostic> {
+    let ast = parse::parse(text, Dialect::Function, Profile::default())?;
+    compile::compile(&[&ast], bindings)
 }

@@ -21,6 +21,7 @@ mod guard;
 mod operation;
 mod record;
 mod schedule;
+mod switching;
 #[cfg(test)]
 mod tests;
 
