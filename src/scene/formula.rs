@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::ast::Dialect;
-use crate::expr::check::Profile;
+use crate::expr::Profile;
 use crate::expr::compile;
 use crate::expr::interpolation::{Bindings, Spline};
 use crate::expr::parse;
@@ -34,6 +34,6 @@ pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
 /// # Errors
 /// What the language has to say about it; columns count from the beginning of the text.
 pub(super) fn compile(text: &str, bindings: &Bindings) -> Result<Program, Diagnostic> {
-    let ast = parse::parse(text, Dialect::Function, Profile::default())?;
+    let ast = parse(text, Dialect::Function, Profile::default())?;
     compile::compile(&[&ast], bindings)
 }
