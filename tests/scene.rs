@@ -17,9 +17,26 @@ fn marker(part: u32, qp: [f64; 3]) -> Marker {
 }
 
 fn pendulum() -> Model {
-    let mut m = Model { gravity: [0.0, -9.81, 0.0], ..Model::default() };
-    m.parts.insert(1, Part { ground: true, ..Part::default() });
-    m.parts.insert(2, Part { mass: 1.0, cm: Some(2), ip: [1e-3, 1e-3, 1e-3, 0.0, 0.0, 0.0], ..Part::default() });
+    let mut m = Model {
+        gravity: [0.0, -9.81, 0.0],
+        ..Model::default()
+    };
+    m.parts.insert(
+        1,
+        Part {
+            ground: true,
+            ..Part::default()
+        },
+    );
+    m.parts.insert(
+        2,
+        Part {
+            mass: 1.0,
+            cm: Some(2),
+            ip: [1e-3, 1e-3, 1e-3, 0.0, 0.0, 0.0],
+            ..Part::default()
+        },
+    );
     m.markers.insert(2, marker(2, [-1.0, 0.0, 0.0]));
     m.markers.insert(3, marker(2, [0.0; 3]));
     m.markers.insert(4, marker(1, [0.0; 3]));
@@ -43,7 +60,15 @@ fn pendulum() -> Model {
 fn a_pendulum_is_a_handful_of_operations_and_swings_as_it_should() {
     for cut_all in [false, true] {
         let model = pendulum();
-        let mut scene = Scene::compile(&model, &Options { cut_all, mode: 4, ..Options::default() }).unwrap();
+        let mut scene = Scene::compile(
+            &model,
+            &Options {
+                cut_all,
+                mode: 4,
+                ..Options::default()
+            },
+        )
+        .unwrap();
         let mut q = scene.initial_q.clone();
         let found = assemble::positions(&mut scene, 0.0, &mut q, &[]).unwrap();
         println!("{found:?}");
@@ -53,8 +78,12 @@ fn a_pendulum_is_a_handful_of_operations_and_swings_as_it_should() {
         println!("operations {}", system.operations());
         let mut y = q;
         y.extend(v);
-        let options = numeric::Options { tolerance: 1e-9, ..numeric::Options::default() };
-        let mut method: Box<dyn Method<System>> = numeric::ode_method("DOP853", system.size(), &options).unwrap();
+        let options = numeric::Options {
+            tolerance: 1e-9,
+            ..numeric::Options::default()
+        };
+        let mut method: Box<dyn Method<System>> =
+            numeric::ode_method("DOP853", system.size(), &options).unwrap();
         method.start(&mut system, 0.0, &y).unwrap();
         while method.t() < 10.0 {
             method.step(&mut system, 10.0).unwrap();

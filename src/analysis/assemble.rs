@@ -51,11 +51,20 @@ fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<f64> {
 }
 
 /// Values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
-pub fn rows_at(scene: &Scene, t: f64, q: &[f64], x: &[f64]) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
+pub fn rows_at(
+    scene: &Scene,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
     let l = scene.layout;
     let at = Equations::new(scene, &numbers(scene, t, q, &vec![0.0; l.n_v], x));
     let m = scene.rows.len();
-    let (mut g, mut gradient, mut drift) = (DVector::zeros(m), DMatrix::zeros(m, l.n_v), DVector::zeros(m));
+    let (mut g, mut gradient, mut drift) = (
+        DVector::zeros(m),
+        DMatrix::zeros(m, l.n_v),
+        DVector::zeros(m),
+    );
     for r in 0..m {
         let row = at.row(r);
         g[r] = row.value;
@@ -87,7 +96,9 @@ fn least_change(a: &DMatrix<f64>, w: &[f64], b: &DVector<f64>) -> DVector<f64> {
     }
     let svd = scaled.svd(true, true);
     let largest = svd.singular_values.max();
-    let mut x = svd.solve(b, largest * 1e-9).unwrap_or_else(|_| DVector::zeros(w.len()));
+    let mut x = svd
+        .solve(b, largest * 1e-9)
+        .unwrap_or_else(|_| DVector::zeros(w.len()));
     for (v, weight) in w.iter().enumerate() {
         x[v] *= weight.sqrt();
     }
@@ -98,17 +109,30 @@ fn least_change(a: &DMatrix<f64>, w: &[f64], b: &DVector<f64>) -> DVector<f64> {
 ///
 /// # Errors
 /// When the rows contradict each other: which, and by how much.
-pub fn positions(scene: &mut Scene, t: f64, q: &mut [f64], x: &[f64]) -> Result<Assembly, Vec<Diagnostic>> {
+pub fn positions(
+    scene: &mut Scene,
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+) -> Result<Assembly, Vec<Diagnostic>> {
     let w = weights(scene);
     let mover = Mover::new(scene);
     let mut found = Assembly::default();
     let start = q.to_vec();
-    let worst = |scene: &Scene, g: &DVector<f64>| (0..g.len()).map(|r| relative(scene, r, g[r])).fold(0.0, f64::max);
+    let worst = |scene: &Scene, g: &DVector<f64>| {
+        (0..g.len())
+            .map(|r| relative(scene, r, g[r]))
+            .fold(0.0, f64::max)
+    };
     let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
     let mut size = worst(scene, &g);
     while size > 1e-13 && found.iterations < 100 {
         let step = least_change(&gradient, &w, &(-&g));
-        let longest = step.iter().enumerate().map(|(v, s)| s.abs() / w[v].sqrt()).fold(0.0, f64::max);
+        let longest = step
+            .iter()
+            .enumerate()
+            .map(|(v, s)| s.abs() / w[v].sqrt())
+            .fold(0.0, f64::max);
         let mut damping = (0.5 / longest).min(1.0);
         let mut better = false;
         while damping > 1e-6 {
@@ -131,9 +155,15 @@ pub fn positions(scene: &mut Scene, t: f64, q: &mut [f64], x: &[f64]) -> Result<
     if !size.is_finite() || size > CLOSED {
         return Err(contradictions(scene, &g));
     }
-    found.moved = q.iter().zip(&start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    found.moved = q
+        .iter()
+        .zip(&start)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
     let (independent, redundant) = rank(scene, &gradient, &w);
-    scene.active = (0..scene.rows.len()).map(|r| independent.contains(&r)).collect();
+    scene.active = (0..scene.rows.len())
+        .map(|r| independent.contains(&r))
+        .collect();
     found.freedom = scene.layout.n_v - independent.len();
     found.redundant = redundant;
     Ok(found)
@@ -141,7 +171,9 @@ pub fn positions(scene: &mut Scene, t: f64, q: &mut [f64], x: &[f64]) -> Result<
 
 /// The rows that do not hold, worst first.
 fn contradictions(scene: &Scene, g: &DVector<f64>) -> Vec<Diagnostic> {
-    let mut bad: Vec<usize> = (0..g.len()).filter(|&r| relative(scene, r, g[r]) > CLOSED || !g[r].is_finite()).collect();
+    let mut bad: Vec<usize> = (0..g.len())
+        .filter(|&r| relative(scene, r, g[r]) > CLOSED || !g[r].is_finite())
+        .collect();
     bad.sort_by(|&a, &b| relative(scene, b, g[b]).total_cmp(&relative(scene, a, g[a])));
     bad.into_iter()
         .take(20)
@@ -159,12 +191,18 @@ fn contradictions(scene: &Scene, g: &DVector<f64>) -> Vec<Diagnostic> {
 /// Modified Gram–Schmidt in order, lengths before angles, with the orthogonalization done twice.
 pub fn rank(scene: &Scene, gradient: &DMatrix<f64>, w: &[f64]) -> (Vec<usize>, Vec<Redundant>) {
     let mut order: Vec<usize> = (0..scene.rows.len()).collect();
-    let rotational = |r: usize| !matches!(&scene.rows[r].kind, RowKind::Markers { law, .. } if law.is_length());
+    let rotational =
+        |r: usize| !matches!(&scene.rows[r].kind, RowKind::Markers { law, .. } if law.is_length());
     order.sort_by_key(|&r| (rotational(r), r));
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut independent: Vec<usize> = Vec::new();
     let mut redundant = Vec::new();
-    let scaled = |r: usize| DVector::from_iterator(w.len(), (0..w.len()).map(|v| gradient[(r, v)] * w[v].sqrt()));
+    let scaled = |r: usize| {
+        DVector::from_iterator(
+            w.len(),
+            (0..w.len()).map(|v| gradient[(r, v)] * w[v].sqrt()),
+        )
+    };
     for r in order {
         let row = scaled(r);
         let size = row.norm();
@@ -181,11 +219,22 @@ pub fn rank(scene: &Scene, gradient: &DMatrix<f64>, w: &[f64]) -> (Vec<usize>, V
             basis.push(&rest / rest.norm());
             independent.push(r);
         } else {
-            let combination = combination(&independent.iter().map(|&k| scaled(k)).collect::<Vec<_>>(), &row);
-            let mut combination: Vec<(usize, f64)> =
-                combination.into_iter().enumerate().map(|(k, f)| (independent[k], f)).filter(|c| c.1.abs() > 1e-6).collect();
+            let combination = combination(
+                &independent.iter().map(|&k| scaled(k)).collect::<Vec<_>>(),
+                &row,
+            );
+            let mut combination: Vec<(usize, f64)> = combination
+                .into_iter()
+                .enumerate()
+                .map(|(k, f)| (independent[k], f))
+                .filter(|c| c.1.abs() > 1e-6)
+                .collect();
             combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
-            redundant.push(Redundant { row: r, name: row_name(&scene.rows[r]), combination });
+            redundant.push(Redundant {
+                row: r,
+                name: row_name(&scene.rows[r]),
+                combination,
+            });
         }
     }
     independent.sort_unstable();
@@ -198,14 +247,23 @@ fn combination(rows: &[DVector<f64>], row: &DVector<f64>) -> Vec<f64> {
         return Vec::new();
     }
     let a = DMatrix::from_columns(rows);
-    a.svd(true, true).solve(row, 1e-10).map(|x| x.iter().copied().collect()).unwrap_or_default()
+    a.svd(true, true)
+        .solve(row, 1e-10)
+        .map(|x| x.iter().copied().collect())
+        .unwrap_or_default()
 }
 
 /// Velocities nearest to those the dataset gives that satisfy the rows: given ones first, then the rest as small as may be.
 ///
 /// # Errors
 /// When the motions ask for velocities that the rows forbid.
-pub fn velocities(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Result<Vec<f64>, Vec<Diagnostic>> {
+pub fn velocities(
+    scene: &Scene,
+    model: &Model,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> Result<Vec<f64>, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
     let (_, gradient, drift) = rows_at(scene, t, q, x);
     let wishes = Wishes::collect(scene, model, t, q, x);
@@ -216,8 +274,11 @@ pub fn velocities(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) ->
     let scale = 1.0 + drift.amax().max(gradient.amax());
     if let Some(r) = (0..left.len()).find(|&r| left[r].abs() > 1e-8 * scale) {
         return Err(vec![
-            Diagnostic::error("assembly", format!("the prescribed velocities contradict it by {:.3e}", left[r]))
-                .element(row_name(&scene.rows[r])),
+            Diagnostic::error(
+                "assembly",
+                format!("the prescribed velocities contradict it by {:.3e}", left[r]),
+            )
+            .element(row_name(&scene.rows[r])),
         ]);
     }
     let mut v = v0;
@@ -234,7 +295,9 @@ pub fn velocities(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) ->
     }
     // without rounding dust where the dataset says zero
     let size = v.amax();
-    Ok(v.iter().map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x }).collect())
+    Ok(v.iter()
+        .map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x })
+        .collect())
 }
 
 /// An orthonormal basis of what a matrix maps to zero, by columns.
@@ -246,9 +309,13 @@ pub fn null_space(a: &DMatrix<f64>, n: usize) -> DMatrix<f64> {
     let mut square = DMatrix::zeros(a.nrows().max(n), n);
     square.view_mut((0, 0), (a.nrows(), n)).copy_from(a);
     let svd = square.svd(false, true);
-    let Some(v_t) = svd.v_t else { return DMatrix::zeros(n, 0) };
+    let Some(v_t) = svd.v_t else {
+        return DMatrix::zeros(n, 0);
+    };
     let largest = svd.singular_values.max();
-    let free: Vec<usize> = (0..n).filter(|&k| svd.singular_values[k] <= 1e-9 * largest).collect();
+    let free: Vec<usize> = (0..n)
+        .filter(|&k| svd.singular_values[k] <= 1e-9 * largest)
+        .collect();
     DMatrix::from_fn(n, free.len(), |i, j| v_t[(free[j], i)])
 }
 
@@ -283,23 +350,42 @@ impl Wishes {
             targets = wanted;
         }
         let level = |given: bool| {
-            let rows: Vec<usize> = (0..targets.len()).filter(|&r| targets[r].0 == given).collect();
+            let rows: Vec<usize> = (0..targets.len())
+                .filter(|&r| targets[r].0 == given)
+                .collect();
             let a = DMatrix::from_fn(rows.len(), n, |i, j| columns[j + 1][rows[i]]);
-            let b = DVector::from_iterator(rows.len(), rows.iter().map(|&r| targets[r].1 - columns[0][r]));
+            let b = DVector::from_iterator(
+                rows.len(),
+                rows.iter().map(|&r| targets[r].1 - columns[0][r]),
+            );
             (a, b)
         };
-        Self { given: level(true), rest: level(false) }
+        Self {
+            given: level(true),
+            rest: level(false),
+        }
     }
 }
 
 /// Velocity components of all parts as the dataset would give them, and (given, value) of what it gives; then joint rates.
-fn part_velocities(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> (Vec<f64>, Vec<(bool, f64)>) {
+fn part_velocities(
+    scene: &Scene,
+    model: &Model,
+    at: &Equations<'_, f64>,
+) -> (Vec<f64>, Vec<(bool, f64)>) {
     let mut values = Vec::new();
     let mut wanted = Vec::new();
     for part in &scene.parts {
-        let data = if part.point_mass { model.point_masses.get(&part.id) } else { model.parts.get(&part.id) };
+        let data = if part.point_mass {
+            model.point_masses.get(&part.id)
+        } else {
+            model.parts.get(&part.id)
+        };
         let Some(data) = data else { continue };
-        let frame = |m: Option<u32>| m.and_then(|m| scene.marker_of.get(&m)).map(|&m| at.marker(m));
+        let frame = |m: Option<u32>| {
+            m.and_then(|m| scene.marker_of.get(&m))
+                .map(|&m| at.marker(m))
+        };
         let Some(cm) = frame(data.cm) else { continue };
         let axes_v = frame(data.vm).map_or_else(crate::space::Mat3::identity, |m| m.R_GM);
         let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
@@ -309,12 +395,21 @@ fn part_velocities(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> (Ve
         }
         for k in 0..3 {
             values.push(axes_w.column(k).dot(cm.w_GM));
-            wanted.push((data.angular_velocity[k].is_some(), data.angular_velocity[k].unwrap_or(0.0)));
+            wanted.push((
+                data.angular_velocity[k].is_some(),
+                data.angular_velocity[k].unwrap_or(0.0),
+            ));
         }
     }
     for c in &scene.coordinates {
-        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else { continue };
-        let rate = if c.angular { joint.ic_rotation[1] } else { joint.ic_translation[1] };
+        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else {
+            continue;
+        };
+        let rate = if c.angular {
+            joint.ic_rotation[1]
+        } else {
+            joint.ic_translation[1]
+        };
         if let (Some(rate), Source::Free { v, .. }) = (rate, c.source) {
             values.push(at.velocities()[v]);
             wanted.push((true, rate));
@@ -333,14 +428,20 @@ pub struct Mover {
 impl Mover {
     /// For the coordinates of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let mut this = Self { simple: Vec::new(), balls: Vec::new() };
+        let mut this = Self {
+            simple: Vec::new(),
+            balls: Vec::new(),
+        };
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
             if let (Source::Free { q, v }, false) = (c.source, f.in_ball) {
                 this.simple.push((q, v));
             }
         }
         for link in &scene.links {
-            if let crate::scene::LinkMotion::Ball { coordinate, quaternion } = link.motion
+            if let crate::scene::LinkMotion::Ball {
+                coordinate,
+                quaternion,
+            } = link.motion
                 && let Some(v) = scene.freedoms[coordinate].v
             {
                 this.balls.push((quaternion, v));

@@ -36,7 +36,9 @@ pub struct System {
 
 /// A model whose equations cannot be written down.
 pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
-    what.into_iter().map(|w| Diagnostic::error("unsupported", w)).collect()
+    what.into_iter()
+        .map(|w| Diagnostic::error("unsupported", w))
+        .collect()
 }
 
 impl System {
@@ -48,7 +50,12 @@ impl System {
         let rate = record(&scene, |at| at.rates()).map_err(complaints)?;
         let any = (0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true));
         let projection = if any {
-            Some(record(&scene, |at| programs::projection(&scene, at, at.velocities())).map_err(complaints)?)
+            Some(
+                record(&scene, |at| {
+                    programs::projection(&scene, at, at.velocities())
+                })
+                .map_err(complaints)?,
+            )
         } else {
             None
         };
@@ -94,15 +101,23 @@ impl Ode for System {
             return Ok(());
         }
         let what = ydot.iter().position(|x| !x.is_finite()).unwrap_or(0);
-        Err(Failure { what, recoverable: true })
+        Err(Failure {
+            what,
+            recoverable: true,
+        })
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
         let l = self.scene.layout;
         let changed = self.mover.normalize(&mut y[..l.n_q]);
-        let Some(program) = self.projection.take() else { return Ok(changed) };
+        let Some(program) = self.projection.take() else {
+            return Ok(changed);
+        };
         let mut last = f64::INFINITY;
-        let mut outcome = Err(Failure { what: 0, recoverable: true });
+        let mut outcome = Err(Failure {
+            what: 0,
+            recoverable: true,
+        });
         for _ in 0..8 {
             self.set(t, y);
             program.run(&self.numbers, &mut self.work, &mut self.change);
@@ -129,29 +144,52 @@ impl Ode for System {
         outcome
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64], dfdt: &mut [f64]) -> Result<(), Failure> {
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        jacobian: &mut [f64],
+        dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
         self.set(t, y);
         let n = y.len();
         self.dual_numbers.clear();
-        self.dual_numbers.extend(self.numbers.iter().map(|&x| Dual { re: x, eps: [0.0; WIDTH] }));
-        self.dual_out.resize(n, Dual { re: 0.0, eps: [0.0; WIDTH] });
+        self.dual_numbers.extend(self.numbers.iter().map(|&x| Dual {
+            re: x,
+            eps: [0.0; WIDTH],
+        }));
+        self.dual_out.resize(
+            n,
+            Dual {
+                re: 0.0,
+                eps: [0.0; WIDTH],
+            },
+        );
         // unknowns are numbers 1 … n of the row, time is number 0
         for first in (0..=n).step_by(WIDTH) {
             let last = (first + WIDTH).min(n + 1);
             for k in first..last {
                 self.dual_numbers[k].eps[k - first] = 1.0;
             }
-            self.rate.eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
+            self.rate
+                .eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
             for k in first..last {
                 self.dual_numbers[k].eps[k - first] = 0.0;
-                let column = if k == 0 { &mut *dfdt } else { &mut jacobian[n * (k - 1)..n * k] };
+                let column = if k == 0 {
+                    &mut *dfdt
+                } else {
+                    &mut jacobian[n * (k - 1)..n * k]
+                };
                 for (entry, out) in column.iter_mut().zip(&self.dual_out) {
                     *entry = out.eps[k - first];
                 }
             }
         }
         match jacobian.iter().position(|x| !x.is_finite()) {
-            Some(e) => Err(Failure { what: e % n.max(1), recoverable: true }),
+            Some(e) => Err(Failure {
+                what: e % n.max(1),
+                recoverable: true,
+            }),
             None => Ok(()),
         }
     }

@@ -19,15 +19,24 @@ pub struct Action<S> {
 impl<S: Scalar> Action<S> {
     /// Nothing.
     pub fn zero() -> Self {
-        Self { force: Vec3::zero(), torque: Vec3::zero() }
+        Self {
+            force: Vec3::zero(),
+            torque: Vec3::zero(),
+        }
     }
     /// The reaction, about J's origin.
     pub fn reaction(&self, p_GI: Vec3<S>, p_GJ: Vec3<S>) -> Self {
-        Self { force: -self.force, torque: -self.torque - (p_GI - p_GJ).cross(self.force) }
+        Self {
+            force: -self.force,
+            torque: -self.torque - (p_GI - p_GJ).cross(self.force),
+        }
     }
     /// The sum with another action on the same marker.
     pub fn plus(&self, b: &Self) -> Self {
-        Self { force: self.force + b.force, torque: self.torque + b.torque }
+        Self {
+            force: self.force + b.force,
+            torque: self.torque + b.torque,
+        }
     }
 }
 
@@ -51,15 +60,25 @@ pub fn single_force<S: Scalar>(
 ) -> Action<S> {
     let z_J = j.R_GM.column(2);
     match (rotational, action_only) {
-        (true, _) => Action { force: Vec3::zero(), torque: z_J.times(magnitude) },
-        (false, true) => Action { force: z_J.times(magnitude), torque: Vec3::zero() },
-        (false, false) => {
-            Action { force: line_of_sight(i, j).0.times(magnitude), torque: Vec3::zero() }
-        }
+        (true, _) => Action {
+            force: Vec3::zero(),
+            torque: z_J.times(magnitude),
+        },
+        (false, true) => Action {
+            force: z_J.times(magnitude),
+            torque: Vec3::zero(),
+        },
+        (false, false) => Action {
+            force: line_of_sight(i, j).0.times(magnitude),
+            torque: Vec3::zero(),
+        },
     }
 }
 
 /// VFORCE, VTORQUE, GFORCE: components along the axes of RM.
 pub fn vector_force<S: Scalar>(rm: &MarkerState<S>, force: [S; 3], torque: [S; 3]) -> Action<S> {
-    Action { force: rm.R_GM.apply(Vec3(force)), torque: rm.R_GM.apply(Vec3(torque)) }
+    Action {
+        force: rm.R_GM.apply(Vec3(force)),
+        torque: rm.R_GM.apply(Vec3(torque)),
+    }
 }

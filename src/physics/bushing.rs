@@ -29,7 +29,11 @@ pub struct Bushing {
 }
 
 /// Displacement and velocity of I against J in J axes: x, y, z, a, b, c and their rates.
-pub fn deformation<S: Scalar>(i: &MarkerState<S>, j: &MarkerState<S>, angles: [S; 3]) -> ([S; 6], [S; 6]) {
+pub fn deformation<S: Scalar>(
+    i: &MarkerState<S>,
+    j: &MarkerState<S>,
+    angles: [S; 3],
+) -> ([S; 6], [S; 6]) {
     let R_JG = j.R_GM.transpose();
     let d = i.p_GM - j.p_GM;
     let x = R_JG.apply(d);
@@ -52,10 +56,17 @@ pub fn in_axes_of<S: Scalar>(j: &MarkerState<S>, f: [S; 6]) -> Action<S> {
 
 impl Bushing {
     /// On I. `angles`: AX, AY, AZ of I in J.
-    pub fn action<S: Scalar>(&self, i: &MarkerState<S>, j: &MarkerState<S>, angles: [S; 3]) -> Action<S> {
+    pub fn action<S: Scalar>(
+        &self,
+        i: &MarkerState<S>,
+        j: &MarkerState<S>,
+        angles: [S; 3],
+    ) -> Action<S> {
         let (x, rate) = deformation(i, j, angles);
         let f = std::array::from_fn(|k| {
-            S::constant(self.preload[k]) - x[k].scale(self.stiffness[k]) - rate[k].scale(self.damping[k])
+            S::constant(self.preload[k])
+                - x[k].scale(self.stiffness[k])
+                - rate[k].scale(self.damping[k])
         });
         in_axes_of(j, f)
     }

@@ -59,7 +59,9 @@ impl Tie {
             Tie::Primitive(P::Inplane) => &[Slide(0), Slide(1), Ball],
             Tie::Primitive(P::Orientation) => &[Slide(0), Slide(1), Slide(2)],
             Tie::Primitive(P::ParallelAxes) => &[Slide(0), Slide(1), Slide(2), Turn(2)],
-            Tie::Primitive(P::Perpendicular) => &[Slide(0), Slide(1), Slide(2), Turn(2), QuarterX, Turn(2)],
+            Tie::Primitive(P::Perpendicular) => {
+                &[Slide(0), Slide(1), Slide(2), Turn(2), QuarterX, Turn(2)]
+            }
         })
     }
 

@@ -59,7 +59,9 @@ impl Law {
             Law::BodyAngle(k) => {
                 // R_JI: R[0][2] = sin β₂, R[1][2] = −sin β₁ cos β₂, R[2][2] = cos β₁ cos β₂,
                 //       R[0][1] = −cos β₂ sin β₃, R[0][0] = cos β₂ cos β₃
-                let r = |row: usize, column: usize| j.rotation.column(row).dot(i.rotation.column(column));
+                let r = |row: usize, column: usize| {
+                    j.rotation.column(row).dot(i.rotation.column(column))
+                };
                 let (y, x) = match k {
                     0 => (-r(1, 2), r(2, 2)),
                     1 => (r(0, 2), (r(0, 0).square() + r(0, 1).square()).sqrt()),

@@ -35,18 +35,31 @@ pub struct SpringDamper {
 
 impl SpringDamper {
     fn law<S: Scalar>(&self, x: S, rate: S) -> S {
-        S::constant(self.preload) - rate.scale(self.damping) - (x - S::constant(self.free)).scale(self.stiffness)
+        S::constant(self.preload)
+            - rate.scale(self.damping)
+            - (x - S::constant(self.free)).scale(self.stiffness)
     }
 
     /// On I. `angle`: of I about z_J with its turns, used by the rotational one.
-    pub fn action<S: Scalar>(&self, i: &MarkerState<S>, j: &MarkerState<S>, angle: impl FnOnce() -> S) -> Action<S> {
+    pub fn action<S: Scalar>(
+        &self,
+        i: &MarkerState<S>,
+        j: &MarkerState<S>,
+        angle: impl FnOnce() -> S,
+    ) -> Action<S> {
         if self.rotational {
             let z_J = j.R_GM.column(2);
             let rate = (i.w_GM - j.w_GM).dot(z_J);
-            return Action { force: Vec3::zero(), torque: z_J.times(self.law(angle(), rate)) };
+            return Action {
+                force: Vec3::zero(),
+                torque: z_J.times(self.law(angle(), rate)),
+            };
         }
         let (u, length) = line_of_sight(i, j);
         let rate = (i.v_GM - j.v_GM).dot(u);
-        Action { force: u.times(self.law(length, rate)), torque: Vec3::zero() }
+        Action {
+            force: u.times(self.law(length, rate)),
+            torque: Vec3::zero(),
+        }
     }
 }

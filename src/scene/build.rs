@@ -5,13 +5,16 @@ use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
 use super::sweep::Freedom;
 use super::{
-    ConstraintElement, Formula, LinkIx, LinkMotion, Row, RowKind, Scene, SceneDifferential, SceneMotion, Source,
+    ConstraintElement, Formula, LinkIx, LinkMotion, Row, RowKind, Scene, SceneDifferential,
+    SceneMotion, Source,
 };
 use crate::diagnostic::Diagnostic;
 use crate::expr::interpolation::Bindings;
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
-use crate::model::{ArrayKind, Driven, Formula as ModelFormula, JointKind, Level, MarkerOwner, Model, VectorForce};
+use crate::model::{
+    ArrayKind, Driven, Formula as ModelFormula, JointKind, Level, MarkerOwner, Model, VectorForce,
+};
 use crate::physics::bushing::Bushing;
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
@@ -31,8 +34,14 @@ pub struct Options {
 }
 
 /// Keeps an element of a model unless it has been switched off.
-fn active<'m, T>(model: &'m Model, keyword: &'m str, all: &'m BTreeMap<u32, T>) -> impl Iterator<Item = (u32, &'m T)> {
-    all.iter().filter(move |(id, _)| !model.inactive.contains(&(keyword.to_string(), **id))).map(|(id, x)| (*id, x))
+fn active<'m, T>(
+    model: &'m Model,
+    keyword: &'m str,
+    all: &'m BTreeMap<u32, T>,
+) -> impl Iterator<Item = (u32, &'m T)> {
+    all.iter()
+        .filter(move |(id, _)| !model.inactive.contains(&(keyword.to_string(), **id)))
+        .map(|(id, x)| (*id, x))
 }
 
 impl Scene {
@@ -43,7 +52,12 @@ impl Scene {
     pub fn compile(model: &Model, options: &Options) -> Result<Scene, Vec<Diagnostic>> {
         let mut c = Compiler::new(model);
         let (bindings, unusable) = super::formula::bindings(model);
-        let mut b = Builder { scene: Scene::default(), model, bindings, unusable };
+        let mut b = Builder {
+            scene: Scene::default(),
+            model,
+            bindings,
+            unusable,
+        };
         c.frames();
         b.scene.mode = f64::from(options.mode);
         b.data();
@@ -51,7 +65,10 @@ impl Scene {
         let ties = ties(model);
         let coupled: BTreeSet<u32> = coupled_joints(model);
         let driven: BTreeSet<u32> = drives.iter().filter_map(|d| d.joint).collect();
-        let preferred = |t: &NamedTie| t.joint.is_some_and(|j| coupled.contains(&j) || driven.contains(&j));
+        let preferred = |t: &NamedTie| {
+            t.joint
+                .is_some_and(|j| coupled.contains(&j) || driven.contains(&j))
+        };
         c.forest(&ties, |_| options.cut_all, &preferred);
         b.driven_rows(&mut c, &drives);
         b.links(&mut c);
@@ -61,7 +78,11 @@ impl Scene {
             b.formula(&mut c, name, &ModelFormula::text(text.clone()));
         }
         b.counted();
-        if c.errors.is_empty() { Ok(b.scene) } else { Err(c.errors) }
+        if c.errors.is_empty() {
+            Ok(b.scene)
+        } else {
+            Err(c.errors)
+        }
     }
 }
 
@@ -129,16 +150,25 @@ impl<'m> Builder<'m> {
             ModelFormula::Expression { text, .. } => text.clone(),
             ModelFormula::User { .. } => {
                 c.errors.push(
-                    Diagnostic::error("user_routine", "USER needs a routine that is not part of the dataset")
-                        .element(name)
-                        .help("register a closure for it through the library, or switch the element off"),
+                    Diagnostic::error(
+                        "user_routine",
+                        "USER needs a routine that is not part of the dataset",
+                    )
+                    .element(name)
+                    .help(
+                        "register a closure for it through the library, or switch the element off",
+                    ),
                 );
                 "0".into()
             }
         };
         match super::formula::compile(&text, &self.bindings) {
             Ok(program) => {
-                self.scene.formulas.push(Formula { name: name.to_string(), text, program });
+                self.scene.formulas.push(Formula {
+                    name: name.to_string(),
+                    text,
+                    program,
+                });
                 self.scene.formulas.len() - 1
             }
             Err(mut d) => {
@@ -166,17 +196,35 @@ impl<'m> Builder<'m> {
             };
             let state = (places > 0).then_some(self.scene.layout.n_x);
             self.scene.layout.n_x += places;
-            self.scene.motions.push(SceneMotion { id, level: motion.level, formula, state, coordinate: None });
+            self.scene.motions.push(SceneMotion {
+                id,
+                level: motion.level,
+                formula,
+                state,
+                coordinate: None,
+            });
             let (joint, turn) = match motion.driven {
                 Driven::JointTranslation(j) => (j, false),
                 Driven::JointRotation(j) => (j, true),
-                Driven::Joint(j) => (j, self.model.joints.get(&j).is_some_and(|j| j.kind == JointKind::Revolute)),
+                Driven::Joint(j) => (
+                    j,
+                    self.model
+                        .joints
+                        .get(&j)
+                        .is_some_and(|j| j.kind == JointKind::Revolute),
+                ),
                 Driven::Markers { i, j, component } => {
                     let law = match component {
                         0..=2 => Law::Along(component),
                         _ => Law::BodyAngle(component - 3),
                     };
-                    drives.push(Drive { motion: m, joint: None, law, markers: (i, j), name });
+                    drives.push(Drive {
+                        motion: m,
+                        joint: None,
+                        law,
+                        markers: (i, j),
+                        name,
+                    });
                     continue;
                 }
             };
@@ -200,7 +248,13 @@ impl<'m> Builder<'m> {
             if c.driven.insert((joint, turn), m).is_some() {
                 c.error(&name, format!("JOINT/{joint} is driven twice"));
             }
-            drives.push(Drive { motion: m, joint: Some(joint), law, markers: (j.i, j.j), name });
+            drives.push(Drive {
+                motion: m,
+                joint: Some(joint),
+                law,
+                markers: (j.i, j.j),
+                name,
+            });
         }
         drives
     }
@@ -216,14 +270,33 @@ impl<'m> Builder<'m> {
             let id = self.scene.motions[drive.motion].id;
             let coordinate = self.scene.motions[drive.motion].coordinate;
             let first = c.rows.len();
-            let (i, j) = (c.marker(drive.markers.0, &drive.name), c.marker(drive.markers.1, &drive.name));
+            let (i, j) = (
+                c.marker(drive.markers.0, &drive.name),
+                c.marker(drive.markers.1, &drive.name),
+            );
             if let (None, Some(i), Some(j)) = (coordinate, i, j) {
-                let kind = RowKind::Markers { law: drive.law, i, j, motion: Some(drive.motion) };
-                c.rows.push(Row { element: drive.name.clone(), equation: drive.law.name(), kind });
+                let kind = RowKind::Markers {
+                    law: drive.law,
+                    i,
+                    j,
+                    motion: Some(drive.motion),
+                };
+                c.rows.push(Row {
+                    element: drive.name.clone(),
+                    equation: drive.law.name(),
+                    kind,
+                });
             }
             let rows = first..c.rows.len();
             let markers = i.zip(j);
-            c.constraints.push(ConstraintElement { keyword: "MOTION", id, markers, carries: None, rows, coordinate });
+            c.constraints.push(ConstraintElement {
+                keyword: "MOTION",
+                id,
+                markers,
+                carries: None,
+                rows,
+                coordinate,
+            });
         }
     }
 
@@ -250,7 +323,14 @@ impl<'m> Builder<'m> {
                 Source::Free { v, .. } => Some(v),
                 Source::Driven(_) => None,
             };
-            s.freedoms.push(Freedom { link: coordinate.link, axis, turn, sign, v, in_ball });
+            s.freedoms.push(Freedom {
+                link: coordinate.link,
+                axis,
+                turn,
+                sign,
+                v,
+                in_ball,
+            });
         }
         let mut last = vec![None; s.links.len()];
         s.carrier = vec![None; s.freedoms.len()];
@@ -265,7 +345,10 @@ impl<'m> Builder<'m> {
         s.last_freedom = last;
         let reach = s.parts.iter().map(|p| p.initial.position.norm());
         let arms = s.markers.iter().map(|m| m.frame.position.norm());
-        let length = reach.chain(arms).filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let length = reach
+            .chain(arms)
+            .filter(|x| x.is_finite())
+            .fold(0.0, f64::max);
         s.length = if length > 0.0 { length } else { 1.0 };
     }
 
@@ -276,7 +359,10 @@ impl<'m> Builder<'m> {
             Some(MarkerOwner::Part(p)) => (false, p),
             Some(MarkerOwner::PointMass(p)) => (true, p),
             _ => {
-                c.error(name, format!("MARKER/{marker} does not exist or has no part"));
+                c.error(
+                    name,
+                    format!("MARKER/{marker} does not exist or has no part"),
+                );
                 return None;
             }
         };
@@ -294,14 +380,31 @@ impl<'m> Builder<'m> {
         for (id, f) in active(model, "SFORCE", &model.sforces) {
             let name = format!("SFORCE/{id}");
             let formula = self.formula(c, &format!("{name} FUNCTION"), &f.function);
-            let (Some(i), Some(j)) = (c.marker(f.i, &name), c.marker(f.j, &name)) else { continue };
+            let (Some(i), Some(j)) = (c.marker(f.i, &name), c.marker(f.j, &name)) else {
+                continue;
+            };
             let reaction = (!f.action_only).then(|| self.scene.markers[j].link);
-            let law = ForceLaw::Single { rotational: f.rotational, action_only: f.action_only, formula };
-            self.scene.forces.push(ForceElement { keyword: "SFORCE", id, i, j: Some(j), floating: 0, reaction, law });
+            let law = ForceLaw::Single {
+                rotational: f.rotational,
+                action_only: f.action_only,
+                formula,
+            };
+            self.scene.forces.push(ForceElement {
+                keyword: "SFORCE",
+                id,
+                i,
+                j: Some(j),
+                floating: 0,
+                reaction,
+                law,
+            });
         }
         let vectors = active(model, "VFORCE", &model.vforces).map(|f| ("VFORCE", f));
-        let vectors = vectors.chain(active(model, "VTORQUE", &model.vtorques).map(|f| ("VTORQUE", f)));
-        for (keyword, (id, f)) in vectors.chain(active(model, "GFORCE", &model.gforces).map(|f| ("GFORCE", f))) {
+        let vectors =
+            vectors.chain(active(model, "VTORQUE", &model.vtorques).map(|f| ("VTORQUE", f)));
+        for (keyword, (id, f)) in
+            vectors.chain(active(model, "GFORCE", &model.gforces).map(|f| ("GFORCE", f)))
+        {
             self.vector(c, keyword, id, f);
         }
         for (id, s) in active(model, "SPRINGDAMPER", &model.spring_dampers) {
@@ -312,20 +415,47 @@ impl<'m> Builder<'m> {
                 free: s.free,
                 preload: s.preload,
             };
-            self.between(c, "SPRINGDAMPER", id, (s.i, s.j), ForceLaw::SpringDamper(law));
+            self.between(
+                c,
+                "SPRINGDAMPER",
+                id,
+                (s.i, s.j),
+                ForceLaw::SpringDamper(law),
+            );
         }
         for (id, b) in active(model, "BUSHING", &model.bushings) {
-            let law = Bushing { stiffness: b.stiffness, damping: b.damping, preload: b.preload };
+            let law = Bushing {
+                stiffness: b.stiffness,
+                damping: b.damping,
+                preload: b.preload,
+            };
             self.between(c, "BUSHING", id, (b.i, b.j), ForceLaw::Bushing(law));
         }
     }
 
     /// An element between I and J that reacts on J's part.
-    fn between(&mut self, c: &mut Compiler, keyword: &'static str, id: u32, ij: (u32, u32), law: ForceLaw) {
+    fn between(
+        &mut self,
+        c: &mut Compiler,
+        keyword: &'static str,
+        id: u32,
+        ij: (u32, u32),
+        law: ForceLaw,
+    ) {
         let name = format!("{keyword}/{id}");
-        let (Some(i), Some(j)) = (c.marker(ij.0, &name), c.marker(ij.1, &name)) else { return };
+        let (Some(i), Some(j)) = (c.marker(ij.0, &name), c.marker(ij.1, &name)) else {
+            return;
+        };
         let reaction = Some(self.scene.markers[j].link);
-        self.scene.forces.push(ForceElement { keyword, id, i, j: Some(j), floating: 0, reaction, law });
+        self.scene.forces.push(ForceElement {
+            keyword,
+            id,
+            i,
+            j: Some(j),
+            floating: 0,
+            reaction,
+            law,
+        });
     }
 
     fn vector(&mut self, c: &mut Compiler, keyword: &'static str, id: u32, f: &VectorForce) {
@@ -340,7 +470,9 @@ impl<'m> Builder<'m> {
                 formulas[k] = Some(self.formula(c, &format!("{name} {component}"), part));
             }
         }
-        let Some(i) = c.marker(f.i, &name) else { return };
+        let Some(i) = c.marker(f.i, &name) else {
+            return;
+        };
         let rm = match f.rm {
             Some(rm) => match c.marker(rm, &name) {
                 Some(rm) => Some(rm),
@@ -351,7 +483,15 @@ impl<'m> Builder<'m> {
         let reaction = f.jfloat.and_then(|j| self.owner(c, j, &name));
         let floating = f.jfloat.unwrap_or(0);
         let law = ForceLaw::Vector { rm, formulas };
-        self.scene.forces.push(ForceElement { keyword, id, i, j: None, floating, reaction, law });
+        self.scene.forces.push(ForceElement {
+            keyword,
+            id,
+            i,
+            j: None,
+            floating,
+            reaction,
+            law,
+        });
     }
 
     /// VARIABLE and DIFF.
@@ -371,7 +511,13 @@ impl<'m> Builder<'m> {
             self.scene.layout.n_x += 1;
             let initial = d.ic[0].unwrap_or(0.0);
             let static_hold = d.static_hold;
-            self.scene.differentials.push(SceneDifferential { id, state, formula, initial, static_hold });
+            self.scene.differentials.push(SceneDifferential {
+                id,
+                state,
+                formula,
+                initial,
+                static_hold,
+            });
         }
     }
 
@@ -391,7 +537,9 @@ impl<'m> Builder<'m> {
             let id = |m: usize| self.scene.markers[m].id;
             let ids = [id(f.i), f.j.map_or(0, id), 0, 0];
             match f.law {
-                ForceLaw::SpringDamper(SpringDamper { rotational: true, .. }) => {
+                ForceLaw::SpringDamper(SpringDamper {
+                    rotational: true, ..
+                }) => {
                     found.insert((Measure::Az, ids));
                 }
                 ForceLaw::Bushing(_) => {
@@ -416,9 +564,16 @@ pub fn unknown_names(scene: &Scene) -> Vec<String> {
         }
     }
     for link in &scene.links {
-        if let LinkMotion::Ball { coordinate, quaternion } = link.motion {
+        if let LinkMotion::Ball {
+            coordinate,
+            quaternion,
+        } = link.motion
+        {
             for k in 0..4 {
-                names[quaternion + k] = format!("{} (Euler parameter {k})", scene.coordinates[coordinate].name);
+                names[quaternion + k] = format!(
+                    "{} (Euler parameter {k})",
+                    scene.coordinates[coordinate].name
+                );
             }
         }
     }

@@ -1,7 +1,10 @@
 //! Model → Scene, in named passes: frames, ties, forest, links, rows, forces.
 
 use super::forest::{self, Candidate, Carried};
-use super::{ConstraintElement, Coordinate, Link, LinkIx, LinkMotion, MarkerOnLink, PartOnLink, Row, RowKind, Source};
+use super::{
+    ConstraintElement, Coordinate, Link, LinkIx, LinkMotion, MarkerOnLink, PartOnLink, Row,
+    RowKind, Source,
+};
 use crate::diagnostic::Diagnostic;
 use crate::model::{MarkerOwner, Model, Orientation, Part};
 use crate::physics::joint::{Motion, Tie, quarter_x};
@@ -52,19 +55,26 @@ pub(crate) fn orientation(o: &Orientation, origin: [f64; 3]) -> Result<Mat3<f64>
         Orientation::Points { z, x, use_x } => {
             let fallback = |given: Vec3<f64>, first: usize| {
                 let axis = Vec3::<f64>::axis(first);
-                if axis.cross(given).norm() > 1e-9 * given.norm() { axis } else { Vec3::axis((first + 1) % 3) }
+                if axis.cross(given).norm() > 1e-9 * given.norm() {
+                    axis
+                } else {
+                    Vec3::axis((first + 1) % 3)
+                }
             };
             let frame = if *use_x {
                 let x = from(x).ok_or("USEXP needs XP")?;
                 let z = from(z).unwrap_or_else(|| fallback(x, 2));
                 // from_z_and_x with the roles of z and x exchanged: its y is x × z, ours z × x
-                rotation::from_z_and_x(x, z).map(|m| Mat3::from_columns(m.column(2), -m.column(1), m.column(0)))
+                rotation::from_z_and_x(x, z)
+                    .map(|m| Mat3::from_columns(m.column(2), -m.column(1), m.column(0)))
             } else {
                 let z = from(z).unwrap_or_else(|| Vec3::axis(2));
                 let x = from(x).unwrap_or_else(|| fallback(z, 0));
                 rotation::from_z_and_x(z, x)
             };
-            frame.ok_or("the points that should give its axes coincide with its origin or lie on one line")?
+            frame.ok_or(
+                "the points that should give its axes coincide with its origin or lie on one line",
+            )?
         }
     };
     Ok(rotation::snapped(&r))
@@ -92,7 +102,8 @@ impl<'m> Compiler<'m> {
     }
 
     pub fn error(&mut self, element: &str, message: impl Into<String>) {
-        self.errors.push(Diagnostic::error("model", message).element(element));
+        self.errors
+            .push(Diagnostic::error("model", message).element(element));
     }
 
     /// Parts and markers with the frames of the dataset; nothing is carried yet.
@@ -106,14 +117,24 @@ impl<'m> Compiler<'m> {
                 continue;
             }
             let initial = match orientation(&part.orientation, part.qg) {
-                Ok(rotation) => Frame { rotation, position: Vec3(part.qg) },
+                Ok(rotation) => Frame {
+                    rotation,
+                    position: Vec3(part.qg),
+                },
                 Err(why) => {
                     self.error(&part_name(point_mass, id), why);
                     Frame::identity()
                 }
             };
-            self.part_of.insert((point_mass, id), Some(self.parts.len()));
-            self.parts.push(PartOnLink { id, point_mass, link: None, frame: Frame::identity(), initial });
+            self.part_of
+                .insert((point_mass, id), Some(self.parts.len()));
+            self.parts.push(PartOnLink {
+                id,
+                point_mass,
+                link: None,
+                frame: Frame::identity(),
+                initial,
+            });
         }
         for (&id, marker) in &model.markers {
             if marker.floating {
@@ -126,14 +147,25 @@ impl<'m> Compiler<'m> {
             };
             let name = format!("MARKER/{id}");
             let Some(&part) = self.part_of.get(&key) else {
-                self.error(&name, format!("its part {} does not exist", part_name(key.0, key.1)));
+                self.error(
+                    &name,
+                    format!("its part {} does not exist", part_name(key.0, key.1)),
+                );
                 continue;
             };
             match orientation(&marker.orientation, marker.qp) {
                 Ok(rotation) => {
                     self.marker_of.insert(id, self.markers.len());
-                    let frame = Frame { rotation, position: Vec3(marker.qp) };
-                    self.markers.push(MarkerOnLink { id, link: None, frame, part });
+                    let frame = Frame {
+                        rotation,
+                        position: Vec3(marker.qp),
+                    };
+                    self.markers.push(MarkerOnLink {
+                        id,
+                        link: None,
+                        frame,
+                        part,
+                    });
                 }
                 Err(why) => self.error(&name, why),
             }
@@ -149,7 +181,9 @@ impl<'m> Compiler<'m> {
                 Some(_) => "belongs to something that is not solved here",
                 None => "does not exist",
             };
-            self.errors.push(Diagnostic::error("unknown_marker", format!("MARKER/{id} {why}")).element(asked_by));
+            self.errors.push(
+                Diagnostic::error("unknown_marker", format!("MARKER/{id} {why}")).element(asked_by),
+            );
         }
         found
     }
@@ -157,15 +191,27 @@ impl<'m> Compiler<'m> {
     /// Pose of a marker in ground as the dataset has it.
     pub fn initial_frame(&self, marker: usize) -> Frame<f64> {
         let m = &self.markers[marker];
-        m.part.map_or(m.frame, |p| self.parts[p].initial.compose(&m.frame))
+        m.part
+            .map_or(m.frame, |p| self.parts[p].initial.compose(&m.frame))
     }
 
     /// Grows the forest and makes its links. `cut` says which ties must be rows.
-    pub fn forest(&mut self, ties: &[NamedTie], cut: impl Fn(&NamedTie) -> bool, preferred: &dyn Fn(&NamedTie) -> bool) {
+    pub fn forest(
+        &mut self,
+        ties: &[NamedTie],
+        cut: impl Fn(&NamedTie) -> bool,
+        preferred: &dyn Fn(&NamedTie) -> bool,
+    ) {
         let mut candidates = Vec::new();
         for (tie, t) in ties.iter().enumerate() {
-            let (Some(i), Some(j)) = (self.marker(t.i, &t.name), self.marker(t.j, &t.name)) else { continue };
-            let point = |m: usize| self.markers[m].part.is_some_and(|p| self.parts[p].point_mass);
+            let (Some(i), Some(j)) = (self.marker(t.i, &t.name), self.marker(t.j, &t.name)) else {
+                continue;
+            };
+            let point = |m: usize| {
+                self.markers[m]
+                    .part
+                    .is_some_and(|p| self.parts[p].point_mass)
+            };
             candidates.push(Candidate {
                 tie,
                 kind: t.kind,
@@ -202,9 +248,17 @@ impl<'m> Compiler<'m> {
             if carrying[t].is_none() {
                 self.close(tie);
             }
-            let markers = self.marker_of.get(&tie.i).copied().zip(self.marker_of.get(&tie.j).copied());
+            let markers = self
+                .marker_of
+                .get(&tie.i)
+                .copied()
+                .zip(self.marker_of.get(&tie.j).copied());
             self.constraints.push(ConstraintElement {
-                keyword: if tie.joint.is_some() { "JOINT" } else { "JPRIM" },
+                keyword: if tie.joint.is_some() {
+                    "JOINT"
+                } else {
+                    "JPRIM"
+                },
                 id: tie.id,
                 markers,
                 carries: carrying[t],
@@ -218,33 +272,64 @@ impl<'m> Compiler<'m> {
     fn carry(&mut self, tie: &NamedTie, backward: bool) -> (LinkIx, Frame<f64>) {
         let (i, j) = (self.marker_of[&tie.i], self.marker_of[&tie.j]);
         let chain = tie.kind.motions().unwrap_or(&[]);
-        let relative = self.initial_frame(j).inverse().compose(&self.initial_frame(i)); // X_JI
+        let relative = self
+            .initial_frame(j)
+            .inverse()
+            .compose(&self.initial_frame(i)); // X_JI
         let fitted = fit(chain, &relative);
         let (from, to) = if backward { (i, j) } else { (j, i) };
         // the carrier's marker, on the carrier's link
         let carrier = self.markers[from].part;
         let (mut parent, mut placement) = match carrier {
             None => (None, self.markers[from].frame),
-            Some(p) => (self.parts[p].link, self.parts[p].frame.compose(&self.markers[from].frame)),
+            Some(p) => (
+                self.parts[p].link,
+                self.parts[p].frame.compose(&self.markers[from].frame),
+            ),
         };
         // numbered in the order of the links, so that what carries comes first; kept in the order of the joint's table
-        let steps: Vec<usize> = if backward { (0..chain.len()).rev().collect() } else { (0..chain.len()).collect() };
+        let steps: Vec<usize> = if backward {
+            (0..chain.len()).rev().collect()
+        } else {
+            (0..chain.len()).collect()
+        };
         let sign = if backward { -1.0 } else { 1.0 };
         let mut own = vec![Vec::new(); chain.len()];
         for k in steps {
             let first = self.coordinates.len();
             let motion = match chain[k] {
                 Motion::QuarterX => {
-                    let quarter = if backward { quarter_x().transpose() } else { quarter_x() };
-                    placement = placement.compose(&Frame { rotation: quarter, position: Vec3::zero() });
+                    let quarter = if backward {
+                        quarter_x().transpose()
+                    } else {
+                        quarter_x()
+                    };
+                    placement = placement.compose(&Frame {
+                        rotation: quarter,
+                        position: Vec3::zero(),
+                    });
                     continue;
                 }
-                Motion::Slide(axis) => LinkMotion::Slide { axis, sign, coordinate: first },
-                Motion::Turn(axis) => LinkMotion::Turn { axis, sign, coordinate: first },
-                Motion::Ball => LinkMotion::Ball { coordinate: first, quaternion: self.n_q },
+                Motion::Slide(axis) => LinkMotion::Slide {
+                    axis,
+                    sign,
+                    coordinate: first,
+                },
+                Motion::Turn(axis) => LinkMotion::Turn {
+                    axis,
+                    sign,
+                    coordinate: first,
+                },
+                Motion::Ball => LinkMotion::Ball {
+                    coordinate: first,
+                    quaternion: self.n_q,
+                },
             };
             let angular = !matches!(chain[k], Motion::Slide(_));
-            let drive = tie.joint.and_then(|id| self.driven.get(&(id, angular))).copied();
+            let drive = tie
+                .joint
+                .and_then(|id| self.driven.get(&(id, angular)))
+                .copied();
             let fixed_axis = matches!(chain[k], Motion::Slide(2) | Motion::Turn(2));
             for f in 0..chain[k].freedoms() {
                 let name = format!("{} {}", tie.name, variable_name(chain, k, f));
@@ -252,26 +337,42 @@ impl<'m> Compiler<'m> {
                     Some(motion) if fixed_axis => Source::Driven(motion),
                     _ => {
                         self.n_v += 1;
-                        Source::Free { q: self.n_q, v: self.n_v - 1 }
+                        Source::Free {
+                            q: self.n_q,
+                            v: self.n_v - 1,
+                        }
                     }
                 };
                 own[k].push(self.coordinates.len());
-                self.coordinates.push(Coordinate { name, joint: tie.joint, angular, source, link: 0 });
-                if let (Source::Free { .. }, LinkMotion::Slide { .. } | LinkMotion::Turn { .. }) = (source, motion) {
+                self.coordinates.push(Coordinate {
+                    name,
+                    joint: tie.joint,
+                    angular,
+                    source,
+                    link: 0,
+                });
+                if let (Source::Free { .. }, LinkMotion::Slide { .. } | LinkMotion::Turn { .. }) =
+                    (source, motion)
+                {
                     self.q.push(fitted[k][0]);
                     self.n_q += 1;
                 }
             }
             if let LinkMotion::Ball { .. } = motion {
                 let backward_turn = relative.rotation.transpose();
-                self.q.extend(if backward { rotation::to_quaternion(&backward_turn) } else { quaternion(&fitted[k]) });
+                self.q.extend(if backward {
+                    rotation::to_quaternion(&backward_turn)
+                } else {
+                    quaternion(&fitted[k])
+                });
                 self.n_q += 4;
             }
             parent = self.push_link(parent, placement, motion, &own[k]);
             placement = Frame::identity();
         }
         if let Some(id) = tie.joint {
-            self.joint_coordinates.insert(id, own.iter().flatten().copied().collect());
+            self.joint_coordinates
+                .insert(id, own.iter().flatten().copied().collect());
         }
         if chain.is_empty() {
             parent = self.push_link(parent, placement, LinkMotion::Rigid, &[]);
@@ -287,43 +388,95 @@ impl<'m> Compiler<'m> {
         let (id, point_mass) = (p.id, p.point_mass);
         let name = part_name(point_mass, id);
         let data = self.part_data(part);
-        let cm = data.cm.and_then(|m| self.marker_of.get(&m)).map(|&m| self.markers[m].frame);
+        let cm = data
+            .cm
+            .and_then(|m| self.marker_of.get(&m))
+            .map(|&m| self.markers[m].frame);
         let centre = cm.unwrap_or_else(Frame::identity); // X_PC
         let start = self.parts[part].initial.compose(&centre);
         let mut parent = None;
         for axis in 0..3 {
-            let source = Source::Free { q: self.n_q, v: self.n_v };
+            let source = Source::Free {
+                q: self.n_q,
+                v: self.n_v,
+            };
             let name = format!("{name} {}", ["x", "y", "z"][axis]);
-            self.coordinates.push(Coordinate { name, joint: None, angular: false, source, link: 0 });
+            self.coordinates.push(Coordinate {
+                name,
+                joint: None,
+                angular: false,
+                source,
+                link: 0,
+            });
             self.q.push(start.position.0[axis]);
             (self.n_q, self.n_v) = (self.n_q + 1, self.n_v + 1);
             let coordinate = self.coordinates.len() - 1;
-            let motion = LinkMotion::Slide { axis, sign: 1.0, coordinate };
+            let motion = LinkMotion::Slide {
+                axis,
+                sign: 1.0,
+                coordinate,
+            };
             parent = self.push_link(parent, Frame::identity(), motion, &[coordinate]);
         }
         if point_mass {
             let rotation = start.rotation;
-            let x = Frame { rotation, position: Vec3::zero() };
+            let x = Frame {
+                rotation,
+                position: Vec3::zero(),
+            };
             return (parent, x.compose(&centre.inverse()));
         }
         let first = self.coordinates.len();
         for axis in 0..3 {
-            let source = Source::Free { q: self.n_q, v: self.n_v };
+            let source = Source::Free {
+                q: self.n_q,
+                v: self.n_v,
+            };
             let name = format!("{name} rotation {}", ["x", "y", "z"][axis]);
-            self.coordinates.push(Coordinate { name, joint: None, angular: true, source, link: 0 });
+            self.coordinates.push(Coordinate {
+                name,
+                joint: None,
+                angular: true,
+                source,
+                link: 0,
+            });
             self.n_v += 1;
         }
-        let motion = LinkMotion::Ball { coordinate: first, quaternion: self.n_q };
+        let motion = LinkMotion::Ball {
+            coordinate: first,
+            quaternion: self.n_q,
+        };
         self.q.extend(rotation::to_quaternion(&start.rotation));
         self.n_q += 4;
-        parent = self.push_link(parent, Frame::identity(), motion, &[first, first + 1, first + 2]);
+        parent = self.push_link(
+            parent,
+            Frame::identity(),
+            motion,
+            &[first, first + 1, first + 2],
+        );
         (parent, centre.inverse())
     }
 
-    fn push_link(&mut self, parent: LinkIx, placement: Frame<f64>, motion: LinkMotion, own: &[usize]) -> LinkIx {
-        let placement = Frame { rotation: rotation::snapped(&placement.rotation), ..placement };
+    fn push_link(
+        &mut self,
+        parent: LinkIx,
+        placement: Frame<f64>,
+        motion: LinkMotion,
+        own: &[usize],
+    ) -> LinkIx {
+        let placement = Frame {
+            rotation: rotation::snapped(&placement.rotation),
+            ..placement
+        };
         let (moment, inertia) = (Vec3::zero(), Mat3::zero());
-        self.links.push(Link { parent, placement, motion, mass: 0.0, moment, inertia });
+        self.links.push(Link {
+            parent,
+            placement,
+            motion,
+            mass: 0.0,
+            moment,
+            inertia,
+        });
         for &c in own {
             self.coordinates[c].link = self.links.len() - 1;
         }
@@ -332,12 +485,19 @@ impl<'m> Compiler<'m> {
 
     pub fn part_data(&self, part: usize) -> &'m Part {
         let p = &self.parts[part];
-        if p.point_mass { &self.model.point_masses[&p.id] } else { &self.model.parts[&p.id] }
+        if p.point_mass {
+            &self.model.point_masses[&p.id]
+        } else {
+            &self.model.parts[&p.id]
+        }
     }
 
     /// Puts a part with its inertia on its link.
     fn attach(&mut self, part: usize, (link, frame): (LinkIx, Frame<f64>)) {
-        let frame = Frame { rotation: rotation::snapped(&frame.rotation), ..frame };
+        let frame = Frame {
+            rotation: rotation::snapped(&frame.rotation),
+            ..frame
+        };
         self.parts[part].link = link;
         self.parts[part].frame = frame;
         let data = self.part_data(part);
@@ -348,14 +508,25 @@ impl<'m> Compiler<'m> {
         let ucf = self.model.units.as_ref().map_or(1.0, |u| u.ucf);
         let Some(cm) = data.cm.or(data.im) else {
             if data.mass > 0.0 {
-                self.error(&name, "has mass but no CM marker: say where its centre of mass is");
+                self.error(
+                    &name,
+                    "has mass but no CM marker: say where its centre of mass is",
+                );
             }
             return;
         };
-        let (Some(c), Some(i)) = (self.marker(cm, &name), self.marker(data.im.unwrap_or(cm), &name)) else { return };
+        let (Some(c), Some(i)) = (
+            self.marker(cm, &name),
+            self.marker(data.im.unwrap_or(cm), &name),
+        ) else {
+            return;
+        };
         let (X_PC, X_PI) = (self.markers[c].frame, self.markers[i].frame);
         if self.markers[c].part != Some(part) {
-            self.error(&name, format!("its CM marker MARKER/{cm} belongs to another part"));
+            self.error(
+                &name,
+                format!("its CM marker MARKER/{cm} belongs to another part"),
+            );
             return;
         }
         // IM → CM by the parallel axis rule, then to the link's origin
@@ -376,12 +547,24 @@ impl<'m> Compiler<'m> {
 
     /// Rows for a tie that closes a loop.
     fn close(&mut self, tie: &NamedTie) {
-        let (Some(i), Some(j)) = (self.marker_of.get(&tie.i).copied(), self.marker_of.get(&tie.j).copied()) else {
+        let (Some(i), Some(j)) = (
+            self.marker_of.get(&tie.i).copied(),
+            self.marker_of.get(&tie.j).copied(),
+        ) else {
             return;
         };
         for law in tie.kind.rows() {
-            let kind = RowKind::Markers { law, i, j, motion: None };
-            self.rows.push(Row { element: tie.name.clone(), equation: law.name(), kind });
+            let kind = RowKind::Markers {
+                law,
+                i,
+                j,
+                motion: None,
+            };
+            self.rows.push(Row {
+                element: tie.name.clone(),
+                equation: law.name(),
+                kind,
+            });
         }
     }
 }
@@ -401,13 +584,25 @@ pub(crate) fn part_name(point_mass: bool, id: u32) -> String {
 
 /// What the `k`-th motion of a chain measures.
 fn variable_name(chain: &[Motion], k: usize, freedom: usize) -> String {
-    let several = |turn: bool| chain.iter().filter(|m| matches!(m, Motion::Turn(_)) == turn && m.freedoms() == 1).count() > 1;
+    let several = |turn: bool| {
+        chain
+            .iter()
+            .filter(|m| matches!(m, Motion::Turn(_)) == turn && m.freedoms() == 1)
+            .count()
+            > 1
+    };
     let axis = |k: usize| ["x", "y", "z"][k];
     match chain[k] {
         Motion::Slide(a) if several(false) => format!("{} distance", axis(a)),
         Motion::Slide(_) => "distance".into(),
         Motion::Turn(_) if several(true) => {
-            format!("angle {}", 1 + chain[..k].iter().filter(|m| matches!(m, Motion::Turn(_))).count())
+            format!(
+                "angle {}",
+                1 + chain[..k]
+                    .iter()
+                    .filter(|m| matches!(m, Motion::Turn(_)))
+                    .count()
+            )
         }
         Motion::Turn(_) => "angle".into(),
         Motion::Ball => format!("rotation {}", axis(freedom)),
@@ -441,7 +636,13 @@ fn fit(chain: &[Motion], frame: &Frame<f64>) -> Vec<Vec<f64>> {
                 // a direction that later motions leave alone, before and after this turn
                 let (b, c) = ((a + 1) % 3, (a + 2) % 3);
                 let mut fixed = Vec3::<f64>::axis(b);
-                let next = chain[k + 1..].iter().find_map(|m| if let Motion::Turn(n) = m { Some(*n) } else { None });
+                let next = chain[k + 1..].iter().find_map(|m| {
+                    if let Motion::Turn(n) = m {
+                        Some(*n)
+                    } else {
+                        None
+                    }
+                });
                 let mut target = left.rotation.column(b);
                 if let Some(next) = next {
                     fixed = Vec3::axis(next);

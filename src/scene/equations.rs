@@ -107,7 +107,12 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     fn coordinates<'a>(&'a self, vdot: &'a [S]) -> Coordinates<'a, S> {
-        Coordinates { q: &self.q, v: &self.v, vdot, driven: &self.driven }
+        Coordinates {
+            q: &self.q,
+            v: &self.v,
+            vdot,
+            driven: &self.driven,
+        }
     }
 
     /// Time.
@@ -163,7 +168,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     fn array(&self, id: u32, k: u32) -> Option<f64> {
-        self.scene.arrays.get(&id)?.get((k as usize).checked_sub(1)?).copied()
+        self.scene
+            .arrays
+            .get(&id)?
+            .get((k as usize).checked_sub(1)?)
+            .copied()
     }
 
     /// Pose and velocity of a marker; its accelerations are those of driven coordinates only.
@@ -191,10 +200,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
             return self.complain(format!("{} depends on itself", formula.name));
         }
         self.open.borrow_mut().push(f);
-        let inputs: Vec<S> = formula.program.inputs().iter().map(|&i| self.input(i, &formula.name)).collect();
+        let inputs: Vec<S> = formula
+            .program
+            .inputs()
+            .iter()
+            .map(|&i| self.input(i, &formula.name))
+            .collect();
         self.open.borrow_mut().pop();
         let mut out = [S::zero()];
-        formula.program.eval(&inputs, &mut Work::default(), &mut out);
+        formula
+            .program
+            .eval(&inputs, &mut Work::default(), &mut out);
         self.formulas.borrow_mut()[f] = Some(out[0]);
         out[0]
     }
@@ -206,7 +222,9 @@ impl<'s, S: Scalar> Equations<'s, S> {
             Input::Mode => S::constant(self.scene.mode),
             Input::Measure(measure, ids) => self.measure(measure, ids, asked_by),
             Input::Delayed(_) => self.complain(format!("{asked_by}: DELAY is not solved yet")),
-            Input::Slot(_) => unreachable!("slots are inputs of recorded programs, not of formulas"),
+            Input::Slot(_) => {
+                unreachable!("slots are inputs of recorded programs, not of formulas")
+            }
         }
     }
 
@@ -219,7 +237,10 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 match kinematic::kinematic_of(measure, ids, state) {
                     Some(value) if measure.needs_history() => self.counted(measure, ids, value),
                     Some(value) => value,
-                    None => self.complain(format!("{asked_by}: {} has no value for these arguments", row.name)),
+                    None => self.complain(format!(
+                        "{asked_by}: {} has no value for these arguments",
+                        row.name
+                    )),
                 }
             }
             Family::Acceleration => {
@@ -229,9 +250,18 @@ impl<'s, S: Scalar> Equations<'s, S> {
                         row.name
                     ));
                 }
-                let state = |id: u32| self.scene.marker_of.get(&id).map(|&m| self.accelerated_marker(m));
-                kinematic::kinematic_of(measure, ids, state)
-                    .unwrap_or_else(|| self.complain(format!("{asked_by}: {} names a marker that does not exist", row.name)))
+                let state = |id: u32| {
+                    self.scene
+                        .marker_of
+                        .get(&id)
+                        .map(|&m| self.accelerated_marker(m))
+                };
+                kinematic::kinematic_of(measure, ids, state).unwrap_or_else(|| {
+                    self.complain(format!(
+                        "{asked_by}: {} names a marker that does not exist",
+                        row.name
+                    ))
+                })
             }
             Family::GenericForce => self.generic_force(measure, ids, asked_by),
             Family::ElementForce => self.element_force(measure, ids, asked_by),
@@ -241,7 +271,9 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// An angle with its turns: the value nearest to the one last accepted.
     fn counted(&self, measure: Measure, ids: [u32; 4], principal: S) -> S {
-        let Some(k) = self.scene.counted.iter().position(|c| *c == (measure, ids)) else { return principal };
+        let Some(k) = self.scene.counted.iter().position(|c| *c == (measure, ids)) else {
+            return principal;
+        };
         let turn = std::f64::consts::TAU;
         let turns = (self.turns[k] - principal).scale(1.0 / turn).round();
         principal + turns.scale(turn)
@@ -297,9 +329,23 @@ impl<'s, S: Scalar> Equations<'s, S> {
             let action = force.action(self);
             let i = &self.scene.markers[force.i];
             let point = self.marker(force.i).p_GM;
-            sweep::apply(&mut wrenches, &self.links, i.link, point, action.force, action.torque);
+            sweep::apply(
+                &mut wrenches,
+                &self.links,
+                i.link,
+                point,
+                action.force,
+                action.torque,
+            );
             if let Some(link) = force.reaction {
-                sweep::apply(&mut wrenches, &self.links, link, point, -action.force, -action.torque);
+                sweep::apply(
+                    &mut wrenches,
+                    &self.links,
+                    link,
+                    point,
+                    -action.force,
+                    -action.torque,
+                );
             }
             actions.push(action);
         }
@@ -317,7 +363,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .into_iter()
             .enumerate()
             .filter(|(f, _)| place(*f).is_some())
-            .map(|(_, row)| row.into_iter().filter_map(|(f, m)| place(f).map(|v| (v, m))).collect())
+            .map(|(_, row)| {
+                row.into_iter()
+                    .filter_map(|(f, m)| place(f).map(|v| (v, m)))
+                    .collect()
+            })
             .collect()
     }
 
@@ -331,8 +381,10 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .filter(|f| f.v.is_some())
             .map(|f| -f.component(&bias[f.link]))
             .collect();
-        let rows: Vec<(usize, RowValue<S>)> =
-            (0..scene.rows.len()).filter(|&r| self.is_active(r)).map(|r| (r, self.row(r))).collect();
+        let rows: Vec<(usize, RowValue<S>)> = (0..scene.rows.len())
+            .filter(|&r| self.is_active(r))
+            .map(|r| (r, self.row(r)))
+            .collect();
         let g: Vec<Vec<(usize, S)>> = rows.iter().map(|(_, row)| row.gradient.clone()).collect();
         let gamma: Vec<S> = rows.iter().map(|(_, row)| row.gamma).collect();
         let factor = MassFactor::new(self.mass_rows());
@@ -344,13 +396,26 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 for (m, action) in [(i, &row.actions[0]), (j, &row.actions[1])] {
                     let point = self.marker(m).p_GM;
                     let link = scene.markers[m].link;
-                    sweep::apply(&mut wrenches, &self.links, link, point, action.force.times(l), action.torque.times(l));
+                    sweep::apply(
+                        &mut wrenches,
+                        &self.links,
+                        link,
+                        point,
+                        action.force.times(l),
+                        action.torque.times(l),
+                    );
                 }
             }
         }
         let links = sweep::outward(scene, &self.coordinates(&f));
         let carried = sweep::inward(scene, &links, self.gravity(), &wrenches);
-        Solved { vdot: f, lambda, links, carried, actions }
+        Solved {
+            vdot: f,
+            lambda,
+            links,
+            carried,
+            actions,
+        }
     }
 
     /// `q̇, v̇, ẋ`
@@ -365,10 +430,15 @@ impl<'s, S: Scalar> Equations<'s, S> {
     pub fn position_rates(&self) -> Vec<S> {
         let mut out = vec![S::zero(); self.q.len()];
         for link in &self.scene.links {
-            if let super::LinkMotion::Ball { coordinate, quaternion } = link.motion {
+            if let super::LinkMotion::Ball {
+                coordinate,
+                quaternion,
+            } = link.motion
+            {
                 let w = Vec3([0, 1, 2].map(|k| self.coordinate(coordinate + k).first));
                 let q = [0, 1, 2, 3].map(|k| self.q[quaternion + k]);
-                out[quaternion..quaternion + 4].copy_from_slice(&crate::space::rotation::quaternion_rate(q, w));
+                out[quaternion..quaternion + 4]
+                    .copy_from_slice(&crate::space::rotation::quaternion_rate(q, w));
             }
         }
         for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
@@ -412,7 +482,10 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 let seeded = law.value(
                     &seed::<S>(&I, 0),
                     &seed::<S>(&J, 6),
-                    drive.map(|d| Dual { re: d.value, eps: [S::zero(); 12] }),
+                    drive.map(|d| Dual {
+                        re: d.value,
+                        eps: [S::zero(); 12],
+                    }),
                 );
                 let action = |k: usize| Action {
                     torque: Vec3([seeded.eps[k], seeded.eps[k + 1], seeded.eps[k + 2]]),
@@ -425,9 +498,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 for (m, a) in [(*i, &actions[0]), (*j, &actions[1])] {
                     self.gradient(m, a, &mut gradient);
                 }
-                let along: S = gradient.iter().fold(S::zero(), |s, &(v, g)| s + g * self.v[v]);
+                let along: S = gradient
+                    .iter()
+                    .fold(S::zero(), |s, &(v, g)| s + g * self.v[v]);
                 gradient.sort_by_key(|g| g.0);
-                RowValue { value: seeded.re, gradient, drift: rates.first - along, gamma: -rates.second, actions }
+                RowValue {
+                    value: seeded.re,
+                    gradient,
+                    drift: rates.first - along,
+                    gamma: -rates.second,
+                    actions,
+                }
             }
             RowKind::Linear { terms, constant } => {
                 let mut sum = Jet::<S>::constant(-*constant);
@@ -442,7 +523,13 @@ impl<'s, S: Scalar> Equations<'s, S> {
                     }
                 }
                 gradient.sort_by_key(|g| g.0);
-                RowValue { value: sum.value, gradient, drift, gamma: -sum.second, actions: [Action::zero(); 2] }
+                RowValue {
+                    value: sum.value,
+                    gradient,
+                    drift,
+                    gamma: -sum.second,
+                    actions: [Action::zero(); 2],
+                }
             }
         }
     }
@@ -478,14 +565,25 @@ impl<'s, S: Scalar> Equations<'s, S> {
     /// Action of an element on its I marker, with the points of I and J; `None` when there is no such element.
     fn element(&self, keyword: &str, id: u32) -> Option<(Action<S>, Vec3<S>, Vec3<S>)> {
         let scene = self.scene;
-        if let Some(f) = scene.forces.iter().position(|f| f.keyword == keyword && f.id == id) {
+        if let Some(f) = scene
+            .forces
+            .iter()
+            .position(|f| f.keyword == keyword && f.id == id)
+        {
             let force = &scene.forces[f];
-            let action = if self.solving.get() { force.action(self) } else { self.solved().actions[f] };
+            let action = if self.solving.get() {
+                force.action(self)
+            } else {
+                self.solved().actions[f]
+            };
             let p_I = self.marker(force.i).p_GM;
             let p_J = force.j.map_or(p_I, |j| self.marker(j).p_GM);
             return Some((action, p_I, p_J));
         }
-        let c = scene.constraints.iter().position(|c| c.keyword == keyword && c.id == id)?;
+        let c = scene
+            .constraints
+            .iter()
+            .position(|c| c.keyword == keyword && c.id == id)?;
         let (i, j) = scene.constraints[c].markers?;
         Some((self.reaction(c), self.marker(i).p_GM, self.marker(j).p_GM))
     }
@@ -500,16 +598,24 @@ impl<'s, S: Scalar> Equations<'s, S> {
             if self.is_active(r) && matches!(scene.rows[r].kind, RowKind::Markers { .. }) {
                 let a = self.row(r).actions[0];
                 let l = solved.lambda[r];
-                sum = sum.plus(&Action { force: a.force.times(l), torque: a.torque.times(l) });
+                sum = sum.plus(&Action {
+                    force: a.force.times(l),
+                    torque: a.torque.times(l),
+                });
             }
         }
-        let Some((i, _)) = element.markers else { return sum };
+        let Some((i, _)) = element.markers else {
+            return sum;
+        };
         let p_I = self.marker(i).p_GM;
         // on the carried link about p_I, ground axes
         let at_i = |link: usize, w: &Wrench<S>| {
             let X = &self.links[link].X_GL;
             let force = X.rotation.apply(w.force);
-            Action { force, torque: X.rotation.apply(w.torque) + (X.position - p_I).cross(force) }
+            Action {
+                force,
+                torque: X.rotation.apply(w.torque) + (X.position - p_I).cross(force),
+            }
         };
         let drive = |coordinate: usize| {
             let f = &scene.freedoms[coordinate];
@@ -522,7 +628,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         if let Some(coordinate) = element.coordinate {
             let on_carried = drive(coordinate);
             let backward = scene.freedoms[coordinate].sign < 0.0;
-            return if backward { negative(&on_carried) } else { on_carried };
+            return if backward {
+                negative(&on_carried)
+            } else {
+                on_carried
+            };
         }
         if let Some((link, backward)) = element.carries {
             let mut on_carried = at_i(link, &solved.carried[link]);
@@ -535,25 +645,46 @@ impl<'s, S: Scalar> Equations<'s, S> {
                     on_carried = on_carried.plus(&negative(&drive(k)));
                 }
             }
-            sum = sum.plus(&if backward { negative(&on_carried) } else { on_carried });
+            sum = sum.plus(&if backward {
+                negative(&on_carried)
+            } else {
+                on_carried
+            });
         }
         sum
     }
 
-    fn element_force(&self, measure: Measure, [id, jflag, comp, rm]: [u32; 4], asked_by: &str) -> S {
+    fn element_force(
+        &self,
+        measure: Measure,
+        [id, jflag, comp, rm]: [u32; 4],
+        asked_by: &str,
+    ) -> S {
         let Some(keyword) = keyword_of(measure) else {
             return self.complain(format!("{asked_by}: {} is not solved yet", measure.name()));
         };
-        if self.solving.get() && self.scene.constraints.iter().any(|c| c.keyword == keyword && c.id == id) {
+        if self.solving.get()
+            && self
+                .scene
+                .constraints
+                .iter()
+                .any(|c| c.keyword == keyword && c.id == id)
+        {
             return self.complain(format!(
                 "{asked_by}: {} reads a reaction that depends on this very function",
                 measure.name()
             ));
         }
         let Some((action, p_I, p_J)) = self.element(keyword, id) else {
-            return self.complain(format!("{asked_by}: {keyword}/{id} does not exist or is not active"));
+            return self.complain(format!(
+                "{asked_by}: {keyword}/{id} does not exist or is not active"
+            ));
         };
-        let action = if jflag == 1 { action.reaction(p_I, p_J) } else { action };
+        let action = if jflag == 1 {
+            action.reaction(p_I, p_J)
+        } else {
+            action
+        };
         self.component(&action, comp, rm, asked_by)
     }
 
@@ -620,22 +751,35 @@ impl<'s, S: Scalar> Equations<'s, S> {
             if markers != (i, j) && markers != (j, i) {
                 continue;
             }
-            let action = if self.solving.get() { force.action(self) } else { self.solved().actions[f] };
+            let action = if self.solving.get() {
+                force.action(self)
+            } else {
+                self.solved().actions[f]
+            };
             let p_I = self.marker(force.i).p_GM;
             let p_J = force.j.map_or(p_I, |m| self.marker(m).p_GM);
             add(markers, action, p_I, p_J);
         }
         for (c, element) in scene.constraints.iter().enumerate() {
-            let Some((a, b)) = element.markers else { continue };
+            let Some((a, b)) = element.markers else {
+                continue;
+            };
             let markers = (id(a), id(b));
             if markers != (i, j) && markers != (j, i) {
                 continue;
             }
             if self.solving.get() {
-                self.complain(format!("{asked_by}: reads a reaction that depends on this very function"));
+                self.complain(format!(
+                    "{asked_by}: reads a reaction that depends on this very function"
+                ));
                 continue;
             }
-            add(markers, self.reaction(c), self.marker(a).p_GM, self.marker(b).p_GM);
+            add(
+                markers,
+                self.reaction(c),
+                self.marker(a).p_GM,
+                self.marker(b).p_GM,
+            );
         }
         sum
     }
@@ -661,7 +805,10 @@ impl<'s, S: Scalar> Equations<'s, S> {
 }
 
 fn negative<S: Scalar>(a: &Action<S>) -> Action<S> {
-    Action { force: -a.force, torque: -a.torque }
+    Action {
+        force: -a.force,
+        torque: -a.torque,
+    }
 }
 
 /// Keyword of the statement whose force a measure returns.
@@ -688,8 +835,14 @@ fn keyword_of(measure: Measure) -> Option<&'static str> {
 
 /// A marker's frame as it turns and moves along six directions, the first of which is direction `first`.
 fn seed<S: Scalar>(m: &MarkerState<S>, first: usize) -> Frame<Dual<12, S>> {
-    let lift = |x: S| Dual { re: x, eps: [S::zero(); 12] };
-    let mut frame = Frame { rotation: Mat3(m.R_GM.0.map(|r| r.map(lift))), position: Vec3(m.p_GM.0.map(lift)) };
+    let lift = |x: S| Dual {
+        re: x,
+        eps: [S::zero(); 12],
+    };
+    let mut frame = Frame {
+        rotation: Mat3(m.R_GM.0.map(|r| r.map(lift))),
+        position: Vec3(m.p_GM.0.map(lift)),
+    };
     for k in 0..3 {
         let e = Vec3::axis(k);
         for column in 0..3 {
@@ -714,7 +867,9 @@ fn moving<S: Scalar>(m: &MarkerState<S>) -> Frame<Jet<S>> {
             rotation.0[row][column] = Jet::new(axis.0[row], first.0[row], second.0[row]);
         }
     }
-    let position = Vec3(std::array::from_fn(|k| Jet::new(m.p_GM.0[k], m.v_GM.0[k], m.a_GM.0[k])));
+    let position = Vec3(std::array::from_fn(|k| {
+        Jet::new(m.p_GM.0[k], m.v_GM.0[k], m.a_GM.0[k])
+    }));
     Frame { rotation, position }
 }
 

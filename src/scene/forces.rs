@@ -56,21 +56,27 @@ impl ForceElement {
     /// The action on I, ground axes.
     pub fn action<S: Scalar>(&self, at: &Equations<'_, S>) -> Action<S> {
         let i = at.marker(self.i);
-        let j = self.j.map_or_else(crate::space::MarkerState::ground, |j| at.marker(j));
+        let j = self
+            .j
+            .map_or_else(crate::space::MarkerState::ground, |j| at.marker(j));
         let angle = |measure: Measure| at.angle_between(measure, self.i, self.j);
         match &self.law {
-            ForceLaw::Single { rotational, action_only, formula } => {
-                action::single_force(*rotational, *action_only, &i, &j, at.formula(*formula))
-            }
+            ForceLaw::Single {
+                rotational,
+                action_only,
+                formula,
+            } => action::single_force(*rotational, *action_only, &i, &j, at.formula(*formula)),
             ForceLaw::Vector { rm, formulas } => {
                 let axes = rm.map_or_else(crate::space::MarkerState::ground, |m| at.marker(m));
                 let c = formulas.map(|f| f.map_or_else(S::zero, |f| at.formula(f)));
                 action::vector_force(&axes, [c[0], c[1], c[2]], [c[3], c[4], c[5]])
             }
             ForceLaw::SpringDamper(law) => law.action(&i, &j, || angle(Measure::Az)),
-            ForceLaw::Bushing(law) => {
-                law.action(&i, &j, [angle(Measure::Ax), angle(Measure::Ay), angle(Measure::Az)])
-            }
+            ForceLaw::Bushing(law) => law.action(
+                &i,
+                &j,
+                [angle(Measure::Ax), angle(Measure::Ay), angle(Measure::Az)],
+            ),
         }
     }
 }

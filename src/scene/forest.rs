@@ -64,7 +64,10 @@ pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
     let reach = |from: Option<usize>, at: usize, frontier: &mut BTreeSet<_>| {
         for &e in &edges_of[slot(from)] {
             let c = &candidates[e];
-            let cost = c.kind.motions().map_or(0, |m| m.iter().map(|x| x.freedoms()).sum());
+            let cost = c
+                .kind
+                .motions()
+                .map_or(0, |m| m.iter().map(|x| x.freedoms()).sum());
             frontier.insert((cost, !c.preferred, at, e));
         }
     };
@@ -91,7 +94,11 @@ pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
             return order;
         }
         depth[next_free] = Some(1);
-        order.push(Placed { part: next_free, carrier: None, by: Carried::Free });
+        order.push(Placed {
+            part: next_free,
+            carrier: None,
+            by: Carried::Free,
+        });
         reach(Some(next_free), 1, &mut frontier);
     }
 }

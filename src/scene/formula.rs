@@ -1,8 +1,8 @@
 //! Expressions of the model as programs: splines and arrays they name are found in the model.
 
 use crate::diagnostic::Diagnostic;
-use crate::expr::ast::Dialect;
 use crate::expr::Profile;
+use crate::expr::ast::Dialect;
 use crate::expr::compile;
 use crate::expr::interpolation::{Bindings, Spline};
 use crate::expr::parse;
@@ -16,14 +16,24 @@ pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
     let mut bindings = Bindings::default();
     let mut errors = Vec::new();
     for (&id, s) in &model.splines {
-        let extrapolation =
-            if s.linear_extrapolate { Extrapolation::Linear } else { Extrapolation::Parabolic };
-        match Spline::new(s.x.clone(), s.z.clone(), s.y.clone(), Ends::Natural, extrapolation) {
+        let extrapolation = if s.linear_extrapolate {
+            Extrapolation::Linear
+        } else {
+            Extrapolation::Parabolic
+        };
+        match Spline::new(
+            s.x.clone(),
+            s.z.clone(),
+            s.y.clone(),
+            Ends::Natural,
+            extrapolation,
+        ) {
             Ok(spline) => {
                 bindings.splines.insert(id, Arc::new(spline));
             }
-            Err(why) => errors
-                .push(Diagnostic::error("spline_data", why.to_string()).element(format!("SPLINE/{id}"))),
+            Err(why) => errors.push(
+                Diagnostic::error("spline_data", why.to_string()).element(format!("SPLINE/{id}")),
+            ),
         }
     }
     (bindings, errors)

@@ -18,14 +18,20 @@ where
 {
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let layout = scene.layout.inputs();
-    let numbers: Vec<Sym<'_>> = layout.iter().map(|&input| Sym::input(input, &builder)).collect();
+    let numbers: Vec<Sym<'_>> = layout
+        .iter()
+        .map(|&input| Sym::input(input, &builder))
+        .collect();
     let equations = Equations::new(scene, &numbers);
     let out = f(&equations);
     let complaints = equations.complaints();
     if !complaints.is_empty() {
         return Err(complaints);
     }
-    let values: Vec<_> = out.iter().map(|s| s.value(&mut builder.borrow_mut())).collect();
+    let values: Vec<_> = out
+        .iter()
+        .map(|s| s.value(&mut builder.borrow_mut()))
+        .collect();
     let program = builder.borrow().finish_with_inputs(&values, &layout);
     Ok(program)
 }
@@ -48,7 +54,10 @@ pub fn weights(scene: &Scene) -> Vec<f64> {
 /// ```
 pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &[S]) -> Vec<S> {
     let w = weights(scene);
-    let rows: Vec<_> = (0..scene.rows.len()).filter(|&r| at.is_active(r)).map(|r| at.row(r)).collect();
+    let rows: Vec<_> = (0..scene.rows.len())
+        .filter(|&r| at.is_active(r))
+        .map(|r| at.row(r))
+        .collect();
     let gram: Vec<Vec<S>> = rows
         .iter()
         .enumerate()
@@ -69,8 +78,14 @@ pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &
         })
         .collect();
     let position: Vec<S> = rows.iter().map(|r| -r.value).collect();
-    let velocity: Vec<S> =
-        rows.iter().map(|r| r.gradient.iter().fold(-r.drift, |s, &(v, g)| s - g * velocities[v])).collect();
+    let velocity: Vec<S> = rows
+        .iter()
+        .map(|r| {
+            r.gradient
+                .iter()
+                .fold(-r.drift, |s, &(v, g)| s - g * velocities[v])
+        })
+        .collect();
     let mut out = Vec::with_capacity(2 * scene.layout.n_v);
     for rhs in [position, velocity] {
         let lambda = solve_symmetric(gram.clone(), rhs);

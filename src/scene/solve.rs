@@ -78,7 +78,12 @@ impl<S: Scalar> MassFactor<S> {
 /// Accelerations and multipliers. `g[r]`: sparse row r of G; `gamma[r]` its right side; `f`: loads, overwritten by v̇.
 ///
 /// Returns λ, with `M v̇ = f + Gᵀ λ`.
-pub fn accelerations<S: Scalar>(m: &MassFactor<S>, g: &[Vec<(usize, S)>], gamma: &[S], f: &mut [S]) -> Vec<S> {
+pub fn accelerations<S: Scalar>(
+    m: &MassFactor<S>,
+    g: &[Vec<(usize, S)>],
+    gamma: &[S],
+    f: &mut [S],
+) -> Vec<S> {
     let n = f.len();
     m.half(f);
     let u: Vec<Vec<(usize, S)>> = g
@@ -89,12 +94,17 @@ pub fn accelerations<S: Scalar>(m: &MassFactor<S>, g: &[Vec<(usize, S)>], gamma:
                 x[k] += value;
             }
             m.half(&mut x);
-            x.into_iter().enumerate().filter(|e| !e.1.is_known_zero()).collect()
+            x.into_iter()
+                .enumerate()
+                .filter(|e| !e.1.is_known_zero())
+                .collect()
         })
         .collect();
     // (u/D, for one side of the products)
-    let scaled: Vec<Vec<(usize, S)>> =
-        u.iter().map(|row| row.iter().map(|&(k, x)| (k, x * m.inverse_d[k])).collect()).collect();
+    let scaled: Vec<Vec<(usize, S)>> = u
+        .iter()
+        .map(|row| row.iter().map(|&(k, x)| (k, x * m.inverse_d[k])).collect())
+        .collect();
     let rhs: Vec<S> = scaled
         .iter()
         .zip(gamma)
@@ -192,7 +202,11 @@ mod tests {
     #[test]
     fn a_forest_factors_without_fill() {
         // freedom 0 carries 1 and 2
-        let rows = vec![vec![(0, 5.0)], vec![(1, 2.0), (0, 1.0)], vec![(2, 3.0), (0, -1.0)]];
+        let rows = vec![
+            vec![(0, 5.0)],
+            vec![(1, 2.0), (0, 1.0)],
+            vec![(2, 3.0), (0, -1.0)],
+        ];
         let m = MassFactor::new(rows);
         let mut x = vec![1.0, 2.0, 3.0];
         accelerations(&m, &[], &[], &mut x);

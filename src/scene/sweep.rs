@@ -29,7 +29,10 @@ pub struct Wrench<S> {
 impl<S: Scalar> Wrench<S> {
     /// No load.
     pub fn zero() -> Self {
-        Self { force: Vec3::zero(), torque: Vec3::zero() }
+        Self {
+            force: Vec3::zero(),
+            torque: Vec3::zero(),
+        }
     }
 }
 
@@ -100,19 +103,30 @@ pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkSta
         let (mut alpha_own, mut a_own) = (Vec3::zero(), Vec3::zero());
         match link.motion {
             LinkMotion::Rigid => {}
-            LinkMotion::Slide { axis, sign, coordinate } => {
+            LinkMotion::Slide {
+                axis,
+                sign,
+                coordinate,
+            } => {
                 let x = jet(coordinate);
                 X_PL.position += X_PL.rotation.apply(along(axis, x.value.scale(sign)));
                 v_own = along(axis, x.first.scale(sign));
                 a_own = along(axis, x.second.scale(sign));
             }
-            LinkMotion::Turn { axis, sign, coordinate } => {
+            LinkMotion::Turn {
+                axis,
+                sign,
+                coordinate,
+            } => {
                 let x = jet(coordinate);
                 X_PL.rotation = X_PL.rotation * rotation::about_axis(axis, x.value.scale(sign));
                 w_own = along(axis, x.first.scale(sign));
                 alpha_own = along(axis, x.second.scale(sign));
             }
-            LinkMotion::Ball { coordinate, quaternion } => {
+            LinkMotion::Ball {
+                coordinate,
+                quaternion,
+            } => {
                 let q = [0, 1, 2, 3].map(|k| at.q[quaternion + k]);
                 X_PL.rotation = X_PL.rotation * rotation::from_quaternion(q);
                 let x = [jet(coordinate), jet(coordinate + 1), jet(coordinate + 2)];
@@ -127,7 +141,14 @@ pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkSta
         let carried = parent.a + parent.alpha.cross(p) + parent.w.cross(parent.w.cross(p));
         let coriolis = w.cross(v_own).times(S::constant(2.0));
         let a = X_PL.rotation.apply_transposed(carried) + coriolis + a_own;
-        states.push(LinkState { X_PL, X_GL: parent.X_GL.compose(&X_PL), w, v, alpha, a });
+        states.push(LinkState {
+            X_PL,
+            X_GL: parent.X_GL.compose(&X_PL),
+            w,
+            v,
+            alpha,
+            a,
+        });
     }
     states
 }
@@ -135,14 +156,20 @@ pub fn outward<S: Scalar>(scene: &Scene, at: &Coordinates<'_, S>) -> Vec<LinkSta
 /// Pose of a marker in ground.
 pub fn marker_frame<S: Scalar>(marker: &MarkerOnLink, states: &[LinkState<S>]) -> Frame<S> {
     let frame = Frame::constant(marker.frame);
-    marker.link.map_or(frame, |l| states[l].X_GL.compose(&frame))
+    marker
+        .link
+        .map_or(frame, |l| states[l].X_GL.compose(&frame))
 }
 
 /// Pose, velocity and acceleration of a marker in ground axes.
 pub fn marker_state<S: Scalar>(marker: &MarkerOnLink, states: &[LinkState<S>]) -> MarkerState<S> {
     let frame = Frame::constant(marker.frame);
     let Some(l) = marker.link else {
-        return MarkerState { R_GM: frame.rotation, p_GM: frame.position, ..MarkerState::ground() };
+        return MarkerState {
+            R_GM: frame.rotation,
+            p_GM: frame.position,
+            ..MarkerState::ground()
+        };
     };
     let s = &states[l];
     let p = frame.position;
@@ -170,7 +197,9 @@ pub fn apply<S: Scalar>(
     let Some(l) = link else { return };
     let X = &states[l].X_GL;
     wrenches[l].force += X.rotation.apply_transposed(force);
-    wrenches[l].torque += X.rotation.apply_transposed(torque + (point - X.position).cross(force));
+    wrenches[l].torque += X
+        .rotation
+        .apply_transposed(torque + (point - X.position).cross(force));
 }
 
 /// What each link's carrier must exert on it: inertia force − gravity − applied wrench, summed inward.
@@ -195,7 +224,10 @@ pub fn inward<S: Scalar>(
             let a = s.a - s.X_GL.rotation.apply_transposed(gravity);
             let force = a.times(m) + s.alpha.cross(mc) + s.w.cross(s.w.cross(mc));
             let torque = inertia.apply(s.alpha) + s.w.cross(inertia.apply(s.w)) + mc.cross(a);
-            Wrench { force: force - load.force, torque: torque - load.torque }
+            Wrench {
+                force: force - load.force,
+                torque: torque - load.torque,
+            }
         })
         .collect();
     for l in (0..scene.links.len()).rev() {
@@ -211,7 +243,10 @@ pub fn inward<S: Scalar>(
 /// The same wrench, about the parent's origin in the parent's axes.
 pub fn to_parent<S: Scalar>(X_PL: &Frame<S>, w: Wrench<S>) -> Wrench<S> {
     let force = X_PL.rotation.apply(w.force);
-    Wrench { force, torque: X_PL.rotation.apply(w.torque) + X_PL.position.cross(force) }
+    Wrench {
+        force,
+        torque: X_PL.rotation.apply(w.torque) + X_PL.position.cross(force),
+    }
 }
 
 /// One scalar freedom of the forest: a free coordinate, or a third of a ball.
@@ -245,10 +280,20 @@ impl Freedom {
 pub fn mass_matrix<S: Scalar>(scene: &Scene, states: &[LinkState<S>]) -> Vec<Vec<(usize, S)>> {
     let n = scene.links.len();
     let mut mass: Vec<S> = scene.links.iter().map(|l| S::constant(l.mass)).collect();
-    let mut moment: Vec<Vec3<S>> = scene.links.iter().map(|l| Vec3::constant(l.moment)).collect();
-    let mut inertia: Vec<Mat3<S>> = scene.links.iter().map(|l| Mat3::constant(l.inertia)).collect();
+    let mut moment: Vec<Vec3<S>> = scene
+        .links
+        .iter()
+        .map(|l| Vec3::constant(l.moment))
+        .collect();
+    let mut inertia: Vec<Mat3<S>> = scene
+        .links
+        .iter()
+        .map(|l| Mat3::constant(l.inertia))
+        .collect();
     for l in (0..n).rev() {
-        let Some(parent) = scene.links[l].parent else { continue };
+        let Some(parent) = scene.links[l].parent else {
+            continue;
+        };
         let X = &states[l].X_PL;
         let (R, p) = (X.rotation, X.position);
         let c = R.apply(moment[l]);
@@ -270,9 +315,15 @@ pub fn mass_matrix<S: Scalar>(scene: &Scene, states: &[LinkState<S>]) -> Vec<Vec
         let e = Vec3::axis(f.axis).times(S::constant(f.sign));
         let l = f.link;
         let mut w = if f.turn {
-            Wrench { force: e.cross(moment[l]), torque: inertia[l].apply(e) }
+            Wrench {
+                force: e.cross(moment[l]),
+                torque: inertia[l].apply(e),
+            }
         } else {
-            Wrench { force: e.times(mass[l]), torque: moment[l].cross(e) }
+            Wrench {
+                force: e.times(mass[l]),
+                torque: moment[l].cross(e),
+            }
         };
         let mut row = Vec::new();
         let mut link = l;

@@ -1,7 +1,7 @@
 //! Where a program changes branch: the differences whose signs its comparisons and IFs ask for.
 
-use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value};
 use super::Builder;
+use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value};
 
 impl Builder {
     /// Values that change sign where one of the outputs changes branch, each once, in the order of recording.
