@@ -3,11 +3,13 @@
 //! When `COGNATE_CONFORMANCE` names a folder with files of these names, its rows are run instead: all failing rows are
 //! printed with what came out and what was expected, and any of them fails the test.
 
+use cognate::expr::compile::compile;
 use cognate::expr::interpolation::{Bindings, Spline};
-use cognate::expr::program::Input;
+use cognate::expr::program::{Input, Program, Work};
 use cognate::expr::spline::{Ends, Extrapolation};
 use cognate::expr::walk::{Host, check_constants, value, values};
 use cognate::expr::{Profile, ast::Ast, ast::Dialect, parse};
+use cognate::scalar::{Dual, Jet, Lanes, Scalar};
 use cognate::space::{MarkerState, Mat3, Vec3, kinematic::kinematic_of, rotation::from_313};
 use serde_json::Value as Json;
 use std::collections::BTreeMap;
@@ -80,6 +82,22 @@ struct World {
     time: f64,
     markers: BTreeMap<u32, MarkerState<f64>>,
     bindings: Bindings,
+}
+
+impl World {
+    /// The size of what cancels inside the measures of these markers.
+    fn size(&self) -> f64 {
+        let most = |part: fn(&MarkerState<f64>) -> Vec3<f64>| {
+            self.markers
+                .values()
+                .map(|m| part(m).norm())
+                .fold(0.0, f64::max)
+        };
+        let (r, v, a) = (most(|m| m.p_GM), most(|m| m.v_GM), most(|m| m.a_GM));
+        let (w, alpha) = (most(|m| m.w_GM), most(|m| m.alpha_GM));
+        r.max(v + w * r)
+            .max(a + alpha * r + 2.0 * w * v + w * w * r)
+    }
 }
 
 impl Host for World {
@@ -174,6 +192,35 @@ fn splines(text: &str) -> Result<Bindings, String> {
     Ok(bindings)
 }
 
+/// A marker state of plain numbers in another kind of number.
+fn lifted<S: Scalar>(m: &MarkerState<f64>) -> MarkerState<S> {
+    MarkerState {
+        R_GM: Mat3::constant(m.R_GM),
+        p_GM: Vec3::constant(m.p_GM),
+        w_GM: Vec3::constant(m.w_GM),
+        v_GM: Vec3::constant(m.v_GM),
+        alpha_GM: Vec3::constant(m.alpha_GM),
+        a_GM: Vec3::constant(m.a_GM),
+    }
+}
+
+/// What the program gives at this time, over any kind of number; measures are computed in that kind too.
+fn over<S: Scalar>(program: &Program, world: &World, time: S) -> Result<S, String> {
+    let input = |&input: &Input| match input {
+        Input::Time => Some(time),
+        Input::Measure(m, arguments) => {
+            kinematic_of(m, arguments, |id| world.markers.get(&id).map(lifted))
+        }
+        _ => None,
+    };
+    let inputs: Option<Vec<S>> = program.inputs().iter().map(input).collect();
+    let inputs = inputs.ok_or_else(|| format!("no value for one of {:?}", program.inputs()))?;
+    let mut out = [S::zero()];
+    program.eval(&inputs, &mut Work::default(), &mut out);
+    Ok(out[0])
+}
+
+/// The value through walker, program over numbers, duals and lanes.
 fn run(row: &BTreeMap<String, String>, dialect: Dialect, world: World) -> Result<(), String> {
     let text = text_of(row);
     let ast = tree(&text, dialect)?;
@@ -183,8 +230,33 @@ fn run(row: &BTreeMap<String, String>, dialect: Dialect, world: World) -> Result
         .iter()
         .flatten()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
-    let got = values[ast.root as usize].unwrap_or(f64::NAN);
-    compare(got, number(row, "expected")?, largest)
+    let walked = values[ast.root as usize].unwrap_or(f64::NAN);
+    compare(walked, number(row, "expected")?, world.size().max(largest))?;
+
+    let program = compile(&[&ast], &world.bindings).map_err(|e| e.to_string())?;
+    let same = |what: &str, got: f64, expected: f64| match got == expected
+        || got.is_nan() && expected.is_nan()
+    {
+        true => Ok(()),
+        false => Err(format!("{what} gives {got:?}, not {expected:?}")),
+    };
+    same("the program", over(&program, &world, world.time)?, walked)?;
+    same(
+        "the program over duals",
+        over(&program, &world, Dual::<1>::variable(world.time, 0))?.re,
+        walked,
+    )?;
+    same(
+        "the program over jets",
+        over(&program, &world, Jet::variable(world.time))?.value,
+        walked,
+    )?;
+    let times = [world.time, world.time + 0.3, 0.0, 7.7];
+    let lanes = over(&program, &world, Lanes(times))?;
+    for (lane, time) in times.into_iter().enumerate() {
+        same("a lane", lanes.0[lane], over(&program, &world, time)?)?;
+    }
+    Ok(())
 }
 
 #[test]
@@ -244,10 +316,49 @@ fn splines_have_the_stated_values() {
 }
 
 #[test]
+fn derivatives_have_the_stated_values() {
+    all_rows("derivatives", |row| {
+        let (time, expected) = (number(row, "time")?, number(row, "expected")?);
+        let ast = tree(&text_of(row), Dialect::Function)?;
+        let program = compile(&[&ast], &Bindings::default()).map_err(|e| e.to_string())?;
+        let world = World::default();
+        let jet = over(&program, &world, Jet::variable(time))?;
+        let order = number(row, "order")?;
+        let of_order = |jet: Jet| if order == 1.0 { jet.first } else { jet.second };
+        // a derivative that is small here is as accurate as value and derivatives are large nearby
+        let mut nearby: f64 = 0.0;
+        for t in [time - 0.1, time, time + 0.1] {
+            let jet = over(&program, &world, Jet::variable(t))?;
+            let sizes = [jet.value, jet.first, of_order(jet)].map(f64::abs);
+            nearby = sizes
+                .into_iter()
+                .filter(|x| x.is_finite())
+                .fold(nearby, f64::max);
+        }
+        let dual = over(&program, &world, Dual::<1>::variable(time, 0))?;
+        let twice = over(
+            &program,
+            &world,
+            Dual::<1, Dual<1>>::variable(Dual::variable(time, 0), 0),
+        )?;
+        let others = if order == 1.0 {
+            [dual.eps[0], twice.eps[0].re]
+        } else {
+            [twice.eps[0].eps[0]; 2]
+        };
+        let mut got = others.into_iter().chain([of_order(jet)]);
+        got.try_for_each(|got| compare(got, expected, nearby))
+    });
+}
+
+#[test]
 fn malformed_texts_give_the_stated_kind_and_column() {
     all_rows("errors", |row| {
         let text = text_of(row);
-        let profile = if row["note"].starts_with("compat limits on") {
+        let profile = if row
+            .get("note")
+            .is_some_and(|note| note.starts_with("compat limits on"))
+        {
             Profile::Ideas
         } else {
             Profile::Adams

@@ -7,6 +7,7 @@ mod advice;
 pub mod ast;
 mod check;
 pub mod compile;
+mod expression;
 pub mod functions;
 pub mod interpolation;
 pub mod measures;
@@ -20,5 +21,6 @@ mod token;
 pub mod walk;
 
 pub use check::{DEEPEST_NESTING, Limits, MOST_CHARACTERS};
+pub use expression::{Expr, input_named};
 pub use parse::{parse, parse_with_limits};
 pub use symbols::{Profile, Symbol, names, symbol};

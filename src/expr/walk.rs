@@ -153,13 +153,10 @@ impl<'a> Walk<'a> {
                 .extend([Task::Choose(ix), Task::Evaluate(selector)]),
             Node::Call {
                 callee: Callee::Measure(m),
-                ref args,
+                ..
             } => {
-                let mut identifiers = [0; 4];
-                for (identifier, &arg) in identifiers.iter_mut().zip(args) {
-                    *identifier = self.integer(arg);
-                }
-                return self.input(ix, Input::Measure(m, identifiers)).map(Some);
+                let input = self.ast.input(ix).unwrap_or(Input::Measure(m, [0; 4]));
+                return self.input(ix, input).map(Some);
             }
             Node::Call {
                 callee: Callee::Function(Function::Delay),
@@ -181,14 +178,6 @@ impl<'a> Walk<'a> {
             Constant::Rtod => Ok(180.0 / std::f64::consts::PI),
             Constant::Time => self.input(ix, Input::Time),
             Constant::Mode => self.input(ix, Input::Mode),
-        }
-    }
-
-    /// A literal that the check has found to be a whole number.
-    fn integer(&self, ix: NodeIx) -> u32 {
-        match *self.ast.node(ix) {
-            Node::Number { literal, .. } => literal as u32,
-            _ => 0,
         }
     }
 
@@ -214,8 +203,9 @@ impl<'a> Walk<'a> {
         let Some(host) = self.host else {
             return Ok(f64::NAN);
         };
-        let number = self.ast.delays().position(|delay| delay == ix).unwrap_or(0);
-        host.input(Input::Delayed(number as u32)).ok_or_else(|| {
+        let delays = self.ast.delays();
+        let number = delays.iter().find(|d| d.0 == ix).map_or(0, |d| d.1);
+        host.input(Input::Delayed(number)).ok_or_else(|| {
             let mut trouble = self.trouble(
                 "needs_history",
                 ix,
@@ -406,17 +396,6 @@ impl BinaryOp {
 }
 
 impl Ast {
-    /// The calls of DELAY in the order in which their values are numbered.
-    pub fn delays(&self) -> impl Iterator<Item = NodeIx> + '_ {
-        (0..).zip(&self.nodes).filter_map(|(ix, node)| match node {
-            Node::Call {
-                callee: Callee::Function(Function::Delay),
-                ..
-            } => Some(ix),
-            _ => None,
-        })
-    }
-
     /// A node as it would be written.
     pub fn written(&self, ix: NodeIx) -> String {
         super::print::Written { ast: self, ix }.to_string()

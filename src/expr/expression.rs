@@ -1,0 +1,279 @@
+//! The front door of the language: one expression, from its text to its value.
+
+use super::ast::{Ast, Callee, Constant, Dialect, Node, NodeIx};
+use super::compile::compile;
+use super::functions::Function;
+use super::interpolation::Bindings;
+use super::parse::parse;
+use super::program::{Input, Program};
+use super::symbols::Profile;
+use super::walk::{self, Host};
+use crate::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+/// An expression of the function language, checked.
+///
+/// ```
+/// use cognate::expr::Expr;
+/// let f = Expr::parse("STEP5(TIME, 0, 0, 1, 10) * SIN(2*PI*TIME)")?;
+/// let y = f.eval(&[("TIME", 0.25)])?;
+/// assert_eq!(y, 1.03515625);
+/// assert_eq!(f.to_string(), "STEP5(TIME, 0, 0, 1, 10)*SIN(2*PI*TIME)");
+/// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+/// ```
+///
+/// What comes from a model is given by name:
+///
+/// ```
+/// # use cognate::expr::Expr;
+/// let spring = Expr::parse("-25*(DM(10,20) - 10) - 2*VR(10,20)")?;
+/// let names: Vec<String> = spring.inputs().iter().map(|i| i.to_string()).collect();
+/// assert_eq!(names, ["DM(10, 20)", "VR(10, 20)"]);
+/// assert_eq!(spring.eval(&[("DM(10, 20)", 12.0), ("VR(10, 20)", 0.5)])?, -51.0);
+/// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    text: String,
+    ast: Ast,
+}
+
+impl Expr {
+    /// Reads a direct-entry function.
+    ///
+    /// # Errors
+    /// The first mistake in the text; or an operation that has no value whatever the inputs are, as in `1/0`.
+    ///
+    /// ```
+    /// # use cognate::expr::Expr;
+    /// let error = Expr::parse("2*SQRT(TIME").unwrap_err();
+    /// assert_eq!((error.code, error.column), ("unexpected_end", 12));
+    /// ```
+    pub fn parse(text: &str) -> Result<Self, Diagnostic> {
+        Self::parse_dialect(text, Dialect::Function)
+    }
+
+    /// Reads a text of either language.
+    ///
+    /// # Errors
+    /// As [`Expr::parse`].
+    ///
+    /// ```
+    /// # use cognate::expr::{Expr, ast::Dialect};
+    /// let motion = Expr::parse_dialect("180*sin(360*t)", Dialect::Expression)?;
+    /// assert!((motion.eval(&[("t", 0.25)])? - 180.0).abs() < 1e-12);
+    /// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+    /// ```
+    pub fn parse_dialect(text: &str, dialect: Dialect) -> Result<Self, Diagnostic> {
+        Self::parse_profile(text, dialect, Profile::Adams)
+    }
+
+    /// Reads a text by the habits of a program: its limits and other names.
+    ///
+    /// # Errors
+    /// As [`Expr::parse`], and what exceeds a limit.
+    ///
+    /// ```
+    /// # use cognate::expr::{Expr, Profile, ast::Dialect};
+    /// let deep = "(((((((((((1)))))))))))";
+    /// assert!(Expr::parse(deep).is_ok());
+    /// let error = Expr::parse_profile(deep, Dialect::Function, Profile::Ideas).unwrap_err();
+    /// assert_eq!((error.code, error.column), ("limit_nesting", 11));
+    /// ```
+    pub fn parse_profile(
+        text: &str,
+        dialect: Dialect,
+        profile: Profile,
+    ) -> Result<Self, Diagnostic> {
+        let ast = parse(text, dialect, profile)?;
+        walk::check_constants(&ast).map_err(|trouble| trouble.diagnostic(text))?;
+        Ok(Self {
+            text: text.to_string(),
+            ast,
+        })
+    }
+
+    /// The text it was read from.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+    /// The tree.
+    pub fn ast(&self) -> &Ast {
+        &self.ast
+    }
+
+    /// The value, for inputs given by name: `TIME` (or `t`), `MODE`, and measures as they are written.
+    ///
+    /// # Errors
+    /// A name that is no input, an input without a value, or an operation on the taken path that has no value: the message
+    /// names it and the numbers it was given.
+    ///
+    /// ```
+    /// # use cognate::expr::Expr;
+    /// let f = Expr::parse("IF(TIME-1: 0, 0, LOG(2-TIME))")?;
+    /// assert_eq!(f.eval(&[("TIME", 0.5)])?, 0.0);
+    /// let error = f.eval(&[("TIME", 2.5)]).unwrap_err();
+    /// assert_eq!(error.column, 18);
+    /// assert_eq!(error.message, "LOG of -0.5 has no value at TIME = 2.5: LOG takes positive numbers");
+    /// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+    /// ```
+    pub fn eval(&self, inputs: &[(&str, f64)]) -> Result<f64, Diagnostic> {
+        let mut known = BTreeMap::new();
+        for &(name, value) in inputs {
+            known.insert(input_named(name, self.ast.dialect)?, value);
+        }
+        self.eval_with(&|input| known.get(&input).copied())
+    }
+
+    /// The value, for inputs and curves of a host.
+    ///
+    /// # Errors
+    /// As [`Expr::eval`].
+    pub fn eval_with(&self, host: &dyn Host) -> Result<f64, Diagnostic> {
+        walk::value(&self.ast, host).map_err(|trouble| trouble.diagnostic(&self.text))
+    }
+
+    /// What it reads, each once, in the order of the text. Delayed values are left out; the program numbers them.
+    pub fn inputs(&self) -> Vec<Input> {
+        let mut found = Vec::new();
+        for ix in 0..self.ast.nodes.len() {
+            if let Some(input) = self.ast.input(ix as NodeIx).filter(|i| !found.contains(i)) {
+                found.push(input);
+            }
+        }
+        found
+    }
+
+    /// The names of what it reads that needs history: DELAY, and angles that count turns.
+    pub fn needs_history(&self) -> Vec<&'static str> {
+        let mut found = Vec::new();
+        for node in &self.ast.nodes {
+            if let Node::Call { callee, .. } = node
+                && callee.needs_history()
+                && !found.contains(&callee.name())
+            {
+                found.push(callee.name());
+            }
+        }
+        found
+    }
+
+    /// The program that yields the same value, fast.
+    ///
+    /// # Errors
+    /// A spline or curve that is not bound.
+    pub fn compile(&self, bindings: &Bindings) -> Result<Program, Diagnostic> {
+        compile(&[&self.ast], bindings).map_err(|mut said| {
+            if let Some(span) = said.span {
+                let placed = super::advice::at(&self.text, said.code, "", span);
+                (said.line, said.column) = (placed.line, placed.column);
+            }
+            said
+        })
+    }
+}
+
+impl FromStr for Expr {
+    type Err = Diagnostic;
+    fn from_str(text: &str) -> Result<Self, Diagnostic> {
+        Self::parse(text)
+    }
+}
+
+/// Prints back to source: as few parentheses as possible, shortest digits. Reading that gives the same tree.
+impl fmt::Display for Expr {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.ast.fmt(f)
+    }
+}
+
+/// The input of this name: `TIME`, `DX(1, 2)`.
+///
+/// # Errors
+/// A mistake in the name, or an expression that is more than one input.
+pub fn input_named(name: &str, dialect: Dialect) -> Result<Input, Diagnostic> {
+    let ast = parse(name, dialect, Profile::Adams)?;
+    ast.input(ast.root).ok_or_else(|| {
+        let said = Diagnostic::error(
+            "missing_value",
+            format!("`{name}` is not the name of an input"),
+        );
+        said.help(
+            "inputs are TIME (t in expression functions), MODE, and measures such as DX(1, 2)",
+        )
+    })
+}
+
+impl Ast {
+    /// What a node asks of the host, if it is a question.
+    pub fn input(&self, ix: NodeIx) -> Option<Input> {
+        match self.node(ix) {
+            Node::Constant(Constant::Time) => Some(Input::Time),
+            Node::Constant(Constant::Mode) => Some(Input::Mode),
+            Node::Call {
+                callee: Callee::Measure(m),
+                args,
+            } => {
+                let mut identifiers = [0; 4];
+                for (identifier, &arg) in identifiers.iter_mut().zip(args) {
+                    if let Node::Number { literal, .. } = *self.node(arg) {
+                        // the check has found a whole number in its range
+                        *identifier = literal as u32;
+                    }
+                }
+                Some(Input::Measure(*m, identifiers))
+            }
+            _ => None,
+        }
+    }
+
+    /// The calls of DELAY with their numbers as delayed values: calls written alike share one.
+    pub fn delays(&self) -> Vec<(NodeIx, u32)> {
+        let mut different: Vec<String> = Vec::new();
+        let mut found = Vec::new();
+        for (ix, node) in (0..).zip(&self.nodes) {
+            if matches!(
+                node,
+                Node::Call {
+                    callee: Callee::Function(Function::Delay),
+                    ..
+                }
+            ) {
+                let written = self.written(ix);
+                let known = different.iter().position(|w| *w == written);
+                let number = known.unwrap_or_else(|| {
+                    different.push(written);
+                    different.len() - 1
+                });
+                found.push((ix, number as u32));
+            }
+        }
+        found
+    }
+}
+
+/// As a user would write it; arguments that may be left out are, where they are ground.
+impl fmt::Display for Input {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Input::Time => f.write_str("TIME"),
+            Input::Mode => f.write_str("MODE"),
+            Input::Measure(measure, identifiers) => {
+                let (least, most) = Callee::Measure(measure).arity();
+                let written = identifiers[..most.min(4)]
+                    .iter()
+                    .rposition(|&id| id != 0)
+                    .map_or(0, |k| k + 1);
+                let list: Vec<String> = identifiers[..written.max(least)]
+                    .iter()
+                    .map(u32::to_string)
+                    .collect();
+                write!(f, "{}({})", measure.name(), list.join(", "))
+            }
+            Input::Delayed(k) => write!(f, "delayed value {}", k + 1),
+            Input::Slot(k) => write!(f, "slot {k}"),
+        }
+    }
+}
