@@ -138,9 +138,12 @@ fn the_smallest_complete_set_has_its_known_values() {
     );
     assert_eq!(
         run.column("PART_2_XFORM.PSI").unwrap()[1],
-        -0.43240777557053789
+        -0.432_407_775_570_537_9
     );
-    assert_eq!(run.column("JOINT_1.FY").unwrap()[502], 67.31781822398141912);
+    assert_eq!(
+        run.column("JOINT_1.FY").unwrap()[502],
+        67.317_818_223_981_42
+    );
     assert_eq!(
         run.columns[run.find("JOINT_2.TZ").unwrap()].unit,
         "pound_force-inch"
@@ -157,7 +160,7 @@ fn the_smallest_complete_set_has_its_known_values() {
     );
     assert_eq!(
         table.column("JOINT_1.FY").unwrap()[501],
-        67.31781822398141912
+        67.317_818_223_981_42
     );
 }
 

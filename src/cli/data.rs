@@ -63,7 +63,9 @@ impl Data {
     /// When the file cannot be read or is not of the form above; says where.
     pub fn read_markers(&mut self, file: &Path) -> Result<(), Diagnostic> {
         each_of(file, |id, object| {
-            marker(object).map(|m| drop(self.markers.insert(id, m)))
+            marker(object).map(|m| {
+                self.markers.insert(id, m);
+            })
         })
     }
     /// Reads data of splines from a file.

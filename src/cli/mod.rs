@@ -6,6 +6,8 @@
 pub mod card;
 mod convert;
 pub mod data;
+mod eval;
+pub mod formula;
 mod functions;
 pub mod interrupt;
 mod plot;
@@ -29,6 +31,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Verb {
     Convert(convert::Args),
+    Eval(eval::Args),
     Functions(functions::Args),
     Plot(plot::Args),
 }
@@ -119,6 +122,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Convert(args) => convert::run(args),
+        Verb::Eval(args) => eval::run(args),
         Verb::Functions(args) => functions::run(args),
         Verb::Plot(args) => plot::run(args),
     });

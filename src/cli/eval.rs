@@ -1,0 +1,245 @@
+//! `cognate eval`: the value of an expression at a time, or a table over a range of times.
+
+use super::formula::{Formula, Setting, derivative_names, give, times};
+use super::render::{Sources, as_json};
+use super::{Exit, Failure, Outcome, plot, say};
+use crate::diagnostic::Diagnostic;
+use crate::expr::Profile;
+use crate::expr::ast::Dialect;
+use crate::report::Plot;
+use crate::results::{Kind, Run, Units, csv, digits, json};
+use serde_json::json;
+use std::io::Read;
+use std::path::PathBuf;
+
+/// Evaluate an expression of the function language
+///
+/// Prints the shortest digits that read back as the same number. Over a range of times it prints a table: time, value, derivatives.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate eval 'STEP(TIME,1,0,2,1)' --time 1.5
+  cognate eval 'SIN(2*PI*TIME)' --time 0:2:0.01 --derivative 2 > table.csv
+  cognate eval 'IMPACT(TIME,-1,1,100,1.5,25,0.1)' --time 0:2:0.01 --plot impact.svg
+  cognate eval '180*sin(360*t)' --dialect expression --time 0.1
+  cognate eval 'DX(12,21)+VARVAL(3)' --markers markers.json --set 'VARVAL(3)=2.5'
+  echo 'AKISPL(TIME,0,1)' | cognate eval - --time 1.25 --splines splines.json")]
+pub struct Args {
+    /// The expression; - reads it from standard input
+    #[arg(allow_hyphen_values = true)]
+    expression: String,
+    /// Time, or a range first:last:step
+    #[arg(long, value_name = "T|A:B:STEP", allow_hyphen_values = true)]
+    time: Option<String>,
+    /// Print the derivative over time of this order; in a table, up to this order
+    #[arg(long, value_name = "ORDER", value_parser = clap::value_parser!(u8).range(0..=2), default_value_t = 0)]
+    derivative: u8,
+    /// The language: direct-entry functions, or expression functions of t in degrees
+    #[arg(long, value_enum, default_value = "function")]
+    dialect: DialectName,
+    /// Whose limits and names: adams, or ideas (nesting 10, 1000 symbols, 20 lines or 500 characters, AKIMA)
+    #[arg(long, value_enum, default_value = "adams")]
+    profile: ProfileName,
+    /// States of markers: {"12": {"r": [x,y,z], "v": …, "w": …, "a": …, "al": …, "e313": [psi,theta,phi]}}
+    #[arg(long, value_name = "FILE.json")]
+    markers: Option<PathBuf>,
+    /// Data of splines: {"1": {"x": […], "y": […]}}
+    #[arg(long, value_name = "FILE.json")]
+    splines: Option<PathBuf>,
+    /// Give a value to a function of the model, such as 'VARVAL(3)=2.5' (repeatable)
+    #[arg(long, value_name = "CALL=VALUE")]
+    set: Vec<String>,
+    /// Plot value and derivatives as SVG
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// The language, as it is chosen by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum DialectName {
+    /// radians, TIME, degree suffix D
+    Function,
+    /// degrees, t
+    Expression,
+}
+
+impl From<DialectName> for Dialect {
+    fn from(name: DialectName) -> Self {
+        match name {
+            DialectName::Function => Dialect::Function,
+            DialectName::Expression => Dialect::Expression,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum ProfileName {
+    Adams,
+    Ideas,
+}
+
+/// What `--time` says.
+enum Time {
+    Not,
+    At(f64),
+    Over(Vec<f64>),
+}
+
+pub fn run(args: &Args) -> Outcome {
+    let text = match args.expression.as_str() {
+        "-" => from_stdin()?,
+        text => text.to_owned(),
+    };
+    let outcome = evaluate(args, &text);
+    if let (true, Err(failure)) = (args.json, &outcome) {
+        say(&json::text(
+            &json!({ "expression": text, "errors": as_json(&failure.diagnostics) }),
+        ));
+    }
+    outcome
+}
+
+fn evaluate(args: &Args, text: &str) -> Outcome {
+    let time = time(args.time.as_deref())?;
+    let setting = setting(args)?;
+    let in_text = |d: Diagnostic| Failure {
+        sources: Sources::of(text),
+        ..Failure::from(d)
+    };
+    let mut formula = Formula::new(text, &setting).map_err(in_text)?;
+    let order = usize::from(args.derivative);
+    let over = match time {
+        Time::Over(times) => times,
+        Time::At(_) | Time::Not if args.plot.is_some() => {
+            return Err(Failure::usage(
+                "a plot needs a range of times: --time first:last:step",
+            ));
+        }
+        Time::At(t) => return one(args, text, &mut formula, Some(t), &setting).map_err(in_text),
+        Time::Not => return one(args, text, &mut formula, None, &setting).map_err(in_text),
+    };
+    let mut run = Run::new("eval", "", Units::default());
+    for name in derivative_names(text).into_iter().take(order + 1) {
+        run.add_column(name, "");
+    }
+    run.begin(Kind::Dynamic);
+    for t in over {
+        let sample = formula
+            .sample(Some(t), order, &setting.data)
+            .map_err(in_text)?;
+        run.push(&[&[t], &sample[..=order]].concat());
+    }
+    run.end();
+    if let Some(file) = &args.plot {
+        let mut picture = Plot::of_run(&run, None, &[])?;
+        (picture.title, picture.x_label) = (
+            String::new(),
+            if args.dialect == DialectName::Function {
+                "TIME"
+            } else {
+                "t"
+            }
+            .into(),
+        );
+        return plot::write_svg(&picture, file);
+    }
+    say(&if args.json {
+        json::text(&json::table(&run))
+    } else {
+        csv::write(&run, false)
+    });
+    Ok(Exit::Done)
+}
+
+/// Prints the value, or the derivative, at one time.
+fn one(
+    args: &Args,
+    text: &str,
+    formula: &mut Formula,
+    time: Option<f64>,
+    setting: &Setting,
+) -> Result<Exit, Diagnostic> {
+    let order = usize::from(args.derivative);
+    let sample = formula.sample(time, order, &setting.data)?;
+    if args.json {
+        let derivatives = &sample[1..=order];
+        say(&json::text(
+            &json!({ "expression": text, "time": time, "value": sample[0], "derivatives": derivatives }),
+        ));
+    } else {
+        say(&(digits(sample[order]) + "\n"));
+    }
+    Ok(Exit::Done)
+}
+
+fn setting(args: &Args) -> Result<Setting, Failure> {
+    let profile = match args.profile {
+        ProfileName::Adams => Profile::Adams,
+        ProfileName::Ideas => Profile::Ideas,
+    };
+    let mut setting = Setting {
+        dialect: args.dialect.into(),
+        profile,
+        ..Setting::default()
+    };
+    if let Some(file) = &args.markers {
+        setting.data.read_markers(file)?;
+    }
+    if let Some(file) = &args.splines {
+        setting.data.read_splines(file)?;
+    }
+    for assignment in &args.set {
+        let usage = || {
+            Failure::usage(format!(
+                "`{assignment}` is not of the form CALL=VALUE, such as VARVAL(3)=2.5"
+            ))
+        };
+        let (call, value) = assignment.split_once('=').ok_or_else(usage)?;
+        let value = value.trim().parse().map_err(|_| usage())?;
+        give(&mut setting, call, value).map_err(|d| Failure {
+            sources: Sources::of(call),
+            ..Failure::from(d)
+        })?;
+    }
+    Ok(setting)
+}
+
+fn time(text: Option<&str>) -> Result<Time, Failure> {
+    let Some(text) = text else {
+        return Ok(Time::Not);
+    };
+    let numbers: Option<Vec<f64>> = text
+        .split(':')
+        .map(|n| n.trim().parse().ok().filter(|n: &f64| n.is_finite()))
+        .collect();
+    match numbers.as_deref() {
+        Some(&[t]) => Ok(Time::At(t)),
+        Some(&[first, last, step]) => Ok(Time::Over(times(first, last, step).map_err(|d| {
+            Failure {
+                exit: Exit::Usage,
+                ..Failure::from(d)
+            }
+        })?)),
+        _ => Err(Failure::usage(format!(
+            "`{text}` is neither a time nor a range first:last:step"
+        ))),
+    }
+}
+
+fn from_stdin() -> Result<String, Failure> {
+    let mut text = String::new();
+    let read = std::io::stdin()
+        .lock()
+        .take(16 << 20)
+        .read_to_string(&mut text);
+    read.map_err(|e| {
+        Diagnostic::error(
+            "file_unreadable",
+            format!("standard input cannot be read: {e}"),
+        )
+    })?;
+    Ok(text.trim_end().to_owned())
+}

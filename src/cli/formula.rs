@@ -1,0 +1,320 @@
+//! An expression at the prompt: read, compiled, and evaluated with its rates in time from what the user gave.
+//!
+//! The compiled program does the work. Where it yields no finite number the walker repeats the evaluation and says which part
+//! of the text has no value, and why.
+
+use super::data::Data;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::expr::ast::{Ast, Dialect};
+use crate::expr::program::{Input, Program, Work};
+use crate::expr::{Profile, compile, parse, walk};
+use crate::scalar::{Jet, Scalar};
+
+/// How expressions are to be read and evaluated.
+#[derive(Clone, Debug, Default)]
+pub struct Setting {
+    /// the language
+    pub dialect: Dialect,
+    /// whose habits and limits
+    pub profile: Profile,
+    /// what expressions may ask for
+    pub data: Data,
+}
+
+/// An expression, ready.
+pub struct Formula {
+    /// as it was typed
+    pub text: String,
+    /// its tree
+    pub ast: Ast,
+    /// its code, with one output
+    pub program: Program,
+    jets: Work<Jet>,
+    plain: Work,
+}
+
+/// Value and rates at a time; those that were not asked for are 0.
+pub type Sample = [f64; 3];
+
+impl Formula {
+    /// Reads and compiles an expression.
+    ///
+    /// # Errors
+    /// The first mistake in it, with its place.
+    pub fn new(text: &str, setting: &Setting) -> Result<Self, Diagnostic> {
+        let ast = parse(text, setting.dialect, setting.profile)?;
+        walk::check_constants(&ast).map_err(|trouble| trouble.diagnostic(text))?;
+        let placed = |d: Diagnostic| {
+            let span = d.span.unwrap_or(Span::new(0, text.len()));
+            if d.line > 0 { d } else { d.at(text, span) }
+        };
+        let program = compile::compile(&[&ast], &setting.data.bindings).map_err(placed)?;
+        Ok(Self {
+            text: text.to_owned(),
+            ast,
+            program,
+            jets: Work::default(),
+            plain: Work::default(),
+        })
+    }
+
+    /// The value at a time, with its first derivatives in time up to `order`, which is at most 2.
+    ///
+    /// # Errors
+    /// When there is none: a part outside its domain, or something that is not given. The place is that of the part.
+    pub fn sample(
+        &mut self,
+        time: Option<f64>,
+        order: usize,
+        data: &Data,
+    ) -> Result<Sample, Diagnostic> {
+        let sample = if order == 0 {
+            [self.value(time, data), 0.0, 0.0]
+        } else {
+            self.rates(time, data)
+        };
+        let wanted = &sample[..=order.min(2)];
+        if wanted.iter().all(|x| x.is_finite()) {
+            Ok(sample)
+        } else {
+            Err(self.trouble(time, data, &sample))
+        }
+    }
+
+    fn value(&mut self, time: Option<f64>, data: &Data) -> f64 {
+        let given = |&input: &Input| {
+            input_time(input, time)
+                .and_then(|t| data.value(input, t))
+                .unwrap_or(f64::NAN)
+        };
+        let inputs: Vec<f64> = self.program.inputs().iter().map(given).collect();
+        let mut out = [f64::NAN];
+        self.program.run(&inputs, &mut self.plain, &mut out);
+        out[0]
+    }
+
+    fn rates(&mut self, time: Option<f64>, data: &Data) -> Sample {
+        let unknown = Jet::constant(f64::NAN);
+        let given = |&input: &Input| {
+            input_time(input, time)
+                .and_then(|t| data.jet(input, t))
+                .unwrap_or(unknown)
+        };
+        let inputs: Vec<Jet> = self.program.inputs().iter().map(given).collect();
+        let mut out = [unknown];
+        self.program.eval(&inputs, &mut self.jets, &mut out);
+        [out[0].value, out[0].first, out[0].second]
+    }
+
+    /// Why there is no finite number.
+    fn trouble(&self, time: Option<f64>, data: &Data, sample: &Sample) -> Diagnostic {
+        let host = TimedData { data, time };
+        match walk::value(&self.ast, &host) {
+            Err(trouble) => {
+                let d = trouble.diagnostic(&self.text);
+                match d.code {
+                    "missing_value" if time.is_none() && self.program.inputs().contains(&Input::Time) => {
+                        d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")
+                    }
+                    "missing_value" => d.help(
+                        "give states of markers (`--markers FILE`, `:marker`) or a value (`--set 'VARVAL(3)=2.5'`, `:let`)",
+                    ),
+                    _ => d,
+                }
+            }
+            Ok(_) => {
+                let which = if sample[1].is_finite() {
+                    "second derivative"
+                } else {
+                    "first derivative"
+                };
+                let at = time.map_or(String::new(), |t| {
+                    format!(" at time {}", crate::results::digits(t))
+                });
+                Diagnostic::error("domain", format!("the {which} has no finite value{at}"))
+                    .at(&self.text, Span::new(0, self.text.len()))
+            }
+        }
+    }
+}
+
+/// The time at which an input is asked for: the expression's own, or any where it does not read the time.
+fn input_time(input: Input, time: Option<f64>) -> Option<f64> {
+    if input == Input::Time {
+        time
+    } else {
+        Some(time.unwrap_or(0.0))
+    }
+}
+
+/// Data at a time, as the walker asks for them.
+pub struct TimedData<'a> {
+    /// what is given
+    pub data: &'a Data,
+    /// time, if it is given
+    pub time: Option<f64>,
+}
+
+impl walk::Host for TimedData<'_> {
+    fn input(&self, input: Input) -> Option<f64> {
+        self.data.value(input, input_time(input, self.time)?)
+    }
+    fn bindings(&self) -> Option<&crate::expr::interpolation::Bindings> {
+        Some(&self.data.bindings)
+    }
+}
+
+/// Gives a value to a function of the model: `VARVAL(3)` becomes 2.5.
+///
+/// # Errors
+/// When the text is not one call of a function of the model.
+pub fn give(setting: &mut Setting, call: &str, value: f64) -> Result<(), Diagnostic> {
+    let ast = parse(call, Dialect::Function, setting.profile)?;
+    let program = compile::compile(&[&ast], &setting.data.bindings)?;
+    match (program.inputs(), program.n_operations()) {
+        ([input @ Input::Measure(..)], 0) => {
+            setting.data.values.insert(*input, value);
+            Ok(())
+        }
+        ([Input::Mode], 0) => {
+            setting.data.mode = value;
+            Ok(())
+        }
+        _ => Err(Diagnostic::error(
+            "not_an_input",
+            format!("`{call}` is not a function of the model"),
+        )
+        .help("such as VARVAL(3), DX(12,21), JOINT(1,0,2,0) or MODE")),
+    }
+}
+
+/// The names of a value and its derivatives over time.
+pub fn derivative_names(text: &str) -> [String; 3] {
+    let name = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    [
+        name.clone(),
+        format!("d/dt {name}"),
+        format!("d2/dt2 {name}"),
+    ]
+}
+
+/// Times from `first` to `last`, `step` apart; the last one is there when it is reached but for rounding.
+///
+/// # Errors
+/// When the step does not lead from the first to the last, or there are too many.
+pub fn times(first: f64, last: f64, step: f64) -> Result<Vec<f64>, Diagnostic> {
+    const MOST: f64 = 1e7;
+    let n = ((last - first) / step * (1.0 + 1e-12) + 1e-9).floor();
+    if !n.is_finite() || n < 0.0 {
+        let message = format!("no steps of {step} lead from {first} to {last}");
+        return Err(Diagnostic::error("bad_range", message)
+            .help("a range is first:last:step, such as 0:2:0.01"));
+    }
+    if n > MOST {
+        return Err(Diagnostic::error(
+            "bad_range",
+            format!("{n} samples are more than {MOST}"),
+        ));
+    }
+    // Multiples of the step; the last is taken as it was given when only rounding keeps them apart.
+    let mut times: Vec<f64> = (0..=n as usize).map(|k| first + k as f64 * step).collect();
+    if let Some(end) = times
+        .last_mut()
+        .filter(|end| (**end - last).abs() <= 1e-9 * step.abs())
+    {
+        *end = last;
+    }
+    Ok(times)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::measures::Measure;
+
+    #[test]
+    fn a_range_ends_where_it_was_said_to_end() {
+        assert_eq!(times(0.0, 0.3, 0.1).unwrap(), [0.0, 0.1, 0.2, 0.3]);
+        assert_eq!(times(0.0, 0.35, 0.1).unwrap().len(), 4);
+        assert_eq!(times(1.0, -1.0, -1.0).unwrap(), [1.0, 0.0, -1.0]);
+        assert_eq!(times(2.0, 2.0, 0.5).unwrap(), [2.0]);
+        for (first, last, step) in [
+            (0.0, 1.0, 0.0),
+            (0.0, 1.0, -1.0),
+            (0.0, f64::NAN, 1.0),
+            (0.0, 1e9, 1e-3),
+        ] {
+            assert_eq!(times(first, last, step).unwrap_err().code, "bad_range");
+        }
+    }
+
+    #[test]
+    fn rates_follow_from_the_motion_of_markers() {
+        let mut setting = Setting::default();
+        setting
+            .data
+            .add_marker(
+                1,
+                r#"{"r": [3, 4, 0], "v": [1, 0, 0], "w": [0, 0, 2], "a": [0, 5, 0]}"#,
+            )
+            .unwrap();
+        setting.data.add_marker(2, r#"{"w": [0, 0, 1]}"#).unwrap();
+        let sample = |text: &str| {
+            Formula::new(text, &setting)
+                .unwrap()
+                .sample(None, 2, &setting.data)
+                .unwrap()
+        };
+        assert_eq!(sample("DX(1)"), [3.0, 1.0, 0.0]);
+        assert_eq!(sample("DY(1)"), [4.0, 0.0, 5.0]);
+        let [distance, rate, _] = sample("DM(1)");
+        assert_eq!(distance, 5.0);
+        approx::assert_relative_eq!(rate, 3.0 / 5.0, epsilon = 1e-15);
+        assert_eq!(sample("AZ(1)")[..2], [0.0, 2.0]);
+        // in the axes of a turning marker the rate is the velocity seen from it
+        let seen = sample("VX(1,0,2,2)")[0];
+        assert_eq!(sample("DX(1,0,2)")[1], seen);
+    }
+
+    #[test]
+    fn what_is_not_given_is_named_and_what_is_given_counts() {
+        let mut setting = Setting::default();
+        let mut formula = Formula::new("2*VARVAL(3)+TIME", &setting).unwrap();
+        assert_eq!(
+            formula
+                .sample(Some(1.0), 0, &setting.data)
+                .unwrap_err()
+                .code,
+            "missing_value"
+        );
+        give(&mut setting, "VARVAL(3)", 4.0).unwrap();
+        assert!(
+            setting
+                .data
+                .values
+                .contains_key(&super::super::data::input(Measure::Varval, &[3]))
+        );
+        assert_eq!(
+            formula.sample(Some(1.0), 1, &setting.data),
+            Ok([9.0, 1.0, 0.0])
+        );
+        assert_eq!(
+            formula.sample(None, 0, &setting.data).unwrap_err().code,
+            "missing_value"
+        );
+        assert_eq!(
+            give(&mut setting, "2*VARVAL(3)", 4.0).unwrap_err().code,
+            "not_an_input"
+        );
+    }
+
+    #[test]
+    fn a_part_that_is_not_reached_needs_no_value() {
+        let setting = Setting::default();
+        let mut formula = Formula::new("IF(TIME-1: 5, 6, VARVAL(3))", &setting).unwrap();
+        assert_eq!(
+            formula.sample(Some(0.5), 0, &setting.data).map(|s| s[0]),
+            Ok(5.0)
+        );
+    }
+}
