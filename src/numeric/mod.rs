@@ -16,10 +16,13 @@
 //! (see [`control::Weights`]).
 
 pub mod control;
+pub mod dense;
 pub mod event;
+pub mod radau;
 pub mod rank;
 pub mod runge_kutta;
 
+pub use radau::Radau;
 pub use runge_kutta::Dop853;
 
 /// Why an evaluation could not be done: a small code the analysis translates into words ("what" is chosen by the problem).
@@ -344,6 +347,7 @@ macro_rules! methods {
 methods! {
     ode {
         Dop853 = "DOP853", true, 8, "explicit Runge–Kutta of Dormand and Prince, 8(5,3), projected onto invariants";
+        Radau = "RADAU5", false, 5, "Radau IIA of three stages for stiff problems, projected onto invariants";
     }
     dae {
     }

@@ -335,3 +335,139 @@ impl Field for EulerTop {
         wdot[2] = (w[0] * w[1]).scale(-1.0 / 3.0);
     }
 }
+
+/// Van der Pol's oscillator with ε = 1e-6: slow branches, sudden jumps.
+pub struct VanDerPol;
+
+impl VanDerPol {
+    pub const START: [f64; 2] = [2.0, 0.0];
+    /// After 2 s; test set for IVP solvers (Mazzia & Magherini 2008).
+    pub const AFTER_2: [f64; 2] = [1.706167732170483, -0.8928097010247975];
+}
+
+impl Field for VanDerPol {
+    fn size(&self) -> usize {
+        2
+    }
+    fn rate<S: Scalar>(&self, _t: S, y: &[S], ydot: &mut [S]) {
+        ydot[0] = y[1];
+        ydot[1] = ((S::one() - y[0].square()) * y[1] - y[0]).scale(1e6);
+    }
+}
+
+/// Robertson's reaction: rates from 0.04 to 3e7.
+pub struct Robertson;
+
+impl Robertson {
+    pub const START: [f64; 3] = [1.0, 0.0, 0.0];
+    /// After 40 s (Hairer & Wanner, Solving ODEs II, IV.10, to more digits by this crate's own methods, which agree).
+    pub const AFTER_40: [f64; 3] = [
+        0.7158270687193941,
+        0.9185534764557338e-5,
+        0.2841637457458413,
+    ];
+}
+
+impl Field for Robertson {
+    fn size(&self) -> usize {
+        3
+    }
+    fn rate<S: Scalar>(&self, _t: S, y: &[S], ydot: &mut [S]) {
+        let (slow, fast, pair) = (
+            y[0].scale(0.04),
+            (y[1] * y[2]).scale(1e4),
+            y[1].square().scale(3e7),
+        );
+        ydot[0] = fast - slow;
+        ydot[1] = slow - fast - pair;
+        ydot[2] = pair;
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.copy_from_slice(&[1.0, 1e-4, 1.0]);
+    }
+}
+
+/// HIRES: eight reactants of a plant under red light.
+pub struct Hires;
+
+impl Hires {
+    pub const START: [f64; 8] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0057];
+    pub const END: f64 = 321.8122;
+    /// At the end; test set for IVP solvers (Mazzia & Magherini 2008).
+    pub const AT_END: [f64; 8] = [
+        0.7371312573325668e-3,
+        0.1442485726316185e-3,
+        0.5888729740967575e-4,
+        0.1175651343283149e-2,
+        0.2386356198831331e-2,
+        0.6238968252742796e-2,
+        0.2849998395185769e-2,
+        0.2850001604814231e-2,
+    ];
+}
+
+impl Field for Hires {
+    fn size(&self) -> usize {
+        8
+    }
+    fn rate<S: Scalar>(&self, _t: S, y: &[S], ydot: &mut [S]) {
+        let bound = (y[5] * y[7]).scale(280.0);
+        ydot[0] = y[0].scale(-1.71) + y[1].scale(0.43) + y[2].scale(8.32) + S::constant(0.0007);
+        ydot[1] = y[0].scale(1.71) - y[1].scale(8.75);
+        ydot[2] = y[2].scale(-10.03) + y[3].scale(0.43) + y[4].scale(0.035);
+        ydot[3] = y[1].scale(8.32) + y[2].scale(1.71) - y[3].scale(1.12);
+        ydot[4] = y[4].scale(-1.745) + y[5].scale(0.43) + y[6].scale(0.43);
+        ydot[5] =
+            -bound + y[3].scale(0.69) + y[4].scale(1.71) - y[5].scale(0.43) + y[6].scale(0.69);
+        ydot[6] = bound - y[6].scale(1.81);
+        ydot[7] = y[6].scale(1.81) - bound;
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1e-2);
+    }
+}
+
+/// A plane body of 1 kg and 0.04 kg m² on a bushing of 1 Hz along x and 10 kHz along y, off its centre; x, y, θ and rates.
+pub struct StiffBushing;
+
+impl StiffBushing {
+    pub const START: [f64; 6] = [0.1, 1e-4, 0.05, 0.0, 0.0, 0.0];
+    /// x, y, θ, θ̇ after 2 s; two formulations in extended precision.
+    pub const AFTER_2: [f64; 4] = [
+        0.08843145747066948,
+        0.0006124080759720904,
+        -0.012203783773218954,
+        0.8919704835419481,
+    ];
+}
+
+impl Field for StiffBushing {
+    fn size(&self) -> usize {
+        6
+    }
+    fn rate<S: Scalar>(&self, _t: S, y: &[S], ydot: &mut [S]) {
+        let (sin, cos) = y[2].sin_cos();
+        let (px, py) = (
+            cos.scale(0.05) - sin.scale(0.03),
+            sin.scale(0.05) + cos.scale(0.03),
+        );
+        let tau = 2.0 * std::f64::consts::PI;
+        let law = |k: f64, c: f64, d: S, v: S| -(d.scale(k) + v.scale(c));
+        let fx = law(
+            tau.powi(2),
+            0.02 * tau,
+            y[0] + px - S::constant(0.05),
+            y[3] - py * y[5],
+        );
+        let fy = law(
+            (1e4 * tau).powi(2),
+            2000.0 * tau,
+            y[1] + py - S::constant(0.03),
+            y[4] + px * y[5],
+        );
+        let torque = law(0.36 * tau.powi(2), 0.005, y[2], y[5]);
+        (ydot[0], ydot[1], ydot[2]) = (y[3], y[4], y[5]);
+        (ydot[3], ydot[4]) = (fx, fy);
+        ydot[5] = (torque + px * fy - py * fx).scale(1.0 / 0.04);
+    }
+}

@@ -1,0 +1,312 @@
+//! Dense LU factorizations in place, real and complex, for the small systems of implicit methods.
+//!
+//! ```text
+//! P A = L U        by columns, partial pivoting; column j is finished before column j + 1 is touched (left-looking)
+//! ```
+//!
+//! While column `j` is updated it stays in the nearest cache, and four earlier columns are applied to it at a time, so each of its entries is loaded once
+//! per eight operations. A complex matrix is two real ones, its real and imaginary parts, so that the same loops
+//! run in vector registers. Nothing allocates after construction (nalgebra's factorization, as fast at these sizes, allocates its
+//! pivots each time).
+//!
+//! *Singular*: a pivot that is zero or not finite; the error is the index of its column, the unknown that nothing determines.
+#![allow(clippy::needless_range_loop)] // several columns at one row index
+
+/// Factors of a real matrix.
+#[derive(Clone, Debug)]
+pub struct Lu {
+    n: usize,
+    /// the matrix, then L below and U on and above the diagonal, by columns   (n × n)
+    a: Vec<f64>,
+    /// row exchanged with row j at step j   (n)
+    pivots: Vec<usize>,
+}
+
+impl Lu {
+    /// Room for an `n × n` matrix.
+    pub fn new(n: usize) -> Self {
+        Lu {
+            n,
+            a: vec![0.0; n * n],
+            pivots: vec![0; n],
+        }
+    }
+
+    /// Where to put the matrix before [`Lu::factor`]: `[i + n·j]`   (n × n)
+    pub fn matrix_mut(&mut self) -> &mut [f64] {
+        &mut self.a
+    }
+
+    /// Factors the matrix in place.
+    ///
+    /// # Errors
+    /// The column without a pivot.
+    pub fn factor(&mut self) -> Result<(), usize> {
+        let n = self.n;
+        for j in 0..n {
+            let (done, rest) = self.a.split_at_mut(j * n);
+            let column = &mut rest[..n];
+            for k in 0..j {
+                column.swap(k, self.pivots[k]);
+            }
+            // four earlier columns at a time: their rows of U first, then one sweep below
+            let mut k = 0;
+            while k + 4 <= j {
+                let (l0, l1) = (&done[k * n..(k + 1) * n], &done[(k + 1) * n..(k + 2) * n]);
+                let (l2, l3) = (
+                    &done[(k + 2) * n..(k + 3) * n],
+                    &done[(k + 3) * n..(k + 4) * n],
+                );
+                let u0 = column[k];
+                let u1 = column[k + 1] - l0[k + 1] * u0;
+                let u2 = column[k + 2] - l0[k + 2] * u0 - l1[k + 2] * u1;
+                let u3 = column[k + 3] - l0[k + 3] * u0 - l1[k + 3] * u1 - l2[k + 3] * u2;
+                column[k + 1..k + 4].copy_from_slice(&[u1, u2, u3]);
+                let below = &mut column[k + 4..];
+                let m = below.len();
+                let (l0, l1, l2, l3) = (
+                    &l0[k + 4..][..m],
+                    &l1[k + 4..][..m],
+                    &l2[k + 4..][..m],
+                    &l3[k + 4..][..m],
+                );
+                for i in 0..m {
+                    below[i] -= (l0[i] * u0 + l1[i] * u1) + (l2[i] * u2 + l3[i] * u3);
+                }
+                k += 4;
+            }
+            for k in k..j {
+                let u = column[k];
+                let below = &mut column[k + 1..];
+                for (c, l) in below.iter_mut().zip(&done[k * n + k + 1..(k + 1) * n]) {
+                    *c -= l * u;
+                }
+            }
+            let mut pivot = j;
+            for i in j + 1..n {
+                if column[i].abs() > column[pivot].abs() {
+                    pivot = i;
+                }
+            }
+            let inverse = 1.0 / column[pivot];
+            if column[pivot] == 0.0 || !column[pivot].is_finite() || !inverse.is_finite() {
+                return Err(j);
+            }
+            self.pivots[j] = pivot;
+            if pivot != j {
+                column.swap(j, pivot);
+                for k in 0..j {
+                    done.swap(k * n + j, k * n + pivot);
+                }
+            }
+            column[j + 1..].iter_mut().for_each(|l| *l *= inverse);
+        }
+        Ok(())
+    }
+
+    /// `x ← A⁻¹ x`
+    pub fn solve(&self, x: &mut [f64]) {
+        let n = self.n;
+        let x = &mut x[..n];
+        for k in 0..n {
+            x.swap(k, self.pivots[k]);
+        }
+        for k in 0..n {
+            let xk = x[k];
+            for (x, l) in x[k + 1..]
+                .iter_mut()
+                .zip(&self.a[k * n + k + 1..(k + 1) * n])
+            {
+                *x -= l * xk;
+            }
+        }
+        for k in (0..n).rev() {
+            let column = &self.a[k * n..(k + 1) * n];
+            let xk = x[k] / column[k];
+            x[k] = xk;
+            for (x, u) in x[..k].iter_mut().zip(column) {
+                *x -= u * xk;
+            }
+        }
+    }
+}
+
+/// Factors of a complex matrix.
+#[derive(Clone, Debug)]
+pub struct ComplexLu {
+    n: usize,
+    /// real and imaginary parts, by columns   (n × n each)
+    re: Vec<f64>,
+    im: Vec<f64>,
+    /// row exchanged with row j at step j   (n)
+    pivots: Vec<usize>,
+}
+
+impl ComplexLu {
+    /// Room for an `n × n` matrix.
+    pub fn new(n: usize) -> Self {
+        ComplexLu {
+            n,
+            re: vec![0.0; n * n],
+            im: vec![0.0; n * n],
+            pivots: vec![0; n],
+        }
+    }
+
+    /// Where to put real and imaginary parts before [`ComplexLu::factor`]: `[i + n·j]`   (n × n each)
+    pub fn matrix_mut(&mut self) -> (&mut [f64], &mut [f64]) {
+        (&mut self.re, &mut self.im)
+    }
+
+    /// Factors the matrix in place.
+    ///
+    /// # Errors
+    /// The column without a pivot.
+    pub fn factor(&mut self) -> Result<(), usize> {
+        let n = self.n;
+        for j in 0..n {
+            let (done_re, rest_re) = self.re.split_at_mut(j * n);
+            let (done_im, rest_im) = self.im.split_at_mut(j * n);
+            let (re, im) = (&mut rest_re[..n], &mut rest_im[..n]);
+            for k in 0..j {
+                re.swap(k, self.pivots[k]);
+                im.swap(k, self.pivots[k]);
+            }
+            for k in 0..j {
+                let (ur, ui) = (re[k], im[k]);
+                let (below_re, below_im) = (&mut re[k + 1..], &mut im[k + 1..]);
+                let m = below_re.len();
+                let below_im = &mut below_im[..m];
+                let (lr, li) = (
+                    &done_re[k * n + k + 1..][..m],
+                    &done_im[k * n + k + 1..][..m],
+                );
+                for i in 0..m {
+                    below_re[i] -= lr[i] * ur - li[i] * ui;
+                    below_im[i] -= lr[i] * ui + li[i] * ur;
+                }
+            }
+            let size = |i: usize| re[i].abs() + im[i].abs();
+            let mut pivot = j;
+            for i in j + 1..n {
+                if size(i) > size(pivot) {
+                    pivot = i;
+                }
+            }
+            let (pr, pi) = (re[pivot], im[pivot]);
+            let (ir, ii) = reciprocal(pr, pi);
+            if !(ir.is_finite() && ii.is_finite()) || (ir == 0.0 && ii == 0.0) {
+                return Err(j);
+            }
+            self.pivots[j] = pivot;
+            if pivot != j {
+                re.swap(j, pivot);
+                im.swap(j, pivot);
+                for k in 0..j {
+                    done_re.swap(k * n + j, k * n + pivot);
+                    done_im.swap(k * n + j, k * n + pivot);
+                }
+            }
+            for (re, im) in re[j + 1..].iter_mut().zip(&mut im[j + 1..]) {
+                (*re, *im) = (*re * ir - *im * ii, *re * ii + *im * ir);
+            }
+        }
+        Ok(())
+    }
+
+    /// `x ← A⁻¹ x`, real and imaginary parts apart.
+    pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
+        let n = self.n;
+        let (re, im) = (&mut re[..n], &mut im[..n]);
+        for k in 0..n {
+            re.swap(k, self.pivots[k]);
+            im.swap(k, self.pivots[k]);
+        }
+        for k in 0..n {
+            let (xr, xi) = (re[k], im[k]);
+            let (lr, li) = (&self.re[k * n..(k + 1) * n], &self.im[k * n..(k + 1) * n]);
+            for i in k + 1..n {
+                re[i] -= lr[i] * xr - li[i] * xi;
+                im[i] -= lr[i] * xi + li[i] * xr;
+            }
+        }
+        for k in (0..n).rev() {
+            let (ur, ui) = (&self.re[k * n..(k + 1) * n], &self.im[k * n..(k + 1) * n]);
+            let (ir, ii) = reciprocal(ur[k], ui[k]);
+            let (xr, xi) = (re[k] * ir - im[k] * ii, re[k] * ii + im[k] * ir);
+            (re[k], im[k]) = (xr, xi);
+            for i in 0..k {
+                re[i] -= ur[i] * xr - ui[i] * xi;
+                im[i] -= ur[i] * xi + ui[i] * xr;
+            }
+        }
+    }
+}
+
+/// `1/(re + i im)`, without overflow on the way.
+fn reciprocal(re: f64, im: f64) -> (f64, f64) {
+    if re.abs() >= im.abs() {
+        let q = im / re;
+        let d = re + im * q;
+        (1.0 / d, -q / d)
+    } else {
+        let q = re / im;
+        let d = re * q + im;
+        (q / d, -1.0 / d)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn real_factors_solve(n in 1usize..24, entries in proptest::collection::vec(-1.0f64..1.0, 600)) {
+            let mut lu = Lu::new(n);
+            let a = entries[..n * n].to_vec();
+            let x: Vec<f64> = entries[n * n..n * n + n].to_vec();
+            let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[i + n * j] * x[j]).sum()).collect();
+            lu.matrix_mut().copy_from_slice(&a);
+            prop_assume!(lu.factor().is_ok());
+            lu.solve(&mut b);
+            let oracle = nalgebra::DMatrix::from_column_slice(n, n, &a);
+            let condition = oracle.clone().try_inverse().map_or(1e20, |i| i.norm() * oracle.norm());
+            for (b, x) in b.iter().zip(&x) {
+                prop_assert!((b - x).abs() < 1e-14 * condition);
+            }
+        }
+
+        #[test]
+        fn complex_factors_solve(n in 1usize..16, entries in proptest::collection::vec(-1.0f64..1.0, 600)) {
+            let mut lu = ComplexLu::new(n);
+            let (a, b) = (&entries[..n * n], &entries[n * n..2 * n * n]);
+            let (xr, xi) = (&entries[550..550 + n], &entries[570..570 + n]);
+            let product = |f: &dyn Fn(usize, usize) -> f64| (0..n).map(|i| (0..n).map(|j| f(i + n * j, j)).sum()).collect::<Vec<f64>>();
+            let mut re = product(&|e, j| a[e] * xr[j] - b[e] * xi[j]);
+            let mut im = product(&|e, j| a[e] * xi[j] + b[e] * xr[j]);
+            let (mr, mi) = lu.matrix_mut();
+            mr.copy_from_slice(a);
+            mi.copy_from_slice(b);
+            prop_assume!(lu.factor().is_ok());
+            lu.solve(&mut re, &mut im);
+            for i in 0..n {
+                prop_assert!((re[i] - xr[i]).abs() + (im[i] - xi[i]).abs() < 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_names_its_column() {
+        let mut lu = Lu::new(3);
+        lu.matrix_mut()
+            .copy_from_slice(&[1.0, 0.0, 1.0, 2.0, 0.0, 2.0, 0.0, 1.0, 0.0]);
+        assert_eq!(lu.factor(), Err(1));
+        let mut lu = Lu::new(2);
+        lu.matrix_mut().copy_from_slice(&[1.0, f64::NAN, 0.0, 1.0]);
+        assert!(lu.factor().is_err());
+        let mut lu = ComplexLu::new(2);
+        assert_eq!(lu.factor(), Err(0));
+    }
+}
