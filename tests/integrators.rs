@@ -188,6 +188,8 @@ fn hires(name: &str, tolerance: f64) -> (f64, usize) {
 fn stiff_bushing(name: &str, tolerance: f64) -> (f64, usize) {
     let (mut problem, mut judge) = (System::new(StiffBushing), Judge::new(4));
     let mut method = ode_method(name, 6, &options(tolerance)).expect("the table has it");
+    // the scale of each column is that of the motion after the first transient
+    judge.see(&StiffBushing::AFTER_20_MS, &StiffBushing::AFTER_20_MS);
     run(
         &mut *method,
         &mut problem,
@@ -214,9 +216,6 @@ fn proportional(name: &str, what: &str, trial: Trial, requests: &[i32], allowed:
         );
     }
     println!("{what} by {name}\n{table}");
-    if std::env::var("LOOK").is_ok() {
-        return;
-    }
     assert!(
         good,
         "{what} by {name}: error beyond {allowed} times the request\n{table}"
@@ -251,12 +250,13 @@ fn error_follows_the_request_on_what_is_not_stiff() {
 fn error_follows_the_request_on_what_is_stiff() {
     let requests = [3, 4, 5, 6, 7, 8, 9, 10, 11];
     for name in ["RADAU5"] {
-        proportional(name, "pendulum", pendulum, &requests, 100.0);
-        proportional(name, "Kepler", kepler, &requests, 100.0);
-        proportional(name, "van der Pol", van_der_pol, &requests, 100.0);
-        proportional(name, "Robertson", robertson, &requests, 100.0);
-        proportional(name, "HIRES", hires, &requests, 100.0);
-        proportional(name, "stiff bushing", stiff_bushing, &requests, 100.0);
+        proportional(name, "pendulum", pendulum, &requests, 10.0);
+        proportional(name, "Kepler", kepler, &requests, 40.0);
+        proportional(name, "van der Pol", van_der_pol, &requests, 20.0);
+        proportional(name, "Robertson", robertson, &requests, 10.0);
+        proportional(name, "HIRES", hires, &requests, 10.0);
+        // the first millisecond has rates 300 times those that are judged
+        proportional(name, "stiff bushing", stiff_bushing, &requests, 300.0);
     }
 }
 

@@ -465,9 +465,12 @@ impl Radau {
     }
 }
 
-/// The permitted value of the error estimate for a requested accuracy; the estimate behaves like h⁴, the error of a run like h⁵.
+/// The permitted value of the error estimate for a requested accuracy.
+///
+/// The estimate behaves like h⁴ and the error of a run like h⁵, so the power 4/5 makes that error fall in proportion to the request. The factor
+/// is measured: over pendulum, Kepler, van der Pol, Robertson and HIRES, requests 1e-3 … 1e-11, the error is 0.01 to 20 times the request.
 fn inner_tolerance(request: f64) -> f64 {
-    0.1 * request.powf(2.0 / 3.0)
+    0.05 * request.powf(0.8)
 }
 
 impl<P: Ode + ?Sized> Method<P> for Radau {

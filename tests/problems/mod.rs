@@ -432,6 +432,13 @@ pub struct StiffBushing;
 
 impl StiffBushing {
     pub const START: [f64; 6] = [0.1, 1e-4, 0.05, 0.0, 0.0, 0.0];
+    /// x, y, θ, θ̇ after 0.02 s, when the fast mode has died out.
+    pub const AFTER_20_MS: [f64; 4] = [
+        0.09922538086212267,
+        -0.0029974755259330714,
+        0.06110741578263483,
+        0.5433511962846356,
+    ];
     /// x, y, θ, θ̇ after 2 s; two formulations in extended precision.
     pub const AFTER_2: [f64; 4] = [
         0.08843145747066948,
