@@ -1,4 +1,7 @@
 //! What to do with a scene: assemble, move, balance, integrate, linearize, verify.
 
 pub mod assemble;
+pub mod columns;
+pub mod dynamics;
+pub mod kinematics;
 pub mod system;

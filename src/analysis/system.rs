@@ -24,9 +24,16 @@ pub struct System {
     pub scene: Scene,
     rate: Program,
     projection: Option<Program>,
+    /// values that change sign where a force or a differential equation changes branch
+    switching: Option<Program>,
+    /// angles whose turns are counted
+    counted: Option<Program>,
     /// what the programs read: t | q | v | x | turns
     pub numbers: Vec<f64>,
     work: Work,
+    project_work: Work,
+    switch_work: Work,
+    count_work: Work,
     dual_work: Work<Dual<WIDTH>>,
     dual_numbers: Vec<Dual<WIDTH>>,
     dual_out: Vec<Dual<WIDTH>>,
@@ -59,13 +66,26 @@ impl System {
         } else {
             None
         };
+        let switching = programs::switching(&scene).map_err(complaints)?;
+        let counted = if scene.counted.is_empty() {
+            None
+        } else {
+            let counted = &scene.counted;
+            let program = record(&scene, |at| counted.iter().map(|&(m, ids)| at.measure(m, ids, m.name())).collect());
+            Some(program.map_err(complaints)?)
+        };
         let l = scene.layout;
         let mover = Mover::new(&scene);
         Ok(Self {
             rate,
             projection,
+            switching,
+            counted,
             numbers: vec![0.0; l.len()],
             work: Work::default(),
+            project_work: Work::default(),
+            switch_work: Work::default(),
+            count_work: Work::default(),
             dual_work: Work::default(),
             dual_numbers: Vec::new(),
             dual_out: Vec::new(),
@@ -78,6 +98,62 @@ impl System {
     /// Number of operations of one evaluation of the rate.
     pub fn operations(&self) -> usize {
         self.rate.n_operations()
+    }
+
+    /// Moves positions along tangents.
+    pub fn mover(&self) -> &Mover {
+        &self.mover
+    }
+
+    /// How many switching functions there are.
+    pub fn n_switches(&self) -> usize {
+        self.switching.as_ref().map_or(0, Program::n_outputs)
+    }
+
+    /// Their values   (n_switches)
+    pub fn switches(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
+        self.set(t, y);
+        if let Some(program) = &self.switching {
+            program.run(&self.numbers, &mut self.switch_work, values);
+        }
+    }
+
+    /// Whether there are angles whose turns are counted.
+    pub fn counts_turns(&self) -> bool {
+        self.counted.is_some()
+    }
+
+    /// Takes over the turns of counted angles at an accepted state.
+    pub fn count_turns(&mut self, t: f64, y: &[f64]) {
+        self.set(t, y);
+        if let Some(program) = &self.counted {
+            let places = self.scene.layout.turns();
+            let mut angles = vec![0.0; places.len()];
+            program.run(&self.numbers, &mut self.count_work, &mut angles);
+            for (turn, angle) in self.numbers[places].iter_mut().zip(angles) {
+                if angle.is_finite() {
+                    *turn = angle;
+                }
+            }
+        }
+    }
+
+    /// A bound of how fast any angle turns, rad per time.
+    pub fn spin(&self, y: &[f64]) -> f64 {
+        let l = self.scene.layout;
+        let speeds = self.scene.coordinates.iter().zip(&self.scene.freedoms).filter(|(c, _)| c.angular);
+        speeds.filter_map(|(_, f)| f.v).map(|v| y[l.n_q + v].abs()).sum()
+    }
+
+    /// All numbers at a state, projected onto the rows.
+    pub fn row(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        let mut y = y.to_vec();
+        let kept = y.clone();
+        if Ode::project(self, t, &mut y).is_err() {
+            y = kept;
+        }
+        self.set(t, &y);
+        self.numbers.clone()
     }
 
     fn set(&mut self, t: f64, y: &[f64]) {
@@ -120,7 +196,7 @@ impl Ode for System {
         });
         for _ in 0..8 {
             self.set(t, y);
-            program.run(&self.numbers, &mut self.work, &mut self.change);
+            program.run(&self.numbers, &mut self.project_work, &mut self.change);
             let (dq, dv) = self.change.split_at(l.n_v);
             let size = dq.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             if !size.is_finite() || size > 2.0 * last {

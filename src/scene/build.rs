@@ -75,7 +75,8 @@ impl Scene {
         b.forces(&mut c);
         b.systems(&mut c);
         for (name, text) in &options.extra {
-            b.formula(&mut c, name, &ModelFormula::text(text.clone()));
+            let f = b.formula(&mut c, name, &ModelFormula::text(text.clone()));
+            b.scene.extra.push(f);
         }
         b.counted();
         if c.errors.is_empty() {

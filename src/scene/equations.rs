@@ -8,7 +8,7 @@
 //! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
 
 use super::layout::Layout;
-use super::solve::{MassFactor, accelerations};
+use super::solve::{MassFactor, accelerations, solve_symmetric};
 use super::sweep::{self, Coordinates, LinkState, Wrench};
 use super::{Row, RowKind, Scene, Source};
 use crate::expr::measures::{Family, Measure};
@@ -18,6 +18,9 @@ use crate::physics::action::Action;
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::space::{Frame, MarkerState, Mat3, Vec3, kinematic};
 use std::cell::{Cell, OnceCell, RefCell};
+
+/// Value of MODE in a kinematic analysis.
+const KINEMATIC: f64 = 1.0;
 
 /// One instant of a scene.
 pub struct Equations<'s, S: Scalar> {
@@ -183,6 +186,18 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let state = sweep::marker_state(&self.scene.markers[m], &self.links);
         self.markers.borrow_mut()[m] = Some(state);
         state
+    }
+
+    /// A part's frame, with its accelerations when asked for.
+    pub fn part(&self, part: usize, accelerated: bool) -> MarkerState<S> {
+        let p = &self.scene.parts[part];
+        let marker = super::MarkerOnLink { id: 0, link: p.link, frame: p.frame, part: Some(part) };
+        sweep::marker_state(&marker, if accelerated { &self.solved().links } else { &self.links })
+    }
+
+    /// Action of an element on its I marker; `None` when there is no such active element.
+    pub fn action_of(&self, keyword: &str, id: u32) -> Option<Action<S>> {
+        self.element(keyword, id).map(|found| found.0)
     }
 
     /// A marker with all its accelerations.
@@ -387,8 +402,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .collect();
         let g: Vec<Vec<(usize, S)>> = rows.iter().map(|(_, row)| row.gradient.clone()).collect();
         let gamma: Vec<S> = rows.iter().map(|(_, row)| row.gamma).collect();
-        let factor = MassFactor::new(self.mass_rows());
-        let multipliers = accelerations(&factor, &g, &gamma, &mut f);
+        let multipliers = if scene.mode == KINEMATIC {
+            self.determined(&wrenches, &g, &gamma, &mut f)
+        } else {
+            accelerations(&MassFactor::new(self.mass_rows()), &g, &gamma, &mut f)
+        };
         let mut lambda = vec![S::zero(); scene.rows.len()];
         for ((r, row), &l) in rows.iter().zip(&multipliers) {
             lambda[*r] = l;
@@ -416,6 +434,44 @@ impl<'s, S: Scalar> Equations<'s, S> {
             carried,
             actions,
         }
+    }
+
+    /// Accelerations (into `f`) and multipliers where the rows leave no freedom, so that masses may be zero.
+    ///
+    /// ```text
+    /// v̇ = Gᵀ (G Gᵀ)⁻¹ γ        λ = (G Gᵀ)⁻¹ G (M v̇ − f)
+    /// ```
+    fn determined(&self, wrenches: &[Wrench<S>], g: &[Vec<(usize, S)>], gamma: &[S], f: &mut [S]) -> Vec<S> {
+        let dot = |a: &[(usize, S)], b: &[(usize, S)]| {
+            let mut sum = S::zero();
+            for &(i, x) in a {
+                for &(j, y) in b {
+                    if i == j {
+                        sum += x * y;
+                    }
+                }
+            }
+            sum
+        };
+        let gram: Vec<Vec<S>> = (0..g.len()).map(|r| (0..=r).map(|c| dot(&g[r], &g[c])).collect()).collect();
+        let z = solve_symmetric(gram.clone(), gamma.to_vec());
+        f.fill(S::zero());
+        for (row, &z) in g.iter().zip(&z) {
+            for &(v, x) in row {
+                f[v] += x * z;
+            }
+        }
+        let links = sweep::outward(self.scene, &self.coordinates(f));
+        let carried = sweep::inward(self.scene, &links, self.gravity(), wrenches);
+        let missing: Vec<S> = self
+            .scene
+            .freedoms
+            .iter()
+            .filter(|f| f.v.is_some())
+            .map(|f| f.component(&carried[f.link]))
+            .collect();
+        let rhs = g.iter().map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v])).collect();
+        solve_symmetric(gram, rhs)
     }
 
     /// `q̇, v̇, ẋ`

@@ -263,6 +263,8 @@ pub struct Scene {
     pub arrays: BTreeMap<u32, Vec<f64>>,
     /// all expressions
     pub formulas: Vec<Formula>,
+    /// of these, the ones asked for beside those of the model
+    pub extra: Vec<usize>,
     /// angles whose turns are counted, in the order of their places in the layout
     pub counted: Vec<(Measure, [u32; 4])>,
     /// in ground axes

@@ -16,24 +16,50 @@ pub fn record<F>(scene: &Scene, f: F) -> Result<Program, Vec<String>>
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
+    let (program, complaints) = record_with_complaints(scene, f);
+    if complaints.is_empty() { Ok(program) } else { Err(complaints) }
+}
+
+/// As [`record`]; what could not be computed is NaN in the program, and told.
+pub fn record_with_complaints<F>(scene: &Scene, f: F) -> (Program, Vec<String>)
+where
+    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
+{
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let layout = scene.layout.inputs();
-    let numbers: Vec<Sym<'_>> = layout
-        .iter()
-        .map(|&input| Sym::input(input, &builder))
-        .collect();
+    let numbers: Vec<Sym<'_>> = layout.iter().map(|&input| Sym::input(input, &builder)).collect();
     let equations = Equations::new(scene, &numbers);
     let out = f(&equations);
+    let values: Vec<_> = out.iter().map(|s| s.value(&mut builder.borrow_mut())).collect();
+    let program = builder.borrow().finish_with_inputs(&values, &layout);
+    (program, equations.complaints())
+}
+
+/// Where loads and differential equations change branch: one value per switch, changing sign there. `None`: nowhere.
+///
+/// # Errors
+/// What the equations complained about.
+pub fn switching(scene: &Scene) -> Result<Option<Program>, Vec<String>> {
+    let builder = RefCell::new(Builder::new(Folding::Structural));
+    let layout = scene.layout.inputs();
+    let numbers: Vec<Sym<'_>> = layout.iter().map(|&input| Sym::input(input, &builder)).collect();
+    let equations = Equations::new(scene, &numbers);
+    let mut sources = equations.state_rates();
+    for force in &scene.forces {
+        let action = force.action(&equations);
+        sources.extend(action.force.0.into_iter().chain(action.torque.0));
+    }
     let complaints = equations.complaints();
     if !complaints.is_empty() {
         return Err(complaints);
     }
-    let values: Vec<_> = out
-        .iter()
-        .map(|s| s.value(&mut builder.borrow_mut()))
-        .collect();
-    let program = builder.borrow().finish_with_inputs(&values, &layout);
-    Ok(program)
+    let values: Vec<_> = sources.iter().map(|s| s.value(&mut builder.borrow_mut())).collect();
+    let switches = builder.borrow_mut().switching(&values);
+    if switches.is_empty() {
+        return Ok(None);
+    }
+    let program = builder.borrow().finish_with_inputs(&switches, &layout);
+    Ok(Some(program))
 }
 
 /// Weight of a coordinate's change in a projection: angles count as such, lengths against the size of the mechanism.

@@ -1,0 +1,280 @@
+//! What a run reports: one formula of an instant per column.
+
+use crate::diagnostic::Diagnostic;
+use crate::expr::measures::Measure;
+use crate::expr::program::{Program, Work};
+use crate::model::{Model, RequestKind};
+use crate::results::{Component, Entity, Run, Units};
+use crate::scalar::Scalar;
+use crate::scene::Scene;
+use crate::scene::equations::Equations;
+use crate::scene::programs::record_with_complaints;
+use crate::space::{MarkerState, kinematic};
+
+/// What a column shows.
+#[derive(Clone, Debug, PartialEq)]
+enum What {
+    /// an expression: index among the extra formulas of the scene
+    Text(usize),
+    /// a component of a part's motion: 0–2 position, 3–5 ψ θ φ, 6–8 velocity, 9–11 angular velocity, 12–14 acceleration,
+    /// 15–17 angular acceleration; of the part frame, ground axes
+    Part { point_mass: bool, id: u32, quantity: usize },
+    /// a component of the action of an element on its I marker, ground axes: 0–2 force, 3–5 torque
+    Action { keyword: &'static str, id: u32, component: usize },
+}
+
+/// The columns of a run in the order of its table of all columns, time left out.
+#[derive(Debug, Default)]
+pub struct Columns {
+    what: Vec<What>,
+    /// expressions to compile with each scene: (name, text)
+    pub extra: Vec<(String, String)>,
+}
+
+/// The unit of what an expression yields, where it is a single measure.
+fn unit_of(text: &str, units: &Units) -> String {
+    let Some((name, rest)) = text.split_once('(') else { return String::new() };
+    let single = rest.trim_end().strip_suffix(')').is_some_and(|inner| !inner.contains(['(', ')']));
+    let Some(measure) = Measure::by_name(name.trim()).filter(|_| single) else { return String::new() };
+    let (l, t, f, a) = (&units.length, &units.time, &units.force, &units.angle);
+    match measure.row().unit {
+        "length" => l.clone(),
+        "angle" => a.clone(),
+        "length/time" => format!("{l}/{t}"),
+        "angle/time" => format!("{a}/{t}"),
+        "length/time**2" => format!("{l}/{t}**2"),
+        "angle/time**2" => format!("{a}/{t}**2"),
+        "force" => f.clone(),
+        "torque" => format!("{f}-{l}"),
+        _ => String::new(),
+    }
+}
+
+impl Columns {
+    /// Declares all columns of a run: those of the parts, joints and forces when `full`, requests, and `user` expressions.
+    pub fn new(model: &Model, run: &mut Run, user: &[String], full: bool) -> Self {
+        let mut this = Self::default();
+        if full {
+            this.parts(model, run);
+        }
+        let mut table = Vec::new();
+        for text in user {
+            table.push(this.text(run, text.clone(), text, &run.units.clone()));
+        }
+        this.requests(model, run, &mut table);
+        if full {
+            this.elements(model, run);
+        }
+        run.table = table;
+        this
+    }
+
+    fn push(&mut self, run: &mut Run, name: String, unit: String, what: What) -> usize {
+        self.what.push(what);
+        run.add_column(name, unit)
+    }
+
+    fn text(&mut self, run: &mut Run, name: String, text: &str, units: &Units) -> usize {
+        let k = self.extra.len();
+        self.extra.push((name.clone(), text.to_string()));
+        self.push(run, name, unit_of(text, units), What::Text(k))
+    }
+
+    /// Positions of all parts, then velocities, then accelerations.
+    fn parts(&mut self, model: &Model, run: &mut Run) {
+        let u = run.units.clone();
+        let first = run.entities.len();
+        let all: Vec<(bool, u32, &crate::model::Part)> = model
+            .parts
+            .iter()
+            .filter(|(_, p)| !p.ground)
+            .map(|(&id, p)| (false, id, p))
+            .chain(model.point_masses.iter().map(|(&id, p)| (true, id, p)))
+            .collect();
+        for &(point_mass, id, part) in &all {
+            let entity = name_of(&part.place, if point_mass { "POINT_MASS" } else { "PART" }, id);
+            let name = format!("{entity}_XFORM");
+            run.entities.push(Entity { name, entity, kind: "Part".into(), id: u64::from(id), components: Vec::new() });
+        }
+        let names = [
+            ["X", "Y", "Z", "PSI", "THETA", "PHI"],
+            ["VX", "VY", "VZ", "WX", "WY", "WZ"],
+            ["ACCX", "ACCY", "ACCZ", "WDX", "WDY", "WDZ"],
+        ];
+        for (level, names) in names.iter().enumerate() {
+            let rate = ["".to_string(), format!("/{}", u.time), format!("/{}**2", u.time)][level].clone();
+            for (k, &(point_mass, id, _)) in all.iter().enumerate() {
+                for (c, component) in names.iter().enumerate() {
+                    let unit = format!("{}{rate}", if c < 3 { &u.length } else { &u.angle });
+                    let what = What::Part { point_mass, id, quantity: 6 * level + c };
+                    let name = format!("{}.{component}", run.entities[first + k].name);
+                    let column = self.push(run, name, unit, what);
+                    run.entities[first + k].components.push(Component { name: (*component).into(), column });
+                }
+            }
+        }
+    }
+
+    /// Reactions of joints and actions of forces.
+    fn elements(&mut self, model: &Model, run: &mut Run) {
+        let u = run.units.clone();
+        let mut all: Vec<(&'static str, u32, String, &str)> = Vec::new();
+        all.extend(model.joints.iter().map(|(&id, x)| ("JOINT", id, name_of(&x.place, "JOINT", id), "Joint")));
+        all.extend(
+            model.primitives.iter().map(|(&id, x)| ("JPRIM", id, name_of(&x.place, "JPRIM", id), "Primitive_Joint")),
+        );
+        all.extend(
+            model.sforces.iter().map(|(&id, x)| ("SFORCE", id, name_of(&x.place, "SFORCE", id), "Single_Component_Force")),
+        );
+        for (keyword, id, entity, kind) in all {
+            let mut components = Vec::new();
+            for (c, component) in ["FX", "FY", "FZ", "TX", "TY", "TZ"].iter().enumerate() {
+                let unit = if c < 3 { u.force.clone() } else { format!("{}-{}", u.force, u.length) };
+                let what = What::Action { keyword, id, component: c };
+                let column = self.push(run, format!("{entity}.{component}"), unit, what);
+                components.push(Component { name: (*component).into(), column });
+            }
+            run.entities.push(Entity { name: entity.clone(), entity, kind: kind.into(), id: u64::from(id), components });
+        }
+        for (&id, variable) in &model.variables {
+            let entity = name_of(&variable.place, "VARIABLE", id);
+            let column = self.text(run, format!("{entity}.Q"), &format!("VARVAL({id})"), &u);
+            let components = vec![Component { name: "Q".into(), column }];
+            let kind = "ADAMS_Variable".to_string();
+            run.entities.push(Entity { name: entity.clone(), entity, kind, id: u64::from(id), components });
+        }
+    }
+
+    /// Each request as its components' expressions.
+    fn requests(&mut self, model: &Model, run: &mut Run, table: &mut Vec<usize>) {
+        let units = run.units.clone();
+        for (&id, request) in &model.requests {
+            let entity = request.results_name.clone().unwrap_or_else(|| name_of(&request.place, "REQUEST", id));
+            let two = |name: &str, i: u32, j: Option<u32>| format!("{name}({i},{})", j.unwrap_or(0));
+            let three = |name: &str, i: u32, j: Option<u32>, rm: Option<u32>| {
+                format!("{name}({i},{},{})", j.unwrap_or(0), rm.unwrap_or(0))
+            };
+            let set = |m: &str, c: [&str; 3], tm: &str, tc: [&str; 3], i, j, rm| {
+                let mut all = vec![(1, "MAG".to_string(), two(m, i, j))];
+                all.extend(c.iter().enumerate().map(|(k, n)| (k + 2, n.to_string(), three(n, i, j, rm))));
+                all.push((5, "AMAG".to_string(), two(tm, i, j)));
+                all.extend(tc.iter().enumerate().map(|(k, n)| (k + 6, n.to_string(), three(n, i, j, rm))));
+                all
+            };
+            let components: Vec<(usize, String, String)> = match &request.kind {
+                RequestKind::Displacement { i, j, rm } => {
+                    let mut all = vec![(1, "MAG".to_string(), two("DM", *i, *j))];
+                    for (k, n) in ["DX", "DY", "DZ"].iter().enumerate() {
+                        all.push((k + 2, n.to_string(), three(n, *i, *j, *rm)));
+                    }
+                    for (k, n) in ["PSI", "THETA", "PHI"].iter().enumerate() {
+                        all.push((k + 6, n.to_string(), two(n, *i, *j)));
+                    }
+                    all
+                }
+                RequestKind::Velocity { i, j, rm } => {
+                    set("VM", ["VX", "VY", "VZ"], "WM", ["WX", "WY", "WZ"], *i, *j, *rm)
+                }
+                RequestKind::Acceleration { i, j, rm } => {
+                    set("ACCM", ["ACCX", "ACCY", "ACCZ"], "WDTM", ["WDTX", "WDTY", "WDTZ"], *i, *j, *rm)
+                }
+                RequestKind::Force { i, j, rm } => {
+                    set("FM", ["FX", "FY", "FZ"], "TM", ["TX", "TY", "TZ"], *i, *j, *rm)
+                }
+                RequestKind::Functions(all) => all
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(k, f)| match f {
+                        Some(crate::model::Formula::Expression { text, .. }) => {
+                            Some((k + 1, format!("F{}", k + 1), text.clone()))
+                        }
+                        _ => None,
+                    })
+                    .collect(),
+                RequestKind::User(_) => Vec::new(),
+            };
+            let mut shown = Vec::new();
+            for (k, name, text) in components {
+                let given = request.cnames.get(k - 1);
+                if given.is_some_and(String::is_empty) {
+                    continue;
+                }
+                let name = given.cloned().unwrap_or(name);
+                let column = self.text(run, format!("{entity}.{name}"), &text, &units);
+                table.push(column);
+                shown.push(Component { name, column });
+            }
+            if !shown.is_empty() {
+                let kind = "Request".to_string();
+                run.entities.push(Entity { name: entity.clone(), entity, kind, id: u64::from(id), components: shown });
+            }
+        }
+    }
+
+    fn value<S: Scalar>(&self, what: &What, scene: &Scene, at: &Equations<'_, S>) -> S {
+        match what {
+            What::Text(k) => at.formula(scene.extra[*k]),
+            What::Part { point_mass, id, quantity } => {
+                let part = scene.parts.iter().position(|p| p.point_mass == *point_mass && p.id == *id);
+                let Some(part) = part else { return S::constant(f64::NAN) };
+                let accelerated = *quantity >= 12;
+                let state = at.part(part, accelerated);
+                let angle = |m: Measure| {
+                    let ground = MarkerState::ground();
+                    kinematic::kinematic(m, &state, &ground, &ground, &ground).unwrap_or_else(S::zero)
+                };
+                match quantity {
+                    0..=2 => state.p_GM.0[*quantity],
+                    3 => angle(Measure::Psi),
+                    4 => angle(Measure::Theta),
+                    5 => angle(Measure::Phi),
+                    6..=8 => state.v_GM.0[quantity - 6],
+                    9..=11 => state.w_GM.0[quantity - 9],
+                    12..=14 => state.a_GM.0[quantity - 12],
+                    _ => state.alpha_GM.0[quantity - 15],
+                }
+            }
+            What::Action { keyword, id, component } => match at.action_of(keyword, *id) {
+                Some(a) if *component < 3 => a.force.0[*component],
+                Some(a) => a.torque.0[component - 3],
+                None => S::zero(),
+            },
+        }
+    }
+
+    /// The columns as a program of the scene, and what could not be computed.
+    pub fn program(&self, scene: &Scene) -> (Program, Vec<String>) {
+        record_with_complaints(scene, |at| self.what.iter().map(|w| self.value(w, scene, at)).collect())
+    }
+
+    /// Number of columns.
+    pub fn len(&self) -> usize {
+        self.what.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.what.is_empty()
+    }
+}
+
+/// Evaluates the columns at each row of numbers and appends them to the run.
+pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
+    let mut work = Work::default();
+    let mut values = vec![0.0; program.n_outputs() + 1];
+    for row in rows {
+        values[0] = row[0];
+        program.run(row, &mut work, &mut values[1..]);
+        run.push(&values);
+    }
+}
+
+/// The name given in the dataset, or `KEYWORD_id`.
+pub fn name_of(place: &crate::model::Place, keyword: &str, id: u32) -> String {
+    place.name.clone().unwrap_or_else(|| format!("{keyword}_{id}"))
+}
+
+/// A warning that some columns have no value.
+pub fn unavailable(complaints: &[String]) -> Vec<Diagnostic> {
+    complaints.iter().map(|c| Diagnostic::warning("unavailable", c.clone())).collect()
+}

@@ -1,0 +1,282 @@
+//! The only loop over time: steps, events, outputs.
+//!
+//! ```text
+//! step → switched? → redo up to the switch, restart there → outputs on the interpolant → turns of counted angles
+//! ```
+//!
+//! A step over a switch is never kept: it is undone and repeated so that it ends where the branch changes, from where the
+//! method begins anew. Accuracy therefore does not fall when a kink lies inside a step.
+
+use super::system::System;
+use crate::numeric::event::Locator;
+use crate::numeric::{self, Method, Ode, Reason, Stats, Stop};
+
+/// What a caller may do while time passes.
+pub trait Watch {
+    /// Whether to stop now.
+    fn interrupted(&mut self) -> bool {
+        false
+    }
+    /// How far it is.
+    fn progress(&mut self, _t: f64, _h: f64, _stats: &Stats) {}
+}
+
+/// Watches nothing.
+pub struct Unwatched;
+impl Watch for Unwatched {}
+
+/// What is asked of an integration.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// E, permitted local error
+    pub error: f64,
+    /// name of a method of [`numeric::METHODS`], or "AUTO"
+    pub method: String,
+    /// first step
+    pub h_initial: Option<f64>,
+    /// longest step
+    pub h_max: f64,
+    /// shortest step
+    pub h_min: f64,
+    /// highest order
+    pub max_order: Option<usize>,
+    /// Newton iterations
+    pub max_newton: Option<usize>,
+    /// attempted steps
+    pub max_steps: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            error: 1e-6,
+            method: "AUTO".into(),
+            h_initial: None,
+            h_max: f64::INFINITY,
+            h_min: 0.0,
+            max_order: None,
+            max_newton: None,
+            max_steps: usize::MAX,
+        }
+    }
+}
+
+/// Why an integration ended before its time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    /// the caller asked
+    Interrupted,
+    /// the method could not go on
+    Stop(Stop),
+}
+
+/// States at the output times that were reached.
+#[derive(Clone, Debug, Default)]
+pub struct Trajectory {
+    /// output times reached
+    pub t: Vec<f64>,
+    /// all numbers (t | q | v | x | turns) at each
+    pub rows: Vec<Vec<f64>>,
+    /// what it cost
+    pub stats: Stats,
+    /// the methods that worked, in order, with the time at which each took over
+    pub methods: Vec<(f64, String)>,
+    /// switches that were located: how many
+    pub events: usize,
+    /// `None`: all output times were reached
+    pub ended: Option<Ended>,
+}
+
+fn add(sum: &mut Stats, more: &Stats) {
+    sum.steps += more.steps;
+    sum.rejected += more.rejected;
+    sum.evaluations += more.evaluations;
+    sum.jacobians += more.jacobians;
+    sum.factorizations += more.factorizations;
+    sum.newton_iterations += more.newton_iterations;
+}
+
+/// Integrates from the state in `system.numbers` through all `outputs` (ascending, after the state's time).
+pub fn integrate(system: &mut System, outputs: &[f64], options: &Options, watch: &mut dyn Watch) -> Trajectory {
+    let mut out = Trajectory::default();
+    let n = system.size();
+    let t0 = system.numbers[0];
+    let mut y = system.numbers[system.scene.layout.y()].to_vec();
+    let Some(&end) = outputs.last() else { return out };
+    if n == 0 {
+        for &t in outputs {
+            system.numbers[0] = t;
+            out.t.push(t);
+            out.rows.push(system.numbers.clone());
+        }
+        return out;
+    }
+    let settings = numeric::Options {
+        tolerance: options.error,
+        h_initial: options.h_initial,
+        h_max: options.h_max,
+        h_min: options.h_min,
+        max_order: options.max_order.unwrap_or(5),
+        max_newton: options.max_newton.unwrap_or(10),
+        max_steps: options.max_steps,
+        ..numeric::Options::default()
+    };
+    let auto = options.method.eq_ignore_ascii_case("AUTO");
+    let mut name = if auto { "DOP853".to_string() } else { options.method.to_ascii_uppercase() };
+    let mut t = t0;
+    loop {
+        let Some(mut method) = numeric::ode_method::<System>(&name, n, &settings) else {
+            out.ended = Some(Ended::Stop(Stop { reason: Reason::TooManySteps, t, h: 0.0 }));
+            return out;
+        };
+        out.methods.push((t, name.clone()));
+        let mut leg = Leg { system, outputs, end, out: &mut out, watch };
+        let finished = leg.run(method.as_mut(), t, &y, auto && name == "DOP853");
+        add(&mut out.stats, method.stats());
+        match finished {
+            Finished::Done => return out,
+            Finished::Ended(why) => {
+                out.ended = Some(why);
+                return out;
+            }
+            Finished::Stiff => {
+                t = method.t();
+                y.copy_from_slice(method.y());
+                name = "RADAU5".into();
+            }
+        }
+    }
+}
+
+enum Finished {
+    Done,
+    Ended(Ended),
+    /// another method would do better from here
+    Stiff,
+}
+
+/// The part of an integration that one method does.
+struct Leg<'a> {
+    system: &'a mut System,
+    outputs: &'a [f64],
+    end: f64,
+    out: &'a mut Trajectory,
+    watch: &'a mut dyn Watch,
+}
+
+impl Leg<'_> {
+    fn run(&mut self, method: &mut dyn Method<System>, t: f64, y: &[f64], may_change: bool) -> Finished {
+        if let Err(stop) = method.start(self.system, t, y) {
+            return Finished::Ended(Ended::Stop(stop));
+        }
+        let n_switches = self.system.n_switches();
+        let mut locator = Locator::new(n_switches);
+        let mut sides = vec![0.0; n_switches];
+        let mut state = y.to_vec();
+        self.system.switches(t, y, &mut sides);
+        locator.begin(&sides);
+        // end of the next step, when a switch has been located inside the one before
+        let mut switch_at: Option<f64> = None;
+        let mut redone = 0;
+        while method.t() < self.end {
+            if self.watch.interrupted() {
+                return Finished::Ended(Ended::Interrupted);
+            }
+            let limit = switch_at.take().unwrap_or(self.end);
+            let step = match method.step(self.system, limit) {
+                Ok(step) => step,
+                Err(stop) => return Finished::Ended(Ended::Stop(stop)),
+            };
+            let mut switched = false;
+            if n_switches > 0 {
+                let system = &mut *self.system;
+                let event = locator.scan(step.t0, step.t1, |t, values| {
+                    if t == step.t1 {
+                        state.copy_from_slice(method.y());
+                    } else {
+                        method.interpolate(system, t, &mut state)?;
+                    }
+                    system.switches(t, &state, values);
+                    Ok::<(), numeric::Failure>(())
+                });
+                match event {
+                    Ok(Some(at)) => {
+                        let near = 1e-12 * self.end.abs().max(step.t1.abs()) + 1e-9 * step.h;
+                        if step.t1 - at > near && redone < 30 {
+                            // repeat the step so that it ends there
+                            method.undo();
+                            self.system.switches(step.t0, method.y(), &mut sides);
+                            locator.begin(&sides);
+                            switch_at = Some(at);
+                            redone += 1;
+                            continue;
+                        }
+                        switched = true;
+                    }
+                    Ok(None) => {}
+                    Err(_) => switched = true,
+                }
+            }
+            redone = 0;
+            self.emit(method, &step);
+            self.watch.progress(step.t1, step.h, method.stats());
+            if switched && step.t1 < self.end {
+                self.out.events += 1;
+                state.copy_from_slice(method.y());
+                if let Err(stop) = method.reinitialize(self.system, step.t1, &state) {
+                    return Finished::Ended(Ended::Stop(stop));
+                }
+                self.system.switches(step.t1, &state, &mut sides);
+                locator.begin(&sides);
+            }
+            if may_change && method.stiff() && method.t() < self.end {
+                return Finished::Stiff;
+            }
+        }
+        Finished::Done
+    }
+
+    /// Output times inside an accepted step, and the turns at its end.
+    fn emit(&mut self, method: &mut dyn Method<System>, step: &numeric::Step) {
+        let counts = self.system.counts_turns();
+        let mut state = method.y().to_vec();
+        // while an angle is followed it must not turn by more than half a turn between looks
+        let mut looks = if counts { (self.system.spin(&state) * step.h / 1.5).ceil().min(1e4) as usize } else { 0 };
+        if looks > 0 {
+            looks += 1;
+        }
+        let mut look = 1;
+        while let Some(&t) = self.outputs.get(self.out.t.len()) {
+            if t > step.t1 {
+                break;
+            }
+            while look < looks && step.t0 + step.h * look as f64 / looks as f64 <= t {
+                let at = step.t0 + step.h * look as f64 / looks as f64;
+                if method.interpolate(self.system, at, &mut state).is_ok() {
+                    self.system.count_turns(at, &state);
+                }
+                look += 1;
+            }
+            if t == step.t1 {
+                state.copy_from_slice(method.y());
+            } else if method.interpolate(self.system, t, &mut state).is_err() {
+                state.fill(f64::NAN);
+            }
+            if counts {
+                self.system.count_turns(t, &state);
+            }
+            self.out.t.push(t);
+            self.out.rows.push(self.system.row(t, &state));
+        }
+        if counts {
+            while look < looks {
+                let at = step.t0 + step.h * look as f64 / looks as f64;
+                if method.interpolate(self.system, at, &mut state).is_ok() {
+                    self.system.count_turns(at, &state);
+                }
+                look += 1;
+            }
+            self.system.count_turns(step.t1, method.y());
+        }
+    }
+}

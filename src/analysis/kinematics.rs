@@ -1,0 +1,81 @@
+//! Motion of a mechanism without freedom: at each output time the positions that its drives and rows leave, then velocities;
+//! accelerations and reactions follow from the equations when somebody asks.
+//!
+//! A step that does not converge is halved; when halving no longer helps the mechanism is locked: it cannot be driven
+//! further, and what stands in the way is named.
+
+use super::dynamics::{Ended, Trajectory, Watch};
+use super::system::System;
+use crate::numeric::{Failure, Ode, Reason, Stop};
+
+/// Halvings of a step before the mechanism counts as locked.
+const HALVINGS: u32 = 24;
+
+/// Moves through all `outputs` (ascending, after the state's time).
+pub fn trace(system: &mut System, outputs: &[f64], h_max: f64, watch: &mut dyn Watch) -> Trajectory {
+    let mut out = Trajectory::default();
+    out.methods.push((system.numbers[0], "KINEMATIC".into()));
+    let l = system.scene.layout;
+    let mut t = system.numbers[0];
+    let mut y = system.numbers[l.y()].to_vec();
+    let mut trial = y.clone();
+    let mut dq = vec![0.0; l.n_v];
+    for &target in outputs {
+        let mut h = (target - t).min(h_max);
+        let mut halvings = 0;
+        while t < target {
+            if watch.interrupted() {
+                out.ended = Some(Ended::Interrupted);
+                return out;
+            }
+            let next = if t + h >= target - 1e-12 * target.abs() { target } else { t + h };
+            // predicted with the velocities of the last position
+            trial.copy_from_slice(&y);
+            for (d, v) in dq.iter_mut().zip(&y[l.n_q..l.n_q + l.n_v]) {
+                *d = v * (next - t);
+            }
+            system.mover().displace(&mut trial[..l.n_q], &dq);
+            out.stats.evaluations += 1;
+            match converged(system, next, &y, &mut trial) {
+                Ok(()) => {
+                    y.copy_from_slice(&trial);
+                    t = next;
+                    out.stats.steps += 1;
+                    if halvings > 0 {
+                        h *= 2.0;
+                        halvings -= 1;
+                    }
+                    system.count_turns(t, &y);
+                    watch.progress(t, h, &out.stats);
+                }
+                Err(failure) => {
+                    out.stats.rejected += 1;
+                    h *= 0.5;
+                    halvings += 1;
+                    if halvings > HALVINGS {
+                        let reason = Reason::Projection(failure);
+                        out.ended = Some(Ended::Stop(Stop { reason, t, h }));
+                        return out;
+                    }
+                }
+            }
+        }
+        out.t.push(target);
+        out.rows.push(system.row(target, &y));
+    }
+    out
+}
+
+/// Brings a predicted state onto the rows; refuses one that jumped to another branch.
+fn converged(system: &mut System, t: f64, before: &[f64], trial: &mut [f64]) -> Result<(), Failure> {
+    let predicted = trial.to_vec();
+    system.project(t, trial)?;
+    let n_q = system.scene.layout.n_q;
+    let moved = |a: &[f64], b: &[f64]| a.iter().zip(b).take(n_q).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+    // the correction should be small against the step itself, once the velocities are known
+    let (step, correction) = (moved(&predicted, before), moved(trial, &predicted));
+    if step > 0.0 && correction > 2.0 * step && correction > 0.5 {
+        return Err(Failure { what: 0, recoverable: true });
+    }
+    Ok(())
+}
