@@ -18,9 +18,17 @@ enum What {
     Text(usize),
     /// a component of a part's motion: 0–2 position, 3–5 ψ θ φ, 6–8 velocity, 9–11 angular velocity, 12–14 acceleration,
     /// 15–17 angular acceleration; of the part frame, ground axes
-    Part { point_mass: bool, id: u32, quantity: usize },
+    Part {
+        point_mass: bool,
+        id: u32,
+        quantity: usize,
+    },
     /// a component of the action of an element on its I marker, ground axes: 0–2 force, 3–5 torque
-    Action { keyword: &'static str, id: u32, component: usize },
+    Action {
+        keyword: &'static str,
+        id: u32,
+        component: usize,
+    },
 }
 
 /// The columns of a run in the order of its table of all columns, time left out.
@@ -33,9 +41,16 @@ pub struct Columns {
 
 /// The unit of what an expression yields, where it is a single measure.
 fn unit_of(text: &str, units: &Units) -> String {
-    let Some((name, rest)) = text.split_once('(') else { return String::new() };
-    let single = rest.trim_end().strip_suffix(')').is_some_and(|inner| !inner.contains(['(', ')']));
-    let Some(measure) = Measure::by_name(name.trim()).filter(|_| single) else { return String::new() };
+    let Some((name, rest)) = text.split_once('(') else {
+        return String::new();
+    };
+    let single = rest
+        .trim_end()
+        .strip_suffix(')')
+        .is_some_and(|inner| !inner.contains(['(', ')']));
+    let Some(measure) = Measure::by_name(name.trim()).filter(|_| single) else {
+        return String::new();
+    };
     let (l, t, f, a) = (&units.length, &units.time, &units.force, &units.angle);
     match measure.row().unit {
         "length" => l.clone(),
@@ -92,9 +107,19 @@ impl Columns {
             .chain(model.point_masses.iter().map(|(&id, p)| (true, id, p)))
             .collect();
         for &(point_mass, id, part) in &all {
-            let entity = name_of(&part.place, if point_mass { "POINT_MASS" } else { "PART" }, id);
+            let entity = name_of(
+                &part.place,
+                if point_mass { "POINT_MASS" } else { "PART" },
+                id,
+            );
             let name = format!("{entity}_XFORM");
-            run.entities.push(Entity { name, entity, kind: "Part".into(), id: u64::from(id), components: Vec::new() });
+            run.entities.push(Entity {
+                name,
+                entity,
+                kind: "Part".into(),
+                id: u64::from(id),
+                components: Vec::new(),
+            });
         }
         let names = [
             ["X", "Y", "Z", "PSI", "THETA", "PHI"],
@@ -102,14 +127,26 @@ impl Columns {
             ["ACCX", "ACCY", "ACCZ", "WDX", "WDY", "WDZ"],
         ];
         for (level, names) in names.iter().enumerate() {
-            let rate = ["".to_string(), format!("/{}", u.time), format!("/{}**2", u.time)][level].clone();
+            let rate = [
+                "".to_string(),
+                format!("/{}", u.time),
+                format!("/{}**2", u.time),
+            ][level]
+                .clone();
             for (k, &(point_mass, id, _)) in all.iter().enumerate() {
                 for (c, component) in names.iter().enumerate() {
                     let unit = format!("{}{rate}", if c < 3 { &u.length } else { &u.angle });
-                    let what = What::Part { point_mass, id, quantity: 6 * level + c };
+                    let what = What::Part {
+                        point_mass,
+                        id,
+                        quantity: 6 * level + c,
+                    };
                     let name = format!("{}.{component}", run.entities[first + k].name);
                     let column = self.push(run, name, unit, what);
-                    run.entities[first + k].components.push(Component { name: (*component).into(), column });
+                    run.entities[first + k].components.push(Component {
+                        name: (*component).into(),
+                        column,
+                    });
                 }
             }
         }
@@ -119,29 +156,70 @@ impl Columns {
     fn elements(&mut self, model: &Model, run: &mut Run) {
         let u = run.units.clone();
         let mut all: Vec<(&'static str, u32, String, &str)> = Vec::new();
-        all.extend(model.joints.iter().map(|(&id, x)| ("JOINT", id, name_of(&x.place, "JOINT", id), "Joint")));
         all.extend(
-            model.primitives.iter().map(|(&id, x)| ("JPRIM", id, name_of(&x.place, "JPRIM", id), "Primitive_Joint")),
+            model
+                .joints
+                .iter()
+                .map(|(&id, x)| ("JOINT", id, name_of(&x.place, "JOINT", id), "Joint")),
         );
-        all.extend(
-            model.sforces.iter().map(|(&id, x)| ("SFORCE", id, name_of(&x.place, "SFORCE", id), "Single_Component_Force")),
-        );
+        all.extend(model.primitives.iter().map(|(&id, x)| {
+            (
+                "JPRIM",
+                id,
+                name_of(&x.place, "JPRIM", id),
+                "Primitive_Joint",
+            )
+        }));
+        all.extend(model.sforces.iter().map(|(&id, x)| {
+            (
+                "SFORCE",
+                id,
+                name_of(&x.place, "SFORCE", id),
+                "Single_Component_Force",
+            )
+        }));
         for (keyword, id, entity, kind) in all {
             let mut components = Vec::new();
             for (c, component) in ["FX", "FY", "FZ", "TX", "TY", "TZ"].iter().enumerate() {
-                let unit = if c < 3 { u.force.clone() } else { format!("{}-{}", u.force, u.length) };
-                let what = What::Action { keyword, id, component: c };
+                let unit = if c < 3 {
+                    u.force.clone()
+                } else {
+                    format!("{}-{}", u.force, u.length)
+                };
+                let what = What::Action {
+                    keyword,
+                    id,
+                    component: c,
+                };
                 let column = self.push(run, format!("{entity}.{component}"), unit, what);
-                components.push(Component { name: (*component).into(), column });
+                components.push(Component {
+                    name: (*component).into(),
+                    column,
+                });
             }
-            run.entities.push(Entity { name: entity.clone(), entity, kind: kind.into(), id: u64::from(id), components });
+            run.entities.push(Entity {
+                name: entity.clone(),
+                entity,
+                kind: kind.into(),
+                id: u64::from(id),
+                components,
+            });
         }
         for (&id, variable) in &model.variables {
             let entity = name_of(&variable.place, "VARIABLE", id);
             let column = self.text(run, format!("{entity}.Q"), &format!("VARVAL({id})"), &u);
-            let components = vec![Component { name: "Q".into(), column }];
+            let components = vec![Component {
+                name: "Q".into(),
+                column,
+            }];
             let kind = "ADAMS_Variable".to_string();
-            run.entities.push(Entity { name: entity.clone(), entity, kind, id: u64::from(id), components });
+            run.entities.push(Entity {
+                name: entity.clone(),
+                entity,
+                kind,
+                id: u64::from(id),
+                components,
+            });
         }
     }
 
@@ -149,16 +227,28 @@ impl Columns {
     fn requests(&mut self, model: &Model, run: &mut Run, table: &mut Vec<usize>) {
         let units = run.units.clone();
         for (&id, request) in &model.requests {
-            let entity = request.results_name.clone().unwrap_or_else(|| name_of(&request.place, "REQUEST", id));
-            let two = |name: &str, i: u32, j: Option<u32>| format!("{name}({i},{})", j.unwrap_or(0));
+            let entity = request
+                .results_name
+                .clone()
+                .unwrap_or_else(|| name_of(&request.place, "REQUEST", id));
+            let two =
+                |name: &str, i: u32, j: Option<u32>| format!("{name}({i},{})", j.unwrap_or(0));
             let three = |name: &str, i: u32, j: Option<u32>, rm: Option<u32>| {
                 format!("{name}({i},{},{})", j.unwrap_or(0), rm.unwrap_or(0))
             };
             let set = |m: &str, c: [&str; 3], tm: &str, tc: [&str; 3], i, j, rm| {
                 let mut all = vec![(1, "MAG".to_string(), two(m, i, j))];
-                all.extend(c.iter().enumerate().map(|(k, n)| (k + 2, n.to_string(), three(n, i, j, rm))));
+                all.extend(
+                    c.iter()
+                        .enumerate()
+                        .map(|(k, n)| (k + 2, n.to_string(), three(n, i, j, rm))),
+                );
                 all.push((5, "AMAG".to_string(), two(tm, i, j)));
-                all.extend(tc.iter().enumerate().map(|(k, n)| (k + 6, n.to_string(), three(n, i, j, rm))));
+                all.extend(
+                    tc.iter()
+                        .enumerate()
+                        .map(|(k, n)| (k + 6, n.to_string(), three(n, i, j, rm))),
+                );
                 all
             };
             let components: Vec<(usize, String, String)> = match &request.kind {
@@ -172,15 +262,33 @@ impl Columns {
                     }
                     all
                 }
-                RequestKind::Velocity { i, j, rm } => {
-                    set("VM", ["VX", "VY", "VZ"], "WM", ["WX", "WY", "WZ"], *i, *j, *rm)
-                }
-                RequestKind::Acceleration { i, j, rm } => {
-                    set("ACCM", ["ACCX", "ACCY", "ACCZ"], "WDTM", ["WDTX", "WDTY", "WDTZ"], *i, *j, *rm)
-                }
-                RequestKind::Force { i, j, rm } => {
-                    set("FM", ["FX", "FY", "FZ"], "TM", ["TX", "TY", "TZ"], *i, *j, *rm)
-                }
+                RequestKind::Velocity { i, j, rm } => set(
+                    "VM",
+                    ["VX", "VY", "VZ"],
+                    "WM",
+                    ["WX", "WY", "WZ"],
+                    *i,
+                    *j,
+                    *rm,
+                ),
+                RequestKind::Acceleration { i, j, rm } => set(
+                    "ACCM",
+                    ["ACCX", "ACCY", "ACCZ"],
+                    "WDTM",
+                    ["WDTX", "WDTY", "WDTZ"],
+                    *i,
+                    *j,
+                    *rm,
+                ),
+                RequestKind::Force { i, j, rm } => set(
+                    "FM",
+                    ["FX", "FY", "FZ"],
+                    "TM",
+                    ["TX", "TY", "TZ"],
+                    *i,
+                    *j,
+                    *rm,
+                ),
                 RequestKind::Functions(all) => all
                     .iter()
                     .enumerate()
@@ -206,7 +314,13 @@ impl Columns {
             }
             if !shown.is_empty() {
                 let kind = "Request".to_string();
-                run.entities.push(Entity { name: entity.clone(), entity, kind, id: u64::from(id), components: shown });
+                run.entities.push(Entity {
+                    name: entity.clone(),
+                    entity,
+                    kind,
+                    id: u64::from(id),
+                    components: shown,
+                });
             }
         }
     }
@@ -214,14 +328,24 @@ impl Columns {
     fn value<S: Scalar>(&self, what: &What, scene: &Scene, at: &Equations<'_, S>) -> S {
         match what {
             What::Text(k) => at.formula(scene.extra[*k]),
-            What::Part { point_mass, id, quantity } => {
-                let part = scene.parts.iter().position(|p| p.point_mass == *point_mass && p.id == *id);
-                let Some(part) = part else { return S::constant(f64::NAN) };
+            What::Part {
+                point_mass,
+                id,
+                quantity,
+            } => {
+                let part = scene
+                    .parts
+                    .iter()
+                    .position(|p| p.point_mass == *point_mass && p.id == *id);
+                let Some(part) = part else {
+                    return S::constant(f64::NAN);
+                };
                 let accelerated = *quantity >= 12;
                 let state = at.part(part, accelerated);
                 let angle = |m: Measure| {
                     let ground = MarkerState::ground();
-                    kinematic::kinematic(m, &state, &ground, &ground, &ground).unwrap_or_else(S::zero)
+                    kinematic::kinematic(m, &state, &ground, &ground, &ground)
+                        .unwrap_or_else(S::zero)
                 };
                 match quantity {
                     0..=2 => state.p_GM.0[*quantity],
@@ -234,7 +358,11 @@ impl Columns {
                     _ => state.alpha_GM.0[quantity - 15],
                 }
             }
-            What::Action { keyword, id, component } => match at.action_of(keyword, *id) {
+            What::Action {
+                keyword,
+                id,
+                component,
+            } => match at.action_of(keyword, *id) {
                 Some(a) if *component < 3 => a.force.0[*component],
                 Some(a) => a.torque.0[component - 3],
                 None => S::zero(),
@@ -244,7 +372,9 @@ impl Columns {
 
     /// The columns as a program of the scene, and what could not be computed.
     pub fn program(&self, scene: &Scene) -> (Program, Vec<String>) {
-        record_with_complaints(scene, |at| self.what.iter().map(|w| self.value(w, scene, at)).collect())
+        record_with_complaints(scene, |at| {
+            self.what.iter().map(|w| self.value(w, scene, at)).collect()
+        })
     }
 
     /// Number of columns.
@@ -271,10 +401,16 @@ pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
 
 /// The name given in the dataset, or `KEYWORD_id`.
 pub fn name_of(place: &crate::model::Place, keyword: &str, id: u32) -> String {
-    place.name.clone().unwrap_or_else(|| format!("{keyword}_{id}"))
+    place
+        .name
+        .clone()
+        .unwrap_or_else(|| format!("{keyword}_{id}"))
 }
 
 /// A warning that some columns have no value.
 pub fn unavailable(complaints: &[String]) -> Vec<Diagnostic> {
-    complaints.iter().map(|c| Diagnostic::warning("unavailable", c.clone())).collect()
+    complaints
+        .iter()
+        .map(|c| Diagnostic::warning("unavailable", c.clone()))
+        .collect()
 }

@@ -61,6 +61,17 @@ impl Default for Options {
     }
 }
 
+/// The method that does what an INTEGRATOR name of Adams asks for, or the one so named here.
+///
+/// GSTIFF, WSTIFF and their kin are stiff methods with fixed error control: RADAU5 is ours. ABAM and RKF45 are explicit.
+pub fn method_named(name: &str) -> String {
+    match name.to_ascii_uppercase().as_str() {
+        "GSTIFF" | "WSTIFF" | "HASTIFF" | "CONSTANT_BDF" | "HHT" | "NEWMARK" => "RADAU5".into(),
+        "ABAM" | "RKF45" => "DOP853".into(),
+        other => other.to_string(),
+    }
+}
+
 /// Why an integration ended before its time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ended {
@@ -97,12 +108,19 @@ fn add(sum: &mut Stats, more: &Stats) {
 }
 
 /// Integrates from the state in `system.numbers` through all `outputs` (ascending, after the state's time).
-pub fn integrate(system: &mut System, outputs: &[f64], options: &Options, watch: &mut dyn Watch) -> Trajectory {
+pub fn integrate(
+    system: &mut System,
+    outputs: &[f64],
+    options: &Options,
+    watch: &mut dyn Watch,
+) -> Trajectory {
     let mut out = Trajectory::default();
     let n = system.size();
     let t0 = system.numbers[0];
     let mut y = system.numbers[system.scene.layout.y()].to_vec();
-    let Some(&end) = outputs.last() else { return out };
+    let Some(&end) = outputs.last() else {
+        return out;
+    };
     if n == 0 {
         for &t in outputs {
             system.numbers[0] = t;
@@ -122,15 +140,29 @@ pub fn integrate(system: &mut System, outputs: &[f64], options: &Options, watch:
         ..numeric::Options::default()
     };
     let auto = options.method.eq_ignore_ascii_case("AUTO");
-    let mut name = if auto { "DOP853".to_string() } else { options.method.to_ascii_uppercase() };
+    let mut name = if auto {
+        "DOP853".to_string()
+    } else {
+        options.method.to_ascii_uppercase()
+    };
     let mut t = t0;
     loop {
         let Some(mut method) = numeric::ode_method::<System>(&name, n, &settings) else {
-            out.ended = Some(Ended::Stop(Stop { reason: Reason::TooManySteps, t, h: 0.0 }));
+            out.ended = Some(Ended::Stop(Stop {
+                reason: Reason::TooManySteps,
+                t,
+                h: 0.0,
+            }));
             return out;
         };
         out.methods.push((t, name.clone()));
-        let mut leg = Leg { system, outputs, end, out: &mut out, watch };
+        let mut leg = Leg {
+            system,
+            outputs,
+            end,
+            out: &mut out,
+            watch,
+        };
         let finished = leg.run(method.as_mut(), t, &y, auto && name == "DOP853");
         add(&mut out.stats, method.stats());
         match finished {
@@ -165,7 +197,13 @@ struct Leg<'a> {
 }
 
 impl Leg<'_> {
-    fn run(&mut self, method: &mut dyn Method<System>, t: f64, y: &[f64], may_change: bool) -> Finished {
+    fn run(
+        &mut self,
+        method: &mut dyn Method<System>,
+        t: f64,
+        y: &[f64],
+        may_change: bool,
+    ) -> Finished {
         if let Err(stop) = method.start(self.system, t, y) {
             return Finished::Ended(Ended::Stop(stop));
         }
@@ -241,7 +279,11 @@ impl Leg<'_> {
         let counts = self.system.counts_turns();
         let mut state = method.y().to_vec();
         // while an angle is followed it must not turn by more than half a turn between looks
-        let mut looks = if counts { (self.system.spin(&state) * step.h / 1.5).ceil().min(1e4) as usize } else { 0 };
+        let mut looks = if counts {
+            (self.system.spin(&state) * step.h / 1.5).ceil().min(1e4) as usize
+        } else {
+            0
+        };
         if looks > 0 {
             looks += 1;
         }

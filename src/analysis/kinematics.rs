@@ -12,7 +12,12 @@ use crate::numeric::{Failure, Ode, Reason, Stop};
 const HALVINGS: u32 = 24;
 
 /// Moves through all `outputs` (ascending, after the state's time).
-pub fn trace(system: &mut System, outputs: &[f64], h_max: f64, watch: &mut dyn Watch) -> Trajectory {
+pub fn trace(
+    system: &mut System,
+    outputs: &[f64],
+    h_max: f64,
+    watch: &mut dyn Watch,
+) -> Trajectory {
     let mut out = Trajectory::default();
     out.methods.push((system.numbers[0], "KINEMATIC".into()));
     let l = system.scene.layout;
@@ -28,7 +33,11 @@ pub fn trace(system: &mut System, outputs: &[f64], h_max: f64, watch: &mut dyn W
                 out.ended = Some(Ended::Interrupted);
                 return out;
             }
-            let next = if t + h >= target - 1e-12 * target.abs() { target } else { t + h };
+            let next = if t + h >= target - 1e-12 * target.abs() {
+                target
+            } else {
+                t + h
+            };
             // predicted with the velocities of the last position
             trial.copy_from_slice(&y);
             for (d, v) in dq.iter_mut().zip(&y[l.n_q..l.n_q + l.n_v]) {
@@ -67,15 +76,29 @@ pub fn trace(system: &mut System, outputs: &[f64], h_max: f64, watch: &mut dyn W
 }
 
 /// Brings a predicted state onto the rows; refuses one that jumped to another branch.
-fn converged(system: &mut System, t: f64, before: &[f64], trial: &mut [f64]) -> Result<(), Failure> {
+fn converged(
+    system: &mut System,
+    t: f64,
+    before: &[f64],
+    trial: &mut [f64],
+) -> Result<(), Failure> {
     let predicted = trial.to_vec();
     system.project(t, trial)?;
     let n_q = system.scene.layout.n_q;
-    let moved = |a: &[f64], b: &[f64]| a.iter().zip(b).take(n_q).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+    let moved = |a: &[f64], b: &[f64]| {
+        a.iter()
+            .zip(b)
+            .take(n_q)
+            .map(|(x, y)| (x - y).abs())
+            .fold(0.0, f64::max)
+    };
     // the correction should be small against the step itself, once the velocities are known
     let (step, correction) = (moved(&predicted, before), moved(trial, &predicted));
     if step > 0.0 && correction > 2.0 * step && correction > 0.5 {
-        return Err(Failure { what: 0, recoverable: true });
+        return Err(Failure {
+            what: 0,
+            recoverable: true,
+        });
     }
     Ok(())
 }

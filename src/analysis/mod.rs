@@ -4,4 +4,5 @@ pub mod assemble;
 pub mod columns;
 pub mod dynamics;
 pub mod kinematics;
+pub mod session;
 pub mod system;

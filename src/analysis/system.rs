@@ -71,7 +71,12 @@ impl System {
             None
         } else {
             let counted = &scene.counted;
-            let program = record(&scene, |at| counted.iter().map(|&(m, ids)| at.measure(m, ids, m.name())).collect());
+            let program = record(&scene, |at| {
+                counted
+                    .iter()
+                    .map(|&(m, ids)| at.measure(m, ids, m.name()))
+                    .collect()
+            });
             Some(program.map_err(complaints)?)
         };
         let l = scene.layout;
@@ -141,8 +146,16 @@ impl System {
     /// A bound of how fast any angle turns, rad per time.
     pub fn spin(&self, y: &[f64]) -> f64 {
         let l = self.scene.layout;
-        let speeds = self.scene.coordinates.iter().zip(&self.scene.freedoms).filter(|(c, _)| c.angular);
-        speeds.filter_map(|(_, f)| f.v).map(|v| y[l.n_q + v].abs()).sum()
+        let speeds = self
+            .scene
+            .coordinates
+            .iter()
+            .zip(&self.scene.freedoms)
+            .filter(|(c, _)| c.angular);
+        speeds
+            .filter_map(|(_, f)| f.v)
+            .map(|v| y[l.n_q + v].abs())
+            .sum()
     }
 
     /// All numbers at a state, projected onto the rows.

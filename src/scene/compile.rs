@@ -345,6 +345,11 @@ impl<'m> Compiler<'m> {
                 };
                 own[k].push(self.coordinates.len());
                 self.coordinates.push(Coordinate {
+                    initial: if fitted[k].len() == 1 {
+                        Some(fitted[k][0])
+                    } else {
+                        None
+                    },
                     name,
                     joint: tie.joint,
                     angular,
@@ -402,6 +407,7 @@ impl<'m> Compiler<'m> {
             };
             let name = format!("{name} {}", ["x", "y", "z"][axis]);
             self.coordinates.push(Coordinate {
+                initial: None,
                 name,
                 joint: None,
                 angular: false,
@@ -434,6 +440,7 @@ impl<'m> Compiler<'m> {
             };
             let name = format!("{name} rotation {}", ["x", "y", "z"][axis]);
             self.coordinates.push(Coordinate {
+                initial: None,
                 name,
                 joint: None,
                 angular: true,

@@ -191,8 +191,20 @@ impl<'s, S: Scalar> Equations<'s, S> {
     /// A part's frame, with its accelerations when asked for.
     pub fn part(&self, part: usize, accelerated: bool) -> MarkerState<S> {
         let p = &self.scene.parts[part];
-        let marker = super::MarkerOnLink { id: 0, link: p.link, frame: p.frame, part: Some(part) };
-        sweep::marker_state(&marker, if accelerated { &self.solved().links } else { &self.links })
+        let marker = super::MarkerOnLink {
+            id: 0,
+            link: p.link,
+            frame: p.frame,
+            part: Some(part),
+        };
+        sweep::marker_state(
+            &marker,
+            if accelerated {
+                &self.solved().links
+            } else {
+                &self.links
+            },
+        )
     }
 
     /// Action of an element on its I marker; `None` when there is no such active element.
@@ -441,7 +453,13 @@ impl<'s, S: Scalar> Equations<'s, S> {
     /// ```text
     /// v̇ = Gᵀ (G Gᵀ)⁻¹ γ        λ = (G Gᵀ)⁻¹ G (M v̇ − f)
     /// ```
-    fn determined(&self, wrenches: &[Wrench<S>], g: &[Vec<(usize, S)>], gamma: &[S], f: &mut [S]) -> Vec<S> {
+    fn determined(
+        &self,
+        wrenches: &[Wrench<S>],
+        g: &[Vec<(usize, S)>],
+        gamma: &[S],
+        f: &mut [S],
+    ) -> Vec<S> {
         let dot = |a: &[(usize, S)], b: &[(usize, S)]| {
             let mut sum = S::zero();
             for &(i, x) in a {
@@ -453,7 +471,9 @@ impl<'s, S: Scalar> Equations<'s, S> {
             }
             sum
         };
-        let gram: Vec<Vec<S>> = (0..g.len()).map(|r| (0..=r).map(|c| dot(&g[r], &g[c])).collect()).collect();
+        let gram: Vec<Vec<S>> = (0..g.len())
+            .map(|r| (0..=r).map(|c| dot(&g[r], &g[c])).collect())
+            .collect();
         let z = solve_symmetric(gram.clone(), gamma.to_vec());
         f.fill(S::zero());
         for (row, &z) in g.iter().zip(&z) {
@@ -470,7 +490,10 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .filter(|f| f.v.is_some())
             .map(|f| f.component(&carried[f.link]))
             .collect();
-        let rhs = g.iter().map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v])).collect();
+        let rhs = g
+            .iter()
+            .map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v]))
+            .collect();
         solve_symmetric(gram, rhs)
     }
 

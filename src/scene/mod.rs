@@ -87,6 +87,8 @@ pub struct Coordinate {
     pub angular: bool,
     /// who says what it does
     pub source: Source,
+    /// its value in the configuration of the dataset; `None` for a ball
+    pub initial: Option<f64>,
     /// the link it moves
     pub link: usize,
 }
@@ -277,4 +279,13 @@ pub struct Scene {
     pub initial_q: Vec<f64>,
     /// a typical length of the mechanism, for tolerances and scales
     pub length: f64,
+}
+
+impl Scene {
+    /// What a motion's displacement is in the configuration of the dataset, where it drives a coordinate of the forest.
+    pub fn initial_displacement(&self, motion: usize) -> Option<f64> {
+        self.motions[motion]
+            .coordinate
+            .and_then(|c| self.coordinates[c].initial)
+    }
 }

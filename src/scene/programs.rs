@@ -17,7 +17,11 @@ where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
     let (program, complaints) = record_with_complaints(scene, f);
-    if complaints.is_empty() { Ok(program) } else { Err(complaints) }
+    if complaints.is_empty() {
+        Ok(program)
+    } else {
+        Err(complaints)
+    }
 }
 
 /// As [`record`]; what could not be computed is NaN in the program, and told.
@@ -27,10 +31,16 @@ where
 {
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let layout = scene.layout.inputs();
-    let numbers: Vec<Sym<'_>> = layout.iter().map(|&input| Sym::input(input, &builder)).collect();
+    let numbers: Vec<Sym<'_>> = layout
+        .iter()
+        .map(|&input| Sym::input(input, &builder))
+        .collect();
     let equations = Equations::new(scene, &numbers);
     let out = f(&equations);
-    let values: Vec<_> = out.iter().map(|s| s.value(&mut builder.borrow_mut())).collect();
+    let values: Vec<_> = out
+        .iter()
+        .map(|s| s.value(&mut builder.borrow_mut()))
+        .collect();
     let program = builder.borrow().finish_with_inputs(&values, &layout);
     (program, equations.complaints())
 }
@@ -42,7 +52,10 @@ where
 pub fn switching(scene: &Scene) -> Result<Option<Program>, Vec<String>> {
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let layout = scene.layout.inputs();
-    let numbers: Vec<Sym<'_>> = layout.iter().map(|&input| Sym::input(input, &builder)).collect();
+    let numbers: Vec<Sym<'_>> = layout
+        .iter()
+        .map(|&input| Sym::input(input, &builder))
+        .collect();
     let equations = Equations::new(scene, &numbers);
     let mut sources = equations.state_rates();
     for force in &scene.forces {
@@ -53,7 +66,10 @@ pub fn switching(scene: &Scene) -> Result<Option<Program>, Vec<String>> {
     if !complaints.is_empty() {
         return Err(complaints);
     }
-    let values: Vec<_> = sources.iter().map(|s| s.value(&mut builder.borrow_mut())).collect();
+    let values: Vec<_> = sources
+        .iter()
+        .map(|s| s.value(&mut builder.borrow_mut()))
+        .collect();
     let switches = builder.borrow_mut().switching(&values);
     if switches.is_empty() {
         return Ok(None);

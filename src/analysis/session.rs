@@ -1,0 +1,568 @@
+//! A model and its clock: one simulation after another, each from where the last one ended.
+//!
+//! A simulation compiles the model as it is now, takes over the state (or assembles the first one), computes, and appends its
+//! rows to the run. What goes wrong in numbers is an outcome in the record, with the results so far; what is wrong in the
+//! model is an error.
+
+use super::assemble::{self, Assembly};
+use super::columns::{self, Columns};
+use super::dynamics::{self, Ended, Trajectory, Watch};
+use super::kinematics;
+use super::system::System;
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use crate::numeric::{Reason, Stop};
+use crate::results::{self, Counts, Event, Kind, Run, Status};
+use crate::scene::build::{self, unknown_names};
+use crate::scene::equations::row_name;
+use crate::scene::{Scene, Source};
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// What SIMULATE asks for.
+#[allow(missing_docs)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Analysis {
+    Kinematic,
+    Dynamic,
+    Static,
+    /// kinematic without freedom, else dynamic
+    Transient,
+    InitialConditions,
+}
+
+/// How to solve, beyond what the model says. `None`: as the model says, else our default.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// permitted local error
+    pub error: Option<f64>,
+    /// name of a method
+    pub method: Option<String>,
+    /// how often to solve, for timing
+    pub repeat: usize,
+    /// further columns
+    pub columns: Vec<String>,
+    /// columns of all parts and joints
+    pub full: bool,
+}
+
+/// State carried from one simulation to the next, by the names of the unknowns.
+#[derive(Clone, Debug)]
+struct Carried {
+    t: f64,
+    /// numbers of the last row
+    numbers: Vec<f64>,
+    names: Vec<String>,
+}
+
+/// A model and its clock.
+pub struct Session {
+    /// the model as it is now
+    pub model: Model,
+    /// results so far
+    pub run: Run,
+    options: Options,
+    columns: Columns,
+    carried: Option<Carried>,
+}
+
+/// Default error of the integration when nobody says.
+const DEFAULT_ERROR: f64 = 1e-6;
+
+impl Session {
+    /// Begins with a model; `name` is the base name of its results.
+    pub fn new(model: Model, name: &str, options: Options) -> Self {
+        let units = units(&model);
+        let mut run = Run::new(name, model.title.clone(), units);
+        let columns = Columns::new(&model, &mut run, &options.columns, options.full);
+        run.record.repeats = options.repeat.max(1) as u32;
+        Self {
+            model,
+            run,
+            options,
+            columns,
+            carried: None,
+        }
+    }
+
+    /// The clock.
+    pub fn time(&self) -> f64 {
+        self.carried.as_ref().map_or(0.0, |c| c.t)
+    }
+
+    /// Compiles the model for a MODE and brings it into its state.
+    fn prepare(&mut self, mode: u32) -> Result<(System, Assembly), Vec<Diagnostic>> {
+        let options = build::Options {
+            mode,
+            extra: self.columns.extra.clone(),
+            ..build::Options::default()
+        };
+        let mut scene = Scene::compile(&self.model, &options)?;
+        let l = scene.layout;
+        let t = self.time();
+        let names = unknown_names(&scene);
+        let mut x = vec![0.0; l.n_x];
+        for d in &scene.differentials {
+            x[d.state] = d.initial;
+        }
+        let mut q = scene.initial_q.clone();
+        let mut v = None;
+        let mut turns = vec![0.0; l.n_turns];
+        if let Some(carried) = &self.carried {
+            let values: BTreeMap<&str, f64> = carried
+                .names
+                .iter()
+                .map(String::as_str)
+                .zip(carried.numbers[1..].iter().copied())
+                .collect();
+            let mut speeds = vec![0.0; l.n_v];
+            let mut complete = true;
+            for (k, name) in names.iter().enumerate() {
+                match values.get(name.as_str()) {
+                    Some(&value) if k < l.n_q => q[k] = value,
+                    Some(&value) if k < l.n_q + l.n_v => speeds[k - l.n_q] = value,
+                    Some(&value) => x[k - l.n_q - l.n_v] = value,
+                    None => complete &= k >= l.n_q + l.n_v,
+                }
+            }
+            if complete {
+                v = Some(speeds);
+            }
+            if carried.numbers.len() == l.len() {
+                turns.copy_from_slice(&carried.numbers[l.turns()]);
+            }
+        } else {
+            self.initial_joints(&scene, &mut q);
+            for (m, motion) in scene.motions.iter().enumerate() {
+                self.initial_motion(&scene, m, motion.state, &q, &mut x);
+            }
+        }
+        let assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
+        let v = match v {
+            Some(v) => v,
+            None => assemble::velocities(&scene, &self.model, t, &q, &x)?,
+        };
+        let mut system = System::new(scene)?;
+        let mut y = q;
+        y.extend(v);
+        y.extend(x);
+        system.numbers[l.turns()].copy_from_slice(&turns);
+        let row = system.row(t, &y);
+        system.numbers.copy_from_slice(&row);
+        let y = row[l.y()].to_vec();
+        system.count_turns(t, &y);
+        Ok((system, assembly))
+    }
+
+    /// IC, ICTRAN, ICROT of joints that carry a part: where assembly begins.
+    fn initial_joints(&self, scene: &Scene, q: &mut [f64]) {
+        for c in &scene.coordinates {
+            let Some(joint) = c.joint.and_then(|j| self.model.joints.get(&j)) else {
+                continue;
+            };
+            let given = if c.angular {
+                joint.ic_rotation[0]
+            } else {
+                joint.ic_translation[0]
+            };
+            if let (Some(value), Source::Free { q: place, .. }) = (given, c.source) {
+                q[place] = value;
+            }
+        }
+    }
+
+    /// Start of motions given by their rate: ICDISP and ICVEL, else what the dataset's configuration shows.
+    fn initial_motion(
+        &self,
+        scene: &Scene,
+        m: usize,
+        state: Option<usize>,
+        _q: &[f64],
+        x: &mut [f64],
+    ) {
+        let Some(state) = state else { return };
+        let motion = &scene.motions[m];
+        let Some(data) = self.model.motions.get(&motion.id) else {
+            return;
+        };
+        x[state] = data
+            .ic_displacement
+            .or_else(|| scene.initial_displacement(m))
+            .unwrap_or(0.0);
+        if motion.level == crate::model::Level::Acceleration {
+            x[state + 1] = data.ic_velocity.unwrap_or(0.0);
+        }
+    }
+
+    /// Runs one simulation up to `end` with `steps` output steps.
+    ///
+    /// # Errors
+    /// What is wrong in the model. A numerical failure is no error: see the record.
+    pub fn simulate(
+        &mut self,
+        analysis: Analysis,
+        end: f64,
+        steps: usize,
+        watch: &mut dyn Watch,
+    ) -> Result<Status, Vec<Diagnostic>> {
+        let mode = match analysis {
+            Analysis::Kinematic => 1,
+            Analysis::InitialConditions => 3,
+            Analysis::Static => 5,
+            Analysis::Dynamic | Analysis::Transient => 4,
+        };
+        let (mut system, assembly) = self.prepare(mode)?;
+        let mut analysis = analysis;
+        if analysis == Analysis::Transient {
+            analysis = if assembly.freedom == 0 {
+                Analysis::Kinematic
+            } else {
+                Analysis::Dynamic
+            };
+        }
+        if analysis == Analysis::Kinematic && assembly.freedom > 0 {
+            return Err(vec![
+                Diagnostic::error(
+                    "freedom",
+                    format!(
+                        "a kinematic simulation needs a mechanism without freedom; this one has {}",
+                        assembly.freedom
+                    ),
+                )
+                .help("drive the remaining freedoms by MOTION, or simulate dynamically"),
+            ]);
+        }
+        if analysis == Analysis::Dynamic && assembly.freedom == 0 {
+            self.warn("the mechanism has no freedom: it is moved by its motions alone");
+            analysis = Analysis::Kinematic;
+        }
+        if analysis == Analysis::Kinematic && mode != 1 {
+            (system, _) = self.prepare(1)?;
+        }
+        self.first_facts(&system, &assembly);
+        let (program, complaints) = self.columns.program(&system.scene);
+        for complaint in complaints {
+            if self
+                .options
+                .columns
+                .iter()
+                .any(|c| complaint.starts_with(c.as_str()))
+            {
+                return Err(vec![Diagnostic::error("unavailable", complaint)]);
+            }
+            self.warn(&complaint);
+        }
+        let start = self.time();
+        let first = system.numbers.clone();
+        if self.carried.is_none() || analysis == Analysis::InitialConditions {
+            self.run.log.push(Event::InitialConditions {
+                time: start,
+                iterations: assembly.iterations as u32,
+            });
+            self.rows(
+                Kind::InitialConditions,
+                &program,
+                std::slice::from_ref(&first),
+            );
+        }
+        let status = match analysis {
+            Analysis::InitialConditions => Status::Completed,
+            Analysis::Static => {
+                return Err(vec![Diagnostic::error(
+                    "unsupported",
+                    "static equilibrium is not solved yet",
+                )]);
+            }
+            _ => self.over_time(&mut system, analysis, (start, end, steps), &program, watch),
+        };
+        if matches!(analysis, Analysis::InitialConditions) {
+            self.keep(&system, first);
+        }
+        Ok(status)
+    }
+
+    /// A simulation over time.
+    fn over_time(
+        &mut self,
+        system: &mut System,
+        analysis: Analysis,
+        (start, end, steps): (f64, f64, usize),
+        program: &crate::expr::program::Program,
+        watch: &mut dyn Watch,
+    ) -> Status {
+        let kind = if analysis == Analysis::Kinematic {
+            Kind::Kinematic
+        } else {
+            Kind::Dynamic
+        };
+        let steps = steps.max(1);
+        let outputs: Vec<f64> = (1..=steps)
+            .map(|k| {
+                if k == steps {
+                    end
+                } else {
+                    start + (end - start) * k as f64 / steps as f64
+                }
+            })
+            .collect();
+        let settings = self.integration();
+        let name = self
+            .model
+            .integrator
+            .method
+            .clone()
+            .unwrap_or_else(|| settings.method.clone());
+        let formulation = self
+            .model
+            .integrator
+            .formulation
+            .clone()
+            .unwrap_or_default();
+        self.run.log.push(Event::Begin {
+            kind,
+            integrator: name,
+            formulation,
+            error: settings.error,
+        });
+        let first = system.numbers.clone();
+        let mut seconds = Vec::new();
+        let mut trajectory = Trajectory::default();
+        for _ in 0..self.options.repeat.max(1) {
+            system.numbers.copy_from_slice(&first);
+            let clock = Instant::now();
+            trajectory = if kind == Kind::Kinematic {
+                kinematics::trace(system, &outputs, settings.h_max, watch)
+            } else {
+                dynamics::integrate(system, &outputs, &settings, watch)
+            };
+            seconds.push(clock.elapsed().as_secs_f64());
+        }
+        seconds.sort_by(f64::total_cmp);
+        let seconds = seconds[seconds.len() / 2];
+        self.rows(kind, program, &trajectory.rows);
+        self.run.log.push(Event::End);
+        let reached = trajectory.t.last().copied().unwrap_or(start);
+        let (status, reason, worst) = self.outcome(system, &trajectory);
+        self.drift(system, &first, &trajectory.rows);
+        let last = trajectory.rows.last().cloned().unwrap_or(first);
+        self.keep(system, last);
+        let counts = Counts {
+            steps: trajectory.stats.steps as u64,
+            rejected_steps: trajectory.stats.rejected as u64,
+            evaluations: trajectory.stats.evaluations as u64,
+            jacobians: trajectory.stats.jacobians as u64,
+            factorizations: trajectory.stats.factorizations as u64,
+        };
+        let method = trajectory
+            .methods
+            .iter()
+            .enumerate()
+            .map(|(k, (t, name))| {
+                if k == 0 {
+                    name.clone()
+                } else {
+                    format!("{name} from {t}, where steps were limited by stiffness")
+                }
+            })
+            .collect::<Vec<_>>()
+            .join(", then ");
+        let record = &mut self.run.record;
+        record.counts += counts;
+        record.solve_seconds += seconds;
+        record.method.clone_from(&method);
+        record.error = Some(settings.error);
+        record.status = status;
+        record.stop_reason.clone_from(&reason);
+        record.simulations.push(results::Simulation {
+            kind,
+            start,
+            end: reached,
+            outputs: trajectory.rows.len(),
+            method,
+            status,
+            stop_reason: reason,
+            solve_seconds: seconds,
+            counts,
+            worst,
+        });
+        status
+    }
+
+    /// INTEGRATOR, overruled by the options.
+    fn integration(&self) -> dynamics::Options {
+        let i = &self.model.integrator;
+        let asked = self
+            .options
+            .method
+            .as_deref()
+            .or(i.method.as_deref())
+            .unwrap_or("AUTO");
+        dynamics::Options {
+            error: self.options.error.or(i.error).unwrap_or(DEFAULT_ERROR),
+            method: dynamics::method_named(asked),
+            h_initial: i.hinit,
+            h_max: i.hmax.unwrap_or(f64::INFINITY),
+            h_min: i.hmin.unwrap_or(0.0),
+            max_order: i.kmax.map(|k| k as usize),
+            max_newton: i.maxit.map(|k| k as usize),
+            ..dynamics::Options::default()
+        }
+    }
+
+    fn rows(&mut self, kind: Kind, program: &crate::expr::program::Program, rows: &[Vec<f64>]) {
+        self.run.begin(kind);
+        columns::append(&mut self.run, program, rows);
+        self.run.end();
+    }
+
+    fn keep(&mut self, system: &System, numbers: Vec<f64>) {
+        self.carried = Some(Carried {
+            t: numbers[0],
+            numbers,
+            names: unknown_names(&system.scene),
+        });
+    }
+
+    fn warn(&mut self, what: &str) {
+        if !self.run.record.warnings.iter().any(|w| w == what) {
+            self.run.record.warnings.push(what.to_string());
+            self.run.log.push(Event::Warning(what.to_string()));
+        }
+    }
+
+    /// Freedom and redundancy, told once and whenever they change.
+    fn first_facts(&mut self, system: &System, assembly: &Assembly) {
+        let names: Vec<String> = assembly.redundant.iter().map(|r| r.name.clone()).collect();
+        if self.run.record.redundant != names && !names.is_empty() {
+            let rows = &system.scene.rows;
+            let equations = assembly
+                .redundant
+                .iter()
+                .map(|r| (rows[r.row].equation.clone(), rows[r.row].element.clone()))
+                .collect();
+            self.run.log.push(Event::Redundant {
+                time: self.time(),
+                equations,
+            });
+        }
+        self.run.record.redundant = names;
+        self.run.record.freedom = assembly.freedom as i64;
+    }
+
+    /// Status, a sentence, and the names of what was worst.
+    fn outcome(&self, system: &System, trajectory: &Trajectory) -> (Status, String, Vec<String>) {
+        match &trajectory.ended {
+            None => (Status::Completed, String::new(), Vec::new()),
+            Some(Ended::Interrupted) => (
+                Status::Interrupted,
+                "interrupted; the results so far are kept".into(),
+                Vec::new(),
+            ),
+            Some(Ended::Stop(stop)) => {
+                let (status, sentence, worst) = explain(&system.scene, stop);
+                (status, sentence, vec![worst])
+            }
+        }
+    }
+
+    /// Energy and constraint drift over the rows of a simulation.
+    fn drift(&mut self, system: &System, first: &[f64], rows: &[Vec<f64>]) {
+        let scene = &system.scene;
+        let n_rows = scene.rows.len();
+        let program = crate::scene::programs::record(scene, |at| {
+            let [kinetic, potential] = at.energy();
+            let mut out = vec![kinetic, potential];
+            out.extend((0..n_rows).map(|r| at.row(r).value));
+            out
+        });
+        let Ok(program) = program else { return };
+        let mut work = crate::expr::program::Work::default();
+        let mut out = vec![0.0; 2 + n_rows];
+        let (mut worst, mut scale, mut change, mut start) = (0.0_f64, 0.0_f64, 0.0_f64, None);
+        for row in std::iter::once(first).chain(rows.iter().map(Vec::as_slice)) {
+            program.run(row, &mut work, &mut out);
+            let energy = out[0] + out[1];
+            let begin = *start.get_or_insert(energy);
+            change = change.max((energy - begin).abs());
+            scale = scale.max(out[0].abs()).max(out[1].abs());
+            worst = out[2..].iter().fold(worst, |m, g| m.max(g.abs()));
+        }
+        let conservative = scene.forces.is_empty() && scene.motions.is_empty();
+        let record = &mut self.run.record;
+        if conservative && scale > 0.0 {
+            record.energy_drift = Some(record.energy_drift.unwrap_or(0.0).max(change / scale));
+        }
+        if n_rows > 0 {
+            record.constraint_drift = Some(record.constraint_drift.unwrap_or(0.0).max(worst));
+        }
+    }
+}
+
+/// A stop in words: status, sentence, and the name of the worst unknown or row.
+fn explain(scene: &Scene, stop: &Stop) -> (Status, String, String) {
+    let names = unknown_names(scene);
+    let unknown = |k: usize| {
+        names
+            .get(k)
+            .cloned()
+            .unwrap_or_else(|| format!("unknown {k}"))
+    };
+    let (status, what, worst) = match stop.reason {
+        Reason::Evaluation(f) => (
+            Status::Stopped,
+            "the equations have no finite value",
+            unknown(f.what),
+        ),
+        Reason::NotFinite(k) => (Status::Stopped, "a rate is not a number", unknown(k)),
+        Reason::Projection(f) => {
+            let name = scene
+                .rows
+                .get(f.what)
+                .map_or_else(|| "the constraints".into(), row_name);
+            (
+                Status::Stopped,
+                "the constraints cannot be kept: the mechanism is locked or folds",
+                name,
+            )
+        }
+        Reason::ErrorTest(k) => (
+            Status::Stopped,
+            "the error stays above its tolerance however short the step",
+            unknown(k),
+        ),
+        Reason::Newton(k) => (
+            Status::Stopped,
+            "Newton's iteration does not converge however short the step",
+            unknown(k),
+        ),
+        Reason::Singular(k) => (Status::Stopped, "nothing determines an unknown", unknown(k)),
+        Reason::TooManySteps => (Status::Limit, "as many steps as permitted", String::new()),
+    };
+    let sentence = format!(
+        "stopped at time {} with step {:.3e}: {what} ({worst})",
+        stop.t, stop.h
+    );
+    (status, sentence, worst)
+}
+
+/// Units of a model as result files spell them.
+fn units(model: &Model) -> results::Units {
+    let mut units = results::Units::default();
+    if let Some(u) = &model.units {
+        let spell = |name: &str| {
+            match name {
+                "MILLIMETER" => "mm",
+                "CENTIMETER" => "cm",
+                "KILOGRAM" => "kg",
+                "SECOND" => "sec",
+                other => return other.to_ascii_lowercase(),
+            }
+            .to_string()
+        };
+        units.length = spell(&u.length);
+        units.mass = spell(&u.mass);
+        units.time = spell(&u.time);
+        units.force = spell(&u.force);
+    }
+    units
+}
