@@ -1,1 +1,248 @@
-//! Text ⇄ model.
+//! Datasets (`.adm`): text ⇄ Model.
+//!
+//! ```text
+//! bytes → Source → Syntax (statements, comments, tokens) → Records (rows of the table) → Model
+//! ```
+//!
+//! [`Dataset`] keeps the first four, so that a file can be written again with its comments and its order; the Model says
+//! what it means. The table of statements (`statement.rs`) is the only place that knows arguments by name.
+
+pub mod lens;
+pub mod read;
+pub mod row;
+pub mod statement;
+pub mod syntax;
+pub mod value;
+
+use crate::diagnostic::{Diagnostic, Severity, Span};
+use crate::model::{MarkerOwner, Model};
+use read::Table;
+use row::Record;
+use std::fmt;
+use std::path::Path;
+use syntax::{Item, Source, Syntax};
+
+/// The statements of a dataset.
+pub const TABLE: Table = Table {
+    rows: statement::STATEMENTS,
+    find: statement::find,
+};
+
+/// A dataset as written: text, comments, statements in order.
+#[derive(Clone, Debug, Default)]
+pub struct Dataset {
+    /// text and file name
+    pub source: Source,
+    /// comments and statements, by tokens
+    pub syntax: Syntax,
+    /// one for each item: the statement as read, where its head could be understood
+    pub records: Vec<Option<Record>>,
+}
+
+/// What reading a dataset gave: always everything that could be understood, with all that was found wrong.
+#[derive(Clone, Debug, Default)]
+pub struct Reading {
+    /// the file as written
+    pub dataset: Dataset,
+    /// what it means
+    pub model: Model,
+    /// errors, warnings and notes in the order of the file
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Reading {
+    /// Whether there is any error.
+    pub fn failed(&self) -> bool {
+        self.diagnostics
+            .iter()
+            .any(|d| d.severity == Severity::Error)
+    }
+}
+
+/// Everything that was wrong with a file.
+#[derive(Clone, Debug, Default)]
+pub struct Errors(pub Vec<Diagnostic>);
+
+impl fmt::Display for Errors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, d) in self.0.iter().enumerate() {
+            if k > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{d}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Errors {}
+
+/// Reads a dataset from a file.
+///
+/// # Errors
+/// Only when the file cannot be opened; everything else is in [`Reading::diagnostics`].
+pub fn read(path: impl AsRef<Path>) -> Result<Reading, Errors> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    Ok(read_source(Source::from_bytes(Some(&file), &load(path)?)))
+}
+
+/// Reads a dataset from a text.
+pub fn read_text(text: &str) -> Reading {
+    read_source(Source::from_text(None, text))
+}
+
+/// The bytes of a file.
+fn load(path: &Path) -> Result<Vec<u8>, Errors> {
+    std::fs::read(path).map_err(|e| {
+        let mut d = Diagnostic::error("cannot_open", format!("cannot be opened: {e}"));
+        d.file = Some(path.display().to_string());
+        Errors(vec![d])
+    })
+}
+
+/// Reads a dataset.
+pub fn read_source(source: Source) -> Reading {
+    let mut reading = Reading::default();
+    let out = &mut reading.diagnostics;
+    let syntax = syntax::dataset(&source, out);
+    reading.model.title = source.slice(syntax.title).to_owned();
+    check_title(&source, &syntax, out);
+    let mut records = Vec::with_capacity(syntax.items.len());
+    let mut last_part = None;
+    for item in &syntax.items {
+        let record = match item {
+            Item::Comment(_) => None,
+            Item::Statement(tokens) => read::record(&source, tokens, TABLE, out),
+        };
+        if let Some(record) = &record {
+            enter(&source, &mut reading.model, record, false, out);
+            if record.row.keyword() == "PART" {
+                last_part = record.id;
+            }
+            adopt_marker(&source, &mut reading.model, record, last_part, out);
+        }
+        records.push(record);
+    }
+    if syntax.end.is_none() && !source.text.trim().is_empty() {
+        let at = source.text.trim_end().len();
+        let d = Diagnostic::warning("missing_end", "the dataset does not end with END");
+        out.push(source.locate(d, Span::new(at, at)));
+    }
+    out.sort_by_key(|d| (d.line, d.column));
+    reading.dataset = Dataset {
+        source,
+        syntax,
+        records,
+    };
+    reading
+}
+
+/// The first line is a title, whatever it holds; warn where it holds a statement.
+fn check_title(source: &Source, syntax: &Syntax, out: &mut Vec<Diagnostic>) {
+    let title = source.slice(syntax.title);
+    let head = title
+        .trim_start()
+        .split(['/', ' ', ','])
+        .next()
+        .unwrap_or_default();
+    let after = title.trim_start().get(head.len()..).unwrap_or_default();
+    let number = after
+        .strip_prefix('/')
+        .is_some_and(|r| r.starts_with(|c: char| c.is_ascii_digit()));
+    if number && statement::find(head) != row::Meaning::Unknown {
+        let d = Diagnostic::warning(
+            "statement_as_title",
+            format!("the first line is the title: {head} there is not read"),
+        );
+        out.push(source.locate(d, syntax.title));
+    }
+}
+
+/// Puts a record into a model and reports what is wrong with it.
+pub(crate) fn enter(
+    source: &Source,
+    model: &mut Model,
+    record: &Record,
+    change: bool,
+    out: &mut Vec<Diagnostic>,
+) {
+    for p in record.row.enter(model, record, change) {
+        let span = p
+            .given
+            .and_then(|k| record.given.get(k))
+            .map_or(record.head, |g| g.span);
+        let mut d = Diagnostic::error(p.code, p.message).element(record.element());
+        d.help.extend(p.help);
+        out.push(source.locate(d, span));
+    }
+}
+
+/// A marker that names no owner belongs to the part before it.
+fn adopt_marker(
+    source: &Source,
+    model: &mut Model,
+    record: &Record,
+    part: Option<u32>,
+    out: &mut Vec<Diagnostic>,
+) {
+    if record.row.keyword() != "MARKER" {
+        return;
+    }
+    let Some(marker) = record.id.and_then(|id| model.markers.get_mut(&id)) else {
+        return;
+    };
+    if marker.owner != MarkerOwner::Part(0) {
+        return;
+    }
+    let d = match part {
+        Some(part) => {
+            marker.owner = MarkerOwner::Part(part);
+            Diagnostic::warning(
+                "marker_without_part",
+                format!("no PART is named; PART/{part}, the last before it, is taken"),
+            )
+        }
+        None => Diagnostic::error(
+            "missing_argument",
+            "no PART is named, and none stands before it",
+        ),
+    };
+    out.push(source.locate(d.element(record.element()), record.head));
+}
+
+impl Model {
+    /// Reads a dataset; all mistakes at once.
+    ///
+    /// # Errors
+    /// Every mistake with its place and advice; printing the error prints them all. Warnings alone are no error: see
+    /// [`read`] for them.
+    pub fn read(path: impl AsRef<Path>) -> Result<Model, Errors> {
+        into_model(read(path)?)
+    }
+
+    /// The same from a text.
+    ///
+    /// # Errors
+    /// As [`Model::read`].
+    ///
+    /// # Examples
+    /// ```
+    /// use cognate::model::Model;
+    /// let model = Model::from_text("a falling ball\nPART/1, GROUND\nPART/2, MASS=1, CM=2\nMARKER/2, PART=2\nEND\n")?;
+    /// assert_eq!(model.parts[&2].mass, 1.0);
+    /// # Ok::<(), cognate::dataset::Errors>(())
+    /// ```
+    pub fn from_text(text: &str) -> Result<Model, Errors> {
+        into_model(read_text(text))
+    }
+}
+
+fn into_model(reading: Reading) -> Result<Model, Errors> {
+    if reading.failed() {
+        let mut all = reading.diagnostics;
+        all.retain(|d| d.severity == Severity::Error);
+        return Err(Errors(all));
+    }
+    Ok(reading.model)
+}

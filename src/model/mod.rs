@@ -10,6 +10,7 @@ mod force;
 mod output;
 mod settings;
 mod system;
+pub mod units;
 
 pub use body::*;
 pub use constraint::*;

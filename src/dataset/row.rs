@@ -1,0 +1,681 @@
+//! What a row of the table of statements is, and the two directions it serves: from a record into the Model and back.
+//!
+//! A [`Record`] is a statement read but not yet believed: which row, which number, which arguments with their values.
+//! The rows themselves stand in `statement.rs`.
+
+use super::value::{Field, Kind, Value};
+use crate::diagnostic::{Span, near_names};
+use crate::model::{
+    ById, Formula, IntegratorSettings, Model, OtherElement, Place, Settings, Units,
+};
+use std::fmt::Debug;
+
+/// An argument of a statement, whatever field it fills.
+#[derive(Clone, Copy, Debug)]
+pub struct Argument {
+    /// Full keyword; the capitals at its beginning are the shortest form that wins against longer keywords that begin
+    /// alike (`Comment` is meant by `C`). Other spellings follow after `|`.
+    pub name: &'static str,
+    /// what it accepts
+    pub kind: Kind,
+    /// the statement is incomplete without it
+    pub required: bool,
+    /// it may be given several times
+    pub repeated: bool,
+    /// bare keywords of one group exclude each other
+    pub group: Option<&'static str>,
+}
+
+impl Argument {
+    /// An optional argument.
+    pub const fn new(name: &'static str, kind: Kind) -> Self {
+        Self {
+            name,
+            kind,
+            required: false,
+            repeated: false,
+            group: None,
+        }
+    }
+
+    /// The keyword in capitals.
+    pub fn keyword(&self) -> String {
+        canonical(self.name)
+    }
+}
+
+/// An argument bound to a field of `T`.
+#[derive(Clone, Copy)]
+pub struct Binding<T: 'static> {
+    /// name and kind
+    pub argument: Argument,
+    /// fills the field; the second parameter is the keyword
+    pub put: fn(&mut T, &'static str, Value) -> Result<(), String>,
+    /// the values to write, none for what is absent or default
+    pub get: fn(&T, &'static str) -> Vec<Value>,
+}
+
+impl<T> Binding<T> {
+    /// The statement is incomplete without it.
+    pub const fn required(mut self) -> Self {
+        self.argument.required = true;
+        self
+    }
+    /// It may be given several times.
+    pub const fn repeated(mut self) -> Self {
+        self.argument.repeated = true;
+        self
+    }
+    /// It excludes the other keywords of this group.
+    pub const fn group(mut self, group: &'static str) -> Self {
+        self.argument.group = Some(group);
+        self
+    }
+}
+
+/// A value of an argument, with its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    /// index of the argument in its row
+    pub argument: usize,
+    /// its value
+    pub value: Value,
+    /// from the keyword to the end of the value
+    pub span: Span,
+}
+
+/// A statement as read: row, number, arguments in the order written.
+#[derive(Clone)]
+pub struct Record {
+    /// the row of the table
+    pub row: &'static dyn Statement,
+    /// number of the element
+    pub id: Option<u32>,
+    /// arguments the row knows
+    pub given: Vec<Given>,
+    /// others, where the row keeps whatever it meets: keyword, text (empty for a bare keyword)
+    pub kept: Vec<(String, String)>,
+    /// line and name
+    pub place: Place,
+    /// of the head, `JOINT/3`
+    pub head: Span,
+}
+
+impl Record {
+    /// `JOINT/3`, `UNITS`
+    pub fn element(&self) -> String {
+        element_name(&canonical(self.row.keyword()), self.id)
+    }
+}
+
+impl Debug for Record {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {:?} {:?}", self.element(), self.given, self.kept)
+    }
+}
+
+/// `JOINT/3`, `UNITS`
+pub fn element_name(keyword: &str, id: Option<u32>) -> String {
+    match id {
+        Some(id) => format!("{keyword}/{id}"),
+        None => keyword.to_owned(),
+    }
+}
+
+/// Something wrong with a record.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// index in `given`; the head of the statement when absent
+    pub given: Option<usize>,
+    /// stable code
+    pub code: &'static str,
+    /// one sentence
+    pub message: String,
+    /// advice
+    pub help: Option<String>,
+}
+
+impl Problem {
+    fn new(code: &'static str, message: impl Into<String>) -> Self {
+        Self {
+            given: None,
+            code,
+            message: message.into(),
+            help: None,
+        }
+    }
+}
+
+/// A row of the table of statements.
+pub trait Statement: Sync {
+    /// Full keyword, written like [`Argument::name`].
+    fn keyword(&self) -> &'static str;
+    /// Whether each has a number.
+    fn numbered(&self) -> bool;
+    /// Whether arguments that no row describes are kept rather than refused.
+    fn open(&self) -> bool;
+    /// Its arguments.
+    fn arguments(&self) -> Vec<Argument>;
+    /// Puts a record into the model: a new element, or (`change`) new values for arguments of one that is there.
+    fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem>;
+    /// All elements of this kind as records, for writing.
+    fn records(&self, model: &Model) -> Vec<Record>;
+    /// Number and name of each element of this kind.
+    fn names(&self, model: &Model) -> Vec<(u32, Option<String>)>;
+}
+
+/// What every element can do for the table.
+pub trait Element: Clone + Default + PartialEq {
+    /// Line and name, for elements that have them.
+    fn place(&self) -> Option<&Place>;
+    /// The same, to be set.
+    fn place_mut(&mut self) -> Option<&mut Place>;
+    /// Keeps an argument that carries no mechanics.
+    fn keep(&mut self, keyword: &str, text: String) {
+        if let Some(place) = self.place_mut() {
+            place.extra.retain(|(k, _)| k != keyword);
+            place.extra.push((keyword.to_owned(), text));
+        }
+    }
+    /// What was kept.
+    fn kept(&self) -> Vec<(String, String)> {
+        self.place().map(|p| p.extra.clone()).unwrap_or_default()
+    }
+}
+
+macro_rules! placed {
+    ($($type:ident)+) => { $(
+        impl Element for crate::model::$type {
+            fn place(&self) -> Option<&Place> {
+                Some(&self.place)
+            }
+            fn place_mut(&mut self) -> Option<&mut Place> {
+                Some(&mut self.place)
+            }
+        }
+    )+ };
+}
+
+#[rustfmt::skip]
+placed! {
+    Part Marker Joint Primitive Motion Coupler Gear GeneralConstraint Curve PointOnCurve CurveOnCurve
+    SingleForce VectorForce SpringDamper Bushing Field Beam NodalForce Contact Friction
+    Variable Differential Array SplineData StringData Matrix LinearSystem GeneralSystem TransferFunction Plant Sensor
+    Request ManyRequests Graphics OtherElement
+}
+
+impl Element for Settings {
+    fn place(&self) -> Option<&Place> {
+        None
+    }
+    fn place_mut(&mut self) -> Option<&mut Place> {
+        None
+    }
+    fn keep(&mut self, keyword: &str, text: String) {
+        self.words.insert(keyword.to_owned(), text);
+    }
+    // What the table of this statement does not list is written by `Single::records`.
+    fn kept(&self) -> Vec<(String, String)> {
+        let words = self.words.iter();
+        words.map(|(k, w)| (k.clone(), w.clone())).collect()
+    }
+}
+
+macro_rules! placeless {
+    ($($type:ty),+) => { $(
+        impl Element for $type {
+            fn place(&self) -> Option<&Place> {
+                None
+            }
+            fn place_mut(&mut self) -> Option<&mut Place> {
+                None
+            }
+        }
+    )+ };
+}
+placeless!(IntegratorSettings, Option<Units>, [f64; 3]);
+
+/// A kind of statement of which there are many, each with its number.
+pub struct Numbered<T: 'static> {
+    /// see [`Statement::keyword`]
+    pub keyword: &'static str,
+    /// where they are kept
+    pub list: fn(&Model) -> &ById<T>,
+    /// the same, to be changed
+    pub list_mut: fn(&mut Model) -> &mut ById<T>,
+    /// its arguments
+    pub bindings: &'static [Binding<T>],
+    /// what concerns several arguments at once
+    pub finish: fn(&mut T) -> Result<(), String>,
+}
+
+impl<T: Element> Statement for Numbered<T> {
+    fn keyword(&self) -> &'static str {
+        self.keyword
+    }
+    fn numbered(&self) -> bool {
+        true
+    }
+    fn open(&self) -> bool {
+        false
+    }
+    fn arguments(&self) -> Vec<Argument> {
+        self.bindings.iter().map(|b| b.argument).collect()
+    }
+
+    fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem> {
+        let name = record.element();
+        let id = record.id.unwrap_or(0);
+        let list = (self.list_mut)(model);
+        let mut element = match (list.get(&id), change) {
+            (Some(e), true) => e.clone(),
+            (None, true) => {
+                let mut p = Problem::new("unknown_element", format!("{name} does not exist"));
+                p.help = near_ids(id, list.keys().copied());
+                return vec![p];
+            }
+            (Some(e), false) => {
+                let line = e.place().map_or(0, |p| p.line);
+                let mut p = Problem::new("defined_twice", format!("{name} is defined twice"));
+                p.help = (line > 0).then(|| format!("the first stands in line {line}"));
+                return vec![p];
+            }
+            (None, false) => T::default(),
+        };
+        let mut problems = apply(self.bindings, &mut element, record);
+        if !change {
+            problems.extend(incomplete(self.bindings, record, &name));
+            if let Some(place) = element.place_mut() {
+                let extra = std::mem::take(&mut place.extra);
+                *place = Place {
+                    extra,
+                    ..record.place.clone()
+                };
+            }
+        }
+        if problems.is_empty()
+            && let Err(message) = (self.finish)(&mut element)
+        {
+            problems.push(Problem::new("contradiction", message));
+        }
+        // An element with a mistake is entered all the same, so that nothing else seems to miss it.
+        (self.list_mut)(model).insert(id, element);
+        problems
+    }
+
+    fn records(&self, model: &Model) -> Vec<Record> {
+        let to_record = |(&id, e): (&u32, &T)| Record {
+            row: row_of(self.keyword),
+            id: Some(id),
+            given: given(self.bindings, e),
+            kept: e.kept(),
+            place: e.place().cloned().unwrap_or_default(),
+            head: Span::default(),
+        };
+        (self.list)(model).iter().map(to_record).collect()
+    }
+
+    fn names(&self, model: &Model) -> Vec<(u32, Option<String>)> {
+        let name = |e: &T| e.place().and_then(|p| p.name.clone());
+        (self.list)(model)
+            .iter()
+            .map(|(&id, e)| (id, name(e)))
+            .collect()
+    }
+}
+
+/// A statement without a number: settings of the whole model.
+pub struct Single<T: 'static> {
+    /// see [`Statement::keyword`]
+    pub keyword: &'static str,
+    /// what it sets; `None` when there is nothing to write
+    pub value: fn(&Model) -> Option<T>,
+    /// the same, to be changed
+    pub value_mut: fn(&mut Model) -> &mut T,
+    /// its arguments
+    pub bindings: &'static [Binding<T>],
+    /// whether it keeps what no row describes
+    pub open: bool,
+    /// what concerns several arguments at once
+    pub finish: fn(&mut T) -> Result<(), String>,
+}
+
+impl<T: Element> Statement for Single<T> {
+    fn keyword(&self) -> &'static str {
+        self.keyword
+    }
+    fn numbered(&self) -> bool {
+        false
+    }
+    fn open(&self) -> bool {
+        self.open
+    }
+    fn arguments(&self) -> Vec<Argument> {
+        self.bindings.iter().map(|b| b.argument).collect()
+    }
+
+    fn enter(&self, model: &mut Model, record: &Record, _: bool) -> Vec<Problem> {
+        let target = (self.value_mut)(model);
+        let mut problems = apply(self.bindings, target, record);
+        if problems.is_empty()
+            && let Err(message) = (self.finish)(target)
+        {
+            problems.push(Problem::new("contradiction", message));
+        }
+        problems
+    }
+
+    fn records(&self, model: &Model) -> Vec<Record> {
+        let Some(value) = (self.value)(model) else {
+            return Vec::new();
+        };
+        let given = given(self.bindings, &value);
+        let listed = |k: &str| self.bindings.iter().any(|b| b.argument.keyword() == k);
+        let mut kept = value.kept();
+        kept.retain(|(k, _)| !listed(k));
+        vec![Record {
+            row: row_of(self.keyword),
+            id: None,
+            given,
+            kept,
+            place: Place::default(),
+            head: Span::default(),
+        }]
+    }
+
+    fn names(&self, _: &Model) -> Vec<(u32, Option<String>)> {
+        Vec::new()
+    }
+}
+
+/// A statement that is only kept, with whatever arguments it has.
+pub struct Opaque {
+    /// see [`Statement::keyword`]
+    pub keyword: &'static str,
+}
+
+impl Statement for Opaque {
+    fn keyword(&self) -> &'static str {
+        self.keyword
+    }
+    fn numbered(&self) -> bool {
+        true
+    }
+    fn open(&self) -> bool {
+        true
+    }
+    fn arguments(&self) -> Vec<Argument> {
+        Vec::new()
+    }
+
+    fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem> {
+        let key = (canonical(self.keyword), record.id.unwrap_or(0));
+        let element = model.others.entry(key).or_default();
+        if !change {
+            element.place = record.place.clone();
+        }
+        for (keyword, text) in &record.kept {
+            element.keep(keyword, text.clone());
+        }
+        Vec::new()
+    }
+
+    fn records(&self, model: &Model) -> Vec<Record> {
+        let mine = |((keyword, id), e): (&(String, u32), &OtherElement)| {
+            (*keyword == canonical(self.keyword)).then(|| Record {
+                row: row_of(self.keyword),
+                id: Some(*id),
+                given: Vec::new(),
+                kept: e.kept(),
+                place: e.place.clone(),
+                head: Span::default(),
+            })
+        };
+        model.others.iter().filter_map(mine).collect()
+    }
+
+    fn names(&self, model: &Model) -> Vec<(u32, Option<String>)> {
+        let mine = model
+            .others
+            .iter()
+            .filter(|((k, _), _)| *k == canonical(self.keyword));
+        mine.map(|((_, id), e)| (*id, e.place.name.clone()))
+            .collect()
+    }
+}
+
+fn row_of(keyword: &'static str) -> &'static dyn Statement {
+    let row = super::statement::STATEMENTS
+        .iter()
+        .find(|r| r.keyword() == keyword);
+    *row.unwrap_or_else(|| unreachable!("records are made by rows of the table"))
+}
+
+/// Puts the arguments into an element: bare keywords first, for the meaning of others may depend on them.
+fn apply<T: Element>(
+    bindings: &'static [Binding<T>],
+    element: &mut T,
+    record: &Record,
+) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for flags in [true, false] {
+        for (k, g) in record.given.iter().enumerate() {
+            let Some(binding) = bindings.get(g.argument) else {
+                continue;
+            };
+            if (g.value == Value::Flag) != flags {
+                continue;
+            }
+            if let Err(message) = (binding.put)(element, binding.argument.name, g.value.clone()) {
+                let mut p = Problem::new("unfit_value", message);
+                p.given = Some(k);
+                problems.push(p);
+            }
+        }
+    }
+    for (keyword, text) in &record.kept {
+        element.keep(keyword, text.clone());
+    }
+    problems
+}
+
+/// What a new element misses.
+fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record, name: &str) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let has = |k: usize| record.given.iter().any(|g| g.argument == k);
+    let mut groups_seen: Vec<&str> = Vec::new();
+    for (k, b) in bindings.iter().enumerate() {
+        match b.argument.group {
+            None if b.argument.required && !has(k) => problems.push(Problem::new(
+                "missing_argument",
+                format!(
+                    "{name} needs {} = {}",
+                    b.argument.keyword(),
+                    b.argument.kind.describe()
+                ),
+            )),
+            Some(group) if b.argument.required && !groups_seen.contains(&group) => {
+                groups_seen.push(group);
+                let members = bindings.iter().enumerate();
+                let members: Vec<_> = members
+                    .filter(|(_, m)| m.argument.group == Some(group))
+                    .collect();
+                if !members.iter().any(|(m, _)| has(*m)) {
+                    let words: Vec<String> =
+                        members.iter().map(|(_, m)| m.argument.keyword()).collect();
+                    problems.push(Problem::new(
+                        "missing_argument",
+                        format!(
+                            "{name} does not say its {group}: one of {}",
+                            words.join(", ")
+                        ),
+                    ));
+                }
+            }
+            _ => {}
+        }
+    }
+    problems
+}
+
+/// The arguments to write for an element.
+fn given<T>(bindings: &'static [Binding<T>], element: &T) -> Vec<Given> {
+    let mut all = Vec::new();
+    for (argument, b) in bindings.iter().enumerate() {
+        for value in (b.get)(element, b.argument.name) {
+            all.push(Given {
+                argument,
+                value,
+                span: Span::default(),
+            });
+        }
+    }
+    all
+}
+
+/// "did you mean 12 or 121" for a number that is not among those known.
+pub fn near_ids(id: u32, known: impl Iterator<Item = u32>) -> Option<String> {
+    let known: Vec<String> = known.map(|k| k.to_string()).collect();
+    let near = near_names(&id.to_string(), known.iter().map(String::as_str));
+    (!near.is_empty()).then(|| format!("did you mean {}?", near.join(" or ")))
+}
+
+/// The first spelling of a name of the table, in capitals.
+pub fn canonical(name: &str) -> String {
+    name.split('|').next().unwrap_or(name).to_ascii_uppercase()
+}
+
+/// What a word of a file means among names of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Meaning {
+    /// this one
+    One(usize),
+    /// an abbreviation of several
+    Several(Vec<usize>),
+    /// none
+    Unknown,
+}
+
+/// Which of the names a word means: itself, else the only one it begins, else the first whose shortest form it has.
+pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Meaning {
+    let word = word.as_bytes();
+    let mut begins = Vec::new();
+    let mut wins = None;
+    for (k, name) in names.enumerate() {
+        for spelling in name.split('|').map(str::as_bytes) {
+            if spelling.eq_ignore_ascii_case(word) {
+                return Meaning::One(k);
+            }
+            let Some(beginning) = spelling.get(..word.len()) else {
+                continue;
+            };
+            if beginning.eq_ignore_ascii_case(word) && !word.is_empty() {
+                if begins.last() != Some(&k) {
+                    begins.push(k);
+                }
+                let capitals = spelling
+                    .iter()
+                    .take_while(|b| !b.is_ascii_lowercase())
+                    .count();
+                if capitals < spelling.len() && word.len() >= capitals {
+                    wins = wins.or(Some(k));
+                }
+            }
+        }
+    }
+    match (begins.as_slice(), wins) {
+        ([one], _) => Meaning::One(*one),
+        ([], _) => Meaning::Unknown,
+        (_, Some(k)) => Meaning::One(k),
+        _ => Meaning::Several(begins),
+    }
+}
+
+/// How one kind of argument sits in a field whose type alone does not say it.
+pub trait Lens<F> {
+    /// what the argument accepts
+    const KIND: Kind;
+    /// fills the field
+    fn put(field: &mut F, value: Value) -> Result<(), String>;
+    /// the value to write
+    fn get(field: &F) -> Option<Value>;
+}
+
+/// The field as its type says.
+pub struct Plain;
+
+impl<F: Field> Lens<F> for Plain {
+    const KIND: Kind = F::KIND;
+    fn put(field: &mut F, value: Value) -> Result<(), String> {
+        field.put(value)
+    }
+    fn get(field: &F) -> Option<Value> {
+        field.written()
+    }
+}
+
+/// The same numbers, as angles.
+pub struct Angle;
+
+impl<F: Field> Lens<F> for Angle {
+    const KIND: Kind = match F::KIND {
+        Kind::Reals { min, max, .. } => Kind::Reals {
+            min,
+            max,
+            angle: true,
+        },
+        Kind::Real { .. } => Kind::Real { angle: true },
+        other => other,
+    };
+    fn put(field: &mut F, value: Value) -> Result<(), String> {
+        field.put(value)
+    }
+    fn get(field: &F) -> Option<Value> {
+        Some(match field.written()? {
+            Value::Real(x) => Value::Real(super::value::Number::angle(x.literal)),
+            Value::Reals(xs) => {
+                super::value::angles(&xs.iter().map(|x| x.literal).collect::<Vec<_>>())
+            }
+            other => other,
+        })
+    }
+}
+
+/// ROUTINE of a FUNCTION=USER(…).
+pub struct Routine;
+
+impl Lens<Formula> for Routine {
+    const KIND: Kind = Kind::Text;
+    fn put(field: &mut Formula, value: Value) -> Result<(), String> {
+        let Value::Text(name) = value else {
+            return Err("ROUTINE takes library::entry".into());
+        };
+        match field {
+            Formula::User { routine, .. } => *routine = Some(name),
+            Formula::Expression { text, .. } if text.is_empty() => {
+                *field = Formula::User {
+                    constants: Vec::new(),
+                    routine: Some(name),
+                }
+            }
+            Formula::Expression { .. } => return Err("ROUTINE goes with FUNCTION=USER(…)".into()),
+        }
+        Ok(())
+    }
+    fn get(field: &Formula) -> Option<Value> {
+        match field {
+            Formula::User { routine, .. } => routine.clone().map(Value::Text),
+            Formula::Expression { .. } => None,
+        }
+    }
+}
+
+impl Lens<Option<Formula>> for Routine {
+    const KIND: Kind = Kind::Text;
+    fn put(field: &mut Option<Formula>, value: Value) -> Result<(), String> {
+        <Routine as Lens<Formula>>::put(field.get_or_insert_default(), value)
+    }
+    fn get(field: &Option<Formula>) -> Option<Value> {
+        field.as_ref().and_then(<Routine as Lens<Formula>>::get)
+    }
+}

@@ -1,0 +1,265 @@
+//! From bytes to statements and their tokens, nothing lost: every comment, mark and word with its place.
+//!
+//! The grammar (`grammar/dataset.pest`) says what a statement, a continuation and a comment are. Nothing here knows any
+//! statement by name.
+
+use crate::diagnostic::{Diagnostic, Span};
+use pest::Parser;
+use pest::iterators::Pair;
+
+/// A text with its file name, its encoding and the beginnings of its lines.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    /// file it came from, as shown in messages
+    pub file: Option<String>,
+    /// the text; bytes that are not UTF-8 were taken as Latin-1
+    pub text: String,
+    /// whether it is to be written as Latin-1 again
+    pub latin1: bool,
+    line_starts: Vec<usize>,
+}
+
+impl Source {
+    /// A text given by a program.
+    pub fn from_text(file: Option<&str>, text: impl Into<String>) -> Self {
+        let text = text.into();
+        let mut line_starts = vec![0];
+        let bytes = text.as_bytes();
+        for (k, &b) in bytes.iter().enumerate() {
+            if b == b'\n' || b == b'\r' && bytes.get(k + 1) != Some(&b'\n') {
+                line_starts.push(k + 1);
+            }
+        }
+        Self {
+            file: file.map(str::to_owned),
+            text,
+            latin1: false,
+            line_starts,
+        }
+    }
+
+    /// The bytes of a file: UTF-8 if they are, otherwise Latin-1.
+    pub fn from_bytes(file: Option<&str>, bytes: &[u8]) -> Self {
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Self::from_text(file, text),
+            Err(_) => Self {
+                latin1: true,
+                ..Self::from_text(file, bytes.iter().map(|&b| b as char).collect::<String>())
+            },
+        }
+    }
+
+    /// The bytes to write for a text of this encoding.
+    pub fn encode(&self, text: &str) -> Vec<u8> {
+        if self.latin1 && text.chars().all(|c| (c as u32) < 256) {
+            text.chars().map(|c| c as u8).collect()
+        } else {
+            text.as_bytes().to_vec()
+        }
+    }
+
+    /// 1-based line and column (in characters) of a byte.
+    pub fn place(&self, offset: usize) -> (usize, usize) {
+        let line = self.line_starts.partition_point(|&s| s <= offset).max(1);
+        let start = self.line_starts[line - 1];
+        let before = self.text.get(start..offset.min(self.text.len()));
+        (line, before.map_or(0, |s| s.chars().count()) + 1)
+    }
+
+    /// The text of a span.
+    pub fn slice(&self, span: Span) -> &str {
+        self.text.get(span.start..span.end).unwrap_or("")
+    }
+
+    /// The diagnostic with file, line and column of a span of this source.
+    pub fn locate(&self, diagnostic: Diagnostic, span: Span) -> Diagnostic {
+        let (line, column) = self.place(span.start);
+        Diagnostic {
+            file: self.file.clone(),
+            span: Some(span),
+            line,
+            column,
+            ..diagnostic
+        }
+    }
+}
+
+/// What a token is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum TokenKind {
+    /// a word, a number, a sign: anything between marks
+    Atom,
+    /// text in double quotes, quotes included
+    Quoted,
+    /// a comma between two things on one line
+    Comma,
+    /// a comma that begins a line and continues the statement
+    Continuation,
+    Equals,
+    Colon,
+    Slash,
+    Backslash,
+    Open,
+    Close,
+    /// `&` at the end of a line
+    Carry,
+    /// a comment between the lines of a statement or after its last
+    Comment,
+    /// a mark that means nothing where it stands
+    Stray,
+}
+
+/// A word or mark of a statement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Token {
+    /// what it is
+    pub kind: TokenKind,
+    /// where it stands
+    pub span: Span,
+}
+
+/// What stands in a file, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// a comment on its own, `!` included
+    Comment(Span),
+    /// a statement
+    Statement(Tokens),
+}
+
+/// The tokens of one statement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tokens {
+    /// from its first character to its last
+    pub span: Span,
+    /// at least one
+    pub tokens: Vec<Token>,
+    /// `adams_view_name` of the comments before it
+    pub name: Option<String>,
+}
+
+/// A dataset or command file taken apart.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Syntax {
+    /// the first line of a dataset
+    pub title: Span,
+    /// comments and statements
+    pub items: Vec<Item>,
+    /// the END statement, where there is one
+    pub end: Option<Span>,
+    /// what follows END
+    pub after: Span,
+}
+
+/// Generated from the grammars.
+mod grammar {
+    #![allow(missing_docs)]
+    #[derive(pest_derive::Parser)]
+    #[grammar = "../grammar/dataset.pest"]
+    #[grammar = "../grammar/command.pest"]
+    pub struct Grammar;
+}
+use grammar::{Grammar, Rule};
+
+/// Takes a dataset apart.
+pub fn dataset(source: &Source, out: &mut Vec<Diagnostic>) -> Syntax {
+    parse(source, Rule::dataset, out)
+}
+
+/// Takes a command file, or the part of it after the headings, apart.
+pub fn script(source: &Source, out: &mut Vec<Diagnostic>) -> Syntax {
+    parse(source, Rule::script, out)
+}
+
+/// The first two lines of a command file.
+pub fn headings(source: &Source) -> Vec<Span> {
+    let Ok(pairs) = Grammar::parse(Rule::heading, &source.text) else {
+        return Vec::new();
+    };
+    let lines = pairs.flat_map(|p| p.into_inner());
+    lines
+        .filter(|p| p.as_rule() == Rule::line)
+        .map(|p| span_of(&p))
+        .collect()
+}
+
+fn parse(source: &Source, rule: Rule, out: &mut Vec<Diagnostic>) -> Syntax {
+    let mut syntax = Syntax::default();
+    let pairs = match Grammar::parse(rule, &source.text) {
+        Ok(pairs) => pairs,
+        Err(e) => {
+            let at = match e.location {
+                pest::error::InputLocation::Pos(p) => p,
+                pest::error::InputLocation::Span((p, _)) => p,
+            };
+            let d = Diagnostic::error("unreadable", "the text cannot be taken apart here");
+            out.push(source.locate(d, Span::new(at, at)));
+            return syntax;
+        }
+    };
+    let mut name = None;
+    for pair in pairs.flat_map(|p| p.into_inner()) {
+        let span = span_of(&pair);
+        match pair.as_rule() {
+            Rule::title => syntax.title = span,
+            Rule::comment => {
+                name = view_name(pair.as_str()).or(name);
+                syntax.items.push(Item::Comment(span));
+            }
+            Rule::statement => {
+                let tokens: Vec<Token> = pair.into_inner().map(|p| token(&p)).collect();
+                let span = tokens
+                    .last()
+                    .map_or(span, |t| Span::new(span.start, t.span.end));
+                let name = name.take();
+                syntax
+                    .items
+                    .push(Item::Statement(Tokens { span, tokens, name }));
+            }
+            Rule::end => syntax.end = Some(span),
+            Rule::after => syntax.after = span,
+            _ => {}
+        }
+    }
+    syntax
+}
+
+fn span_of(pair: &Pair<Rule>) -> Span {
+    let s = pair.as_span();
+    Span::new(s.start(), s.end())
+}
+
+fn token(pair: &Pair<Rule>) -> Token {
+    let kind = match pair.as_rule() {
+        Rule::atom => TokenKind::Atom,
+        Rule::string => TokenKind::Quoted,
+        Rule::comma | Rule::dangling => TokenKind::Comma,
+        Rule::continuation => TokenKind::Continuation,
+        Rule::equals => TokenKind::Equals,
+        Rule::colon => TokenKind::Colon,
+        Rule::slash => TokenKind::Slash,
+        Rule::backslash => TokenKind::Backslash,
+        Rule::open => TokenKind::Open,
+        Rule::close => TokenKind::Close,
+        Rule::carry => TokenKind::Carry,
+        Rule::comment => TokenKind::Comment,
+        _ => TokenKind::Stray,
+    };
+    Token {
+        kind,
+        span: span_of(pair),
+    }
+}
+
+/// The name in a comment `! adams_view_name='…'`.
+fn view_name(comment: &str) -> Option<String> {
+    const KEY: &str = "adams_view_name";
+    let at = comment
+        .as_bytes()
+        .windows(KEY.len())
+        .position(|w| w.eq_ignore_ascii_case(KEY.as_bytes()))?;
+    let rest = comment.get(at + KEY.len()..)?.trim_start();
+    let rest = rest.strip_prefix('=')?.trim_start().strip_prefix('\'')?;
+    rest.split_once('\'').map(|(name, _)| name.to_owned())
+}

@@ -1,0 +1,94 @@
+//! Real files, read where they lie: the folder named by COGNATE_CORPUS. Without it the tests say that they were skipped.
+
+use cognate::dataset;
+use cognate::diagnostic::{Diagnostic, Severity};
+use std::path::{Path, PathBuf};
+
+/// All files of the corpus with this ending, in order of their names; `None` (and a line) without a corpus.
+fn corpus(ending: &str) -> Option<Vec<PathBuf>> {
+    let Some(root) = std::env::var_os("COGNATE_CORPUS") else {
+        println!("skipped: COGNATE_CORPUS is not set");
+        return None;
+    };
+    let mut found = Vec::new();
+    let mut folders = vec![PathBuf::from(root)];
+    while let Some(folder) = folders.pop() {
+        let entries =
+            std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+        for entry in entries {
+            let path = entry.expect("a readable entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path
+                .extension()
+                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
+            {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    assert!(!found.is_empty(), "the corpus holds .{ending} files");
+    Some(found)
+}
+
+/// Inputs made by hand for another program's parser, partly illegal on purpose.
+fn made_by_hand(path: &Path) -> bool {
+    path.display().to_string().contains("a2m/samples")
+}
+
+fn errors(of: &[Diagnostic]) -> Vec<&Diagnostic> {
+    of.iter()
+        .filter(|d| d.severity == Severity::Error)
+        .collect()
+}
+
+#[test]
+fn every_real_dataset_reads_without_an_error() {
+    let Some(files) = corpus("adm") else { return };
+    let mut read = 0;
+    for path in files.iter().filter(|p| !made_by_hand(p)) {
+        let reading = dataset::read(path).expect("a readable file");
+        let wrong = errors(&reading.diagnostics);
+        assert!(wrong.is_empty(), "{}: {}", path.display(), wrong[0]);
+        assert!(
+            !reading.model.parts.is_empty(),
+            "{} has parts",
+            path.display()
+        );
+        read += 1;
+    }
+    println!("{read} datasets");
+}
+
+/// (file, line, code) of mistakes in the hand-made samples: what must be reported, and where.
+const MISTAKES: &[(&str, usize, &str)] = &[
+    ("prova.adm", 3, "unknown_argument"),
+    ("prova.adm", 8, "unknown_argument"),
+    ("prova.adm", 34, "defined_twice"),
+    ("prova.adm", 56, "blank_before_suffix"),
+    ("prova.adm", 79, "unknown_statement"),
+    ("prova.adm", 80, "missing_argument"),
+    ("prova.adm", 90, "missing_argument"),
+    ("prova.adm", 93, "unknown_statement"),
+    ("prova.adm", 100, "missing_end"),
+    ("prova_beam00.adm", 3, "missing_argument"),
+    ("mark.adm", 1, "statement_as_title"),
+    ("monster.adm", 9, "defined_twice"),
+    ("monster.adm", 14, "unknown_statement"),
+    ("monster.adm", 354, "defined_twice"),
+    ("pm02.adm", 26, "unknown_statement"),
+];
+
+#[test]
+fn mistakes_in_files_made_by_hand_are_found_in_their_lines() {
+    let Some(files) = corpus("adm") else { return };
+    for path in files.iter().filter(|p| made_by_hand(p)) {
+        let name = path.file_name().expect("a name").to_string_lossy();
+        let found = dataset::read(path).expect("a readable file").diagnostics;
+        for (file, line, code) in MISTAKES.iter().filter(|m| m.0 == name) {
+            let hit = found.iter().any(|d| d.line == *line && d.code == *code);
+            assert!(hit, "{file}:{line}: {code} is not among {found:#?}");
+        }
+    }
+}
