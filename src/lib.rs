@@ -14,8 +14,6 @@ pub mod numeric;
 pub mod space;
 // floor 2
 #[cfg(feature = "solver")]
-pub mod dataset;
-#[cfg(feature = "solver")]
 pub mod model;
 #[cfg(feature = "solver")]
 pub mod physics;
