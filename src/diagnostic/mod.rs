@@ -3,6 +3,8 @@
 //! Every mistake a user can make becomes a [`Diagnostic`]: a stable code, a place, what is wrong, and what to do.
 //! All mistakes of a text are collected; none ends the reading of the rest where that can be helped.
 
+pub mod codes;
+
 use std::fmt;
 
 /// A range of bytes in a source text.

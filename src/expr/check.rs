@@ -9,7 +9,7 @@
 use super::ast::{Callee, Constant, Dialect};
 use super::signature::{Choice, Element, Kind as ArgumentKind, LARGEST_IDENTIFIER};
 use super::symbols::{Profile, Symbol, symbol};
-use super::token::{Fault, Kind, Lexer, Token};
+use super::token::{About, Fault, Kind, Lexer, Open, Token};
 use crate::diagnostic::Span;
 use std::collections::BTreeSet;
 
@@ -72,15 +72,6 @@ pub(crate) enum Atom {
     Callee(Callee),
 }
 
-/// What an open parenthesis belongs to.
-#[derive(Clone, Copy, Debug)]
-enum Open {
-    Group,
-    Call(Callee),
-    /// the number of the part that is being read: 0 the selector, 1 to 3 the branches
-    If(u8),
-}
-
 /// An open parenthesis and the argument that is being read inside it.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
@@ -135,7 +126,7 @@ pub(crate) fn check(
     limits: Limits,
 ) -> Result<Vec<Atom>, Fault> {
     if let Some(span) = character_after(text, MOST_CHARACTERS) {
-        return Err(Fault::new("limit_length", span));
+        return Err(Fault::new("limit_length", span).about(About::Limit(MOST_CHARACTERS)));
     }
     let mut check = Check {
         text,
@@ -187,11 +178,12 @@ impl Check<'_> {
                     Some(token) => token,
                     None => return Ok(()),
                 },
-                Kind::End => return Err(self.unexpected_end()),
+                Kind::End => return Err(self.unexpected_end(false)),
                 Kind::Comma | Kind::Close if self.at_start_of_argument() => {
-                    return Err(Fault::new("empty_argument", token.span));
+                    let about = self.unexpected(token.span, false).about;
+                    return Err(Fault::new("empty_argument", token.span).about(about));
                 }
-                _ => return Err(Fault::new("unexpected_token", token.span)),
+                _ => return Err(self.unexpected(token.span, false)),
             };
         }
     }
@@ -218,13 +210,20 @@ impl Check<'_> {
             }
         };
         self.open(open, name.span)?;
+        let inside = Some((open, name.span));
+        let missing = Fault::new("missing_arguments", name.span).about(About::Token {
+            after_operand: false,
+            inside,
+        });
         if self.next()?.kind != Kind::Open {
-            return Err(Fault::new("missing_arguments", name.span));
+            return Err(missing);
         }
         self.begin_argument();
         let first = self.next()?;
         match (first.kind, open) {
-            (Kind::Close, Open::Call(_)) => Err(Fault::new("arity", name.span)),
+            (Kind::Close, Open::Call(callee)) => {
+                Err(Fault::new("arity", name.span).about(About::Count(callee, 0)))
+            }
             _ => Ok(Some(first)),
         }
     }
@@ -232,7 +231,7 @@ impl Check<'_> {
     /// Closing parentheses, then an operator, a separator or the end; the token that the next operand begins with.
     fn after_operand(&mut self, mut token: Token) -> Result<Option<Token>, Fault> {
         loop {
-            let unexpected = Err(Fault::new("unexpected_token", token.span));
+            let unexpected = Err(self.unexpected(token.span, true));
             match token.kind {
                 Kind::Plus | Kind::Minus | Kind::Times | Kind::Over => {
                     self.depth = self.level();
@@ -263,7 +262,7 @@ impl Check<'_> {
                     token = self.next()?;
                 }
                 Kind::End if self.frames.is_empty() => return Ok(None),
-                Kind::End => return Err(self.unexpected_end()),
+                Kind::End => return Err(self.unexpected_end(true)),
                 Kind::Number { .. } | Kind::Name | Kind::Open => return unexpected,
             }
         }
@@ -274,10 +273,14 @@ impl Check<'_> {
         let count = self.arguments.len() - frame.first;
         let (least, most) = callee.arity();
         if !(least..=most).contains(&count) {
-            return Err(Fault::new("arity", frame.name));
+            return Err(Fault::new("arity", frame.name).about(About::Count(callee, count)));
         }
         for k in 0..count {
-            self.integer(callee.argument(k), self.arguments[frame.first + k])?;
+            self.integer(callee.argument(k), self.arguments[frame.first + k])
+                .map_err(|fault| match fault.about {
+                    About::Place => fault.about(About::Argument(callee, k)),
+                    _ => fault,
+                })?;
         }
         Ok(())
     }
@@ -318,7 +321,9 @@ impl Check<'_> {
                 .range((element, 0)..=(element, u32::MAX))
                 .count();
             if of_this_kind > self.limits.elements {
-                return Err(Fault::new("limit_elements", span));
+                return Err(
+                    Fault::new("limit_elements", span).about(About::Limit(self.limits.elements))
+                );
             }
         }
         Ok(())
@@ -328,7 +333,8 @@ impl Check<'_> {
         if self.frames.len() >= self.limits.nesting.min(DEEPEST_NESTING)
             || self.depth >= DEEPEST_TREE
         {
-            return Err(Fault::new("limit_nesting", name));
+            return Err(Fault::new("limit_nesting", name)
+                .about(About::Limit(self.limits.nesting.min(DEEPEST_NESTING))));
         }
         self.frames.push(Frame {
             open,
@@ -349,7 +355,7 @@ impl Check<'_> {
     fn deeper(&mut self, token: Token) -> Result<Token, Fault> {
         self.depth += 1;
         if self.depth > DEEPEST_TREE {
-            return Err(Fault::new("limit_nesting", token.span));
+            return Err(Fault::new("limit_nesting", token.span).about(About::Limit(DEEPEST_TREE)));
         }
         self.next()
     }
@@ -375,9 +381,18 @@ impl Check<'_> {
         in_call && self.arguments.last().is_some_and(|a| a.tokens == 1)
     }
 
-    fn unexpected_end(&self) -> Fault {
+    fn unexpected_end(&self, after_operand: bool) -> Fault {
         let end = self.text.trim_end_matches([' ', '\t', '\r', '\n']).len();
-        Fault::new("unexpected_end", Span::new(end, end))
+        let about = self.unexpected(Span::new(end, end), after_operand).about;
+        Fault::new("unexpected_end", Span::new(end, end)).about(about)
+    }
+
+    fn unexpected(&self, span: Span, after_operand: bool) -> Fault {
+        let inside = self.frames.last().map(|f| (f.open, f.name));
+        Fault::new("unexpected_token", span).about(About::Token {
+            after_operand,
+            inside,
+        })
     }
 
     /// The next token, counted.
@@ -392,7 +407,8 @@ impl Check<'_> {
         if token.kind != Kind::End {
             self.symbols += 1;
             if self.symbols > self.limits.symbols {
-                return Err(Fault::new("limit_symbols", token.span));
+                return Err(Fault::new("limit_symbols", token.span)
+                    .about(About::Limit(self.limits.symbols)));
             }
         }
         // only the argument that is being read counts tokens, and it lies in the innermost call
@@ -418,10 +434,12 @@ impl Check<'_> {
         for c in self.text[self.counted.bytes..span.end].chars() {
             let place = Span::new(self.counted.bytes, self.counted.bytes + c.len_utf8());
             if self.counted.characters >= self.limits.characters {
-                return Err(Fault::new("limit_length", place));
+                return Err(
+                    Fault::new("limit_length", place).about(About::Limit(self.limits.characters))
+                );
             }
             if self.counted.line_breaks >= self.limits.lines {
-                return Err(Fault::new("limit_lines", place));
+                return Err(Fault::new("limit_lines", place).about(About::Limit(self.limits.lines)));
             }
             self.counted.bytes = place.end;
             self.counted.characters += 1;

@@ -160,6 +160,11 @@ impl Expr {
         found
     }
 
+    /// What is legal but probably not meant: degrees for radians, operators that bind otherwise than they look.
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        super::lint::lint(&self.ast, &self.text)
+    }
+
     /// The program that yields the same value, fast.
     ///
     /// # Errors

@@ -10,6 +10,7 @@ pub mod compile;
 mod expression;
 pub mod functions;
 pub mod interpolation;
+mod lint;
 pub mod measures;
 mod parse;
 mod print;
@@ -22,5 +23,6 @@ pub mod walk;
 
 pub use check::{DEEPEST_NESTING, Limits, MOST_CHARACTERS};
 pub use expression::{Expr, input_named};
+pub use lint::lint;
 pub use parse::{parse, parse_with_limits};
 pub use symbols::{Profile, Symbol, names, symbol};

@@ -140,6 +140,15 @@ impl Callee {
             Callee::Measure(m) => m.row().arguments.get(k).map_or(Kind::Number, |a| a.kind),
         }
     }
+    /// What the `k`-th argument is called (`k` from 0).
+    pub fn argument_name(self, k: usize) -> &'static str {
+        let name = match self {
+            Callee::Function(f) => f.row().parameters.get(k).map(|p| p.name),
+            Callee::Measure(m) => m.row().arguments.get(k).map(|a| a.name),
+            Callee::Interpolation(f) => f.row().parameters.get(k).map(|p| p.name),
+        };
+        name.unwrap_or("the argument")
+    }
     /// `NAME(i[, j])`
     pub fn signature(self) -> String {
         match self {

@@ -3,6 +3,7 @@
 //! The lexer serves the ordered check of a text (`check.rs`): it says which character or literal is wrong as soon as it is
 //! reached, and never looks further than the end of the token.
 
+use super::ast::Callee;
 use crate::diagnostic::Span;
 
 /// What a token is.
@@ -36,16 +37,53 @@ pub(crate) struct Token {
     pub span: Span,
 }
 
-/// A place where no token can be formed: code and bytes.
+/// The first mistake of a text: code and bytes, and what the check knew there, for advice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fault {
     pub code: &'static str,
     pub span: Span,
+    pub about: About,
+}
+
+/// What a mistake is about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum About {
+    /// the place says all
+    Place,
+    /// a token that cannot stand here
+    Token {
+        /// whether an operator or separator could have stood here; if not, an operand was needed
+        after_operand: bool,
+        /// the innermost open parenthesis and the name before it
+        inside: Option<(Open, Span)>,
+    },
+    /// a call with this many arguments
+    Count(Callee, usize),
+    /// an argument of a call, from 0
+    Argument(Callee, usize),
+    /// a limit
+    Limit(usize),
+}
+
+/// What an open parenthesis belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Open {
+    Group,
+    Call(Callee),
+    /// the number of the part that is being read: 0 the selector, 1 to 3 the branches
+    If(u8),
 }
 
 impl Fault {
     pub fn new(code: &'static str, span: Span) -> Self {
-        Self { code, span }
+        Self {
+            code,
+            span,
+            about: About::Place,
+        }
+    }
+    pub fn about(self, about: About) -> Self {
+        Self { about, ..self }
     }
 }
 

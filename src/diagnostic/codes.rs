@@ -1,0 +1,274 @@
+//! TABLE of codes: every kind of mistake in an expression, explained at length for `cognate explain CODE`.
+//!
+//! A code never changes its meaning. Rows stand in the order in which a text is read.
+
+/// What a code means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Code {
+    /// stable short name
+    pub name: &'static str,
+    /// one line
+    pub summary: &'static str,
+    /// when it is given, why, and what to do; with examples
+    pub explanation: &'static str,
+}
+
+/// The row of a code.
+pub fn code(name: &str) -> Option<&'static Code> {
+    CODES
+        .iter()
+        .find(|code| code.name.eq_ignore_ascii_case(name))
+}
+
+/// All codes, in the order in which a text is read.
+pub static CODES: &[Code] = &[
+    Code {
+        name: "bad_char",
+        summary: "a character that begins no word of the language",
+        explanation: "\
+The language consists of numbers, names, the operators + - * / **, parentheses, commas, and the colon of IF. Everything
+else is refused where it stands.
+
+    2^3            write 2**3
+    TIME > 2       there are no comparisons: IF(TIME-2: a, b, c) is a, b or c as TIME is below, at or above 2
+    TIME.GT.2      the same
+    5 * & 3        an ampersand continues a line when it is the last character of the line
+    TIME\\          the backslash that ends a function in a dataset is not part of the expression
+
+Text from word processors brings dashes instead of minus signs, special blanks and quotation marks; type them anew.",
+    },
+    Code {
+        name: "bad_number",
+        summary: "something that begins like a number but is none",
+        explanation: "\
+A number is digits with an optional decimal point, an optional exponent, and in direct-entry functions an optional suffix D
+for degrees: 2, 2., .5, 1.5E-3, 30D, 1.8E2D. Neither a letter, a digit, an underscore nor a point may follow.
+
+    1D3            D is the suffix for degrees and ends the number: write 1E3 for a thousand
+    2TIME          multiplication is written: 2*TIME
+    1.5E           the exponent has no digits
+    1.2.3          a number has one decimal point
+    1E400          numbers end at 1.8E308
+
+A sign after D is an operator: 30D-5 is thirty degrees minus five. In expression functions angles are degrees already, and
+numbers have no suffix.",
+    },
+    Code {
+        name: "unexpected_token",
+        summary: "a word or sign that cannot stand here",
+        explanation: "\
+Read from the left, the text is an expression up to this place but cannot go on like this.
+
+    2 TIME         two values without an operator: 2*TIME
+    2*/3           an operator where a value is needed
+    1+2)           a parenthesis is closed that was not opened
+    2***3          a power has two stars
+    IF(TIME,1,2,3) IF takes a colon after its first part: IF(TIME: 1, 2, 3)
+    MAX(1:2)       a colon stands in IF only
+    3,5            a decimal point is a point",
+    },
+    Code {
+        name: "unexpected_end",
+        summary: "the text ends before the expression does",
+        explanation: "\
+An operand or a closing parenthesis is missing at the end. The column is one past the last character that is not blank.
+
+    2+             the second operand is missing
+    SIN(TIME       the closing parenthesis is missing
+                   an empty text is no expression",
+    },
+    Code {
+        name: "unknown_name",
+        summary: "a name that is no constant and no function of the language",
+        explanation: "\
+Names are those of the language alone: constants (TIME, PI, DTOR, RTOD, MODE), IF, functions, and measures of the model.
+`cognate functions` lists them. There are no variables of one's own; a VARIABLE of the model is read by VARVAL(id).
+
+Upper and lower case are the same. Names of other languages are answered with what to write: LN is LOG, INT is AINT. The two
+languages keep their names apart: time is TIME in direct-entry functions and t in expression functions.",
+    },
+    Code {
+        name: "not_callable",
+        summary: "a constant is followed by a parenthesis",
+        explanation: "\
+TIME, PI, DTOR, RTOD, MODE and t are numbers. A parenthesis after a number means nothing; multiplication is written.
+
+    TIME(1)        write TIME*1, or just TIME",
+    },
+    Code {
+        name: "missing_arguments",
+        summary: "a function without its arguments",
+        explanation: "\
+A function stands before its arguments in parentheses; blanks between them do not matter.
+
+    SIN TIME       write SIN(TIME)
+    IF TIME        write IF(TIME: a, b, c)",
+    },
+    Code {
+        name: "empty_argument",
+        summary: "nothing stands between two separators",
+        explanation: "\
+Arguments that may be left out are left out at the end; in the middle a 0 holds their place.
+
+    DX(1,,3)       write DX(1, 0, 3)
+    MAX(1,2,)      the last comma is one too many
+
+A dataset continues a line by a comma at the beginning of the next one. That comma belongs to the dataset and not to the
+expression: joined carelessly, the text contains two commas in a row. It is not read as 0, which would change the model.",
+    },
+    Code {
+        name: "arity",
+        summary: "a function has too many or too few arguments",
+        explanation: "\
+The message says how many the function takes, and how it is written. Optional arguments stand in brackets there.
+
+    STEP(TIME,0,0,1)     STEP(x, x0, h0, x1, h1) takes five
+    POLY(TIME,0)         POLY takes at least one coefficient, and at most 31",
+    },
+    Code {
+        name: "integer_required",
+        summary: "an identifier or selector is not a plain integer",
+        explanation: "\
+Markers, elements, components and orders are chosen when the model is built, not while it runs. So they are written as
+integers without sign, and nothing else will do: no expression, no decimal point, no suffix, no parentheses.
+
+    DX(TIME,2)     a marker cannot depend on time
+    DX(1,-2)       identifiers have no sign
+    VARVAL(1E2)    write VARVAL(100)",
+    },
+    Code {
+        name: "out_of_range",
+        summary: "an integer is not one of those that may stand here",
+        explanation: "\
+Selectors have few values, and identifiers begin at 1, except where 0 stands for ground.
+
+    JOINT(1,2,2,0)       jflag is 0 for the I marker or 1 for the J marker
+    JOINT(1,0,9,0)       comp is 1 to 8: magnitude, x, y, z of the force, then of the torque
+    AKISPL(TIME,0,1,3)   the order of the derivative is 0, 1 or 2; a family of curves has order 0 only
+    DX(0,2)              the first marker is needed",
+    },
+    Code {
+        name: "domain",
+        summary: "an operation has no value for these numbers",
+        explanation: "\
+Division by zero, the logarithm of a negative number, a step without width, a result too large for a number: these are
+errors, not values. Found before any evaluation where only constants are involved, and else when it happens; the message
+names the operation and the numbers it was given, and the time.
+
+    1/0, 0**-1, (-8)**0.5
+    SQRT(-1), LOG(0), ACOS(1.5), ATAN2(0,0)
+    STEP(TIME,1,0,1,1)   x0 must be less than x1
+    IMPACT(x,v,1,-100,1.5,25,.1)   stiffness is not negative
+
+Only the branch of an IF that is taken is looked at: IF(TIME-1: SQRT(1-TIME), 0, SQRT(TIME-1)) has a value everywhere. To
+avoid a domain, guard it so: SQRT(MAX(x, 0)), x/MAX(ABS(y), 1E-9).",
+    },
+    Code {
+        name: "limit_nesting",
+        summary: "functions and parentheses lie too deep inside one another",
+        explanation: "\
+A level is a function call, an IF, or a group in parentheses. The reader takes 256 levels, so that no text can exhaust it;
+I-DEAS took 10, which the profile `ideas` enforces. Divide the expression among VARIABLEs, read by VARVAL(id).",
+    },
+    Code {
+        name: "limit_symbols",
+        summary: "more than 1000 operators, brackets, functions and numbers (profile ideas)",
+        explanation: "\
+I-DEAS refused longer expressions. The limit is enforced in the profile `ideas` only. Divide the expression among VARIABLEs,
+read by VARVAL(id).",
+    },
+    Code {
+        name: "limit_elements",
+        summary: "more than 25 different elements of one kind (profile ideas)",
+        explanation: "\
+I-DEAS took at most 25 different markers, 25 different joints, and so on in one expression. The limit is enforced in the
+profile `ideas` only. Divide the expression among VARIABLEs, read by VARVAL(id).",
+    },
+    Code {
+        name: "limit_length",
+        summary: "the text has too many characters",
+        explanation: "\
+The reader takes a million characters; I-DEAS took 500, which the profile `ideas` enforces. The column is that of the first
+character too many.",
+    },
+    Code {
+        name: "limit_lines",
+        summary: "the text has more than 20 lines (profile ideas)",
+        explanation: "\
+I-DEAS took 20 lines. The limit is enforced in the profile `ideas` only. The column is that of the first character of line
+21, counted from the beginning of the text.",
+    },
+    Code {
+        name: "missing_value",
+        summary: "an input of the expression was not given a value",
+        explanation: "\
+TIME, MODE and the measures of a model come from outside. At a prompt they are given: --time for TIME, marker states for DX
+and its relatives, or by name.",
+    },
+    Code {
+        name: "needs_history",
+        summary: "the value depends on the past, which is not known here",
+        explanation: "\
+DELAY reads values of earlier times, and AX, AY, AZ and INCANG count turns. In a simulation the solver keeps that history. A
+single evaluation has none: DELAY is refused, and the angles are principal values between -PI and PI.",
+    },
+    Code {
+        name: "unknown_element",
+        summary: "a spline or curve is named that does not exist",
+        explanation: "\
+AKISPL, CUBSPL, INTERP, CURVE and INVPSD read data by identifier. The data must be there: a SPLINE or CURVE of the model, or
+the file given with --splines.",
+    },
+    Code {
+        name: "spline_data",
+        summary: "the data of a spline make no curve",
+        explanation: "\
+A spline has at least four points, x increases from point to point, and so does z from curve to curve; every curve has as
+many values as there are x.",
+    },
+    Code {
+        name: "degrees_or_radians",
+        summary: "an angle looks like degrees where radians are meant, or the other way round (a warning)",
+        explanation: "\
+Direct-entry functions take and give radians; a literal with the suffix D is degrees: SIN(30D). Expression functions take and
+give degrees: sin(30). SIN(30) is a legal direct-entry function, but thirty radians are rarely meant.",
+    },
+    Code {
+        name: "doubtful_precedence",
+        summary: "operators bind otherwise than the writing suggests (a warning)",
+        explanation: "\
+** binds tighter than a sign before it and than / after it, and groups from the right:
+
+    -2**2          is -(2**2) = -4
+    x**1/2         is (x**1)/2; a square root is x**(1/2) or SQRT(x)
+    2**3**2        is 2**(3**2) = 512",
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_unique_and_explained() {
+        for (k, row) in CODES.iter().enumerate() {
+            assert_eq!(code(row.name), Some(row));
+            assert!(
+                CODES[..k].iter().all(|earlier| earlier.name != row.name),
+                "{}",
+                row.name
+            );
+            assert!(
+                !row.summary.ends_with('.')
+                    && row.explanation.ends_with(|c: char| !c.is_whitespace())
+            );
+            assert!(
+                row.explanation
+                    .lines()
+                    .all(|line| line.chars().count() <= 125),
+                "{}",
+                row.name
+            );
+        }
+    }
+}
