@@ -6,7 +6,6 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::interpolation::{Bindings, Spline};
-use crate::expr::measures::Measure;
 use crate::expr::program::Input;
 use crate::expr::spline::{Ends, Extrapolation};
 use crate::scalar::{Jet, Scalar};
@@ -248,13 +247,4 @@ fn numbers(value: &Value) -> Result<Vec<f64>, String> {
         .as_array()
         .and_then(|list| list.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>());
     list.ok_or_else(|| "a list of numbers is expected".into())
-}
-
-/// An input that a user writes as `VARVAL(3)` or `FX(1,2)`, from its measure and arguments.
-pub fn input(measure: Measure, arguments: &[u32]) -> Input {
-    let mut all = [0; 4];
-    all.iter_mut()
-        .zip(arguments)
-        .for_each(|(to, from)| *to = *from);
-    Input::Measure(measure, all)
 }

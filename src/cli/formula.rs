@@ -5,9 +5,9 @@
 
 use super::data::Data;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::expr::ast::{Ast, Dialect};
+use crate::expr::ast::Dialect;
 use crate::expr::program::{Input, Program, Work};
-use crate::expr::{Profile, compile, parse, walk};
+use crate::expr::{Expr, Profile, input_named, walk};
 use crate::scalar::{Jet, Scalar};
 
 /// How expressions are to be read and evaluated.
@@ -23,10 +23,8 @@ pub struct Setting {
 
 /// An expression, ready.
 pub struct Formula {
-    /// as it was typed
-    pub text: String,
-    /// its tree
-    pub ast: Ast,
+    /// as it was read
+    pub expr: Expr,
     /// its code, with one output
     pub program: Program,
     jets: Work<Jet>,
@@ -42,16 +40,10 @@ impl Formula {
     /// # Errors
     /// The first mistake in it, with its place.
     pub fn new(text: &str, setting: &Setting) -> Result<Self, Diagnostic> {
-        let ast = parse(text, setting.dialect, setting.profile)?;
-        walk::check_constants(&ast).map_err(|trouble| trouble.diagnostic(text))?;
-        let placed = |d: Diagnostic| {
-            let span = d.span.unwrap_or(Span::new(0, text.len()));
-            if d.line > 0 { d } else { d.at(text, span) }
-        };
-        let program = compile::compile(&[&ast], &setting.data.bindings).map_err(placed)?;
+        let expr = Expr::parse_profile(text, setting.dialect, setting.profile)?;
+        let program = expr.compile(&setting.data.bindings)?;
         Ok(Self {
-            text: text.to_owned(),
-            ast,
+            expr,
             program,
             jets: Work::default(),
             plain: Work::default(),
@@ -108,10 +100,8 @@ impl Formula {
 
     /// Why there is no finite number.
     fn trouble(&self, time: Option<f64>, data: &Data, sample: &Sample) -> Diagnostic {
-        let host = TimedData { data, time };
-        match walk::value(&self.ast, &host) {
-            Err(trouble) => {
-                let d = trouble.diagnostic(&self.text);
+        match self.expr.eval_with(&TimedData { data, time }) {
+            Err(d) => {
                 match d.code {
                     "missing_value" if time.is_none() && self.program.inputs().contains(&Input::Time) => {
                         d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")
@@ -132,7 +122,7 @@ impl Formula {
                     format!(" at time {}", crate::results::digits(t))
                 });
                 Diagnostic::error("domain", format!("the {which} has no finite value{at}"))
-                    .at(&self.text, Span::new(0, self.text.len()))
+                    .at(self.expr.text(), Span::new(0, self.expr.text().len()))
             }
         }
     }
@@ -164,28 +154,25 @@ impl walk::Host for TimedData<'_> {
     }
 }
 
-/// Gives a value to a function of the model: `VARVAL(3)` becomes 2.5.
+/// Gives a value to a function of the model, such as VARVAL(3), or to MODE.
 ///
 /// # Errors
-/// When the text is not one call of a function of the model.
+/// When the text is not one of these.
 pub fn give(setting: &mut Setting, call: &str, value: f64) -> Result<(), Diagnostic> {
-    let ast = parse(call, Dialect::Function, setting.profile)?;
-    let program = compile::compile(&[&ast], &setting.data.bindings)?;
-    match (program.inputs(), program.n_operations()) {
-        ([input @ Input::Measure(..)], 0) => {
-            setting.data.values.insert(*input, value);
-            Ok(())
+    match input_named(call, Dialect::Function)? {
+        Input::Mode => setting.data.mode = value,
+        input @ Input::Measure(..) => {
+            setting.data.values.insert(input, value);
         }
-        ([Input::Mode], 0) => {
-            setting.data.mode = value;
-            Ok(())
+        Input::Time | Input::Delayed(_) | Input::Slot(_) => {
+            return Err(Diagnostic::error(
+                "missing_value",
+                format!("`{call}` cannot be given a value this way"),
+            )
+            .help("the time is given by `--time`; in the REPL by `:time`"));
         }
-        _ => Err(Diagnostic::error(
-            "not_an_input",
-            format!("`{call}` is not a function of the model"),
-        )
-        .help("such as VARVAL(3), DX(12,21), JOINT(1,0,2,0) or MODE")),
     }
+    Ok(())
 }
 
 /// The names of a value and its derivatives over time.
@@ -230,7 +217,6 @@ pub fn times(first: f64, last: f64, step: f64) -> Result<Vec<f64>, Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expr::measures::Measure;
 
     #[test]
     fn a_range_ends_where_it_was_said_to_end() {
@@ -288,12 +274,6 @@ mod tests {
             "missing_value"
         );
         give(&mut setting, "VARVAL(3)", 4.0).unwrap();
-        assert!(
-            setting
-                .data
-                .values
-                .contains_key(&super::super::data::input(Measure::Varval, &[3]))
-        );
         assert_eq!(
             formula.sample(Some(1.0), 1, &setting.data),
             Ok([9.0, 1.0, 0.0])
@@ -304,7 +284,7 @@ mod tests {
         );
         assert_eq!(
             give(&mut setting, "2*VARVAL(3)", 4.0).unwrap_err().code,
-            "not_an_input"
+            "missing_value"
         );
     }
 

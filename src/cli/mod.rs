@@ -13,6 +13,7 @@ pub mod interrupt;
 mod plot;
 pub mod progress;
 pub mod render;
+mod repl;
 
 use crate::diagnostic::Diagnostic;
 use clap::{Parser, Subcommand};
@@ -34,6 +35,7 @@ enum Verb {
     Eval(eval::Args),
     Functions(functions::Args),
     Plot(plot::Args),
+    Repl(repl::Args),
 }
 
 const EXIT_CODES: &str = "\
@@ -125,6 +127,7 @@ pub fn main() -> ExitCode {
         Verb::Eval(args) => eval::run(args),
         Verb::Functions(args) => functions::run(args),
         Verb::Plot(args) => plot::run(args),
+        Verb::Repl(args) => repl::run(args),
     });
     let exit = match std::panic::catch_unwind(verb) {
         Ok(Ok(exit)) => exit,

@@ -2,7 +2,7 @@
 //!
 //! Numbers have the shortest digits that read back as the same bits, so a table is as good as the run itself.
 
-use super::{Column, Run, Units, digits, malformed, number};
+use super::{Column, Kind, Run, Sequence, Units, digits, malformed, number};
 use crate::diagnostic::Diagnostic;
 
 /// The table of a run; `units`: with a row of units below the names.
@@ -114,16 +114,18 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
         }
     }
     if run.columns.is_empty() {
-        Err(malformed(0, "there is no row of names"))
-    } else {
-        Ok(run)
+        return Err(malformed(0, "there is no row of names"));
     }
+    // A table does not say where its rows come from: they are one sequence.
+    let (kind, rows) = (Kind::Dynamic, 0..run.rows());
+    let name = format!("{}_001", kind.name());
+    run.sequences.push(Sequence { name, kind, rows });
+    Ok(run)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Kind;
 
     fn example() -> Run {
         let mut run = Run::new("r", "t", Units::default());

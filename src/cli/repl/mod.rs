@@ -1,0 +1,129 @@
+//! `cognate repl`: expressions and their values, one after another.
+//!
+//! `session.rs` is what a line does, whoever typed it; `editor.rs` is the help while typing. At a terminal lines come from the
+//! editor; piped in, they are read as they are, nothing but results is printed, and the exit code tells whether all went well.
+
+mod editor;
+mod explain;
+mod session;
+
+use super::render::{self, Sources};
+use super::{Exit, Outcome, complain, say};
+use editor::Helper;
+use rustyline::error::ReadlineError;
+use rustyline::history::DefaultHistory;
+use rustyline::{CompletionType, Config, Editor};
+use session::{Reply, Session};
+use std::io::{BufRead, IsTerminal};
+use std::path::PathBuf;
+
+/// Evaluate expressions at a prompt
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate repl
+  echo 'STEP(0.5,0,0,1,2)' | cognate repl
+  cognate repl < session.txt")]
+pub struct Args {
+    /// The language: direct-entry functions, or expression functions of t in degrees
+    #[arg(long, value_enum, default_value = "function")]
+    dialect: super::eval::DialectName,
+}
+
+pub fn run(args: &Args) -> Outcome {
+    let mut session = Session::new(args.dialect.into());
+    if std::io::stdin().is_terminal() {
+        at_terminal(&mut session)
+    } else {
+        Ok(from_pipe(&mut session, std::io::stdin().lock()))
+    }
+}
+
+/// Reads statements until the end; whether all could be done.
+fn from_pipe(session: &mut Session, input: impl BufRead) -> Exit {
+    let mut exit = Exit::Done;
+    let mut statement = String::new();
+    for line in input.split(b'\n') {
+        let Ok(line) = line else { return Exit::Input };
+        let line = String::from_utf8_lossy(&line);
+        let line = line.trim_end_matches('\r');
+        statement = if statement.is_empty() {
+            line.to_owned()
+        } else {
+            statement + "\n" + line
+        };
+        if session.is_incomplete(&statement) {
+            continue;
+        }
+        let reply = session.execute(&std::mem::take(&mut statement));
+        if answer(reply, &mut exit) {
+            return exit;
+        }
+    }
+    if !statement.trim().is_empty() {
+        answer(session.execute(&statement), &mut exit);
+    }
+    exit
+}
+
+/// Prints a reply; whether the session ends.
+fn answer(reply: Reply, exit: &mut Exit) -> bool {
+    match reply {
+        Reply::Text(text) => say(&text),
+        Reply::Mistake(diagnostic, text) => {
+            complain(&[*diagnostic], &Sources::of(text));
+            *exit = Exit::Input;
+        }
+        Reply::Quit => return true,
+    }
+    false
+}
+
+fn at_terminal(session: &mut Session) -> Outcome {
+    let trouble = |e: ReadlineError| {
+        crate::diagnostic::Diagnostic::error(
+            "terminal",
+            format!("the terminal cannot be used: {e}"),
+        )
+    };
+    let config = Config::builder()
+        .completion_type(CompletionType::List)
+        .build();
+    let mut editor: Editor<Helper, DefaultHistory> =
+        Editor::with_config(config).map_err(trouble)?;
+    let history = history_file();
+    if let Some(file) = &history {
+        // The first session has none.
+        let _ = editor.load_history(file);
+    }
+    say(&format!(
+        "cognate {}: type an expression, or :help; :quit ends.\n",
+        env!("CARGO_PKG_VERSION")
+    ));
+    loop {
+        editor.set_helper(Some(Helper::new(session, render::colour_on_stdout())));
+        match editor.readline("> ") {
+            Ok(line) => {
+                // A history that cannot grow is no reason to stop.
+                let _ = editor.add_history_entry(line.as_str());
+                if answer(session.execute(&line), &mut Exit::Done) {
+                    break;
+                }
+            }
+            Err(ReadlineError::Interrupted) => {}
+            Err(ReadlineError::Eof) => break,
+            Err(e) => return Err(trouble(e).into()),
+        }
+    }
+    if let Some(file) = &history {
+        let _ = editor.save_history(file);
+    }
+    Ok(Exit::Done)
+}
+
+/// Where the lines typed are kept: COGNATE_HISTORY, or a file in the home folder.
+fn history_file() -> Option<PathBuf> {
+    let named = std::env::var_os("COGNATE_HISTORY").map(PathBuf::from);
+    let home = || std::env::var_os("HOME").or_else(|| std::env::var_os("USERPROFILE"));
+    named.or_else(|| Some(PathBuf::from(home()?).join(".cognate_history")))
+}

@@ -1,0 +1,552 @@
+//! What a line at the prompt does: an expression is evaluated, a command (`:name`) changes or shows something.
+
+use super::explain::explain;
+use crate::cli::eval::DialectName;
+use crate::cli::formula::{Formula, Setting, derivative_names, give, times};
+use crate::cli::{card, functions, plot};
+use crate::diagnostic::{Diagnostic, near_names};
+use crate::expr::ast::Dialect;
+use crate::expr::{MOST_CHARACTERS, Profile, parse, symbol};
+use crate::report::terminal::terminal;
+use crate::report::{Curve, Plot, svg::svg};
+use crate::results::{digits, write_text};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The answer to a line.
+pub enum Reply {
+    /// to be printed; may be empty
+    Text(String),
+    /// what is wrong, and the text its place refers to
+    Mistake(Box<Diagnostic>, String),
+    /// the session is over
+    Quit,
+}
+
+/// TABLE of commands: name, arguments, what it does.
+pub const COMMANDS: [(&str, &str, &str); 12] = [
+    (
+        ":help",
+        "[NAME]",
+        "this list, or what a function or command is",
+    ),
+    (":functions", "", "all names of the language"),
+    (
+        ":let",
+        "[NAME = EXPRESSION | VARVAL(3) = VALUE]",
+        "name a part of later expressions, or give a function of the model its value",
+    ),
+    (":time", "[T]", "set TIME"),
+    (
+        ":derivative",
+        "[0|1|2]",
+        "show derivatives over time up to this order",
+    ),
+    (
+        ":marker",
+        "[ID X Y Z | ID {\"r\": [x,y,z], \"v\": …}]",
+        "place a marker",
+    ),
+    (":markers", "FILE.json", "read states of markers"),
+    (":splines", "FILE.json", "read data of splines"),
+    (
+        ":plot",
+        "EXPRESSION FIRST LAST [FILE.svg]",
+        "plot an expression over TIME",
+    ),
+    (
+        ":explain",
+        "EXPRESSION",
+        "its tree with values, its inputs and its program",
+    ),
+    (":dialect", "[function|expression]", "change the language"),
+    (":quit", "", "end the session"),
+];
+
+/// Samples of a plot.
+const SAMPLES: f64 = 400.0;
+
+/// Everything that lines change.
+pub struct Session {
+    /// language and data
+    pub setting: Setting,
+    /// TIME
+    time: f64,
+    /// highest derivative shown
+    order: usize,
+    /// names for parts of expressions: as defined, with earlier names replaced
+    pub names: BTreeMap<String, String>,
+}
+
+impl Session {
+    /// A session where nothing is known yet, at time 0.
+    pub fn new(dialect: Dialect) -> Self {
+        let setting = Setting {
+            dialect,
+            profile: Profile::Adams,
+            ..Setting::default()
+        };
+        Self {
+            setting,
+            time: 0.0,
+            order: 0,
+            names: BTreeMap::new(),
+        }
+    }
+
+    /// Whether an expression ends too early, so that more lines should follow. A blank line ends it all the same.
+    pub fn is_incomplete(&self, text: &str) -> bool {
+        let empty = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('!');
+        let last_is_blank = (text.lines().next_back()).is_some_and(|l| l.trim().is_empty());
+        let command = text.trim_start().starts_with(':');
+        let ends = command || last_is_blank || text.lines().all(empty);
+        let error = || {
+            parse(
+                &self.expanded(text),
+                self.setting.dialect,
+                self.setting.profile,
+            )
+            .err()
+        };
+        !ends && error().is_some_and(|d| d.code == "unexpected_end")
+    }
+
+    /// Does what a line says.
+    pub fn execute(&mut self, line: &str) -> Reply {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('!') {
+            return Reply::Text(String::new());
+        }
+        if !line.starts_with(':') {
+            return self.evaluate(line);
+        }
+        let (command, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let rest = rest.trim();
+        let done = match command {
+            ":help" | ":h" | ":?" => self.help(rest),
+            ":functions" => Ok(card::all()
+                .iter()
+                .map(|c| format!("{}\n", c.signature))
+                .collect()),
+            ":let" => return self.define(rest),
+            ":time" => self.set_time(rest),
+            ":derivative" => self.set_order(rest),
+            ":marker" => self.marker(rest),
+            ":markers" => self
+                .setting
+                .data
+                .read_markers(Path::new(rest))
+                .map(|()| format!("{} markers\n", self.setting.data.markers.len())),
+            ":splines" => self
+                .setting
+                .data
+                .read_splines(Path::new(rest))
+                .map(|()| format!("{} splines\n", self.setting.data.bindings.splines.len())),
+            ":plot" => return self.plot(rest),
+            ":explain" => return self.explain(rest),
+            ":dialect" => self.set_dialect(rest),
+            ":quit" | ":q" | ":exit" => return Reply::Quit,
+            unknown => Err(unknown_command(unknown)),
+        };
+        match done {
+            Ok(text) => Reply::Text(text),
+            Err(d) => Reply::Mistake(Box::new(d), line.to_owned()),
+        }
+    }
+
+    fn evaluate(&self, text: &str) -> Reply {
+        let expanded = self.expanded(text);
+        let sample = Formula::new(&expanded, &self.setting)
+            .and_then(|mut f| f.sample(Some(self.time), self.order, &self.setting.data));
+        match (sample, self.order) {
+            (Err(d), _) => Reply::Mistake(Box::new(d), expanded),
+            (Ok(s), 0) => Reply::Text(digits(s[0]) + "\n"),
+            (Ok(s), order) => {
+                let lines = ["value", "d/dt", "d2/dt2"].iter().zip(s).take(order + 1);
+                Reply::Text(
+                    lines
+                        .map(|(name, x)| format!("{name:6}  {}\n", digits(x)))
+                        .collect(),
+                )
+            }
+        }
+    }
+
+    fn help(&self, name: &str) -> Result<String, Diagnostic> {
+        let line = |(name, arguments, what): &(&str, &str, &str)| {
+            format!("  {:52}  {what}\n", format!("{name} {arguments}"))
+        };
+        let command =
+            |c: &&(&str, &str, &str)| c.0.trim_start_matches(':') == name.trim_start_matches(':');
+        match name {
+            "" => {
+                let commands: String = COMMANDS.iter().map(line).collect();
+                Ok(format!(
+                    "An expression is evaluated; it may go on over several lines until it is complete.\n{commands}"
+                ))
+            }
+            _ if name.starts_with(':') => COMMANDS
+                .iter()
+                .find(command)
+                .map(line)
+                .ok_or_else(|| unknown_command(name)),
+            name => functions::of_name(name).map(|cards| functions::text(&cards)),
+        }
+    }
+
+    /// `NAME = EXPRESSION` or `VARVAL(3) = VALUE`; without arguments lists what is defined.
+    fn define(&mut self, text: &str) -> Reply {
+        if text.is_empty() {
+            let names = self
+                .names
+                .iter()
+                .map(|(name, body)| format!("{name} = {body}\n"));
+            let values = self
+                .setting
+                .data
+                .values
+                .iter()
+                .map(|(input, value)| format!("{input} = {}\n", digits(*value)));
+            return Reply::Text(names.chain(values).collect());
+        }
+        let mistake = |d: Diagnostic, text: &str| Reply::Mistake(Box::new(d), text.to_owned());
+        let Some((name, body)) = text.split_once('=').map(|(n, b)| (n.trim(), b.trim())) else {
+            return mistake(usage(":let"), text);
+        };
+        let expanded = self.expanded(body);
+        let formula = Formula::new(&expanded, &self.setting);
+        if !name.contains('(') {
+            return match (self.may_define(name), formula) {
+                (Err(d), _) => mistake(d, name),
+                (_, Err(d)) => mistake(d, &expanded),
+                (Ok(()), Ok(_)) => {
+                    self.names.insert(name.to_ascii_uppercase(), expanded);
+                    Reply::Text(String::new())
+                }
+            };
+        }
+        match formula.and_then(|mut f| f.sample(Some(self.time), 0, &self.setting.data)) {
+            Err(d) => mistake(d, &expanded),
+            Ok([value, ..]) => give(&mut self.setting, name, value)
+                .map_or_else(|d| mistake(d, name), |()| Reply::Text(String::new())),
+        }
+    }
+
+    fn may_define(&self, name: &str) -> Result<(), Diagnostic> {
+        let known = |dialect| symbol(name, dialect, Profile::Ideas).is_some();
+        let letters = name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        match letters {
+            false => Err(Diagnostic::error(
+                "bad_definition",
+                format!("`{name}` is no name: letters, digits and _ are"),
+            )),
+            true if known(Dialect::Function) || known(Dialect::Expression) => {
+                Err(Diagnostic::error(
+                    "bad_definition",
+                    format!("`{name}` has a meaning in the language already"),
+                ))
+            }
+            true => Ok(()),
+        }
+    }
+
+    fn set_time(&mut self, text: &str) -> Result<String, Diagnostic> {
+        if !text.is_empty() {
+            let expanded = self.expanded(text);
+            self.time =
+                Formula::new(&expanded, &self.setting)?.sample(None, 0, &self.setting.data)?[0];
+        }
+        Ok(if text.is_empty() {
+            format!("{}\n", digits(self.time))
+        } else {
+            String::new()
+        })
+    }
+
+    fn set_order(&mut self, text: &str) -> Result<String, Diagnostic> {
+        match text {
+            "" => return Ok(format!("{}\n", self.order)),
+            "0" => self.order = 0,
+            "1" => self.order = 1,
+            "2" => self.order = 2,
+            _ => return Err(usage(":derivative")),
+        }
+        Ok(String::new())
+    }
+
+    fn set_dialect(&mut self, text: &str) -> Result<String, Diagnostic> {
+        let name = match text {
+            "" => {
+                let name = if self.setting.dialect == Dialect::Function {
+                    "function"
+                } else {
+                    "expression"
+                };
+                return Ok(format!("{name}\n"));
+            }
+            "function" => DialectName::Function,
+            "expression" => DialectName::Expression,
+            _ => return Err(usage(":dialect")),
+        };
+        self.setting.dialect = name.into();
+        Ok(String::new())
+    }
+
+    fn marker(&mut self, text: &str) -> Result<String, Diagnostic> {
+        if text.is_empty() {
+            let place = |(id, m): (&u32, &crate::space::MarkerState<f64>)| {
+                format!("{id}: {}\n", m.p_GM.0.map(digits).join(" "))
+            };
+            return Ok(self.setting.data.markers.iter().map(place).collect());
+        }
+        let (id, rest) = text
+            .split_once(char::is_whitespace)
+            .ok_or_else(|| usage(":marker"))?;
+        let id = id
+            .parse()
+            .ok()
+            .filter(|&id: &u32| id > 0)
+            .ok_or_else(|| usage(":marker"))?;
+        let state = if rest.trim_start().starts_with('{') {
+            rest.to_owned()
+        } else {
+            format!(
+                "{{\"r\": [{}]}}",
+                rest.split([' ', ','])
+                    .filter(|w| !w.is_empty())
+                    .collect::<Vec<_>>()
+                    .join(",")
+            )
+        };
+        self.setting.data.add_marker(id, &state)?;
+        Ok(String::new())
+    }
+
+    /// `EXPRESSION FIRST LAST [FILE.svg]`
+    fn plot(&self, text: &str) -> Reply {
+        let (text, file) = match text.rsplit_once(char::is_whitespace) {
+            Some((rest, file)) if file.to_lowercase().ends_with(".svg") => {
+                (rest.trim_end(), Some(file))
+            }
+            _ => (text, None),
+        };
+        let last_word = |text: &str| {
+            text.rsplit_once(char::is_whitespace)
+                .and_then(|(rest, word)| {
+                    Some((rest.trim_end().to_owned(), word.parse::<f64>().ok()?))
+                })
+        };
+        let Some((expression, first, last)) = last_word(text)
+            .and_then(|(rest, last)| last_word(&rest).map(|(e, first)| (e, first, last)))
+        else {
+            return Reply::Mistake(Box::new(usage(":plot")), text.to_owned());
+        };
+        let expanded = self.expanded(&expression);
+        let picture = self.picture(&expanded, &expression, first, last);
+        let shown = picture.and_then(|picture| match file {
+            Some(file) => {
+                write_text(Path::new(file), &svg(&picture)?).map(|()| format!("plot in {file}\n"))
+            }
+            None => terminal(&picture, plot::terminal_style()),
+        });
+        shown.map_or_else(|d| Reply::Mistake(Box::new(d), expanded), Reply::Text)
+    }
+
+    fn picture(
+        &self,
+        expanded: &str,
+        name: &str,
+        first: f64,
+        last: f64,
+    ) -> Result<Plot, Diagnostic> {
+        let mut formula = Formula::new(expanded, &self.setting)?;
+        let mut curves: Vec<Curve> = derivative_names(name)
+            .into_iter()
+            .take(self.order + 1)
+            .map(|name| Curve {
+                name,
+                ..Curve::default()
+            })
+            .collect();
+        for t in times(first, last, (last - first) / SAMPLES)? {
+            let sample = formula.sample(Some(t), self.order, &self.setting.data)?;
+            curves
+                .iter_mut()
+                .zip(sample)
+                .for_each(|(curve, y)| curve.points.push((t, y)));
+        }
+        let x_label = crate::expr::ast::Constant::Time
+            .name(self.setting.dialect)
+            .to_owned();
+        Ok(Plot {
+            x_label,
+            curves,
+            ..Plot::default()
+        })
+    }
+
+    fn explain(&self, text: &str) -> Reply {
+        let expanded = self.expanded(text);
+        match Formula::new(&expanded, &self.setting) {
+            Ok(formula) => Reply::Text(explain(&formula, Some(self.time), &self.setting.data)),
+            Err(d) => Reply::Mistake(Box::new(d), expanded),
+        }
+    }
+
+    /// The text with defined names replaced by what they stand for, in parentheses.
+    pub fn expanded(&self, text: &str) -> String {
+        if self.names.is_empty() {
+            return text.to_owned();
+        }
+        let mut out = String::with_capacity(text.len());
+        for word in words(text) {
+            match self.names.get(&word.to_ascii_uppercase()) {
+                Some(body) if out.len() + body.len() < MOST_CHARACTERS => {
+                    out.extend(["(", body, ")"])
+                }
+                _ => out.push_str(word),
+            }
+        }
+        out
+    }
+}
+
+/// The text in pieces: words that begin with a letter, numbers with exponent and suffix, and what is between them.
+pub fn words(text: &str) -> impl Iterator<Item = &str> {
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let length = match first {
+            '!' => rest.find('\n').unwrap_or(rest.len()),
+            c if c.is_ascii_alphanumeric() || c == '.' => rest
+                .find(|c| !word(c) && c != '.')
+                .unwrap_or(rest.len())
+                .max(1),
+            _ => rest
+                .find(|c: char| c.is_ascii_alphanumeric() || c == '.' || c == '!')
+                .unwrap_or(rest.len()),
+        };
+        let (piece, after) = rest.split_at(length);
+        rest = after;
+        Some(piece)
+    })
+}
+
+fn usage(command: &str) -> Diagnostic {
+    let row = COMMANDS.iter().find(|c| c.0 == command);
+    let form = row.map_or(String::new(), |(name, arguments, _)| {
+        format!("{name} {arguments}")
+    });
+    Diagnostic::error("usage", format!("{command} is used like this: {form}"))
+}
+
+fn unknown_command(name: &str) -> Diagnostic {
+    let near = near_names(name, COMMANDS.iter().map(|c| c.0));
+    let d = Diagnostic::error("usage", format!("there is no command {name}"));
+    if near.is_empty() {
+        d.help(":help lists them")
+    } else {
+        d.help(format!("did you mean {}?", near.join(" or ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answers(lines: &[&str]) -> Vec<String> {
+        let mut session = Session::new(Dialect::Function);
+        let answer = |reply| match reply {
+            Reply::Text(text) => text,
+            Reply::Mistake(d, _) => d.code.to_owned(),
+            Reply::Quit => "bye".into(),
+        };
+        lines
+            .iter()
+            .map(|line| answer(session.execute(line)))
+            .collect()
+    }
+
+    #[test]
+    fn names_stand_for_their_expressions_whole() {
+        let said = answers(&[
+            ":let w = 1+1",
+            ":let v = 2*w",
+            "v**2",
+            "W*3",
+            ":let sin = 1",
+            ":let 2x = 1",
+            ":let w = LOG(",
+            ":let",
+            "2E0*w",
+        ]);
+        assert_eq!(said[2..4], ["16\n", "6\n"]);
+        assert_eq!(
+            said[4..7],
+            ["bad_definition", "bad_definition", "unexpected_end"]
+        );
+        assert_eq!(said[7], "V = 2*(1+1)\nW = 1+1\n");
+        assert_eq!(said[8], "4\n");
+    }
+
+    #[test]
+    fn time_derivatives_markers_and_values_are_remembered() {
+        let said = answers(&[
+            "TIME**2",
+            ":time 3",
+            "TIME**2",
+            ":derivative 2",
+            "TIME**2",
+            ":derivative 0",
+            ":marker 1 3 4 12",
+            "DM(1)",
+            "VARVAL(2)",
+            ":let VARVAL(2) = 2*TIME",
+            "VARVAL(2)",
+        ]);
+        assert_eq!((said[0].as_str(), said[2].as_str()), ("0\n", "9\n"));
+        assert_eq!(said[4], "value   9\nd/dt    6\nd2/dt2  2\n");
+        assert_eq!(said[7..], ["13\n", "missing_value", "", "6\n"]);
+    }
+
+    #[test]
+    fn expressions_go_on_until_they_are_complete() {
+        let session = Session::new(Dialect::Function);
+        assert!(session.is_incomplete("STEP(TIME, 0, 0,") && session.is_incomplete("2 +\n3 *"));
+        assert!(
+            !session.is_incomplete("2 +\n3")
+                && !session.is_incomplete("2 +\n\n")
+                && !session.is_incomplete(":let x = (")
+                && !session.is_incomplete("2 ^ 3")
+        );
+    }
+
+    #[test]
+    fn numbers_and_comments_keep_their_letters() {
+        let pieces: Vec<&str> = words("2E5*e+30D!e\nx_1.").collect();
+        assert_eq!(pieces, ["2E5", "*", "e", "+", "30D", "!e", "\n", "x_1."]);
+    }
+
+    #[test]
+    fn every_command_is_known_to_help_and_to_the_session() {
+        for (name, ..) in COMMANDS {
+            let said = answers(&[&format!(":help {name}"), name]);
+            assert!(said[0].contains(name), "{name}");
+            assert!(!said[1].contains("there is no command"), "{name}");
+        }
+        assert_eq!(answers(&[":plott SIN(TIME) 0 1", ":q"]), ["usage", "bye"]);
+    }
+
+    #[test]
+    fn a_plot_is_drawn_over_the_range_it_is_given() {
+        let said = answers(&[
+            ":plot SIN(2*PI*TIME) 0 2",
+            ":plot SIN(TIME) 0",
+            ":plot LOG(TIME) -1 1",
+        ]);
+        assert!(said[0].contains("SIN(2*PI*TIME)") && said[0].lines().count() > 10);
+        assert_eq!(said[1..], ["usage", "domain"]);
+    }
+}

@@ -1,0 +1,296 @@
+//! The binary as its users meet it: what is printed where, and how it ends.
+#![cfg(feature = "cli")]
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// What a command did: exit code, standard output, standard error.
+struct Done {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn cognate_with(args: &[&str], input: &str) -> Done {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_cognate"))
+        .args(args)
+        .env_remove("COLUMNS")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A command that does not read its input may end before all of it is written.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let output = child.wait_with_output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Done {
+        code: output.status.code().unwrap(),
+        out: text(output.stdout),
+        err: text(output.stderr),
+    }
+}
+
+fn cognate(args: &[&str]) -> Done {
+    cognate_with(args, "")
+}
+
+/// A file of this name in a folder of this test's own.
+fn scratch(test: &str, name: &str, contents: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join(name);
+    std::fs::write(&file, contents).unwrap();
+    file
+}
+
+fn path(file: &std::path::Path) -> &str {
+    file.to_str().unwrap()
+}
+
+#[test]
+fn a_value_is_printed_alone_with_its_shortest_digits() {
+    for (args, value) in [
+        (&["STEP(TIME,1,0,2,1)", "--time", "1.5"][..], "0.5\n"),
+        (&["-2**2"][..], "-4\n"),
+        (&["0.1+0.2"][..], "0.30000000000000004\n"),
+        (&["TIME**3", "--time", "2", "--derivative", "1"][..], "12\n"),
+        (
+            &["TIME**3", "--time", "-2", "--derivative", "2"][..],
+            "-12\n",
+        ),
+        (&["alog(3)", "--dialect", "expression"][..], "1000\n"),
+        (&["2*VARVAL(3)", "--set", "VARVAL(3)=2.5"][..], "5\n"),
+    ] {
+        let done = cognate(&[&["eval"], args].concat());
+        assert_eq!(
+            (done.code, done.out.as_str(), done.err.as_str()),
+            (0, value, ""),
+            "{args:?}"
+        );
+    }
+}
+
+#[test]
+fn a_range_of_times_gives_a_table() {
+    let done = cognate(&["eval", "TIME**2", "--time", "0:1:0.5", "--derivative", "1"]);
+    assert_eq!(
+        done.out,
+        "time,TIME**2,d/dt TIME**2\n0,0,0\n0.5,0.25,1\n1,1,2\n"
+    );
+    let json = cognate(&["eval", "MAX(TIME,1)", "--time", "0:2:1", "--json"]).out;
+    let table: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(table["columns"][1]["name"], "MAX(TIME,1)");
+    assert_eq!(
+        table["columns"][1]["values"],
+        serde_json::json!([1.0, 1.0, 2.0])
+    );
+}
+
+#[test]
+fn markers_and_splines_come_from_files() {
+    let markers = scratch(
+        "markers",
+        "m.json",
+        r#"{"1": {"r": [3, 4, 12], "v": [1, 0, 0]}, "2": {"e313": [0.5, 0, 0]}}"#,
+    );
+    let splines = scratch(
+        "markers",
+        "s.json",
+        r#"{"1": {"x": [1, 2, 3, 4], "y": [0, 2, 1, 3]}}"#,
+    );
+    let value = |expression: &str| {
+        cognate(&[
+            "eval",
+            expression,
+            "--markers",
+            path(&markers),
+            "--splines",
+            path(&splines),
+        ])
+        .out
+    };
+    assert_eq!(value("DM(1,2)+AKISPL(1.5,0,1)"), "14.375\n");
+    assert_eq!(value("PSI(2)"), "0.5\n");
+    let broken = scratch("markers", "b.json", "{\"1\": {\"r\": [1, 2]}}");
+    let done = cognate(&["eval", "DM(1)", "--markers", path(&broken)]);
+    assert_eq!(done.code, 3);
+    assert!(
+        done.err.contains("\"1\": \"r\" should be three numbers"),
+        "{}",
+        done.err
+    );
+}
+
+#[test]
+fn a_plot_is_written_as_svg_and_named() {
+    let file = scratch("plot", "p.svg", "");
+    let done = cognate(&[
+        "eval",
+        "SIN(TIME)",
+        "--time",
+        "0:6:0.1",
+        "--derivative",
+        "1",
+        "--plot",
+        path(&file),
+    ]);
+    assert_eq!((done.code, done.out.as_str()), (0, ""));
+    let svg = std::fs::read_to_string(&file).unwrap();
+    assert!(
+        svg.starts_with("<svg")
+            && svg.contains("d/dt SIN(TIME)")
+            && svg.trim_end().ends_with("</svg>")
+    );
+    assert_eq!(cognate(&["eval", "1", "--plot", path(&file)]).code, 2);
+}
+
+#[test]
+fn mistakes_end_with_their_code_and_a_caret_below_the_place() {
+    let done = cognate(&["eval", "2*LOG(TIME-1)", "--time", "0.5"]);
+    assert_eq!((done.code, done.out.as_str()), (3, ""));
+    let lines: Vec<&str> = done.err.lines().collect();
+    assert!(
+        lines[0].starts_with("error[domain]: LOG of -0.5 has no value at TIME = 0.5"),
+        "{}",
+        done.err
+    );
+    let text = lines.iter().position(|l| l.contains("2*LOG")).unwrap();
+    assert_eq!(lines[text].find("LOG"), lines[text + 1].find("^^^"));
+    assert_eq!(cognate(&["eval", "STEP(1,2"]).code, 3);
+    assert_eq!(cognate(&["eval", "TIME", "--time", "a"]).code, 2);
+    assert_eq!(cognate(&["eval", "TIME", "--time", "0:1:-1"]).code, 2);
+    assert_eq!(cognate(&["frobnicate"]).code, 2);
+    assert_eq!(cognate(&["convert", "no.res", "such.csv"]).code, 3);
+}
+
+#[test]
+fn mistakes_are_told_to_programs_too() {
+    let done = cognate(&["eval", "1+", "--json"]);
+    assert_eq!(done.code, 3);
+    let said: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    assert_eq!(
+        (&said["errors"][0]["code"], &said["errors"][0]["column"]),
+        (&"unexpected_end".into(), &3.into())
+    );
+}
+
+#[test]
+fn a_piped_session_remembers_goes_on_after_mistakes_and_tells_of_them() {
+    let session = "\
+! a comment
+:time 0.25
+STEP5(TIME, 0, 0, 1, 10) *
+  SIN(2*PI*TIME)
+:let w = 2*PI
+:derivative 1
+SIN(w*TIME)
+:derivative 0
+:marker 7 3 4 12
+2^3
+DM(7)
+";
+    let done = cognate_with(&["repl"], session);
+    assert_eq!(
+        done.out,
+        "1.03515625\nvalue   1\nd/dt    3.8473413874435795e-16\n13\n"
+    );
+    assert_eq!(done.code, 3, "one line was wrong");
+    assert!(done.err.starts_with("error[bad_char]"), "{}", done.err);
+    let fine = cognate_with(
+        &["repl", "--dialect", "expression"],
+        "alog(3)\n:quit\n2^3\n",
+    );
+    assert_eq!(
+        (fine.code, fine.out.as_str(), fine.err.as_str()),
+        (0, "1000\n", "")
+    );
+    assert_eq!(
+        cognate_with(&["repl"], "1 +").code,
+        3,
+        "the end of the input ends a statement"
+    );
+}
+
+#[test]
+fn every_name_of_the_language_can_be_looked_up() {
+    let list = cognate(&["functions", "--json"]).out;
+    let list: serde_json::Value = serde_json::from_str(&list).unwrap();
+    let names: Vec<&str> = list
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| c["name"].as_str().unwrap())
+        .collect();
+    // one of each family of the reference
+    for name in "TIME IF ABS STEP5 BISTOP AKISPL CURVE DM AZ PITCH INCANG VR WZ ACCM WDTX FX TM JOINT SPDP VARVAL DIF1 SENVAL ent".split(' ') {
+        assert!(names.contains(&name), "{name}");
+        assert!(cognate(&["functions", name]).out.to_uppercase().contains(&name.to_uppercase()));
+    }
+    let unknown = cognate(&["functions", "STPE5"]);
+    assert_eq!(unknown.code, 3);
+    assert!(
+        unknown.err.contains("did you mean STEP5?"),
+        "{}",
+        unknown.err
+    );
+}
+
+#[test]
+fn results_are_converted_and_plotted_and_inputs_are_kept() {
+    let table = scratch(
+        "convert",
+        "run.csv",
+        "time,\"DX(1,2)\"\nsec,mm\n0,1\n0.5,2\n1,4\n",
+    );
+    let res = table.with_extension("res");
+    assert_eq!(cognate(&["convert", path(&table), path(&res)]).code, 0);
+    let back = table.with_file_name("back.csv");
+    assert_eq!(cognate(&["convert", path(&res), path(&back)]).code, 0);
+    assert_eq!(
+        std::fs::read_to_string(&back).unwrap(),
+        std::fs::read_to_string(&table).unwrap()
+    );
+    let plot = cognate(&["plot", path(&table), "--y", "dx(1,2)"]);
+    assert!(
+        plot.out.contains("DX(1,2) [mm]") && plot.out.contains("time [sec]"),
+        "{}",
+        plot.out
+    );
+    let missing = cognate(&["plot", path(&table), "--y", "DX(1,3)"]);
+    assert!(
+        missing.code == 3 && missing.err.contains("did you mean DX(1,2)?"),
+        "{}",
+        missing.err
+    );
+    assert_eq!(cognate(&["convert", path(&table), path(&table)]).code, 2);
+}
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    let help = cognate(&["--help"]);
+    assert_eq!(help.code, 0);
+    let commands = help
+        .out
+        .split("Commands:")
+        .nth(1)
+        .unwrap()
+        .split("Options:")
+        .next()
+        .unwrap();
+    let verbs: Vec<&str> = commands
+        .lines()
+        .filter_map(|l| l.split_whitespace().next())
+        .collect();
+    assert!(verbs.len() >= 5, "{verbs:?}");
+    for verb in verbs {
+        let help = cognate(&[verb, "--help"]);
+        assert!(
+            help.code == 0 && help.out.contains(&format!("cognate {verb}")),
+            "{verb}: {}",
+            help.out
+        );
+        assert!(help.out.contains("Example"), "{verb} shows no example");
+    }
+}
