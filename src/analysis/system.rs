@@ -48,13 +48,30 @@ pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
         .collect()
 }
 
+/// The rate by whichever elimination takes fewer operations; deep forests are not tried the quadratic way.
+fn shortest_rate(scene: &mut Scene) -> Result<Program, Vec<Diagnostic>> {
+    let depth = scene.depth();
+    scene.articulated = true;
+    let articulated = record(scene, |at| at.rates()).map_err(complaints)?;
+    if depth > 40 {
+        return Ok(articulated);
+    }
+    scene.articulated = false;
+    let matrix = record(scene, |at| at.rates()).map_err(complaints)?;
+    if matrix.n_operations() <= articulated.n_operations() {
+        return Ok(matrix);
+    }
+    scene.articulated = true;
+    Ok(articulated)
+}
+
 impl System {
     /// Records the programs of a scene.
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub fn new(scene: Scene) -> Result<Self, Vec<Diagnostic>> {
-        let rate = record(&scene, |at| at.rates()).map_err(complaints)?;
+    pub fn new(mut scene: Scene) -> Result<Self, Vec<Diagnostic>> {
+        let rate = shortest_rate(&mut scene)?;
         let any = (0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true));
         let projection = if any {
             Some(

@@ -8,7 +8,8 @@
 //! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
 
 use super::layout::Layout;
-use super::solve::{MassFactor, accelerations, solve_symmetric};
+use super::articulated::ArticulatedFactor;
+use super::solve::{Factor, MassFactor, accelerations, solve_symmetric};
 use super::sweep::{self, Coordinates, LinkState, Wrench};
 use super::{Row, RowKind, Scene, Source};
 use crate::expr::measures::{Family, Measure};
@@ -417,7 +418,12 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let multipliers = if scene.mode == KINEMATIC {
             self.determined(&wrenches, &g, &gamma, &mut f)
         } else {
-            accelerations(&MassFactor::new(self.mass_rows()), &g, &gamma, &mut f)
+            let factor = if scene.articulated {
+                Factor::Articulated(ArticulatedFactor::new(scene, &self.links))
+            } else {
+                Factor::Matrix(MassFactor::new(self.mass_rows()))
+            };
+            accelerations(&factor, &g, &gamma, &mut f)
         };
         let mut lambda = vec![S::zero(); scene.rows.len()];
         for ((r, row), &l) in rows.iter().zip(&multipliers) {

@@ -3,6 +3,7 @@
 //! Parts hang on a forest of links, one primitive motion each; what closes loops is a row. Numbers are indices here, names
 //! live in one list, and everything a run does not need has been left out before it starts.
 
+pub mod articulated;
 pub mod build;
 pub mod compile;
 pub mod equations;
@@ -277,11 +278,22 @@ pub struct Scene {
     pub layout: Layout,
     /// positions from the dataset, before assembly   (n_q)
     pub initial_q: Vec<f64>,
+    /// eliminate freedoms link by link (long chains) rather than from the mass matrix (short ones)
+    pub articulated: bool,
     /// a typical length of the mechanism, for tolerances and scales
     pub length: f64,
 }
 
 impl Scene {
+    /// Most freedoms on a way from ground to a leaf.
+    pub fn depth(&self) -> usize {
+        let mut depth = vec![0; self.freedoms.len()];
+        for k in 0..depth.len() {
+            depth[k] = 1 + self.carrier[k].map_or(0, |c| depth[c]);
+        }
+        depth.into_iter().max().unwrap_or(0)
+    }
+
     /// What a motion's displacement is in the configuration of the dataset, where it drives a coordinate of the forest.
     pub fn initial_displacement(&self, motion: usize) -> Option<f64> {
         self.motions[motion]

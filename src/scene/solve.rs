@@ -10,6 +10,7 @@
 //!
 //! Source: Featherstone, chapters 6.5 and 8.
 
+use super::articulated::ArticulatedFactor;
 use crate::scalar::Scalar;
 
 /// `M = Lᵀ D L` of a forest.
@@ -18,6 +19,35 @@ pub struct MassFactor<S> {
     pub l: Vec<Vec<(usize, S)>>,
     /// 1/D per freedom
     pub inverse_d: Vec<S>,
+}
+
+/// A factored mass matrix, one way or the other.
+pub enum Factor<'s, S> {
+    /// from its entries
+    Matrix(MassFactor<S>),
+    /// without forming it
+    Articulated(ArticulatedFactor<'s, S>),
+}
+
+impl<S: Scalar> Factor<'_, S> {
+    fn half(&self, x: &mut [S]) {
+        match self {
+            Factor::Matrix(m) => m.half(x),
+            Factor::Articulated(m) => m.half(x),
+        }
+    }
+    fn finish(&self, x: &mut [S]) {
+        match self {
+            Factor::Matrix(m) => m.finish(x),
+            Factor::Articulated(m) => m.finish(x),
+        }
+    }
+    fn inverse_d(&self) -> Vec<S> {
+        match self {
+            Factor::Matrix(m) => m.inverse_d.clone(),
+            Factor::Articulated(m) => m.inverse(),
+        }
+    }
 }
 
 /// Pivots of S smaller than this times the diagonal they started from count as zero.
@@ -79,12 +109,13 @@ impl<S: Scalar> MassFactor<S> {
 ///
 /// Returns λ, with `M v̇ = f + Gᵀ λ`.
 pub fn accelerations<S: Scalar>(
-    m: &MassFactor<S>,
+    m: &Factor<'_, S>,
     g: &[Vec<(usize, S)>],
     gamma: &[S],
     f: &mut [S],
 ) -> Vec<S> {
     let n = f.len();
+    let inverse_d = m.inverse_d();
     m.half(f);
     let u: Vec<Vec<(usize, S)>> = g
         .iter()
@@ -103,7 +134,7 @@ pub fn accelerations<S: Scalar>(
     // (u/D, for one side of the products)
     let scaled: Vec<Vec<(usize, S)>> = u
         .iter()
-        .map(|row| row.iter().map(|&(k, x)| (k, x * m.inverse_d[k])).collect())
+        .map(|row| row.iter().map(|&(k, x)| (k, x * inverse_d[k])).collect())
         .collect();
     let rhs: Vec<S> = scaled
         .iter()
@@ -207,7 +238,7 @@ mod tests {
             vec![(1, 2.0), (0, 1.0)],
             vec![(2, 3.0), (0, -1.0)],
         ];
-        let m = MassFactor::new(rows);
+        let m = Factor::Matrix(MassFactor::new(rows));
         let mut x = vec![1.0, 2.0, 3.0];
         accelerations(&m, &[], &[], &mut x);
         approx::assert_relative_eq!(5.0 * x[0] + x[1] - x[2], 1.0, max_relative = 1e-14);
