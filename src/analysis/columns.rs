@@ -72,7 +72,7 @@ impl Columns {
         if full {
             this.parts(model, run);
         }
-        let mut table = Vec::new();
+        let mut table = vec![0];
         for text in user {
             table.push(this.text(run, text.clone(), text, &run.units.clone()));
         }

@@ -122,6 +122,11 @@ impl System {
         self.rate.n_operations()
     }
 
+    /// Number of operations of one projection.
+    pub fn projection_operations(&self) -> Option<usize> {
+        self.projection.as_ref().map(Program::n_operations)
+    }
+
     /// Moves positions along tangents.
     pub fn mover(&self) -> &Mover {
         &self.mover

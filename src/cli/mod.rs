@@ -14,6 +14,7 @@ mod plot;
 pub mod progress;
 pub mod render;
 mod repl;
+mod run;
 
 use crate::diagnostic::Diagnostic;
 use clap::{Parser, Subcommand};
@@ -36,6 +37,7 @@ enum Verb {
     Functions(functions::Args),
     Plot(plot::Args),
     Repl(repl::Args),
+    Run(run::Args),
 }
 
 const EXIT_CODES: &str = "\
@@ -128,6 +130,7 @@ pub fn main() -> ExitCode {
         Verb::Functions(args) => functions::run(args),
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),
+        Verb::Run(args) => run::run(args),
     });
     let exit = match std::panic::catch_unwind(verb) {
         Ok(Ok(exit)) => exit,
