@@ -86,8 +86,15 @@ struct Step {
 pub fn run(args: &Args) -> Outcome {
     let clock = Instant::now();
     interrupt::install();
-    let is_command = args.model.extension().is_some_and(|e| e.eq_ignore_ascii_case("acf"));
-    let (model, base, steps) = if is_command { script(&args.model)? } else { alone(args)? };
+    let is_command = args
+        .model
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("acf"));
+    let (model, base, steps) = if is_command {
+        script(&args.model)?
+    } else {
+        alone(args)?
+    };
     let full = model.settings.contains_key("RESULTS");
     let options = Options {
         error: args.error,
@@ -98,13 +105,23 @@ pub fn run(args: &Args) -> Outcome {
     };
     let mut session = Session::new(model, &base, options);
     session.run.record.model = args.model.display().to_string();
-    session.run.log.push(Event::Title(session.run.title.clone()));
+    session
+        .run
+        .log
+        .push(Event::Title(session.run.title.clone()));
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
     let mut status = Status::Completed;
     let mut failure = None;
     for step in steps {
         let progress = Progress::new(args.quiet, session.time(), step.end);
-        let outcome = session.simulate(step.analysis, step.end, step.steps, &mut Terminal { progress: &progress });
+        let outcome = session.simulate(
+            step.analysis,
+            step.end,
+            step.steps,
+            &mut Terminal {
+                progress: &progress,
+            },
+        );
         progress.done();
         match outcome {
             Ok(Status::Completed) => {}
@@ -123,7 +140,10 @@ pub fn run(args: &Args) -> Outcome {
         let record = &mut session.run.record;
         record.status = Status::Model;
         record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
-        session.run.log.extend(errors.iter().map(|e| Event::Error(e.to_string())));
+        session
+            .run
+            .log
+            .extend(errors.iter().map(|e| Event::Error(e.to_string())));
     }
     let written = write(&mut session.run, &dir, full)?;
     if args.json {
@@ -132,7 +152,11 @@ pub fn run(args: &Args) -> Outcome {
         report(&session.run, &written);
     }
     if let Some(diagnostics) = failure {
-        return Err(Failure { exit: Exit::Model, diagnostics, sources: super::render::Sources::default() });
+        return Err(Failure {
+            exit: Exit::Model,
+            diagnostics,
+            sources: super::render::Sources::default(),
+        });
     }
     if status != Status::Completed && !args.quiet {
         remark(&session.run.record.stop_reason);
@@ -163,14 +187,21 @@ fn alone(args: &Args) -> Result<(Model, String, Vec<Step>), Failure> {
     };
     let needs_end = !matches!(analysis, Analysis::Static | Analysis::InitialConditions);
     if needs_end && args.end.is_none() {
-        return Err(Failure::usage("a dataset without a command file needs --end TIME"));
+        return Err(Failure::usage(
+            "a dataset without a command file needs --end TIME",
+        ));
     }
-    let step = Step { analysis, end: args.end.unwrap_or(0.0), steps: args.steps.unwrap_or(50) };
+    let step = Step {
+        analysis,
+        end: args.end.unwrap_or(0.0),
+        steps: args.steps.unwrap_or(50),
+    };
     Ok((model, stem(&args.model), vec![step]))
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
+    path.file_stem()
+        .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
 fn read(path: &Path) -> Result<Model, Failure> {
@@ -195,9 +226,22 @@ fn script(path: &Path) -> Result<(Model, String, Vec<Step>), Failure> {
         if let Some(rest) = upper.strip_prefix("FILE/MODEL=") {
             name = line[line.len() - rest.len()..].to_string();
         }
-        let Some(rest) = upper.strip_prefix("SIM") else { continue };
-        let Some((_, rest)) = rest.split_once('/') else { continue };
-        let value = |key: &str| rest.split(',').find_map(|p| p.trim().strip_prefix(key)?.trim_start_matches('=').trim().parse::<f64>().ok());
+        let Some(rest) = upper.strip_prefix("SIM") else {
+            continue;
+        };
+        let Some((_, rest)) = rest.split_once('/') else {
+            continue;
+        };
+        let value = |key: &str| {
+            rest.split(',').find_map(|p| {
+                p.trim()
+                    .strip_prefix(key)?
+                    .trim_start_matches('=')
+                    .trim()
+                    .parse::<f64>()
+                    .ok()
+            })
+        };
         let analysis = if rest.starts_with("STAT") {
             Analysis::Static
         } else if rest.starts_with("KIN") {
@@ -209,7 +253,11 @@ fn script(path: &Path) -> Result<(Model, String, Vec<Step>), Failure> {
         };
         let end = value("END").unwrap_or(0.0);
         let steps_given = value("STEPS").or_else(|| value("DTOUT").map(|d| (end / d).round()));
-        steps.push(Step { analysis, end, steps: steps_given.unwrap_or(50.0) as usize });
+        steps.push(Step {
+            analysis,
+            end,
+            steps: steps_given.unwrap_or(50.0) as usize,
+        });
     }
     let mut file = folder.join(&name);
     if file.extension().is_none() {

@@ -73,9 +73,15 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                 let sign = S::constant(f.sign);
                 // a column of the blocks: the inertia times the freedom's direction
                 let w = if f.turn {
-                    Wrench { force: i.b.row(f.axis).times(sign), torque: i.c.column(f.axis).times(sign) }
+                    Wrench {
+                        force: i.b.row(f.axis).times(sign),
+                        torque: i.c.column(f.axis).times(sign),
+                    }
                 } else {
-                    Wrench { force: i.a.column(f.axis).times(sign), torque: i.b.column(f.axis).times(sign) }
+                    Wrench {
+                        force: i.a.column(f.axis).times(sign),
+                        torque: i.b.column(f.axis).times(sign),
+                    }
                 };
                 let r = S::one() / f.component(&w);
                 i.a = i.a - outer(w.force, w.force, r);
@@ -84,18 +90,31 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                 u[k] = w;
                 inverse_d[k] = r;
             }
-            let Some(parent) = scene.links[l].parent else { continue };
+            let Some(parent) = scene.links[l].parent else {
+                continue;
+            };
             let X = &states[l].X_PL;
             let R = X.rotation;
             let turned = |m: &Mat3<S>| R * *m * R.transpose();
-            let (a, b, c) = (turned(&inertia[l].a), turned(&inertia[l].b), turned(&inertia[l].c));
+            let (a, b, c) = (
+                turned(&inertia[l].a),
+                turned(&inertia[l].b),
+                turned(&inertia[l].c),
+            );
             let P = Mat3::cross_matrix(X.position);
             let up = &mut inertia[parent];
             up.a = up.a + a;
             up.b = up.b + b + P * a;
             up.c = up.c + c - b * P + P * b.transpose() - P * a * P;
         }
-        Self { scene, states, u, inverse_d, of_link, free }
+        Self {
+            scene,
+            states,
+            u,
+            inverse_d,
+            of_link,
+            free,
+        }
     }
 
     /// 1/D of the free coordinates   (n_v)
@@ -137,7 +156,10 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                     let (alpha, a) = motion[p];
                     let X = &self.states[l].X_PL;
                     let carried = a + alpha.cross(X.position);
-                    (X.rotation.apply_transposed(alpha), X.rotation.apply_transposed(carried))
+                    (
+                        X.rotation.apply_transposed(alpha),
+                        X.rotation.apply_transposed(carried),
+                    )
                 }
                 None => (Vec3::zero(), Vec3::zero()),
             };

@@ -7,8 +7,8 @@
 //!
 //! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
 
-use super::layout::Layout;
 use super::articulated::ArticulatedFactor;
+use super::layout::Layout;
 use super::solve::{Factor, MassFactor, accelerations, solve_symmetric};
 use super::sweep::{self, Coordinates, LinkState, Wrench};
 use super::{Row, RowKind, Scene, Source};
