@@ -382,17 +382,17 @@ impl<'b> Adjoint<'b> {
 /// `a + b`; two selections by the same condition become one.
 fn sum(builder: &mut Builder, a: Value, b: Value) -> Value {
     let (node_a, node_b) = (builder.nodes[a.index()], builder.nodes[b.index()]);
-    if let (Node::Select(c, a1, a2), Node::Select(d, b1, b2)) = (node_a, node_b) {
-        if c == d {
-            let (yes, no) = (sum(builder, a1, b1), sum(builder, a2, b2));
-            return builder.select(c, yes, no);
-        }
+    if let (Node::Select(c, a1, a2), Node::Select(d, b1, b2)) = (node_a, node_b)
+        && c == d
+    {
+        let (yes, no) = (sum(builder, a1, b1), sum(builder, a2, b2));
+        return builder.select(c, yes, no);
     }
-    if let (Some(la), Some(lb)) = (if_list(builder, &node_a), if_list(builder, &node_b)) {
-        if la[0] == lb[0] {
-            let [negative, zero, positive] = [1, 2, 3].map(|k| sum(builder, la[k], lb[k]));
-            return builder.arithmetic_if(la[0], negative, zero, positive);
-        }
+    if let (Some(la), Some(lb)) = (if_list(builder, &node_a), if_list(builder, &node_b))
+        && la[0] == lb[0]
+    {
+        let [negative, zero, positive] = [1, 2, 3].map(|k| sum(builder, la[k], lb[k]));
+        return builder.arithmetic_if(la[0], negative, zero, positive);
     }
     builder.binary(BinaryOp::Add, a, b)
 }

@@ -2,9 +2,11 @@
 //!
 //! A node that is used only for one side of an IF need not be computed where the other side is taken, and its derivatives
 //! must not be counted there. Guards form a tree; that of a node is the nearest common ancestor of the guards of its uses.
+//! Selections by the same condition under the same guard share their sides.
 
 use super::Builder;
 use super::operation::{Node, Value};
+use std::collections::HashMap;
 
 /// Index into [`Guards`]; [`ALWAYS`] is the root.
 pub(super) type GuardIx = u32;
@@ -20,7 +22,7 @@ pub(super) const NEVER: GuardIx = u32::MAX;
 pub(super) struct Guard {
     pub(super) parent: GuardIx,
     depth: u32,
-    /// the selection (`Select` or `If`)
+    /// a selection (`Select` or `If`) by the condition
     pub(super) selection: Value,
     /// `Select`: 0 yes, 1 no; `If`: 0 negative, 1 zero, 2 positive
     pub(super) side: u8,
@@ -33,6 +35,8 @@ pub(super) struct Guards {
     pub(super) of: Vec<GuardIx>,
     /// guards of the sides of each selection: that of side 0; the others follow
     sides: Vec<GuardIx>,
+    /// the same by guard, condition and number of sides
+    by_condition: HashMap<(GuardIx, Value, usize), GuardIx>,
 }
 
 impl Guards {
@@ -49,6 +53,7 @@ impl Guards {
             tree: vec![root],
             of: vec![NEVER; builder.nodes.len()],
             sides: vec![NEVER; n],
+            by_condition: HashMap::new(),
         };
         for output in outputs {
             guards.of[output.index()] = ALWAYS;
@@ -61,13 +66,13 @@ impl Guards {
             match builder.nodes[k] {
                 Node::Select(condition, yes, no) => {
                     guards.need(condition, here);
-                    guards.open(Value(k as u32), here, &[yes, no]);
+                    guards.open(Value(k as u32), condition, here, &[yes, no]);
                 }
                 node @ Node::If(_) => {
                     let list = builder.list(&node).unwrap_or(0..0);
-                    if let [selector, sides @ ..] = &builder.arguments[list] {
-                        guards.need(*selector, here);
-                        guards.open(Value(k as u32), here, sides);
+                    if let &[selector, ref sides @ ..] = &builder.arguments[list] {
+                        guards.need(selector, here);
+                        guards.open(Value(k as u32), selector, here, sides);
                     }
                 }
                 node => builder.operands(&node, |v| guards.need(v, here)),
@@ -81,20 +86,37 @@ impl Guards {
         self.sides[selection.index()] + u32::from(side)
     }
 
-    fn open(&mut self, selection: Value, parent: GuardIx, operands: &[Value]) {
-        let depth = self.tree[parent as usize].depth + 1;
-        self.sides[selection.index()] = self.tree.len() as u32;
-        for (side, _) in (0u8..).zip(operands) {
-            self.tree.push(Guard {
-                parent,
-                depth,
-                selection,
-                side,
-            });
+    fn open(&mut self, selection: Value, condition: Value, parent: GuardIx, operands: &[Value]) {
+        let next = self.tree.len() as u32;
+        let first = *self
+            .by_condition
+            .entry((parent, condition, operands.len()))
+            .or_insert(next);
+        self.sides[selection.index()] = first;
+        if first == next {
+            let depth = self.tree[parent as usize].depth + 1;
+            self.tree
+                .extend((0u8..).zip(operands).map(|(side, _)| Guard {
+                    parent,
+                    depth,
+                    selection,
+                    side,
+                }));
         }
         for (side, &v) in (0u8..).zip(operands) {
             self.need(v, self.side(selection, side));
         }
+    }
+
+    /// Whether `inner` is `outer` or lies inside it.
+    pub(super) fn is_within(&self, mut inner: GuardIx, outer: GuardIx) -> bool {
+        if inner == NEVER {
+            return false;
+        }
+        while self.tree[inner as usize].depth > self.tree[outer as usize].depth {
+            inner = self.tree[inner as usize].parent;
+        }
+        inner == outer
     }
 
     fn need(&mut self, v: Value, guard: GuardIx) {
