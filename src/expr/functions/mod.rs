@@ -4,6 +4,7 @@
 //! Adding a function is adding one row: parsing, arity, help, compilation, derivatives and batches follow from it.
 
 mod contact;
+pub(crate) mod prepared;
 mod series;
 mod step;
 mod table;

@@ -1,88 +1,76 @@
-//! Sums of powers, Chebyshev polynomials and harmonics, each by a recurrence with one term per coefficient.
+//! Sums of powers, Chebyshev polynomials and harmonics.
 //!
-//! Harmonics come from the sine and cosine of half the angle by the recurrence of Clenshaw in the form of Reinsch:
-//! with `λ = −4 sin²(θ/2)` near θ = 0 and `λ = 4 cos²(θ/2)` near θ = π no digits are lost where `cos θ` is close to ±1
-//! (Stoer and Bulirsch, Introduction to Numerical Analysis, 2.3.2).
+//! Coefficients are numbers of the same kind as the variable, or plain numbers that `of` turns into such.
+//!
+//! Harmonics come from one sine and one cosine: `e^(i j θ)` are the powers of `e^(i θ)`. Four powers proceed side by side,
+//! each by the fourth; the error of the j-th is that of rounding `j θ`, whatever θ is. (The recurrence of Clenshaw takes
+//! fewer operations, but loses digits near θ = 0 and π, and each of its steps waits for the one before.)
 
-use crate::scalar::{Mask, Scalar};
+use crate::scalar::Scalar;
 
 /// `Σ aⱼ yʲ`
 #[inline(always)]
-pub fn powers<S: Scalar>(y: S, a: &[S]) -> S {
-    let mut terms = a.iter().rev();
-    let mut sum = *terms.next().unwrap_or(&S::zero());
-    for &aj in terms {
-        sum = sum * y + aj;
+pub fn powers<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
+    let Some((&last, rest)) = a.split_last() else { return S::zero() };
+    let mut sum = of(last);
+    for &aj in rest.iter().rev() {
+        sum = sum * y + of(aj);
     }
     sum
 }
 
-/// `Σ aⱼ Tⱼ(y)`
+/// `Σ aⱼ Tⱼ(y)`, by the recurrence of Clenshaw
 #[inline(always)]
-pub fn chebyshev<S: Scalar>(y: S, a: &[S]) -> S {
-    let Some((&a0, rest)) = a.split_first() else {
-        return S::zero();
-    };
+pub fn chebyshev<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
+    let Some((&a0, rest)) = a.split_first() else { return S::zero() };
+    let Some((&last, rest)) = rest.split_last() else { return of(a0) };
     let twice = y + y;
-    let (mut b1, mut b2) = (S::zero(), S::zero());
+    let (mut b1, mut b2) = (of(last), S::zero());
     for &aj in rest.iter().rev() {
-        (b1, b2) = (twice * b1 + (aj - b2), b1);
+        (b1, b2) = (twice * b1 + (of(aj) - b2), b1);
     }
-    y * b1 + (a0 - b2)
+    y * b1 + (of(a0) - b2)
 }
 
 /// `a₀ + Σ aⱼ cos(j θ)`
 #[inline(always)]
-pub fn cosines<S: Scalar>(theta: S, a: &[S]) -> S {
-    let Some((&a0, rest)) = a.split_first() else {
-        return S::zero();
-    };
-    let (s, c) = theta.scale(0.5).sin_cos();
-    let (lambda, b, delta) = clenshaw(s, c, rest);
-    // the last step, with δ₀ in place of a further b
-    a0 + (delta + lambda.scale(0.5) * b)
+pub fn cosines<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S) -> S {
+    harmonics(theta, a, of, |(cosine, _)| cosine)
 }
 
 /// `a₀ + Σ aⱼ sin(j θ)`
 #[inline(always)]
-pub fn sines<S: Scalar>(theta: S, a: &[S]) -> S {
-    let Some((&a0, rest)) = a.split_first() else {
-        return S::zero();
-    };
-    let (s, c) = theta.scale(0.5).sin_cos();
-    let (_, b, _) = clenshaw(s, c, rest);
-    a0 + b * (s * c).scale(2.0)
+pub fn sines<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S) -> S {
+    harmonics(theta, a, of, |(_, sine)| sine)
 }
 
-/// λ, `b₁`, and `±δ₁` (the sign of the case), from the sine and cosine of half the angle.
-///
-/// ```text
-/// bⱼ = aⱼ + 2 cos θ bⱼ₊₁ − bⱼ₊₂,   δⱼ = bⱼ ∓ bⱼ₊₁ = aⱼ + λ bⱼ₊₁ ± δⱼ₊₁
-/// ```
 #[inline(always)]
-fn clenshaw<S: Scalar>(s: S, c: S, a: &[S]) -> (S, S, S) {
-    let (s2, c2) = (s * s, c * c);
-    let near_zero = s2.lt(c2);
-    match near_zero.known() {
-        Some(true) => reinsch(s2.scale(-4.0), S::one(), a),
-        Some(false) => reinsch(c2.scale(4.0), -S::one(), a),
-        None => {
-            let one = S::one();
-            reinsch(
-                S::select(near_zero, s2.scale(-4.0), c2.scale(4.0)),
-                S::select(near_zero, one, -one),
-                a,
-            )
+fn harmonics<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S, part: impl Fn((S, S)) -> S) -> S {
+    let Some((&a0, rest)) = a.split_first() else { return S::zero() };
+    let (s, c) = theta.sin_cos();
+    let first = (c, s);
+    let second = product(first, first);
+    let fourth = product(second, second);
+    let mut turned = [first, second, product(second, first), fourth];
+    let mut sums = [of(a0), S::zero(), S::zero(), S::zero()];
+    let mut rest = rest.chunks(4);
+    let mut next = rest.next();
+    while let Some(terms) = next {
+        for ((sum, &z), &aj) in sums.iter_mut().zip(&turned).zip(terms) {
+            *sum += of(aj) * part(z);
+        }
+        next = rest.next();
+        if let Some(terms) = next {
+            for (z, _) in turned.iter_mut().zip(terms) {
+                *z = product(*z, fourth);
+            }
         }
     }
+    (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
+/// Product of complex numbers.
 #[inline(always)]
-fn reinsch<S: Scalar>(lambda: S, sign: S, a: &[S]) -> (S, S, S) {
-    let (mut b, mut delta) = (S::zero(), S::zero());
-    for &aj in a.iter().rev() {
-        delta = aj + lambda * b + sign * delta;
-        b = delta + sign * b;
-    }
-    (lambda, b, sign * delta)
+fn product<S: Scalar>(a: (S, S), b: (S, S)) -> (S, S) {
+    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }

@@ -4,7 +4,7 @@
 //! `domain` names arguments for which the body yields NaN or infinity by itself; the text is for people.
 
 use super::step::{cubic, haversine, quintic, step, sweep_turns};
-use super::{Continuity, Example, Family, Parameter, ParameterKind, Row, contact::contact, series};
+use super::{Continuity, Example, Family, Parameter, ParameterKind, Row, contact::{bistop, impact}, series};
 use crate::expr::ast::Dialect;
 use crate::scalar::{Mask, Scalar};
 use std::f64::consts::{LN_10, PI};
@@ -272,18 +272,7 @@ functions! {
     Bistop "BISTOP" (x, x_dot, x1, x2, k, e, cmax, d) C0
     "x < x1: max(k (x1-x)^e - step(x, x1-d, cmax, x1, 0) x_dot, 0);  x > x2: min(-k (x-x2)^e - step(x, x2, 0, x2+d, cmax) x_dot, 0);  else 0"
     {
-        S::choose(
-            x1.le(x).and(x.le(x2)),
-            S::zero,
-            || {
-                let per_depth = d.recip();
-                S::choose(
-                    x.lt(x1),
-                    || contact(x1 - x, -x_dot, k, e, cmax, d, per_depth),
-                    || -contact(x - x2, x_dot, k, e, cmax, d, per_depth),
-                )
-            },
-        )
+        bistop(x, x_dot, x1, x2, k, cmax, d, d.recip(), |p| p.powf(e))
     }
     forbid x2.le(x1) => "x1 must be less than x2",
     forbid k.lt(S::zero()) => "the stiffness k must not be negative",
@@ -295,7 +284,7 @@ functions! {
 
     /// Sum of Chebyshev polynomials of the first kind.
     Cheby "CHEBY" (x, x0 | a 1..=31) Smooth "sum a_j T_j(x - x0),  T_0 = 1, T_1 = y, T_j = 2 y T_(j-1) - T_(j-2)" {
-        series::chebyshev(x - x0, a)
+        series::chebyshev(x - x0, a, |a| a)
     }
     example "CHEBY(0.5,1,1,0,-1)" => 1.5,
     example "CHEBY(2,0,0,0,0,0,1)" => 97.0,
@@ -309,13 +298,13 @@ functions! {
 
     /// Sum of cosines: a bias and up to thirty harmonics.
     Forcos "FORCOS" (x, x0, w | a 1..=31) Smooth "a_0 + sum a_j cos(j w (x - x0))" {
-        series::cosines(w * (x - x0), a)
+        series::cosines(w * (x - x0), a, |a| a)
     }
     example "FORCOS(0.25,0,360D,2,1,0.5)" => 1.5,
 
     /// Sum of sines: a bias and up to thirty harmonics.
     Forsin "FORSIN" (x, x0, w | a 1..=31) Smooth "a_0 + sum a_j sin(j w (x - x0))" {
-        series::sines(w * (x - x0), a)
+        series::sines(w * (x - x0), a, |a| a)
     }
     example "FORSIN(0.1,-0.25,360D,0,1)" => 0.8090169943749475,
     example "FORSIN(0.3,0,2,5,1,2,3)" => 10.350263537964073,
@@ -332,7 +321,7 @@ functions! {
     /// Zero unless x < x1; never attractive. The damping grows from 0 at contact to cmax at penetration d.
     Impact "IMPACT" (x, x_dot, x1, k, e, cmax, d) C0
     "x < x1: max(0, k (x1-x)^e - step(x, x1-d, cmax, x1, 0) x_dot);  else 0"
-    { S::choose(x1.le(x), S::zero, || contact(x1 - x, -x_dot, k, e, cmax, d, d.recip())) }
+    { impact(x, x_dot, x1, k, cmax, d, d.recip(), |p| p.powf(e)) }
     forbid k.lt(S::zero()) => "the stiffness k must not be negative",
     forbid e.le(S::zero()) => "the exponent e must be positive",
     forbid cmax.lt(S::zero()) => "the damping cmax must not be negative",
@@ -341,7 +330,7 @@ functions! {
     example "IMPACT(0.5,-1,1.0,100,1.5,25,0.1)" => 60.35533905932738,
 
     /// Polynomial in x - x0.
-    Poly "POLY" (x, x0 | a 1..=31) Smooth "sum a_j (x - x0)^j" { series::powers(x - x0, a) }
+    Poly "POLY" (x, x0 | a 1..=31) Smooth "sum a_j (x - x0)^j" { series::powers(x - x0, a, |a| a) }
     example "POLY(6.5,5,0,10)" => 15.0,
     example "POLY(12,10,0,25,0,75)" => 650.0,
 

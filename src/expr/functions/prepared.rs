@@ -1,0 +1,170 @@
+//! Functions whose parameters are constant, with what can be computed beforehand.
+//!
+//! `STEP(x, x0, h0, x1, h1)` with constant ends needs the reciprocal of `x1 − x0` once. Each function here does the
+//! operations of its row in the same order, so that it yields the same bits; tests compare the two.
+
+use super::Function;
+use super::contact;
+use super::series;
+use super::step::{cubic, haversine, quintic};
+use crate::scalar::{Dual, Exponent, Scalar};
+
+/// What a prepared function is; its parameters stand in a slice beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Prepared {
+    /// x; x0, x1, h0, h1, 1/(x1 − x0), h1 − h0
+    Step,
+    Step5,
+    Havsin,
+    /// x; x0, coefficients
+    Poly,
+    Cheby,
+    /// x; x0, w, coefficients
+    Forcos,
+    Forsin,
+    /// x, x_dot; x1, k, cmax, d, 1/d, e
+    Impact(Exponent),
+    /// x, x_dot; x1, x2, k, cmax, d, 1/d, e
+    Bistop(Exponent),
+}
+
+impl Prepared {
+    /// The prepared form of a call, and its parameters, if all that must be constant is, and allowed.
+    pub(crate) fn of(function: Function, args: &[Option<f64>]) -> Option<(Prepared, Vec<f64>)> {
+        let variable = match function {
+            Function::Impact | Function::Bistop => 2,
+            _ => 1,
+        };
+        let constants = args.get(variable..)?.iter().copied().collect::<Option<Vec<f64>>>()?;
+        let mut known = vec![f64::NAN; variable];
+        known.extend(&constants);
+        if function.violation(&known).is_some() {
+            return None;
+        }
+        let prepared = match (function, &constants[..]) {
+            (Function::Step | Function::Step5 | Function::Havsin, &[x0, h0, x1, h1]) => {
+                let kind = match function {
+                    Function::Step => Prepared::Step,
+                    Function::Step5 => Prepared::Step5,
+                    _ => Prepared::Havsin,
+                };
+                (kind, vec![x0, x1, h0, h1, (x1 - x0).recip(), h1 - h0])
+            }
+            (Function::Poly, _) => (Prepared::Poly, constants),
+            (Function::Cheby, _) => (Prepared::Cheby, constants),
+            (Function::Forcos, _) => (Prepared::Forcos, constants),
+            (Function::Forsin, _) => (Prepared::Forsin, constants),
+            (Function::Impact, &[x1, k, e, cmax, d]) => {
+                (Prepared::Impact(Exponent::of(e)), vec![x1, k, cmax, d, d.recip(), e])
+            }
+            (Function::Bistop, &[x1, x2, k, e, cmax, d]) => {
+                (Prepared::Bistop(Exponent::of(e)), vec![x1, x2, k, cmax, d, d.recip(), e])
+            }
+            _ => return None,
+        };
+        Some(prepared)
+    }
+
+    /// How many arguments are not parameters.
+    pub(crate) fn n_variables(self) -> usize {
+        match self {
+            Prepared::Impact(_) | Prepared::Bistop(_) => 2,
+            _ => 1,
+        }
+    }
+}
+
+/// A step; `p` as [`Prepared::Step`] says.
+#[inline(always)]
+pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
+    let [x0, x1, h0, h1, per_length, rise] = *p;
+    let [x0, x1, h0, h1] = [x0, x1, h0, h1].map(S::constant);
+    S::choose(
+        x.le(x0),
+        || h0,
+        || S::choose(x1.le(x), || h1, || h0 + shape((x - x0).scale(per_length)).scale(rise)),
+    )
+}
+
+/// STEP
+#[inline(always)]
+pub(crate) fn step3<S: Scalar>(x: S, p: &[f64; 6]) -> S {
+    step(x, p, cubic)
+}
+/// STEP5
+#[inline(always)]
+pub(crate) fn step5<S: Scalar>(x: S, p: &[f64; 6]) -> S {
+    step(x, p, quintic)
+}
+/// HAVSIN
+#[inline(always)]
+pub(crate) fn havsin<S: Scalar>(x: S, p: &[f64; 6]) -> S {
+    step(x, p, haversine)
+}
+
+/// POLY
+#[inline(always)]
+pub(crate) fn poly<S: Scalar>(x: S, p: &[f64]) -> S {
+    series::powers(x - S::constant(p[0]), &p[1..], S::constant)
+}
+/// CHEBY
+#[inline(always)]
+pub(crate) fn cheby<S: Scalar>(x: S, p: &[f64]) -> S {
+    series::chebyshev(x - S::constant(p[0]), &p[1..], S::constant)
+}
+/// FORCOS
+#[inline(always)]
+pub(crate) fn forcos<S: Scalar>(x: S, p: &[f64]) -> S {
+    series::cosines((x - S::constant(p[0])).scale(p[1]), &p[2..], S::constant)
+}
+/// FORSIN
+#[inline(always)]
+pub(crate) fn forsin<S: Scalar>(x: S, p: &[f64]) -> S {
+    series::sines((x - S::constant(p[0])).scale(p[1]), &p[2..], S::constant)
+}
+
+/// IMPACT
+#[inline(always)]
+pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent) -> S {
+    let [x1, k, cmax, d, per_depth, e] = *p;
+    let [x1, k, cmax, d, per_depth] = [x1, k, cmax, d, per_depth].map(S::constant);
+    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| p.power(exponent, e))
+}
+
+/// BISTOP
+#[inline(always)]
+pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent) -> S {
+    let [x1, x2, k, cmax, d, per_depth, e] = *p;
+    let [x1, x2, k, cmax, d, per_depth] = [x1, x2, k, cmax, d, per_depth].map(S::constant);
+    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| p.power(exponent, e))
+}
+
+/// A number that can be raised to a power whose kind is known.
+pub(crate) trait Power: Scalar {
+    /// `self**e`, where `exponent` is the kind of `e`.
+    fn power(self, exponent: Exponent, e: f64) -> Self;
+}
+
+impl Power for f64 {
+    #[inline(always)]
+    fn power(self, exponent: Exponent, e: f64) -> f64 {
+        match exponent {
+            Exponent::Whole(n) => Scalar::powi(self, n),
+            Exponent::Half(n) => Scalar::powi(self, n) * self.sqrt(),
+            Exponent::Other => f64::powf(self, e),
+        }
+    }
+}
+
+impl<const N: usize> Power for Dual<N> {
+    #[inline(always)]
+    fn power(self, exponent: Exponent, e: f64) -> Self {
+        let less = match exponent {
+            Exponent::Whole(n) => Exponent::Whole(n - 1),
+            Exponent::Half(n) if n > 0 => Exponent::Half(n - 1),
+            Exponent::Half(_) | Exponent::Other => Exponent::Other,
+        };
+        let slope = e * self.re.power(less, e - 1.0);
+        Self { re: self.re.power(exponent, e), eps: self.eps.map(|x| slope * x) }
+    }
+}

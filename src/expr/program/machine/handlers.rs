@@ -1,0 +1,414 @@
+//! What the operations of the machine do.
+//!
+//! A handler reads its operands, stores its result in the register it names, and goes on with the next operation. Names of
+//! operands: `a`, `b`, `c`, `d` what is read, `to` where the result goes. Handlers are made for each way in which their
+//! first operand comes: from a register, or as the result of the operation before (`acc`).
+
+use super::{Handler, Op, Stop};
+use crate::expr::functions::prepared;
+use crate::expr::program::Core;
+use crate::expr::program::operation::{Comparison, UnaryOp};
+use crate::scalar::{Dual, Exponent};
+
+/// Arithmetic: code of an operation, so that handlers can be made for each.
+pub(super) const ADD: u8 = 0;
+pub(super) const SUB: u8 = 1;
+/// b − a
+pub(super) const BUS: u8 = 2;
+pub(super) const MUL: u8 = 3;
+pub(super) const DIV: u8 = 4;
+/// b/a
+pub(super) const VID: u8 = 5;
+
+/// Where the first operand, or the last, comes from.
+pub(super) const REGISTERS: u8 = 0;
+pub(super) const FIRST: u8 = 1;
+pub(super) const LAST: u8 = 2;
+
+#[inline(always)]
+fn arithmetic<const OP: u8>(a: f64, b: f64) -> f64 {
+    match OP {
+        ADD => a + b,
+        SUB => a - b,
+        BUS => b - a,
+        MUL => a * b,
+        DIV => a / b,
+        _ => b / a,
+    }
+}
+
+/// Defines handlers: the body sees `o` (operands), `r!(k)` (register k), `frame` (all
+/// registers), `core`, `acc`, and yields the register of the result and the result.
+macro_rules! handlers {
+    ($($(#[$meta:meta])* fn $name:ident $(<$(const $p:ident: $t:ty),+>)? ($o:ident, $r:ident, $frame:ident, $core:ident, $acc:ident) $body:block)+) => { $(
+        $(#[$meta])*
+        #[allow(unused_variables)]
+        pub(super) unsafe extern "C" fn $name $(<$(const $p: $t),+>)? (
+            op: *const Op,
+            $frame: *mut f64,
+            $core: *const Core,
+            $acc: f64,
+        ) -> Stop {
+            // SAFETY: the machine has checked all operands; see the head of its file
+            unsafe {
+                let $o = &(*op).operands;
+                #[allow(unused_macros)]
+                macro_rules! $r {
+                    ($k:expr) => {
+                        *$frame.add($k as usize)
+                    };
+                }
+                let (to, value): (u32, f64) = $body;
+                *$frame.add(to as usize) = value;
+                let next = op.add(1);
+                ((*next).run)(next, $frame, $core, value)
+            }
+        }
+    )+ };
+}
+
+handlers! {
+    /// a op b → to
+    fn one<const OP: u8, const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[2], arithmetic::<OP>(a, r!(o[1])))
+    }
+    /// (a op b) op c → to
+    fn two<const P: u8, const Q: u8, const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        let c = if SOURCE == LAST { acc } else { r!(o[2]) };
+        (o[3], arithmetic::<Q>(arithmetic::<P>(a, r!(o[1])), c))
+    }
+    /// ((a op b) op c) op d → to
+    fn chain<const P: u8, const Q: u8, const R: u8, const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        let d = if SOURCE == LAST { acc } else { r!(o[3]) };
+        (o[4], arithmetic::<R>(arithmetic::<Q>(arithmetic::<P>(a, r!(o[1])), r!(o[2])), d))
+    }
+    /// (a op b) op (c op d) → to
+    fn balanced<const P: u8, const Q: u8, const R: u8, const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        let d = if SOURCE == LAST { acc } else { r!(o[3]) };
+        (o[4], arithmetic::<Q>(arithmetic::<P>(a, r!(o[1])), arithmetic::<R>(r!(o[2]), d)))
+    }
+    /// a → to
+    fn copy(o, r, frame, core, acc) {
+        (o[1], r!(o[0]))
+    }
+    /// the result before → to; o[0] is where it stands
+    fn keep(o, r, frame, core, acc) {
+        (o[1], acc)
+    }
+    /// op(a) → to
+    fn unary<const OP: u8, const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], unary_op(OP).apply(a))
+    }
+    /// sin(a) → to, cos(a) → to of the partner
+    fn sine_and_cosine<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        let (sine, cosine) = a.sin_cos();
+        r!(o[1]) = sine;
+        (o[2], cosine)
+    }
+    /// a < b, a <= b, a = b ? c : d → to
+    fn select<const OP: u8>(o, r, frame, core, acc) {
+        let (yes, no) = (r!(o[2]), r!(o[3]));
+        (o[4], if compare::<OP>(r!(o[0]), r!(o[1])) { yes } else { no })
+    }
+    /// IF(a: b, c, d) → to
+    fn arithmetic_if(o, r, frame, core, acc) {
+        let selector = r!(o[0]);
+        let (negative, zero, positive) = (r!(o[1]), r!(o[2]), r!(o[3]));
+        let value = if selector < 0.0 {
+            negative
+        } else if selector > 0.0 {
+            positive
+        } else if selector == 0.0 {
+            zero
+        } else {
+            f64::NAN
+        };
+        (o[4], value)
+    }
+    /// max(a, b) → to; NaN if either is
+    fn larger(o, r, frame, core, acc) {
+        let (a, b) = (r!(o[0]), r!(o[1]));
+        (o[2], if a < b { b } else if b <= a { a } else { a + b })
+    }
+    /// min(a, b) → to; NaN if either is
+    fn smaller(o, r, frame, core, acc) {
+        let (a, b) = (r!(o[0]), r!(o[1]));
+        (o[2], if b < a { b } else if a <= b { a } else { a + b })
+    }
+    /// any instruction of the core
+    fn instruction(o, r, frame, core, acc) {
+        let core = &*core;
+        let instruction = &core.code[o[0] as usize];
+        let frame = std::slice::from_raw_parts_mut(frame, core.size as usize);
+        core.step(instruction, frame);
+        (instruction.to, r!(instruction.to))
+    }
+
+    /// STEP of a → to; o[1] and o[2] are place and number of the parameters in all prepared functions
+    fn step<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], prepared::step3(a, &*frame.add(o[2] as usize).cast()))
+    }
+    fn step5<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], prepared::step5(a, &*frame.add(o[2] as usize).cast()))
+    }
+    fn havsin<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], prepared::havsin(a, &*frame.add(o[2] as usize).cast()))
+    }
+    fn poly<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], prepared::poly(a, std::slice::from_raw_parts(frame.add(o[2] as usize), o[3] as usize)))
+    }
+    fn cheby<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], prepared::cheby(a, std::slice::from_raw_parts(frame.add(o[2] as usize), o[3] as usize)))
+    }
+    fn forcos<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], prepared::forcos(a, std::slice::from_raw_parts(frame.add(o[2] as usize), o[3] as usize)))
+    }
+    fn forsin<const SOURCE: u8>(o, r, frame, core, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        (o[1], prepared::forsin(a, std::slice::from_raw_parts(frame.add(o[2] as usize), o[3] as usize)))
+    }
+    /// IMPACT of a, b → to
+    fn impact<const EXPONENT: u8>(o, r, frame, core, acc) {
+        let p: &[f64; 6] = &*frame.add(o[3] as usize).cast();
+        (o[2], prepared::impact(r!(o[0]), r!(o[1]), p, exponent::<EXPONENT>(p[5])))
+    }
+    /// BISTOP of a, b → to
+    fn bistop<const EXPONENT: u8>(o, r, frame, core, acc) {
+        let p: &[f64; 7] = &*frame.add(o[3] as usize).cast();
+        (o[2], prepared::bistop(r!(o[0]), r!(o[1]), p, exponent::<EXPONENT>(p[6])))
+    }
+
+    /// STEP of a → o[1], its slope → to; o[3] and o[4] are place and number of the parameters
+    fn step_slope(o, r, frame, core, acc) {
+        let v = prepared::step3(variable(r!(o[0])), &*frame.add(o[3] as usize).cast());
+        r!(o[1]) = v.re;
+        (o[2], v.eps[0])
+    }
+    fn step5_slope(o, r, frame, core, acc) {
+        let v = prepared::step5(variable(r!(o[0])), &*frame.add(o[3] as usize).cast());
+        r!(o[1]) = v.re;
+        (o[2], v.eps[0])
+    }
+    fn havsin_slope(o, r, frame, core, acc) {
+        let v = prepared::havsin(variable(r!(o[0])), &*frame.add(o[3] as usize).cast());
+        r!(o[1]) = v.re;
+        (o[2], v.eps[0])
+    }
+    fn poly_slope(o, r, frame, core, acc) {
+        let p = std::slice::from_raw_parts(frame.add(o[3] as usize), o[4] as usize);
+        let v = prepared::poly(variable(r!(o[0])), p);
+        r!(o[1]) = v.re;
+        (o[2], v.eps[0])
+    }
+    fn cheby_slope(o, r, frame, core, acc) {
+        let p = std::slice::from_raw_parts(frame.add(o[3] as usize), o[4] as usize);
+        let v = prepared::cheby(variable(r!(o[0])), p);
+        r!(o[1]) = v.re;
+        (o[2], v.eps[0])
+    }
+    fn forcos_slope(o, r, frame, core, acc) {
+        let p = std::slice::from_raw_parts(frame.add(o[3] as usize), o[4] as usize);
+        let v = prepared::forcos(variable(r!(o[0])), p);
+        r!(o[1]) = v.re;
+        (o[2], v.eps[0])
+    }
+    fn forsin_slope(o, r, frame, core, acc) {
+        let p = std::slice::from_raw_parts(frame.add(o[3] as usize), o[4] as usize);
+        let v = prepared::forsin(variable(r!(o[0])), p);
+        r!(o[1]) = v.re;
+        (o[2], v.eps[0])
+    }
+    /// IMPACT of a, b → o[2], its slopes → o[3], to
+    fn impact_slope<const EXPONENT: u8>(o, r, frame, core, acc) {
+        let p: &[f64; 6] = &*frame.add(o[5] as usize).cast();
+        let (x, x_dot) = (Dual::<2>::variable(r!(o[0]), 0), Dual::variable(r!(o[1]), 1));
+        let v = prepared::impact(x, x_dot, p, exponent::<EXPONENT>(p[5]));
+        r!(o[2]) = v.re;
+        r!(o[3]) = v.eps[0];
+        (o[4], v.eps[1])
+    }
+    /// BISTOP of a, b → o[2], its slopes → o[3], to
+    fn bistop_slope<const EXPONENT: u8>(o, r, frame, core, acc) {
+        let p: &[f64; 7] = &*frame.add(o[5] as usize).cast();
+        let (x, x_dot) = (Dual::<2>::variable(r!(o[0]), 0), Dual::variable(r!(o[1]), 1));
+        let v = prepared::bistop(x, x_dot, p, exponent::<EXPONENT>(p[6]));
+        r!(o[2]) = v.re;
+        r!(o[3]) = v.eps[0];
+        (o[4], v.eps[1])
+    }
+}
+
+/// Defines handlers that choose where to go on: the body yields how many operations further that is.
+macro_rules! jumps {
+    ($($(#[$meta:meta])* fn $name:ident $(<$(const $p:ident: $t:ty),+>)? ($o:ident, $r:ident) $body:block)+) => { $(
+        $(#[$meta])*
+        pub(super) unsafe extern "C" fn $name $(<$(const $p: $t),+>)? (
+            op: *const Op,
+            registers: *mut f64,
+            core: *const Core,
+            acc: f64,
+        ) -> Stop {
+            // SAFETY: the machine has checked all operands; see the head of its file
+            unsafe {
+                let $o = &(*op).operands;
+                #[allow(unused_macros)]
+                macro_rules! $r {
+                    ($k:expr) => {
+                        *registers.add($k as usize)
+                    };
+                }
+                let distance: u32 = $body;
+                let next = op.add(distance as usize);
+                ((*next).run)(next, registers, core, acc)
+            }
+        }
+    )+ };
+}
+
+jumps! {
+    /// to o[0]
+    fn jump(o, r) {
+        o[0]
+    }
+    /// on where a < b, a <= b, a = b, else to o[2]
+    fn unless<const OP: u8>(o, r) {
+        if compare::<OP>(r!(o[0]), r!(o[1])) { 1 } else { o[2] }
+    }
+    /// on where the selector is negative, to o[1] where zero, to o[2] where positive, to o[3] where it is none of them
+    fn branch(o, r) {
+        let selector = r!(o[0]);
+        if selector < 0.0 {
+            1
+        } else if selector > 0.0 {
+            o[2]
+        } else if selector == 0.0 {
+            o[1]
+        } else {
+            o[3]
+        }
+    }
+}
+
+/// Ends the code.
+pub(super) unsafe extern "C" fn halt(_: *const Op, _: *mut f64, _: *const Core, acc: f64) -> Stop {
+    Stop { next: std::ptr::null(), acc }
+}
+
+/// Returns to the loop, which goes on behind it.
+pub(super) unsafe extern "C" fn pause(op: *const Op, _: *mut f64, _: *const Core, acc: f64) -> Stop {
+    // SAFETY: `halt` stands behind
+    Stop { next: unsafe { op.add(1) }, acc }
+}
+
+#[inline(always)]
+fn variable(x: f64) -> Dual<1> {
+    Dual::variable(x, 0)
+}
+
+/// Kinds of exponents that have their own handlers.
+pub(super) const ONE: u8 = 0;
+pub(super) const THREE_HALVES: u8 = 1;
+pub(super) const TWO: u8 = 2;
+pub(super) const ANY: u8 = 3;
+
+#[inline(always)]
+fn exponent<const KIND: u8>(e: f64) -> Exponent {
+    match KIND {
+        ONE => Exponent::Whole(1),
+        THREE_HALVES => Exponent::Half(1),
+        TWO => Exponent::Whole(2),
+        _ => Exponent::of(e),
+    }
+}
+
+/// The code of a comparison; 3 asks whether b is a true condition.
+pub(super) fn comparison_code(op: Comparison) -> u8 {
+    match op {
+        Comparison::Lt => 0,
+        Comparison::Le => 1,
+        Comparison::Eq => 2,
+    }
+}
+
+#[inline(always)]
+fn compare<const OP: u8>(a: f64, b: f64) -> bool {
+    match OP {
+        0 => a < b,
+        1 => a <= b,
+        _ => a == b,
+    }
+}
+
+const UNARY: [UnaryOp; 19] = [
+    UnaryOp::Neg,
+    UnaryOp::Abs,
+    UnaryOp::Sqrt,
+    UnaryOp::Sin,
+    UnaryOp::Cos,
+    UnaryOp::Tan,
+    UnaryOp::Asin,
+    UnaryOp::Acos,
+    UnaryOp::Atan,
+    UnaryOp::Sinh,
+    UnaryOp::Cosh,
+    UnaryOp::Tanh,
+    UnaryOp::Exp,
+    UnaryOp::Ln,
+    UnaryOp::Log10,
+    UnaryOp::Trunc,
+    UnaryOp::Round,
+    UnaryOp::Floor,
+    UnaryOp::Not,
+];
+
+#[inline(always)]
+const fn unary_op(code: u8) -> UnaryOp {
+    UNARY[code as usize]
+}
+
+/// A table of handlers over one or more codes.
+macro_rules! table {
+    ($f:ident $s:tt; $($p:literal)+) => { [$(table!(@sources $f $s [$p])),+] };
+    ($f:ident $s:tt; $($p:literal)+; $q:tt) => { [$(table!(@two $f $s $p $q)),+] };
+    ($f:ident $s:tt; $($p:literal)+; $q:tt; $r:tt) => { [$(table!(@three $f $s $p $q $r)),+] };
+    (@two $f:ident $s:tt $p:literal [$($q:literal)+]) => { [$(table!(@sources $f $s [$p $q])),+] };
+    (@three $f:ident $s:tt $p:literal [$($q:literal)+] $r:tt) => { [$(table!(@last $f $s $p $q $r)),+] };
+    (@last $f:ident $s:tt $p:literal $q:literal [$($r:literal)+]) => { [$(table!(@sources $f $s [$p $q $r])),+] };
+    (@sources $f:ident [$($s:ident)+] $codes:tt) => { [$(table!(@source $f $s $codes)),+] };
+    (@source $f:ident $s:ident [$p:literal]) => { $f::<$p, $s> };
+    (@source $f:ident $s:ident [$p:literal $q:literal]) => { $f::<$p, $q, $s> };
+    (@source $f:ident $s:ident [$p:literal $q:literal $r:literal]) => { $f::<$p, $q, $r, $s> };
+}
+
+/// By operation and source of the first operand.
+pub(super) static ONES: [[Handler; 2]; 6] = table!(one [REGISTERS FIRST]; 0 1 2 3 4 5);
+/// By both operations and source.
+pub(super) static TWOS: [[[Handler; 3]; 6]; 6] =
+    table!(two [REGISTERS FIRST LAST]; 0 1 2 3 4 5; [0 1 2 3 4 5]);
+/// By three operations (no quotients) and source.
+pub(super) static CHAINS: [[[[Handler; 3]; 4]; 4]; 4] =
+    table!(chain [REGISTERS FIRST LAST]; 0 1 2 3; [0 1 2 3]; [0 1 2 3]);
+/// By three operations (no quotients) and source.
+pub(super) static BALANCED: [[[[Handler; 3]; 4]; 4]; 4] =
+    table!(balanced [REGISTERS FIRST LAST]; 0 1 2 3; [0 1 2 3]; [0 1 2 3]);
+/// By operation and source.
+static UNARIES: [[Handler; 2]; 19] =
+    table!(unary [REGISTERS FIRST]; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18);
+
+/// The handler of an operation on one number.
+pub(super) fn unary_handler(op: UnaryOp, source: u8) -> Handler {
+    let code = UNARY.iter().position(|&u| u == op).unwrap_or(0);
+    UNARIES[code][source as usize]
+}

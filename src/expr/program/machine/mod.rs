@@ -1,0 +1,148 @@
+//! The fast machine for plain numbers: threaded code.
+//!
+//! Every operation holds the function that performs it, its handler. A handler ends by calling the handler of the next
+//! operation, which an optimising compiler turns into a jump: there is no loop and no central dispatch. The result of an
+//! operation travels to the next one in a floating-point register (`acc`), besides being stored. Up to three arithmetic
+//! operations form one; functions with constant parameters have handlers of their own; what only one side of an IF needs is
+//! jumped over where that pays.
+//!
+//! # Safety
+//!
+//! Handlers read and write registers without bounds checks, through pointers. This is sound because
+//!
+//! - [`lower()`] emits only registers below `n_registers`, parameters inside the frame, and jumps inside the code;
+//!   [`Machine::check`] verifies that for each operation before the code can run, and panics otherwise (our own mistake),
+//! - the last operation of the code is `halt`, and no jump leads backwards, so that every run ends,
+//! - [`Machine::run`] checks that the frame has `n_registers` numbers.
+//!
+//! Were the jumps of a build ordinary calls, each would take a stack frame; `pause` returns to the loop in `run` at least
+//! every [`LONGEST_CHAIN`] operations, which bounds the stack in any build.
+
+mod handlers;
+mod lower;
+
+pub(super) use lower::lower;
+
+use super::Core;
+
+/// Most operations between two returns to the loop.
+const LONGEST_CHAIN: usize = 128;
+
+/// One operation.
+#[repr(C)]
+#[derive(Clone, Copy)]
+struct Op {
+    run: Handler,
+    /// registers, parameters, jumps: what the handler says
+    operands: [u32; 6],
+}
+
+/// Performs an operation and all that follow it.
+type Handler = unsafe extern "C" fn(op: *const Op, registers: *mut f64, core: *const Core, acc: f64) -> Stop;
+
+/// Where a chain of operations stopped.
+#[repr(C)]
+struct Stop {
+    /// the operation to go on with; null at the end
+    next: *const Op,
+    /// the last result
+    acc: f64,
+}
+
+/// What the operands of an operation mean, for the check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// this many registers
+    Registers(u8),
+    /// registers, then the place of parameters in the frame, then their number
+    Parameters(u8),
+    /// registers, then the place of this many parameters
+    Fixed(u8, u8),
+    /// registers, then jumps
+    Jumps(u8, u8),
+    /// the number of an instruction of the core
+    Instruction,
+    /// nothing follows
+    Halt,
+}
+
+/// Threaded code.
+#[derive(Clone)]
+pub(super) struct Machine {
+    ops: Vec<Op>,
+    /// what the operands of each operation mean
+    kinds: Vec<Kind>,
+    /// numbers behind the registers of the core: parameters of prepared functions
+    parameters: Vec<f64>,
+    /// registers of the core, scratch registers and parameters
+    n_registers: usize,
+    /// whether the last result is the first output
+    ends_with_output: bool,
+}
+
+impl std::fmt::Debug for Machine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Machine").field("n_ops", &self.ops.len()).field("n_registers", &self.n_registers).finish()
+    }
+}
+
+impl Machine {
+    /// How many operations it has.
+    pub(super) fn len(&self) -> usize {
+        self.ops.len()
+    }
+
+    /// Whether the last result is the first output.
+    #[inline(always)]
+    pub(super) fn ends_with_output(&self) -> bool {
+        self.ends_with_output
+    }
+
+    /// The numbers that stand behind the registers of the core, scratch registers first.
+    pub(super) fn tail(&self, core: &Core) -> impl Iterator<Item = f64> + '_ {
+        let scratch = self.n_registers - core.size as usize - self.parameters.len();
+        std::iter::repeat_n(f64::NAN, scratch).chain(self.parameters.iter().copied())
+    }
+
+    /// Runs over a frame whose constants, parameters and inputs are in place; the last result.
+    #[inline(always)]
+    pub(super) fn run(&self, registers: &mut [f64], core: &Core) -> f64 {
+        assert!(registers.len() >= self.n_registers);
+        let mut op: *const Op = self.ops.as_ptr();
+        let mut acc = 0.0;
+        loop {
+            // SAFETY: see the head of this file; `op` is the first operation or one that `pause` names
+            let stop = unsafe { ((*op).run)(op, registers.as_mut_ptr(), core, acc) };
+            if stop.next.is_null() {
+                return stop.acc;
+            }
+            (op, acc) = (stop.next, stop.acc);
+        }
+    }
+
+    /// That no operation reaches outside the frame or the code.
+    fn check(&self, core: &Core) {
+        let (n, end) = (self.n_registers, self.ops.len());
+        for (k, (op, kind)) in self.ops.iter().zip(&self.kinds).enumerate() {
+            let registers_are_inside = |count: u8| op.operands[..count as usize].iter().all(|&r| (r as usize) < n);
+            let sound = match *kind {
+                Kind::Registers(count) => registers_are_inside(count),
+                Kind::Parameters(count) => {
+                    let [place, length] = [0, 1].map(|i| op.operands[count as usize + i] as usize);
+                    registers_are_inside(count) && place + length <= n
+                }
+                Kind::Fixed(count, length) => {
+                    registers_are_inside(count) && op.operands[count as usize] as usize + length as usize <= n
+                }
+                Kind::Jumps(count, jumps) => {
+                    let jumps = &op.operands[count as usize..(count + jumps) as usize];
+                    registers_are_inside(count) && jumps.iter().all(|&j| j >= 1 && k + (j as usize) < end)
+                }
+                Kind::Instruction => (op.operands[0] as usize) < core.code.len() && n >= core.size as usize,
+                Kind::Halt => k + 1 == end,
+            };
+            assert!(sound, "operation {k} reaches outside: {kind:?} {:?}", op.operands);
+        }
+        assert_eq!(self.kinds.last(), Some(&Kind::Halt));
+    }
+}

@@ -1,0 +1,341 @@
+//! In which order the needed nodes of a builder are computed, and which of them may be skipped.
+//!
+//! Operands come near their first use, the more demanding one first (Sethi and Ullman). What only one side of a selection
+//! needs stands between `Begin` and `End` of that side, if it is worth a jump; a machine that cannot jump ignores those
+//! marks and computes both sides. Nodes that one operation can yield together follow each other: sine and cosine of one
+//! angle, a function and its partial derivatives.
+
+use super::Builder;
+use super::guard::{ALWAYS, GuardIx, Guards, NEVER};
+use super::operation::{Node, UnaryOp, Value};
+use std::collections::HashMap;
+
+/// An element of the order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Item {
+    /// compute this node
+    Node(Value),
+    /// what follows is needed only if the selection takes this side
+    Begin(Value, u8),
+    /// the end of that; the value of the side is known
+    End(Value, u8),
+}
+
+/// The needed nodes in order, and how they are used.
+#[derive(Debug)]
+pub(super) struct Order {
+    pub(super) items: Vec<Item>,
+    /// how often each node is an operand or an output; 0 for what is not needed
+    pub(super) uses: Vec<u32>,
+    /// comparisons that exist only inside the selections they decide
+    pub(super) inlined: Vec<bool>,
+}
+
+/// A side of a selection is skipped by a jump if what it computes costs at least so much.
+const WORTH_A_JUMP: u32 = 8;
+
+impl Order {
+    pub(super) fn new(builder: &Builder, outputs: &[Value]) -> Self {
+        let guards = Guards::new(builder, outputs);
+        let mut order = Order {
+            items: Vec::new(),
+            uses: vec![0; builder.nodes.len()],
+            inlined: vec![false; builder.nodes.len()],
+        };
+        order.count(builder, outputs, &guards);
+        let items = Walk::new(builder, &guards, &order).run(outputs);
+        order.items = items;
+        order
+    }
+
+    /// Uses, and comparisons that only decide selections.
+    fn count(&mut self, builder: &Builder, outputs: &[Value], guards: &Guards) {
+        let mut decides = vec![0; builder.nodes.len()];
+        for v in outputs {
+            self.uses[v.index()] += 1;
+        }
+        for (k, node) in builder.nodes.iter().enumerate() {
+            if guards.of[k] == NEVER {
+                continue;
+            }
+            builder.operands(node, |v| self.uses[v.index()] += 1);
+            if let Node::Select(condition, ..) = node {
+                decides[condition.index()] += 1;
+            }
+        }
+        for (k, node) in builder.nodes.iter().enumerate() {
+            self.inlined[k] = matches!(node, Node::Compare(..)) && self.uses[k] > 0 && decides[k] == self.uses[k];
+        }
+        // a comparison that is repeated in every selection uses its operands there
+        for (k, node) in builder.nodes.iter().enumerate() {
+            if let (true, Node::Compare(_, a, b)) = (self.inlined[k], node) {
+                for x in [a, b] {
+                    self.uses[x.index()] += self.uses[k] - 1;
+                }
+            }
+        }
+    }
+
+    /// Calls `f` with the operands of a node; those of an inlined comparison in place of it.
+    pub(super) fn operands(&self, builder: &Builder, node: &Node, mut f: impl FnMut(Value)) {
+        if let Node::Select(condition, yes, no) = *node
+            && let (true, Node::Compare(_, a, b)) = (self.inlined[condition.index()], builder.nodes[condition.index()])
+        {
+            [a, b, yes, no].into_iter().for_each(f);
+            return;
+        }
+        builder.operands(node, &mut f);
+    }
+}
+
+/// What remains to be done.
+#[derive(Clone, Copy, Debug)]
+enum Task {
+    /// place the node and before it its operands
+    Visit(Value),
+    /// place the node; its operands are placed
+    Place(Value),
+    /// place the exclusive nodes of the sides, then the selection
+    Sides(Value),
+    Begin(Value, u8),
+    End(Value, u8),
+}
+
+struct Walk<'a> {
+    builder: &'a Builder,
+    guards: &'a Guards,
+    order: &'a Order,
+    demand: Vec<u16>,
+    /// cost of all that is needed only under each guard
+    weight: Vec<u32>,
+    placed: Vec<bool>,
+    /// nodes that one operation yields together, by the first of them
+    partners: HashMap<Value, Vec<Value>>,
+    /// guards of the open sides
+    open: Vec<GuardIx>,
+    tasks: Vec<Task>,
+    items: Vec<Item>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(builder: &'a Builder, guards: &'a Guards, order: &'a Order) -> Self {
+        Self {
+            builder,
+            guards,
+            order,
+            demand: demand(builder),
+            weight: weights(builder, guards),
+            placed: vec![false; builder.nodes.len()],
+            partners: partners(builder, guards),
+            open: vec![ALWAYS],
+            tasks: Vec::new(),
+            items: Vec::new(),
+        }
+    }
+
+    fn run(mut self, outputs: &[Value]) -> Vec<Item> {
+        for &output in outputs {
+            self.tasks.push(Task::Visit(output));
+            while let Some(task) = self.tasks.pop() {
+                self.perform(task);
+            }
+        }
+        self.items
+    }
+
+    fn perform(&mut self, task: Task) {
+        match task {
+            Task::Visit(v) | Task::Place(v) if self.placed[v.index()] => {}
+            Task::Visit(v) => self.visit(v),
+            Task::Place(v) => self.place(v),
+            Task::Sides(v) => self.sides(v),
+            Task::Begin(v, side) => {
+                self.open.push(self.guards.side(v, side));
+                self.items.push(Item::Begin(v, side));
+            }
+            Task::End(v, side) => {
+                self.open.pop();
+                self.items.push(Item::End(v, side));
+            }
+        }
+    }
+
+    fn visit(&mut self, v: Value) {
+        let node = &self.builder.nodes[v.index()];
+        if self.is_worth_a_jump(v, node) {
+            self.tasks.push(Task::Sides(v));
+            // what decides is placed last, next to the jump
+            self.tasks.extend(self.deciders(node).iter().rev().map(|&x| Task::Visit(x)));
+            let sides = side_operands(self.builder, node);
+            self.visit_shared(v, &sides);
+            return;
+        }
+        self.tasks.push(Task::Place(v));
+        let first = self.tasks.len();
+        self.order.operands(self.builder, node, |x| {
+            if !self.placed[x.index()] {
+                self.tasks.push(Task::Visit(x));
+            }
+        });
+        // the last pushed is placed first: least demanding below
+        self.tasks[first..].reverse();
+        let demand = &self.demand;
+        self.tasks[first..].sort_by_key(|task| match task {
+            Task::Visit(x) => demand[x.index()],
+            _ => 0,
+        });
+    }
+
+    /// The operands that decide a selection.
+    fn deciders(&self, node: &Node) -> Vec<Value> {
+        let mut operands = Vec::new();
+        self.order.operands(self.builder, node, |x| operands.push(x));
+        let n_sides = side_operands(self.builder, node).len();
+        operands.truncate(operands.len() - n_sides);
+        operands
+    }
+
+    /// Visits what the sides need but others need as well.
+    fn visit_shared(&mut self, v: Value, sides: &[Value]) {
+        let mut seen = std::collections::HashSet::new();
+        let mut below: Vec<(Value, u8)> = sides.iter().zip(0u8..).map(|(&x, side)| (x, side)).collect();
+        while let Some((x, side)) = below.pop() {
+            if self.placed[x.index()] || !seen.insert(x) {
+                continue;
+            }
+            if self.guards.is_within(self.guards.of[x.index()], self.guards.side(v, side)) {
+                self.order.operands(self.builder, &self.builder.nodes[x.index()], |o| below.push((o, side)));
+            } else {
+                self.tasks.push(Task::Visit(x));
+            }
+        }
+    }
+
+    fn sides(&mut self, v: Value) {
+        let sides = side_operands(self.builder, &self.builder.nodes[v.index()]);
+        self.tasks.push(Task::Place(v));
+        for (side, &x) in [0u8, 1, 2].iter().zip(&sides).rev() {
+            self.tasks.extend([Task::End(v, *side), Task::Visit(x), Task::Begin(v, *side)]);
+        }
+    }
+
+    fn place(&mut self, v: Value) {
+        self.placed[v.index()] = true;
+        self.items.push(Item::Node(v));
+        let here = self.open.last().copied().unwrap_or(ALWAYS);
+        let key = group(&self.builder.nodes[v.index()]).unwrap_or(v);
+        if let Some(partners) = self.partners.get(&key) {
+            for &partner in partners.iter().rev() {
+                let guard = self.guards.of[partner.index()];
+                if partner != v && !self.placed[partner.index()] && self.guards.is_within(guard, here) {
+                    self.tasks.push(Task::Place(partner));
+                }
+            }
+        }
+    }
+
+    fn is_worth_a_jump(&self, v: Value, node: &Node) -> bool {
+        let n = match node {
+            Node::Select(..) => 2,
+            Node::If(_) => 3,
+            _ => return false,
+        };
+        (0..n).any(|side| self.weight[self.guards.side(v, side) as usize] >= WORTH_A_JUMP)
+    }
+}
+
+/// The values that a selection chooses from.
+pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
+    match *node {
+        Node::Select(_, yes, no) => vec![yes, no],
+        Node::If(_) => builder.list(node).map_or(Vec::new(), |list| builder.arguments[list][1..].to_vec()),
+        _ => Vec::new(),
+    }
+}
+
+/// What nodes that are computed together have in common, except sine and cosine: the call.
+fn group(node: &Node) -> Option<Value> {
+    match *node {
+        Node::Partial { call, .. } => Some(call),
+        _ => None,
+    }
+}
+
+/// Needed nodes that one operation yields together.
+fn partners(builder: &Builder, guards: &Guards) -> HashMap<Value, Vec<Value>> {
+    let mut partners: HashMap<Value, Vec<Value>> = HashMap::new();
+    let mut angles: HashMap<Value, Value> = HashMap::new();
+    for (k, node) in builder.nodes.iter().enumerate() {
+        if guards.of[k] == NEVER {
+            continue;
+        }
+        let v = Value(k as u32);
+        match *node {
+            Node::Unary(UnaryOp::Sin | UnaryOp::Cos, angle) => {
+                if let Some(&other) = angles.get(&angle) {
+                    partners.insert(other, vec![v]);
+                    partners.insert(v, vec![other]);
+                }
+                angles.insert(angle, v);
+            }
+            Node::Partial { call, .. } => {
+                let group = partners.entry(call).or_default();
+                if group.is_empty() && guards.of[call.index()] != NEVER {
+                    group.push(call);
+                }
+                group.push(v);
+            }
+            _ => {}
+        }
+    }
+    partners
+}
+
+/// How many registers the tree below each node would need.
+fn demand(builder: &Builder) -> Vec<u16> {
+    let mut demand = vec![0u16; builder.nodes.len()];
+    let mut below: Vec<u16> = Vec::new();
+    for (k, node) in builder.nodes.iter().enumerate() {
+        below.clear();
+        builder.operands(node, |v| below.push(demand[v.index()]));
+        below.sort_unstable_by(|a, b| b.cmp(a));
+        demand[k] =
+            below.iter().zip(0u16..).map(|(d, held)| d.saturating_add(held)).max().map_or(0, |most| most.max(1));
+    }
+    demand
+}
+
+/// What is computed only under each guard, in additions.
+fn weights(builder: &Builder, guards: &Guards) -> Vec<u32> {
+    let mut weights = vec![0u32; guards.tree.len()];
+    for (node, &guard) in builder.nodes.iter().zip(&guards.of) {
+        if guard != NEVER {
+            let weight = &mut weights[guard as usize];
+            *weight = weight.saturating_add(cost(node));
+        }
+    }
+    for k in (1..weights.len()).rev() {
+        let parent = guards.tree[k].parent as usize;
+        weights[parent] = weights[parent].saturating_add(weights[k]);
+    }
+    weights
+}
+
+/// About how many additions a node costs.
+fn cost(node: &Node) -> u32 {
+    use super::operation::BinaryOp;
+    match node {
+        Node::Constant(_) | Node::Input(_) => 0,
+        Node::Unary(UnaryOp::Neg | UnaryOp::Abs | UnaryOp::Not, _) | Node::Compare(..) => 1,
+        Node::Unary(UnaryOp::Sqrt, _) => 5,
+        Node::Unary(UnaryOp::Trunc | UnaryOp::Floor | UnaryOp::Round, _) => 2,
+        Node::Unary(..) => 20,
+        Node::Binary(BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or, ..) => 1,
+        Node::Binary(BinaryOp::Div, ..) => 4,
+        Node::Binary(..) => 30,
+        Node::Whole(..) => 4,
+        Node::Select(..) | Node::If(_) => 2,
+        Node::Lookup { .. } => 15,
+        Node::Call { .. } | Node::Partial { .. } => 10,
+    }
+}
