@@ -23,7 +23,9 @@ pub fn impact<S: Scalar>(
     per_depth: S,
     power: impl FnOnce(S) -> S,
 ) -> S {
-    S::choose(x1.le(x), S::zero, || contact(x1 - x, -x_dot, k, cmax, d, per_depth, power))
+    S::choose(x1.le(x), S::zero, || {
+        contact(x1 - x, -x_dot, k, cmax, d, per_depth, power)
+    })
 }
 
 /// `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
@@ -51,7 +53,15 @@ pub fn bistop<S: Scalar>(
 
 /// Force at penetration `p > 0` and penetration rate `p_dot`; never attractive. `power` is `pᵉ`.
 #[inline(always)]
-fn contact<S: Scalar>(p: S, p_dot: S, k: S, cmax: S, d: S, per_depth: S, power: impl FnOnce(S) -> S) -> S {
+fn contact<S: Scalar>(
+    p: S,
+    p_dot: S,
+    k: S,
+    cmax: S,
+    d: S,
+    per_depth: S,
+    power: impl FnOnce(S) -> S,
+) -> S {
     let elastic = k * power(p);
     let c = S::choose(d.le(p), || cmax, || cmax * cubic(p * per_depth));
     let force = elastic + c * p_dot;

@@ -35,7 +35,11 @@ impl Prepared {
             Function::Impact | Function::Bistop => 2,
             _ => 1,
         };
-        let constants = args.get(variable..)?.iter().copied().collect::<Option<Vec<f64>>>()?;
+        let constants = args
+            .get(variable..)?
+            .iter()
+            .copied()
+            .collect::<Option<Vec<f64>>>()?;
         let mut known = vec![f64::NAN; variable];
         known.extend(&constants);
         if function.violation(&known).is_some() {
@@ -54,12 +58,14 @@ impl Prepared {
             (Function::Cheby, _) => (Prepared::Cheby, constants),
             (Function::Forcos, _) => (Prepared::Forcos, constants),
             (Function::Forsin, _) => (Prepared::Forsin, constants),
-            (Function::Impact, &[x1, k, e, cmax, d]) => {
-                (Prepared::Impact(Exponent::of(e)), vec![x1, k, cmax, d, d.recip(), e])
-            }
-            (Function::Bistop, &[x1, x2, k, e, cmax, d]) => {
-                (Prepared::Bistop(Exponent::of(e)), vec![x1, x2, k, cmax, d, d.recip(), e])
-            }
+            (Function::Impact, &[x1, k, e, cmax, d]) => (
+                Prepared::Impact(Exponent::of(e)),
+                vec![x1, k, cmax, d, d.recip(), e],
+            ),
+            (Function::Bistop, &[x1, x2, k, e, cmax, d]) => (
+                Prepared::Bistop(Exponent::of(e)),
+                vec![x1, x2, k, cmax, d, d.recip(), e],
+            ),
             _ => return None,
         };
         Some(prepared)
@@ -82,7 +88,13 @@ pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) ->
     S::choose(
         x.le(x0),
         || h0,
-        || S::choose(x1.le(x), || h1, || h0 + shape((x - x0).scale(per_length)).scale(rise)),
+        || {
+            S::choose(
+                x1.le(x),
+                || h1,
+                || h0 + shape((x - x0).scale(per_length)).scale(rise),
+            )
+        },
     )
 }
 
@@ -128,7 +140,9 @@ pub(crate) fn forsin<S: Scalar>(x: S, p: &[f64]) -> S {
 pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent) -> S {
     let [x1, k, cmax, d, per_depth, e] = *p;
     let [x1, k, cmax, d, per_depth] = [x1, k, cmax, d, per_depth].map(S::constant);
-    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| p.power(exponent, e))
+    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| {
+        p.power(exponent, e)
+    })
 }
 
 /// BISTOP
@@ -136,7 +150,9 @@ pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent)
 pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent) -> S {
     let [x1, x2, k, cmax, d, per_depth, e] = *p;
     let [x1, x2, k, cmax, d, per_depth] = [x1, x2, k, cmax, d, per_depth].map(S::constant);
-    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| p.power(exponent, e))
+    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| {
+        p.power(exponent, e)
+    })
 }
 
 /// A number that can be raised to a power whose kind is known.
@@ -165,6 +181,9 @@ impl<const N: usize> Power for Dual<N> {
             Exponent::Half(_) | Exponent::Other => Exponent::Other,
         };
         let slope = e * self.re.power(less, e - 1.0);
-        Self { re: self.re.power(exponent, e), eps: self.eps.map(|x| slope * x) }
+        Self {
+            re: self.re.power(exponent, e),
+            eps: self.eps.map(|x| slope * x),
+        }
     }
 }

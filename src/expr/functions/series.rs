@@ -11,7 +11,9 @@ use crate::scalar::Scalar;
 /// `Σ aⱼ yʲ`
 #[inline(always)]
 pub fn powers<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
-    let Some((&last, rest)) = a.split_last() else { return S::zero() };
+    let Some((&last, rest)) = a.split_last() else {
+        return S::zero();
+    };
     let mut sum = of(last);
     for &aj in rest.iter().rev() {
         sum = sum * y + of(aj);
@@ -22,8 +24,12 @@ pub fn powers<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
 /// `Σ aⱼ Tⱼ(y)`, by the recurrence of Clenshaw
 #[inline(always)]
 pub fn chebyshev<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
-    let Some((&a0, rest)) = a.split_first() else { return S::zero() };
-    let Some((&last, rest)) = rest.split_last() else { return of(a0) };
+    let Some((&a0, rest)) = a.split_first() else {
+        return S::zero();
+    };
+    let Some((&last, rest)) = rest.split_last() else {
+        return of(a0);
+    };
     let twice = y + y;
     let (mut b1, mut b2) = (of(last), S::zero());
     for &aj in rest.iter().rev() {
@@ -45,8 +51,15 @@ pub fn sines<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S) -> S {
 }
 
 #[inline(always)]
-fn harmonics<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S, part: impl Fn((S, S)) -> S) -> S {
-    let Some((&a0, rest)) = a.split_first() else { return S::zero() };
+fn harmonics<S: Scalar, A: Copy>(
+    theta: S,
+    a: &[A],
+    of: impl Fn(A) -> S,
+    part: impl Fn((S, S)) -> S,
+) -> S {
+    let Some((&a0, rest)) = a.split_first() else {
+        return S::zero();
+    };
     let (s, c) = theta.sin_cos();
     let first = (c, s);
     let second = product(first, first);

@@ -4,7 +4,11 @@
 //! `domain` names arguments for which the body yields NaN or infinity by itself; the text is for people.
 
 use super::step::{cubic, haversine, quintic, step, sweep_turns};
-use super::{Continuity, Example, Family, Parameter, ParameterKind, Row, contact::{bistop, impact}, series};
+use super::{
+    Continuity, Example, Family, Parameter, ParameterKind, Row,
+    contact::{bistop, impact},
+    series,
+};
 use crate::expr::ast::Dialect;
 use crate::scalar::{Mask, Scalar};
 use std::f64::consts::{LN_10, PI};

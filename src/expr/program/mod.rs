@@ -134,10 +134,22 @@ impl<S> Default for Work<S> {
 }
 
 impl Program {
-    fn new(inputs: Vec<Input>, used: Vec<u32>, outputs: Vec<u32>, core: Core, machine: machine::Machine) -> Self {
+    fn new(
+        inputs: Vec<Input>,
+        used: Vec<u32>,
+        outputs: Vec<u32>,
+        core: Core,
+        machine: machine::Machine,
+    ) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Self { id, inputs, used, outputs, code: Arc::new((core, machine)) }
+        Self {
+            id,
+            inputs,
+            used,
+            outputs,
+            code: Arc::new((core, machine)),
+        }
     }
 
     fn core(&self) -> &Core {
@@ -252,7 +264,11 @@ impl Program {
     /// When there are fewer inputs or more places for outputs than the program has.
     #[inline]
     pub fn run(&self, inputs: &[f64], work: &mut Work, out: &mut [f64]) {
-        assert!(out.len() <= self.outputs.len(), "the program has {} outputs", self.outputs.len());
+        assert!(
+            out.len() <= self.outputs.len(),
+            "the program has {} outputs",
+            self.outputs.len()
+        );
         self.enter(inputs, work);
         let (core, machine) = &*self.code;
         machine.run(&mut work.registers, core);
@@ -271,7 +287,11 @@ impl Program {
         self.enter(inputs, work);
         let (core, machine) = &*self.code;
         let last = machine.run(&mut work.registers, core);
-        if machine.ends_with_output() { last } else { work.registers[self.outputs[0] as usize] }
+        if machine.ends_with_output() {
+            last
+        } else {
+            work.registers[self.outputs[0] as usize]
+        }
     }
 
     /// Runs over any number.
@@ -280,7 +300,11 @@ impl Program {
     ///
     /// When there are fewer inputs or more places for outputs than the program has.
     pub fn eval<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>, out: &mut [S]) {
-        assert!(out.len() <= self.outputs.len(), "the program has {} outputs", self.outputs.len());
+        assert!(
+            out.len() <= self.outputs.len(),
+            "the program has {} outputs",
+            self.outputs.len()
+        );
         self.enter(inputs, work);
         let core = self.core();
         let registers = &mut work.registers[..];
@@ -295,7 +319,11 @@ impl Program {
     /// Puts constants, parameters and inputs into their registers.
     #[inline(always)]
     fn enter<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>) {
-        assert!(inputs.len() >= self.inputs.len(), "the program reads {} inputs", self.inputs.len());
+        assert!(
+            inputs.len() >= self.inputs.len(),
+            "the program reads {} inputs",
+            self.inputs.len()
+        );
         if work.owner != self.id {
             self.prepare(work);
         }
@@ -311,8 +339,10 @@ impl Program {
         let (core, machine) = &*self.code;
         work.owner = self.id;
         work.registers.clear();
-        work.registers.extend(core.constants.iter().map(|&c| S::constant(c)));
-        work.registers.resize(core.size as usize, S::constant(f64::NAN));
+        work.registers
+            .extend(core.constants.iter().map(|&c| S::constant(c)));
+        work.registers
+            .resize(core.size as usize, S::constant(f64::NAN));
         work.registers.extend(machine.tail(core).map(S::constant));
     }
 }
@@ -320,7 +350,14 @@ impl Program {
 impl Core {
     #[inline(always)]
     fn step<S: Scalar>(&self, instruction: &Instruction, registers: &mut [S]) {
-        let Instruction { code, to, a, b, c, d } = *instruction;
+        let Instruction {
+            code,
+            to,
+            a,
+            b,
+            c,
+            d,
+        } = *instruction;
         let r = |k: u32| registers[k as usize];
         registers[to as usize] = match code {
             Code::Unary(op) => op.apply(r(a)),
@@ -337,7 +374,9 @@ impl Core {
             }
             Code::Partial(function, count, k) => {
                 let arguments = &self.lists[a as usize..(a + count) as usize];
-                gathered(arguments, registers, |args| partial(function, args, k as usize))
+                gathered(arguments, registers, |args| {
+                    partial(function, args, k as usize)
+                })
             }
         };
     }

@@ -303,13 +303,24 @@ jumps! {
 
 /// Ends the code.
 pub(super) unsafe extern "C" fn halt(_: *const Op, _: *mut f64, _: *const Core, acc: f64) -> Stop {
-    Stop { next: std::ptr::null(), acc }
+    Stop {
+        next: std::ptr::null(),
+        acc,
+    }
 }
 
 /// Returns to the loop, which goes on behind it.
-pub(super) unsafe extern "C" fn pause(op: *const Op, _: *mut f64, _: *const Core, acc: f64) -> Stop {
+pub(super) unsafe extern "C" fn pause(
+    op: *const Op,
+    _: *mut f64,
+    _: *const Core,
+    acc: f64,
+) -> Stop {
     // SAFETY: `halt` stands behind
-    Stop { next: unsafe { op.add(1) }, acc }
+    Stop {
+        next: unsafe { op.add(1) },
+        acc,
+    }
 }
 
 #[inline(always)]

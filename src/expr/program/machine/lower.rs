@@ -12,7 +12,11 @@ use crate::scalar::Exponent;
 use std::collections::HashMap;
 
 /// The threaded code of a schedule.
-pub(in crate::expr::program) fn lower(schedule: &Schedule, core: &Core, outputs: &[Value]) -> Machine {
+pub(in crate::expr::program) fn lower(
+    schedule: &Schedule,
+    core: &Core,
+    outputs: &[Value],
+) -> Machine {
     let mut lowering = Lowering::new(schedule, core);
     let items = &schedule.order.items;
     let mut k = 0;
@@ -82,7 +86,12 @@ struct Lowering<'a> {
 
 impl<'a> Lowering<'a> {
     fn new(schedule: &'a Schedule<'a>, core: &'a Core) -> Self {
-        let constants = core.constants.iter().zip(0u32..).map(|(c, k)| (c.to_bits(), k)).collect();
+        let constants = core
+            .constants
+            .iter()
+            .zip(0u32..)
+            .map(|(c, k)| (c.to_bits(), k))
+            .collect();
         Self {
             schedule,
             core,
@@ -108,7 +117,13 @@ impl<'a> Lowering<'a> {
             self.ops[op].operands[operand] += first_parameter;
         }
         let n_registers = first_parameter as usize + self.parameters.len();
-        let machine = Machine { ops: self.ops, kinds: self.kinds, parameters: self.parameters, n_registers, ends_with_output };
+        let machine = Machine {
+            ops: self.ops,
+            kinds: self.kinds,
+            parameters: self.parameters,
+            n_registers,
+            ends_with_output,
+        };
         machine.check(self.core);
         machine
     }
@@ -143,7 +158,12 @@ impl<'a> Lowering<'a> {
                 let x = self.operand(x);
                 self.flush_if_full();
                 let shape = if n == 3 { Shape::Two } else { Shape::Balanced };
-                self.pending.push(Pending { node: v, shape, codes: [MUL; 3], operands: [x; 4] });
+                self.pending.push(Pending {
+                    node: v,
+                    shape,
+                    codes: [MUL; 3],
+                    operands: [x; 4],
+                });
                 return 1;
             }
             _ => {}
@@ -156,7 +176,11 @@ impl<'a> Lowering<'a> {
         match node {
             Node::Unary(op, x) => {
                 let source = self.source(x);
-                self.emit(handlers::unary_handler(op, source), &[self.register(x), to], Kind::Registers(2));
+                self.emit(
+                    handlers::unary_handler(op, source),
+                    &[self.register(x), to],
+                    Kind::Registers(2),
+                );
             }
             Node::Select(condition, yes, no) => {
                 if self.close(v) {
@@ -175,7 +199,11 @@ impl<'a> Lowering<'a> {
                     _ => {
                         let zero = self.constant(0.0).register;
                         let [condition, yes, no] = [condition, yes, no].map(|x| self.register(x));
-                        self.emit(handlers::select::<0>, &[zero, condition, yes, no, to], Kind::Registers(5));
+                        self.emit(
+                            handlers::select::<0>,
+                            &[zero, condition, yes, no, to],
+                            Kind::Registers(5),
+                        );
                     }
                 }
             }
@@ -184,15 +212,27 @@ impl<'a> Lowering<'a> {
                     return 1;
                 }
                 let mut operands: Vec<u32> = Vec::new();
-                self.schedule.builder.operands(&node, |x| operands.push(self.register(x)));
+                self.schedule
+                    .builder
+                    .operands(&node, |x| operands.push(self.register(x)));
                 operands.push(to);
                 self.emit(handlers::arithmetic_if, &operands, Kind::Registers(5));
             }
-            Node::Call { function: function @ (Function::Max | Function::Min), count: 2, .. } => {
+            Node::Call {
+                function: function @ (Function::Max | Function::Min),
+                count: 2,
+                ..
+            } => {
                 let mut operands: Vec<u32> = Vec::new();
-                self.schedule.builder.operands(&node, |x| operands.push(self.register(x)));
+                self.schedule
+                    .builder
+                    .operands(&node, |x| operands.push(self.register(x)));
                 operands.push(to);
-                let handler = if function == Function::Max { handlers::larger } else { handlers::smaller };
+                let handler = if function == Function::Max {
+                    handlers::larger
+                } else {
+                    handlers::smaller
+                };
                 self.emit(handler, &operands, Kind::Registers(3));
             }
             _ => self.instruction(v),
@@ -206,9 +246,12 @@ impl<'a> Lowering<'a> {
         let builder = self.schedule.builder;
         match builder.nodes[v.index()] {
             Node::Unary(op @ (UnaryOp::Sin | UnaryOp::Cos), x) => {
-                let Some(&Item::Node(w)) = following.first() else { return None };
+                let Some(&Item::Node(w)) = following.first() else {
+                    return None;
+                };
                 match (op, builder.nodes[w.index()]) {
-                    (UnaryOp::Sin, Node::Unary(UnaryOp::Cos, y)) | (UnaryOp::Cos, Node::Unary(UnaryOp::Sin, y))
+                    (UnaryOp::Sin, Node::Unary(UnaryOp::Cos, y))
+                    | (UnaryOp::Cos, Node::Unary(UnaryOp::Sin, y))
                         if x == y =>
                     {
                         let (sine, cosine) = if op == UnaryOp::Sin { (v, w) } else { (w, v) };
@@ -240,7 +283,9 @@ impl<'a> Lowering<'a> {
         };
         let (call, _) = call_of(v)?;
         let node = builder.nodes[call.index()];
-        let Node::Call { function, .. } = node else { return None };
+        let Node::Call { function, .. } = node else {
+            return None;
+        };
         let mut args = Vec::new();
         builder.operands(&node, |x| args.push(x));
         let known: Vec<Option<f64>> = args.iter().map(|&x| builder.constant_of(x)).collect();
@@ -276,21 +321,45 @@ impl<'a> Lowering<'a> {
         if slopes == [None; 2] {
             let v = value?;
             if prepared.n_variables() == 2 {
-                let operands = [self.register(x), self.register(args[1]), self.register(v), place, length];
+                let operands = [
+                    self.register(x),
+                    self.register(args[1]),
+                    self.register(v),
+                    place,
+                    length,
+                ];
                 self.with_parameters(contact_handler(prepared, false), &operands, 3, n_parameters);
             } else {
                 let source = self.source(x);
                 let operands = [self.register(x), self.register(v), place, length];
-                self.with_parameters(prepared_handler(prepared, source), &operands, 2, n_parameters);
+                self.with_parameters(
+                    prepared_handler(prepared, source),
+                    &operands,
+                    2,
+                    n_parameters,
+                );
             }
             self.last = value;
         } else if prepared.n_variables() == 2 {
             let [p, q] = slopes.map(|v| to(self, v));
-            let operands = [self.register(x), self.register(args[1]), to(self, value), p, q, place];
+            let operands = [
+                self.register(x),
+                self.register(args[1]),
+                to(self, value),
+                p,
+                q,
+                place,
+            ];
             self.with_parameters(contact_handler(prepared, true), &operands, 5, n_parameters);
             self.last = slopes[1];
         } else {
-            let operands = [self.register(x), to(self, value), to(self, slopes[0]), place, length];
+            let operands = [
+                self.register(x),
+                to(self, value),
+                to(self, slopes[0]),
+                place,
+                length,
+            ];
             self.with_parameters(slope_handler(prepared), &operands, 3, n_parameters);
             self.last = slopes[0];
         }
@@ -310,7 +379,10 @@ impl<'a> Lowering<'a> {
     /// The instruction of the core as it is.
     fn instruction(&mut self, v: Value) {
         let instruction = self.schedule.instructions[v.index()];
-        debug_assert!(!matches!(self.core.code[instruction as usize].code, Code::CompareSelect(_)));
+        debug_assert!(!matches!(
+            self.core.code[instruction as usize].code,
+            Code::CompareSelect(_)
+        ));
         self.emit(handlers::instruction, &[instruction], Kind::Instruction);
     }
 
@@ -323,7 +395,9 @@ impl<'a> Lowering<'a> {
             [last] => (None, Some(*last)),
             [] => (None, None),
         };
-        let is = |p: Option<Pending>, x: Operand| p.is_some_and(|p| x.node == Some(p.node) && self.is_single(p.node));
+        let is = |p: Option<Pending>, x: Operand| {
+            p.is_some_and(|p| x.node == Some(p.node) && self.is_single(p.node))
+        };
         let simple = |codes: &[u8]| codes.iter().all(|&c| c <= MUL);
         // (a p b) op (c r d)
         if let (Some(p), Some(q)) = (before, last)
@@ -371,7 +445,17 @@ impl<'a> Lowering<'a> {
                     joined.codes[2] = op;
                     joined.operands[3] = other;
                 }
-                _ => return self.push_one(v, op, Operand { register: self.register(p.node), node: Some(p.node) }, other),
+                _ => {
+                    return self.push_one(
+                        v,
+                        op,
+                        Operand {
+                            register: self.register(p.node),
+                            node: Some(p.node),
+                        },
+                        other,
+                    );
+                }
             }
             self.pending.pop();
             self.pending.push(joined);
@@ -382,7 +466,12 @@ impl<'a> Lowering<'a> {
 
     fn push_one(&mut self, node: Value, op: u8, a: Operand, b: Operand) {
         self.flush_if_full();
-        self.pending.push(Pending { node, shape: Shape::One, codes: [op, 0, 0], operands: [a, b, a, a] });
+        self.pending.push(Pending {
+            node,
+            shape: Shape::One,
+            codes: [op, 0, 0],
+            operands: [a, b, a, a],
+        });
     }
 
     fn flush_if_full(&mut self) {
@@ -399,7 +488,12 @@ impl<'a> Lowering<'a> {
     }
 
     fn emit_arithmetic(&mut self, pending: Pending) {
-        let Pending { node, shape, codes: [mut p, mut q, mut r], operands: [mut a, mut b, mut c, mut d] } = pending;
+        let Pending {
+            node,
+            shape,
+            codes: [mut p, mut q, mut r],
+            operands: [mut a, mut b, mut c, mut d],
+        } = pending;
         let in_acc = |x: Operand| x.node.is_some() && x.node == self.last;
         // bring the last result to the first place, or else to the last
         if in_acc(b) && !in_acc(a) {
@@ -426,7 +520,10 @@ impl<'a> Lowering<'a> {
             Shape::One => (handlers::ONES[p][usize::from(first)], &[ra, rb, to]),
             Shape::Two => (handlers::TWOS[p][q][source(c)], &[ra, rb, rc, to]),
             Shape::Chain => (handlers::CHAINS[p][q][r][source(d)], &[ra, rb, rc, rd, to]),
-            Shape::Balanced => (handlers::BALANCED[p][q][r][source(d)], &[ra, rb, rc, rd, to]),
+            Shape::Balanced => (
+                handlers::BALANCED[p][q][r][source(d)],
+                &[ra, rb, rc, rd, to],
+            ),
         };
         self.emit(handler, operands, Kind::Registers(operands.len() as u8));
         self.last = Some(node);
@@ -438,7 +535,11 @@ impl<'a> Lowering<'a> {
         self.flush();
         if side == 0 {
             let branch = self.branch(v);
-            self.sides.push(Side { selection: v, branch, exits: Vec::new() });
+            self.sides.push(Side {
+                selection: v,
+                branch,
+                exits: Vec::new(),
+            });
         } else if let Some(open) = self.sides.last() {
             let branch = open.branch;
             let target = self.next_op();
@@ -459,11 +560,19 @@ impl<'a> Lowering<'a> {
                         1 => handlers::unless::<1>,
                         _ => handlers::unless::<2>,
                     };
-                    self.emit(handler, &[self.register(a), self.register(b), 1], Kind::Jumps(2, 1))
+                    self.emit(
+                        handler,
+                        &[self.register(a), self.register(b), 1],
+                        Kind::Jumps(2, 1),
+                    )
                 }
                 _ => {
                     let zero = self.constant(0.0).register;
-                    self.emit(handlers::unless::<0>, &[zero, self.register(condition), 1], Kind::Jumps(2, 1))
+                    self.emit(
+                        handlers::unless::<0>,
+                        &[zero, self.register(condition), 1],
+                        Kind::Jumps(2, 1),
+                    )
                 }
             },
             node => {
@@ -487,7 +596,9 @@ impl<'a> Lowering<'a> {
         self.flush();
         let node = self.schedule.builder.nodes[v.index()];
         let sides = side_operands(self.schedule.builder, &node);
-        let Some(&x) = sides.get(side as usize) else { return };
+        let Some(&x) = sides.get(side as usize) else {
+            return;
+        };
         self.copy(x, v);
         let is_if = matches!(node, Node::If(_));
         if usize::from(side) + 1 < sides.len() || is_if {
@@ -501,7 +612,11 @@ impl<'a> Lowering<'a> {
             let branch = self.sides.last().map_or(0, |open| open.branch);
             self.ops[branch].operands[3] = (self.next_op() - branch) as u32;
             let nothing = self.constant(f64::NAN).register;
-            self.emit(handlers::copy, &[nothing, self.register(v)], Kind::Registers(2));
+            self.emit(
+                handlers::copy,
+                &[nothing, self.register(v)],
+                Kind::Registers(2),
+            );
         }
         self.last = None;
     }
@@ -541,7 +656,10 @@ impl<'a> Lowering<'a> {
     /// Appends an operation; its place.
     fn emit(&mut self, run: Handler, operands: &[u32], kind: Kind) -> usize {
         if self.chain >= LONGEST_CHAIN {
-            self.ops.push(Op { run: handlers::pause, operands: [0; 6] });
+            self.ops.push(Op {
+                run: handlers::pause,
+                operands: [0; 6],
+            });
             self.kinds.push(Kind::Registers(0));
             self.chain = 0;
         }
@@ -557,24 +675,37 @@ impl<'a> Lowering<'a> {
         self.schedule.registers[v.index()]
     }
     fn operand(&self, v: Value) -> Operand {
-        Operand { register: self.register(v), node: Some(v) }
+        Operand {
+            register: self.register(v),
+            node: Some(v),
+        }
     }
     /// The register of a constant of our own.
     fn constant(&mut self, c: f64) -> Operand {
         if let Some(&register) = self.constants.get(&c.to_bits()) {
-            return Operand { register, node: None };
+            return Operand {
+                register,
+                node: None,
+            };
         }
         let place = self.parameters.len() as u32;
         self.parameters.push(c);
         let register = self.core.size + 1 + place;
         self.constants.insert(c.to_bits(), register);
-        Operand { register, node: None }
+        Operand {
+            register,
+            node: None,
+        }
     }
     fn is_single(&self, v: Value) -> bool {
         self.schedule.order.uses[v.index()] == 1
     }
     fn source(&self, x: Value) -> u8 {
-        if self.last == Some(x) { FIRST } else { REGISTERS }
+        if self.last == Some(x) {
+            FIRST
+        } else {
+            REGISTERS
+        }
     }
 }
 
@@ -603,7 +734,11 @@ fn reversed(code: u8) -> u8 {
 fn prepared_handler(prepared: Prepared, source: u8) -> Handler {
     macro_rules! by_source {
         ($f:ident) => {
-            if source == FIRST { handlers::$f::<FIRST> } else { handlers::$f::<REGISTERS> }
+            if source == FIRST {
+                handlers::$f::<FIRST>
+            } else {
+                handlers::$f::<REGISTERS>
+            }
         };
     }
     match prepared {
