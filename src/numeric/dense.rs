@@ -37,15 +37,20 @@ impl Lu {
         &mut self.a
     }
 
-    /// Factors the matrix in place.
+    /// Factors the matrix in place. A column counts as zero when its pivot is below `tiny` times what it began with.
     ///
     /// # Errors
     /// The column without a pivot.
-    pub fn factor(&mut self) -> Result<(), usize> {
+    pub fn factor(&mut self, tiny: f64) -> Result<(), usize> {
         let n = self.n;
         for j in 0..n {
             let (done, rest) = self.a.split_at_mut(j * n);
             let column = &mut rest[..n];
+            let size = if tiny > 0.0 {
+                column.iter().fold(0.0f64, |m, x| m.max(x.abs()))
+            } else {
+                0.0
+            };
             for k in 0..j {
                 column.swap(k, self.pivots[k]);
             }
@@ -89,7 +94,10 @@ impl Lu {
                 }
             }
             let inverse = 1.0 / column[pivot];
-            if column[pivot] == 0.0 || !column[pivot].is_finite() || !inverse.is_finite() {
+            if column[pivot].abs() <= tiny * size
+                || !column[pivot].is_finite()
+                || !inverse.is_finite()
+            {
                 return Err(j);
             }
             self.pivots[j] = pivot;
@@ -269,7 +277,7 @@ mod tests {
             let x: Vec<f64> = entries[n * n..n * n + n].to_vec();
             let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[i + n * j] * x[j]).sum()).collect();
             lu.matrix_mut().copy_from_slice(&a);
-            prop_assume!(lu.factor().is_ok());
+            prop_assume!(lu.factor(0.0).is_ok());
             lu.solve(&mut b);
             let oracle = nalgebra::DMatrix::from_column_slice(n, n, &a);
             let condition = oracle.clone().try_inverse().map_or(1e20, |i| i.norm() * oracle.norm());
@@ -302,10 +310,10 @@ mod tests {
         let mut lu = Lu::new(3);
         lu.matrix_mut()
             .copy_from_slice(&[1.0, 0.0, 1.0, 2.0, 0.0, 2.0, 0.0, 1.0, 0.0]);
-        assert_eq!(lu.factor(), Err(1));
+        assert_eq!(lu.factor(0.0), Err(1));
         let mut lu = Lu::new(2);
         lu.matrix_mut().copy_from_slice(&[1.0, f64::NAN, 0.0, 1.0]);
-        assert!(lu.factor().is_err());
+        assert!(lu.factor(0.0).is_err());
         let mut lu = ComplexLu::new(2);
         assert_eq!(lu.factor(), Err(0));
     }

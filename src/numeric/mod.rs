@@ -21,6 +21,7 @@ pub mod event;
 pub mod radau;
 pub mod rank;
 pub mod runge_kutta;
+pub mod sparse;
 
 pub use radau::Radau;
 pub use runge_kutta::Dop853;

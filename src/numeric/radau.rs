@@ -245,7 +245,7 @@ impl Radau {
             im[i + n * i] = BETA / h;
         }
         self.h_factored = 0.0;
-        self.real.factor()?;
+        self.real.factor(0.0)?;
         self.complex.factor()?;
         self.h_factored = h;
         Ok(())
