@@ -208,7 +208,11 @@ impl Factors {
 /// The power of two that brings `x` between 1 and 2; one for what has none.
 fn inverse_power(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52) & 0x7ff;
-    if (64..1982).contains(&exponent) { f64::from_bits((2046 - exponent) << 52) } else { 1.0 }
+    if (64..1982).contains(&exponent) {
+        f64::from_bits((2046 - exponent) << 52)
+    } else {
+        1.0
+    }
 }
 
 /// `P S A Q = L U` by columns; rows and columns are numbered in the order of elimination.
