@@ -1,7 +1,9 @@
 //! Real files, read where they lie: the folder named by COGNATE_CORPUS. Without it the tests say that they were skipped.
 
 use cognate::dataset;
+use cognate::dataset::command::{Command, Script, Step};
 use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::model::Model;
 use std::path::{Path, PathBuf};
 
 /// All files of the corpus with this ending, in order of their names; `None` (and a line) without a corpus.
@@ -89,6 +91,86 @@ fn mistakes_in_files_made_by_hand_are_found_in_their_lines() {
         for (file, line, code) in MISTAKES.iter().filter(|m| m.0 == name) {
             let hit = found.iter().any(|d| d.line == *line && d.code == *code);
             assert!(hit, "{file}:{line}: {code} is not among {found:#?}");
+        }
+    }
+}
+
+#[test]
+fn every_command_file_reads() {
+    let Some(files) = corpus("acf") else { return };
+    for path in &files {
+        let script = Script::read(path).unwrap_or_else(|e| panic!("{e}"));
+        let model = script.model_file().expect("a model is named");
+        assert!(
+            model.exists(),
+            "{} names {}",
+            path.display(),
+            model.display()
+        );
+        let mut model = Model::read(model).unwrap_or_else(|e| panic!("{e}"));
+        for step in &script.steps {
+            model
+                .apply(&step.command)
+                .unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        }
+        let stops = script
+            .steps
+            .iter()
+            .filter(|s| matches!(s.command, Command::Stop))
+            .count();
+        let runs = script
+            .steps
+            .iter()
+            .filter(|s| matches!(s.command, Command::Simulate(_)))
+            .count();
+        assert!(stops == 1 && runs > 0, "{}", path.display());
+    }
+}
+
+/// (log, changes of elements, simulations, end of the last): runs that another program drove, echoed by the solver.
+const REPLAYS: &[(&str, usize, usize, f64)] = &[
+    ("ControlSimulink/Controls_Plant_5.msg", 0, 1680, 8.395),
+    ("matlab & adams/Controls_Plant_10.msg", 58, 29, 0.14),
+    ("pd-control/Controls_Plant_1.msg", 31438, 826, 4.125),
+    ("fitestv1/Fkinev1.msg", 1001, 1001, 5.0),
+    ("T_MSC_ADAMS/RD3.msg", 1809, 201, 1.0),
+    ("validation/Matlab.msg", 2001, 2001, 10.0),
+    (
+        "adams_simulink_robotarm/Controls_Plant_1.msg",
+        7007,
+        1001,
+        5.0,
+    ),
+];
+
+#[test]
+fn message_logs_replay_as_commands() {
+    let Some(files) = corpus("msg") else { return };
+    for (log, changes, simulations, end) in REPLAYS {
+        let mut here = files
+            .iter()
+            .filter(|p| p.display().to_string().ends_with(log));
+        let path = here.next().expect("a log of the corpus");
+        let script = Script::from_message_log(path).unwrap_or_else(|e| panic!("{e}"));
+        let is_change = |s: &&Step| matches!(s.command, Command::Change(_));
+        assert_eq!(
+            script.steps.iter().filter(is_change).count(),
+            *changes,
+            "changes in {log}"
+        );
+        let runs = script.steps.iter().filter_map(|s| match &s.command {
+            Command::Simulate(s) => Some(s),
+            _ => None,
+        });
+        let runs: Vec<_> = runs.collect();
+        assert_eq!(runs.len(), *simulations, "simulations in {log}");
+        assert_eq!(runs.last().and_then(|s| s.end), Some(*end), "end of {log}");
+        let model = path.with_extension("adm");
+        let mut model = Model::read(model).unwrap_or_else(|e| panic!("{e}"));
+        for step in &script.steps {
+            model
+                .apply(&step.command)
+                .unwrap_or_else(|e| panic!("{log}:{}: {e}", step.line));
         }
     }
 }

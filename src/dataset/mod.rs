@@ -7,6 +7,7 @@
 //! [`Dataset`] keeps the first four, so that a file can be written again with its comments and its order; the Model says
 //! what it means. The table of statements (`statement.rs`) is the only place that knows arguments by name.
 
+pub mod command;
 pub mod lens;
 pub mod read;
 pub mod row;

@@ -298,8 +298,10 @@ impl<T: Element> Statement for Numbered<T> {
         {
             problems.push(Problem::new("contradiction", message));
         }
-        // An element with a mistake is entered all the same, so that nothing else seems to miss it.
-        (self.list_mut)(model).insert(id, element);
+        // A new element with a mistake is entered all the same, so that nothing else seems to miss it.
+        if !change || problems.is_empty() {
+            (self.list_mut)(model).insert(id, element);
+        }
         problems
     }
 
@@ -356,11 +358,15 @@ impl<T: Element> Statement for Single<T> {
 
     fn enter(&self, model: &mut Model, record: &Record, _: bool) -> Vec<Problem> {
         let target = (self.value_mut)(model);
-        let mut problems = apply(self.bindings, target, record);
+        let mut value = target.clone();
+        let mut problems = apply(self.bindings, &mut value, record);
         if problems.is_empty()
-            && let Err(message) = (self.finish)(target)
+            && let Err(message) = (self.finish)(&mut value)
         {
             problems.push(Problem::new("contradiction", message));
+        }
+        if problems.is_empty() {
+            *target = value;
         }
         problems
     }
