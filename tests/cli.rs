@@ -294,3 +294,61 @@ fn every_command_has_help_with_an_example() {
         assert!(help.out.contains("Example"), "{verb} shows no example");
     }
 }
+
+#[test]
+fn every_code_that_is_printed_can_be_explained() {
+    for line in cognate(&["explain"]).out.lines() {
+        let code = line.split_whitespace().next().unwrap();
+        let explained = cognate(&["explain", code]);
+        assert!(
+            explained.code == 0 && explained.out.starts_with(&format!("{code}: ")),
+            "{code}"
+        );
+    }
+    let wrong = cognate(&["eval", "2^3"]).err;
+    let code = wrong.split(['[', ']']).nth(1).unwrap();
+    assert!(cognate(&["explain", code]).out.contains("2**3"), "{wrong}");
+    assert!(
+        cognate(&["explain", "STEP"])
+            .out
+            .starts_with("STEP(x, x0, h0, x1, h1)")
+    );
+    let unknown = cognate(&["explain", "bad_chr"]);
+    assert!(
+        unknown.code == 3 && unknown.err.contains("did you mean bad_char?"),
+        "{}",
+        unknown.err
+    );
+}
+
+/// Codes given by the command line, the results and the pictures.
+#[test]
+fn every_code_in_these_sources_is_in_the_table() {
+    let mut checked = 0;
+    for folder in ["src/cli", "src/cli/repl", "src/results", "src/report"] {
+        for file in std::fs::read_dir(folder)
+            .unwrap()
+            .map(|f| f.unwrap().path())
+            .filter(|f| f.is_file())
+        {
+            let text = std::fs::read_to_string(&file).unwrap();
+            let text = text.split("#[cfg(test)]").next().unwrap();
+            for after in text.split("Diagnostic::error(").skip(1) {
+                let Some(code) = after
+                    .trim_start()
+                    .strip_prefix('"')
+                    .and_then(|t| t.split('"').next())
+                else {
+                    continue;
+                };
+                assert!(
+                    cognate::diagnostic::codes::code(code).is_some(),
+                    "{code} in {}",
+                    file.display()
+                );
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 15, "{checked}");
+}

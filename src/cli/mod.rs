@@ -7,6 +7,7 @@ pub mod card;
 mod convert;
 pub mod data;
 mod eval;
+mod explain;
 pub mod formula;
 mod functions;
 pub mod interrupt;
@@ -34,6 +35,7 @@ struct Cli {
 enum Verb {
     Convert(convert::Args),
     Eval(eval::Args),
+    Explain(explain::Args),
     Functions(functions::Args),
     Plot(plot::Args),
     Repl(repl::Args),
@@ -127,6 +129,7 @@ pub fn main() -> ExitCode {
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Convert(args) => convert::run(args),
         Verb::Eval(args) => eval::run(args),
+        Verb::Explain(args) => explain::run(args),
         Verb::Functions(args) => functions::run(args),
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),

@@ -1,6 +1,6 @@
-//! TABLE of codes: every kind of mistake in an expression, explained at length for `cognate explain CODE`.
+//! TABLE of codes: every kind of mistake, explained at length for `cognate explain CODE`.
 //!
-//! A code never changes its meaning. Rows stand in the order in which a text is read.
+//! A code never changes its meaning. Rows stand in the order in which a text is read; then those about files and commands.
 
 /// What a code means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -242,6 +242,107 @@ give degrees: sin(30). SIN(30) is a legal direct-entry function, but thirty radi
     -2**2          is -(2**2) = -4
     x**1/2         is (x**1)/2; a square root is x**(1/2) or SQRT(x)
     2**3**2        is 2**(3**2) = 512",
+    },
+    Code {
+        name: "file_unreadable",
+        summary: "a file cannot be read",
+        explanation: "\
+It does not exist, is a folder, or may not be read by this user; the message has the system's own words. Names of
+files are taken from where the command runs.",
+    },
+    Code {
+        name: "file_unwritable",
+        summary: "a file cannot be written",
+        explanation: "\
+The folder does not exist, or this user may not write there, or the disk is full; the message has the system's own
+words. A file is written beside its place and then moved there, so that a failure leaves the old one as it was.",
+    },
+    Code {
+        name: "result_format",
+        summary: "the name of a file tells no format of results that is known",
+        explanation: "\
+The ending of a file's name tells its format. Read are .res (XML and the old text form), .gra and .csv; written are .csv,
+.json, .res and .msg.",
+    },
+    Code {
+        name: "result_syntax",
+        summary: "a file of results is damaged or of another format than its name says",
+        explanation: "\
+The message has the line, where there is one. In .csv files every row has as many cells as the first, which holds the
+names; a second row may hold units; all else are numbers. In .res files every component has a number of its own, and
+every step has as many values as there are components. A file that a program was still writing ends too early: convert
+it again when it is complete.",
+    },
+    Code {
+        name: "unknown_column",
+        summary: "the results have no column of this name",
+        explanation: "\
+Columns are called by the text of their expression, or ENTITY.COMPONENT as in PART_2_XFORM.X. Blanks and upper or
+lower case do not matter. The advice names columns that are spelled alike, or the first of all.",
+    },
+    Code {
+        name: "unknown_sequence",
+        summary: "the results have no sequence of this name",
+        explanation: "\
+A sequence holds the rows of one simulation: modelInput_001, initialConditions_001, static_001, kinematic_001,
+dynamic_001 and so on. The advice names those that are there.",
+    },
+    Code {
+        name: "empty_plot",
+        summary: "there is nothing to plot",
+        explanation: "\
+The columns have no rows, or no value in them is finite.",
+    },
+    Code {
+        name: "plot_failed",
+        summary: "a plot could not be drawn",
+        explanation: "\
+The drawing library refused; the message has its words. Please report it with the data.",
+    },
+    Code {
+        name: "bad_data",
+        summary: "a JSON file of markers or splines is not of the form that is expected",
+        explanation: "\
+Markers, all vectors in ground, what is left out is zero; e313 are the 3-1-3 angles in radians, A the rows of the
+matrix whose columns are the axes of the marker:
+
+    {\"12\": {\"r\": [0.1, 0, 0], \"v\": [1, 0, 0], \"w\": [0, 0, 2], \"e313\": [0.5, 0, 0]}}
+
+Splines; with z, y is a list of curves; end is natural, not-a-knot or periodic, extrap is parabolic or linear:
+
+    {\"1\": {\"x\": [1, 2, 3, 4], \"y\": [0, 2, 1, 3], \"end\": \"natural\", \"extrap\": \"linear\"}}",
+    },
+    Code {
+        name: "bad_range",
+        summary: "a range of times that has no samples, or too many",
+        explanation: "\
+A range is first:last:step, as in 0:2:0.01. The step leads from the first to the last time: it is negative when time runs
+backwards, and never zero. There are at most ten million samples.",
+    },
+    Code {
+        name: "bad_definition",
+        summary: "a name that cannot be defined with :let",
+        explanation: "\
+A name begins with a letter and goes on with letters, digits and underscores. Names of the language cannot be given another
+meaning. What is defined stands for its whole expression: after `:let w = 1+1`, w*3 is 6.",
+    },
+    Code {
+        name: "usage",
+        summary: "a command is not used as it can be used",
+        explanation: "\
+`cognate --help` lists the commands, `cognate COMMAND --help` shows one with examples; in the REPL `:help`.",
+    },
+    Code {
+        name: "terminal",
+        summary: "the terminal cannot be used for the REPL",
+        explanation: "\
+The message has the system's own words. Lines can be piped in instead: `cognate repl < session.txt`.",
+    },
+    Code {
+        name: "bug",
+        summary: "the program found a mistake of its own",
+        explanation: "\
+Something happened that its authors held to be impossible. Please report the command, its input, and what was printed.",
     },
 ];
 
