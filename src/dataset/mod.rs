@@ -130,6 +130,12 @@ pub fn read_source(source: Source) -> Reading {
         let d = Diagnostic::warning("missing_end", "the dataset does not end with END");
         out.push(source.locate(d, Span::new(at, at)));
     }
+    for d in reading.model.check() {
+        out.push(Diagnostic {
+            file: source.file.clone(),
+            ..d
+        });
+    }
     out.sort_by_key(|d| (d.line, d.column));
     reading.dataset = Dataset {
         source,

@@ -5,9 +5,11 @@
 //! Nothing here knows how anything is computed.
 
 mod body;
+pub mod check;
 mod constraint;
 mod force;
 mod output;
+pub mod reference;
 mod settings;
 mod system;
 pub mod units;
