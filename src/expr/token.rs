@@ -4,6 +4,7 @@
 //! reached, and never looks further than the end of the token.
 
 use super::ast::Callee;
+use super::compile::literal_value;
 use crate::diagnostic::Span;
 
 /// What a token is.
@@ -214,10 +215,11 @@ impl<'a> Lexer<'a> {
         if !well_formed {
             return Err(fault);
         }
-        match self.text[start..end].parse::<f64>() {
-            Ok(literal) if literal.is_finite() => Ok(Kind::Number { literal, degrees }),
-            _ => Err(fault),
+        let literal = self.text[start..end].parse().unwrap_or(f64::INFINITY);
+        if !literal_value(literal, degrees).is_finite() {
+            return Err(fault);
         }
+        Ok(Kind::Number { literal, degrees })
     }
 }
 
@@ -261,7 +263,7 @@ mod tests {
     fn malformed_literals_are_reported_at_their_first_character() {
         for text in [
             "1.5E", "1.5E+", "1E*3", "1D3", "1.5D0", "1.2.3", "1..2", "30DD", "30D2", "2TIME",
-            "1E400", "1_",
+            "1E400", "1E308D", "1_",
         ] {
             let fault = kinds(&format!("2+{text}")).unwrap_err();
             assert_eq!((fault.code, fault.span.start), ("bad_number", 2), "{text}");

@@ -7,6 +7,7 @@
 //! The same walk with everything unknown that is not constant finds the mistakes that can be known before any value is.
 
 use super::ast::{Ast, BinaryOp, Callee, Constant, Node, NodeIx};
+use super::compile::{constant_value, literal_value};
 use super::functions::Function;
 use super::interpolation::{Bindings, Interpolation};
 use super::program::Input;
@@ -132,14 +133,14 @@ impl<'a> Walk<'a> {
     /// The value of a leaf, or the tasks of a node.
     fn begin(&mut self, ix: NodeIx) -> Result<Option<f64>, Trouble> {
         match *self.ast.node(ix) {
-            Node::Number {
-                literal,
-                degrees: false,
-            } => return Ok(Some(literal)),
-            Node::Number {
-                literal,
-                degrees: true,
-            } => return Ok(Some(literal * std::f64::consts::PI / 180.0)),
+            Node::Number { literal, degrees } => {
+                let value = literal_value(literal, degrees);
+                return if value.is_finite() {
+                    Ok(Some(value))
+                } else {
+                    Err(self.out_of_domain(ix, &[value]))
+                };
+            }
             Node::Constant(c) => return self.constant(ix, c).map(Some),
             Node::Negate(x) | Node::Plus(x) => {
                 self.tasks.extend([Task::Apply(ix), Task::Evaluate(x)])
@@ -172,12 +173,10 @@ impl<'a> Walk<'a> {
     }
 
     fn constant(&self, ix: NodeIx, c: Constant) -> Result<f64, Trouble> {
-        match c {
-            Constant::Pi => Ok(std::f64::consts::PI),
-            Constant::Dtor => Ok(std::f64::consts::PI / 180.0),
-            Constant::Rtod => Ok(180.0 / std::f64::consts::PI),
-            Constant::Time => self.input(ix, Input::Time),
-            Constant::Mode => self.input(ix, Input::Mode),
+        match (constant_value(c), c) {
+            (Some(value), _) => Ok(value),
+            (None, Constant::Mode) => self.input(ix, Input::Mode),
+            (None, _) => self.input(ix, Input::Time),
         }
     }
 

@@ -151,7 +151,8 @@ impl Maker<'_> {
                 if x.is_finite() { x } else { 7.0 }
             }
         };
-        let degrees = self.contents.dialect == Dialect::Function && self.pick(8) == 7;
+        let degrees =
+            self.contents.dialect == Dialect::Function && self.pick(8) == 7 && literal < 1e307;
         self.push(Node::Number { literal, degrees })
     }
 
