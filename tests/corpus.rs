@@ -1,4 +1,5 @@
 //! Real files, read where they lie: the folder named by COGNATE_CORPUS. Without it the tests say that they were skipped.
+#![cfg(feature = "solver")]
 
 use cognate::dataset;
 use cognate::dataset::command::{Command, Script, Step};

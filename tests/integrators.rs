@@ -1,4 +1,5 @@
 //! Methods against exact solutions: order, error for a requested tolerance, and cost.
+#![cfg(feature = "solver")]
 
 mod problems;
 

@@ -223,7 +223,7 @@ impl Model {
     ///
     /// # Errors
     /// Every mistake with its place and advice; printing the error prints them all. Warnings alone are no error: see
-    /// [`read`] for them.
+    /// [`read()`] for them.
     pub fn read(path: impl AsRef<Path>) -> Result<Model, Errors> {
         into_model(read(path)?)
     }

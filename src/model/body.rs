@@ -8,7 +8,7 @@ pub enum Orientation {
     /// that of the parent
     #[default]
     Aligned,
-    /// body-fixed 3-1-3 angles ψ, θ, φ [rad]
+    /// body-fixed 3-1-3 angles ψ, θ, φ, in rad
     Euler([f64; 3]),
     /// points on the axes, in parent coordinates (ZP/XP, ZG/XG)
     Points {

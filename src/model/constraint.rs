@@ -20,7 +20,7 @@ pub struct Joint {
     pub j: u32,
     /// IC or ICTRAN: initial displacement and velocity along z_J
     pub ic_translation: [Option<f64>; 2],
-    /// IC or ICROT: initial angle and rate about z_J [rad]
+    /// IC or ICROT: initial angle and rate about z_J, in rad
     pub ic_rotation: [Option<f64>; 2],
     /// SCREW: translation per revolution
     pub pitch: Option<f64>,

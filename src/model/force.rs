@@ -46,7 +46,7 @@ pub struct SpringDamper {
     pub damping: f64,
     /// FORCE or TORQUE at the free length
     pub preload: f64,
-    /// LENGTH or ANGLE [rad]
+    /// LENGTH or ANGLE, in rad
     pub free: f64,
 }
 

@@ -233,11 +233,11 @@ pub struct Record {
     pub method: String,
     /// requested error
     pub error: Option<f64>,
-    /// reading and compiling the model   [s]
+    /// reading and compiling the model, in s
     pub read_seconds: f64,
-    /// solving alone, median of the repeats   [s]
+    /// solving alone, median of the repeats, in s
     pub solve_seconds: f64,
-    /// writing results   [s]
+    /// writing results, in s
     pub write_seconds: f64,
     /// how often it was solved to time it
     pub repeats: u32,
@@ -274,7 +274,7 @@ pub struct Simulation {
     pub status: Status,
     /// the same in a sentence
     pub stop_reason: String,
-    /// solving alone   [s]
+    /// solving alone, in s
     pub solve_seconds: f64,
     /// what the method did
     pub counts: Counts,
@@ -346,9 +346,9 @@ pub enum Event {
     End,
     /// the run is over
     Finished {
-        /// wall clock   [s]
+        /// wall clock, in s
         elapsed: f64,
-        /// processor   [s]
+        /// processor, in s
         cpu: f64,
     },
 }

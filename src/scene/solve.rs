@@ -183,9 +183,9 @@ pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
         let start = a[i][i];
         for k in 0..i {
             let mut s = a[i][k];
-            for j in 0..k {
-                if !a[i][j].is_known_zero() && !a[k][j].is_known_zero() {
-                    s -= a[i][j] * a[k][j];
+            for (&l_i, &l_k) in a[i][..k].iter().zip(&a[k]) {
+                if !l_i.is_known_zero() && !l_k.is_known_zero() {
+                    s -= l_i * l_k;
                 }
             }
             a[i][k] = s;

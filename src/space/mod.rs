@@ -1,6 +1,6 @@
 //! Where things are and how they move: vectors, rotations, frames, twists, inertia.
 //!
-//! All generic over [`Scalar`](crate::scalar::Scalar). Names follow the monogram notation: `p_JI_K` is the position of I
+//! All generic over [`Scalar`]. Names follow the monogram notation: `p_JI_K` is the position of I
 //! from J expressed in K, `R_GP` turns vectors of P into vectors of G, `w_GP` is the angular velocity of P in G.
 
 pub mod kinematic;
