@@ -3,6 +3,9 @@
 //! Real files are found in the folder that COGNATE_CORPUS names; without it these tests say that they were skipped.
 #![cfg(feature = "solver")]
 
+#[path = "common/results.rs"]
+mod laws;
+
 use cognate::results::{self, Kind, Run, csv, res};
 use std::path::{Path, PathBuf};
 
@@ -212,5 +215,49 @@ fn real_logs_and_ours_have_the_same_lines() {
         .iter()
         .any(|o| line.contains(o));
         assert!(known || own, "`{line}` is in no real log");
+    }
+}
+
+/// Every file of a folder of this repository.
+fn files_in(folder: &str) -> Vec<Vec<u8>> {
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder))
+            .unwrap()
+            .map(|f| f.unwrap().path())
+            .collect();
+    files.sort();
+    files
+        .into_iter()
+        .map(|f| std::fs::read(f).unwrap())
+        .collect()
+}
+
+#[test]
+fn damaged_files_are_refused_or_read_and_never_more() {
+    for seed in files_in("fuzz/seeds/res")
+        .into_iter()
+        .chain(files_in("tests/data/fuzz/res"))
+    {
+        laws::fuzz_results(&seed);
+        let mut random = 0x2545_f491_4f6c_dd1d_u64;
+        let mut next = |below: usize| {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            (random % below.max(1) as u64) as usize
+        };
+        for _ in 0..2000 {
+            let mut bytes = seed.clone();
+            for _ in 0..1 + next(3) {
+                let (at, other) = (next(bytes.len()), next(bytes.len()));
+                match next(4) {
+                    0 => bytes.truncate(at),
+                    1 if !bytes.is_empty() => bytes[at] = b"0 9-.\n\"<>/&!E"[next(13)],
+                    2 => drop(bytes.drain(at.min(other)..at.max(other))),
+                    _ => bytes = [&bytes[..at], &seed[other.min(seed.len())..]].concat(),
+                }
+            }
+            laws::fuzz_results(&bytes);
+        }
     }
 }

@@ -137,6 +137,18 @@ fn add_parts(
             }
         }
     }
+    // Records are lines of their own: what is read from a block grows with the block, whatever the map says.
+    let mut places: Vec<u64> = parts
+        .iter()
+        .flat_map(|p| p.1.iter().zip(saved).filter(|s| s.1).map(|s| *s.0))
+        .collect();
+    places.sort_unstable();
+    if places.windows(2).any(|w| w[0] == w[1]) {
+        return Err(malformed(
+            map.line,
+            "two records of the map stand on one line",
+        ));
+    }
     let mut records = Vec::new();
     for (id, _) in &parts {
         let entity = name_of(*id, names);
