@@ -466,6 +466,26 @@ impl Mover {
         self.normalize(q);
     }
 
+    /// How positions change along each velocity: (velocity, position, slope), by velocities.
+    pub fn tangents(&self, q: &[f64]) -> Vec<(usize, usize, f64)> {
+        let mut all: Vec<(usize, usize, f64)> =
+            self.simple.iter().map(|&(k, v)| (v, k, 1.0)).collect();
+        for &(k, v) in &self.balls {
+            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
+            let columns = [[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]];
+            for (c, column) in columns.iter().enumerate() {
+                all.extend(
+                    column
+                        .iter()
+                        .enumerate()
+                        .map(|(i, slope)| (v + c, k + i, 0.5 * slope)),
+                );
+            }
+        }
+        all.sort_by_key(|t| t.0);
+        all
+    }
+
     /// Scales quaternions to unit length; tells whether that changed any.
     pub fn normalize(&self, q: &mut [f64]) -> bool {
         let mut changed = false;

@@ -5,4 +5,5 @@ pub mod columns;
 pub mod dynamics;
 pub mod kinematics;
 pub mod session;
+pub mod statics;
 pub mod system;

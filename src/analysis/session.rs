@@ -8,6 +8,7 @@ use super::assemble::{self, Assembly};
 use super::columns::{self, Columns};
 use super::dynamics::{self, Ended, Trajectory, Watch};
 use super::kinematics;
+use super::statics;
 use super::system::System;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
@@ -53,6 +54,8 @@ struct Carried {
     /// numbers of the last row
     numbers: Vec<f64>,
     names: Vec<String>,
+    /// it came to rest: velocities are those of the dataset again, not zero
+    at_rest: bool,
 }
 
 /// A model and its clock.
@@ -65,6 +68,12 @@ pub struct Session {
     columns: Columns,
     carried: Option<Carried>,
 }
+
+/// Values of MODE.
+const KINEMATIC: u32 = 1;
+const INITIAL_CONDITIONS: u32 = 3;
+const DYNAMIC: u32 = 4;
+const STATIC: u32 = 5;
 
 /// Default error of the integration when nobody says.
 const DEFAULT_ERROR: f64 = 1e-6;
@@ -125,20 +134,23 @@ impl Session {
                     None => complete &= k >= l.n_q + l.n_v,
                 }
             }
-            if complete {
+            if complete && !carried.at_rest {
                 v = Some(speeds);
             }
             if carried.numbers.len() == l.len() {
                 turns.copy_from_slice(&carried.numbers[l.turns()]);
             }
         } else {
-            self.initial_joints(&scene, &mut q);
+            if mode == DYNAMIC || mode == INITIAL_CONDITIONS {
+                self.initial_joints(&scene, &mut q);
+            }
             for (m, motion) in scene.motions.iter().enumerate() {
                 self.initial_motion(&scene, m, motion.state, &q, &mut x);
             }
         }
         let assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
         let v = match v {
+            _ if mode == STATIC => vec![0.0; l.n_v],
             Some(v) => v,
             None => assemble::velocities(&scene, &self.model, t, &q, &x)?,
         };
@@ -206,10 +218,10 @@ impl Session {
         watch: &mut dyn Watch,
     ) -> Result<Status, Vec<Diagnostic>> {
         let mode = match analysis {
-            Analysis::Kinematic => 1,
-            Analysis::InitialConditions => 3,
-            Analysis::Static => 5,
-            Analysis::Dynamic | Analysis::Transient => 4,
+            Analysis::Kinematic => KINEMATIC,
+            Analysis::InitialConditions => INITIAL_CONDITIONS,
+            Analysis::Static => STATIC,
+            Analysis::Dynamic | Analysis::Transient => DYNAMIC,
         };
         let (mut system, assembly) = self.prepare(mode)?;
         let mut analysis = analysis;
@@ -236,8 +248,8 @@ impl Session {
             self.warn("the mechanism has no freedom: it is moved by its motions alone");
             analysis = Analysis::Kinematic;
         }
-        if analysis == Analysis::Kinematic && mode != 1 {
-            (system, _) = self.prepare(1)?;
+        if analysis == Analysis::Kinematic && mode != KINEMATIC {
+            (system, _) = self.prepare(KINEMATIC)?;
         }
         self.first_facts(&system, &assembly);
         let (program, complaints) = self.columns.program(&system.scene);
@@ -267,12 +279,7 @@ impl Session {
         }
         let status = match analysis {
             Analysis::InitialConditions => Status::Completed,
-            Analysis::Static => {
-                return Err(vec![Diagnostic::error(
-                    "unsupported",
-                    "static equilibrium is not solved yet",
-                )]);
-            }
+            Analysis::Static => self.at_rest(&mut system, (start, end, steps), &program, watch),
             _ => self.over_time(&mut system, analysis, (start, end, steps), &program, watch),
         };
         if matches!(analysis, Analysis::InitialConditions) {
@@ -295,16 +302,7 @@ impl Session {
         } else {
             Kind::Dynamic
         };
-        let steps = steps.max(1);
-        let outputs: Vec<f64> = (1..=steps)
-            .map(|k| {
-                if k == steps {
-                    end
-                } else {
-                    start + (end - start) * k as f64 / steps as f64
-                }
-            })
-            .collect();
+        let outputs = output_times(start, end, steps);
         let settings = self.integration();
         let name = self
             .model
@@ -346,13 +344,7 @@ impl Session {
         self.drift(system, &first, &trajectory.rows);
         let last = trajectory.rows.last().cloned().unwrap_or(first);
         self.keep(system, last);
-        let counts = Counts {
-            steps: trajectory.stats.steps as u64,
-            rejected_steps: trajectory.stats.rejected as u64,
-            evaluations: trajectory.stats.evaluations as u64,
-            jacobians: trajectory.stats.jacobians as u64,
-            factorizations: trajectory.stats.factorizations as u64,
-        };
+        let counts = counts(&trajectory.stats);
         let method = trajectory
             .methods
             .iter()
@@ -379,6 +371,97 @@ impl Session {
             end: reached,
             outputs: trajectory.rows.len(),
             method,
+            status,
+            stop_reason: reason,
+            solve_seconds: seconds,
+            counts,
+            worst,
+        });
+        status
+    }
+
+    /// An equilibrium now, or one at each of `steps` times up to an `end` that is still to come.
+    fn at_rest(
+        &mut self,
+        system: &mut System,
+        (start, end, steps): (f64, f64, usize),
+        program: &crate::expr::program::Program,
+        watch: &mut dyn Watch,
+    ) -> Status {
+        let (kind, times) = if end > start {
+            (Kind::QuasiStatic, output_times(start, end, steps))
+        } else {
+            (Kind::Static, vec![start])
+        };
+        let settings = statics::Settings::of(&self.model.equilibrium);
+        let first = system.numbers.clone();
+        let clock = Instant::now();
+        let mut stats = crate::numeric::Stats::default();
+        let mut rows = Vec::new();
+        let mut words = String::new();
+        let mut failed = None;
+        for &t in &times {
+            let y = system.numbers[system.scene.layout.y()].to_vec();
+            let numbers = system.row(t, &y);
+            system.numbers.copy_from_slice(&numbers);
+            match statics::settle(system, &settings, watch, &mut stats) {
+                Ok(found) => {
+                    self.run.log.push(Event::Static {
+                        time: t,
+                        iterations: found.iterations as u32,
+                        imbalance: found.imbalance,
+                    });
+                    words = format!("EQUILIBRIUM, {}", found.stability.words());
+                    if found.stability.unstable > 0 {
+                        self.warn(&format!(
+                            "the equilibrium at time {t} is {}",
+                            found.stability.words()
+                        ));
+                    }
+                    rows.push(system.numbers.clone());
+                }
+                Err(why) => {
+                    failed = Some((t, why));
+                    break;
+                }
+            }
+        }
+        let seconds = clock.elapsed().as_secs_f64();
+        self.rows(kind, program, &rows);
+        let (status, reason, worst) = match failed {
+            None => (Status::Completed, String::new(), Vec::new()),
+            Some((_, statics::NoEquilibrium::Interrupted)) => {
+                let reason = "interrupted; the results so far are kept".to_string();
+                (Status::Interrupted, reason, Vec::new())
+            }
+            Some((t, statics::NoEquilibrium::Unbalanced(sentence, name))) => {
+                let reason = format!("at time {t} {sentence}");
+                (Status::NoEquilibrium, reason, vec![name])
+            }
+        };
+        let last = rows.last().cloned().unwrap_or(first);
+        let reached = last[0];
+        self.keep(system, last);
+        if let Some(carried) = &mut self.carried {
+            carried.at_rest = true;
+        }
+        let counts = counts(&stats);
+        let record = &mut self.run.record;
+        record.counts += counts;
+        record.solve_seconds += seconds;
+        record.method = if words.is_empty() {
+            "EQUILIBRIUM".into()
+        } else {
+            words
+        };
+        record.status = status;
+        record.stop_reason.clone_from(&reason);
+        record.simulations.push(results::Simulation {
+            kind,
+            start,
+            end: reached,
+            outputs: rows.len(),
+            method: record.method.clone(),
             status,
             stop_reason: reason,
             solve_seconds: seconds,
@@ -420,6 +503,7 @@ impl Session {
             t: numbers[0],
             numbers,
             names: unknown_names(&system.scene),
+            at_rest: false,
         });
     }
 
@@ -495,6 +579,30 @@ impl Session {
         if n_rows > 0 {
             record.constraint_drift = Some(record.constraint_drift.unwrap_or(0.0).max(worst));
         }
+    }
+}
+
+/// `steps` times at equal distances after `start`, the last of them `end`.
+fn output_times(start: f64, end: f64, steps: usize) -> Vec<f64> {
+    let steps = steps.max(1);
+    (1..=steps)
+        .map(|k| {
+            if k == steps {
+                end
+            } else {
+                start + (end - start) * k as f64 / steps as f64
+            }
+        })
+        .collect()
+}
+
+fn counts(stats: &crate::numeric::Stats) -> Counts {
+    Counts {
+        steps: stats.steps as u64,
+        rejected_steps: stats.rejected as u64,
+        evaluations: stats.evaluations as u64,
+        jacobians: stats.jacobians as u64,
+        factorizations: stats.factorizations as u64,
     }
 }
 

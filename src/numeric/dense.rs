@@ -112,6 +112,13 @@ impl Lu {
         Ok(())
     }
 
+    /// Whether the determinant is positive.
+    pub fn positive(&self) -> bool {
+        let n = self.n;
+        let sign = |k: usize| (self.pivots[k] != k) != (self.a[k * n + k] < 0.0);
+        !(0..n).fold(false, |negative, k| negative != sign(k))
+    }
+
     /// `x ← A⁻¹ x`
     pub fn solve(&self, x: &mut [f64]) {
         let n = self.n;

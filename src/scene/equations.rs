@@ -22,6 +22,8 @@ use std::cell::{Cell, OnceCell, RefCell};
 
 /// Value of MODE in a kinematic analysis.
 const KINEMATIC: f64 = 1.0;
+/// Value of MODE in a static analysis: nothing moves, motions stand still where they are.
+pub const STATIC: f64 = 5.0;
 
 /// One instant of a scene.
 pub struct Equations<'s, S: Scalar> {
@@ -131,6 +133,15 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Value, rate and acceleration that a motion prescribes.
     fn drive(&self, m: usize) -> Jet<S> {
+        let moving = self.drive_in_time(m);
+        if self.scene.mode == STATIC {
+            Jet::new(moving.value, S::zero(), S::zero())
+        } else {
+            moving
+        }
+    }
+
+    fn drive_in_time(&self, m: usize) -> Jet<S> {
         let motion = &self.scene.motions[m];
         let f = self.in_time(motion.formula, &mut Vec::new());
         let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
@@ -417,6 +428,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let gamma: Vec<S> = rows.iter().map(|(_, row)| row.gamma).collect();
         let multipliers = if scene.mode == KINEMATIC {
             self.determined(&wrenches, &g, &gamma, &mut f)
+        } else if scene.mode == STATIC {
+            self.supporting(&g, &mut f)
         } else {
             let factor = if scene.articulated {
                 Factor::Articulated(ArticulatedFactor::new(scene, &self.links))
@@ -501,6 +514,78 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v]))
             .collect();
         solve_symmetric(gram, rhs)
+    }
+
+    /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are zero.
+    ///
+    /// ```text
+    /// λ = −(G W Gᵀ)⁻¹ G W f
+    /// ```
+    fn supporting(&self, g: &[Vec<(usize, S)>], f: &mut [S]) -> Vec<S> {
+        let w = super::programs::weights(self.scene);
+        let gram: Vec<Vec<S>> = (0..g.len())
+            .map(|r| {
+                (0..=r)
+                    .map(|c| {
+                        let mut sum = S::zero();
+                        for &(i, x) in &g[r] {
+                            for &(j, y) in &g[c] {
+                                if i == j {
+                                    sum += (x * y).scale(w[i]);
+                                }
+                            }
+                        }
+                        sum
+                    })
+                    .collect()
+            })
+            .collect();
+        let rhs = g
+            .iter()
+            .map(|row| {
+                row.iter()
+                    .fold(S::zero(), |s, &(v, x)| s - (x * f[v]).scale(w[v]))
+            })
+            .collect();
+        f.fill(S::zero());
+        solve_symmetric(gram, rhs)
+    }
+
+    /// Loads along the free coordinates, gravity included, with the forces of the active rows at the given multipliers: all
+    /// zero in equilibrium   (n_v)
+    pub fn balance(&self, multipliers: &[S]) -> Vec<S> {
+        self.solving.set(true);
+        let (wrenches, _) = self.loads();
+        self.solving.set(false);
+        let carried = sweep::inward(self.scene, &self.links, self.gravity(), &wrenches);
+        let free = self.scene.freedoms.iter().filter(|f| f.v.is_some());
+        let mut f: Vec<S> = free.map(|f| -f.component(&carried[f.link])).collect();
+        let active = (0..self.scene.rows.len()).filter(|&r| self.is_active(r));
+        for (r, &l) in active.zip(multipliers) {
+            for (v, g) in self.row(r).gradient {
+                f[v] += g * l;
+            }
+        }
+        f
+    }
+
+    /// The axis of a freedom, ground axes.
+    pub fn freedom_axis(&self, f: &sweep::Freedom) -> Vec3<S> {
+        let rotation = &self.links[f.link].X_GL.rotation;
+        rotation.column(f.axis).times(S::constant(f.sign))
+    }
+
+    /// How large the loads are, whatever cancels: Σ |force| + Σ |torque| / length + weight.
+    pub fn load_scale(&self) -> S {
+        self.solving.set(true);
+        let (_, actions) = self.loads();
+        self.solving.set(false);
+        let mass: f64 = self.scene.links.iter().map(|l| l.mass).sum();
+        let weight = S::constant(mass * self.scene.gravity.norm());
+        actions.iter().fold(weight, |sum, a| {
+            let torque = a.torque.norm2().sqrt().scale(1.0 / self.scene.length);
+            sum + a.force.norm2().sqrt() + torque
+        })
     }
 
     /// `q̇, v̇, ẋ`

@@ -1,9 +1,9 @@
 //! The equations of a scene as straight-line programs: run once over recording numbers, then as often as needed.
 
 use super::Scene;
-use super::equations::Equations;
+use super::equations::{Equations, STATIC};
 use super::solve::solve_symmetric;
-use crate::expr::program::{Builder, Folding, Program, Sym};
+use crate::expr::program::{Builder, Folding, Input, Program, Sym};
 use crate::scalar::Scalar;
 use std::cell::RefCell;
 
@@ -29,14 +29,26 @@ pub fn record_with_complaints<F>(scene: &Scene, f: F) -> (Program, Vec<String>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
+    record_more(scene, 0, |at, _| f(at))
+}
+
+/// As [`record_with_complaints`], for programs that read `n_more` further numbers after those of the layout.
+pub fn record_more<F>(scene: &Scene, n_more: usize, f: F) -> (Program, Vec<String>)
+where
+    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
+{
     let builder = RefCell::new(Builder::new(Folding::Structural));
-    let layout = scene.layout.inputs();
-    let numbers: Vec<Sym<'_>> = layout
+    let n = scene.layout.len();
+    let layout: Vec<Input> = (0..n + n_more).map(|k| Input::Slot(k as u32)).collect();
+    let mut numbers: Vec<Sym<'_>> = layout
         .iter()
         .map(|&input| Sym::input(input, &builder))
         .collect();
-    let equations = Equations::new(scene, &numbers);
-    let out = f(&equations);
+    if scene.mode == STATIC {
+        numbers[scene.layout.v()].fill(Sym::Constant(0.0));
+    }
+    let equations = Equations::new(scene, &numbers[..n]);
+    let out = f(&equations, &numbers[n..]);
     let values: Vec<_> = out
         .iter()
         .map(|s| s.value(&mut builder.borrow_mut()))

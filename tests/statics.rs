@@ -1,0 +1,291 @@
+//! Equilibria against closed forms: rest by contact, chains, arches, springs; what is said when there is none.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::model::Model;
+use cognate::results::Status;
+
+fn data(name: &str) -> String {
+    let path = format!(
+        "{}/tests/data/references/{name}",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+fn session(text: &str, columns: &[&str]) -> Session {
+    let model = Model::from_text(text).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        ..Options::default()
+    };
+    Session::new(model, "test", options)
+}
+
+fn rest(session: &mut Session) -> Status {
+    session
+        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+fn last(session: &Session, column: &str) -> f64 {
+    *session.run.column(column).unwrap().last().unwrap()
+}
+
+fn reference(name: &str) -> Vec<Vec<f64>> {
+    let text = data(name);
+    let rows = text.lines().skip(1);
+    rows.map(|l| l.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect()
+}
+
+const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+
+#[test]
+fn a_sphere_rests_as_deep_as_its_weight_presses_it() {
+    let text = data("static_sphere.adm");
+    for row in reference("static_sphere.csv") {
+        let k = format!("{:E}", row[0]);
+        let mut s = session(&text.replace("1.0E8,", &format!("{k},")), &["DZ(2,1)"]);
+        assert_eq!(
+            rest(&mut s),
+            Status::Completed,
+            "{}",
+            s.run.record.stop_reason
+        );
+        let z = last(&s, "DZ(2,1)");
+        println!("k {k}: {z} in {:?}", s.run.record.counts);
+        assert!((z - row[1]).abs() < 1e-12, "{z} against {}", row[1]);
+        assert!(
+            s.run.record.method.contains("stable"),
+            "{}",
+            s.run.record.method
+        );
+    }
+}
+
+#[test]
+fn a_sphere_falls_onto_the_plane_it_did_not_touch() {
+    let text =
+        data("static_sphere.adm").replace("QP=0.0,0.0,0.05\nMARKER/3", "QP=0.0,0.0,0.05\nMARKER/3");
+    let text = text.replace(
+        "MARKER/4, PART=1, QP=0.0,0.0,0.05",
+        "MARKER/4, PART=1, QP=0.0,0.0,-3",
+    );
+    let text = text.replace(
+        "MARKER/3, PART=2, QP=0.0,0.0,0.05",
+        "MARKER/3, PART=2, QP=0.0,0.0,-3",
+    );
+    let text = text.replace("PART/2,", "PART/2, QG=0,0,3,");
+    let mut s = session(&text, &["DZ(2,1)"]);
+    assert_eq!(
+        rest(&mut s),
+        Status::Completed,
+        "{}",
+        s.run.record.stop_reason
+    );
+    println!("{:?}", s.run.record.counts);
+    assert!((last(&s, "DZ(2,1)") - 4.997_872_941_970_744_5e-2).abs() < 1e-12);
+}
+
+#[test]
+fn a_chain_hangs_as_it_should_from_a_start_like_a_v() {
+    let columns: Vec<String> = (1..20)
+        .flat_map(|k| {
+            let m = 22 + 2 * k;
+            [format!("DX({m},1)"), format!("DY({m},1)")]
+        })
+        .collect();
+    let names: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let mut s = session(&data("static_hanging_chain.adm"), &names);
+    assert_eq!(
+        rest(&mut s),
+        Status::Completed,
+        "{}",
+        s.run.record.stop_reason
+    );
+    println!("{:?} {}", s.run.record.counts, s.run.record.method);
+    for row in &reference("static_hanging_chain.csv")[1..20] {
+        let m = 22 + 2 * row[0] as usize;
+        for (k, d) in ["DX", "DY"].iter().enumerate() {
+            let value = last(&s, &format!("{d}({m},1)"));
+            assert!(
+                (value - row[1 + k]).abs() < 1e-12,
+                "{d} of joint {}: {value}",
+                row[0]
+            );
+        }
+    }
+}
+
+/// Two springs of free length 1 along x meet in a mass that is pressed down: the arch snaps through.
+fn arch(load: f64) -> String {
+    format!(
+        "{GROUND}PART/2, MASS=1, CM=2, QG=0,0.3,0\nMARKER/2, PART=2\n\
+         MARKER/11, PART=1, QP=-1,0,0\nMARKER/12, PART=1, QP=1,0,0\n\
+         MARKER/3, PART=2, QP=0,0,0, REULER=0,90D,0\nMARKER/4, PART=1, QP=0,0.3,0, REULER=0,90D,0\n\
+         MARKER/5, PART=1\n\
+         JPRIM/1, INPLANE, I=2, J=5\nJPRIM/2, ORIENTATION, I=2, J=5\n\
+         SPRINGDAMPER/1, TRANSLATION, I=2, J=11, K=100, C=1, LENGTH=1.0440306508910551\n\
+         SPRINGDAMPER/2, TRANSLATION, I=2, J=12, K=100, C=1, LENGTH=1.0440306508910551\n\
+         VFORCE/1, I=2, JFLOAT=99, RM=1, FX=0\\FY=-{load}\\FZ=0\nMARKER/99, PART=1, FLOATING\n\
+         END\n"
+    )
+}
+
+#[test]
+fn an_arch_holds_a_light_load_and_snaps_through_under_a_heavy_one() {
+    let free = 1.044_030_650_891_055_1_f64;
+    let balance = |y: f64| {
+        let d = (1.0 + y * y).sqrt();
+        2.0 * 100.0 * (free - d) * y / d
+    };
+    for load in [0.5, 20.0] {
+        let mut s = session(&arch(load), &["DY(2,1)", "DX(2,1)"]);
+        assert_eq!(
+            rest(&mut s),
+            Status::Completed,
+            "{}",
+            s.run.record.stop_reason
+        );
+        let y = last(&s, "DY(2,1)");
+        println!(
+            "{load}: y = {y} {} {:?}",
+            s.run.record.method, s.run.record.counts
+        );
+        assert!((balance(y) - load).abs() < 1e-9, "{} at {y}", balance(y));
+        assert!(last(&s, "DX(2,1)").abs() < 1e-9);
+        assert_eq!(y > 0.0, load < 1.0);
+        assert!(s.run.record.method.contains("EQUILIBRIUM, stable"));
+    }
+}
+
+fn pendulum(angle: &str) -> String {
+    format!(
+        "{GROUND}PART/2, MASS=2, CM=2, IP=0.1,0.1,0.1, REULER={angle},0,0\nMARKER/2, PART=2, QP=0,-1.5,0\n\
+         MARKER/3, PART=2\nJOINT/1, REVOLUTE, I=3, J=1\nACCGRAV/JGRAV=-9.81\nEND\n"
+    )
+}
+
+#[test]
+fn a_pendulum_comes_to_hang_and_its_joint_carries_its_weight() {
+    for angle in ["30D", "90D", "179D"] {
+        let mut s = session(
+            &pendulum(angle),
+            &["DX(2,1)", "JOINT(1,0,3,0)", "JOINT(1,0,8,0)"],
+        );
+        assert_eq!(
+            rest(&mut s),
+            Status::Completed,
+            "{}",
+            s.run.record.stop_reason
+        );
+        assert!(last(&s, "DX(2,1)").abs() < 1e-12);
+        assert!((last(&s, "JOINT(1,0,3,0)") - 2.0 * 9.81).abs() < 1e-12);
+        assert!(s.run.record.method.ends_with("stable"));
+    }
+}
+
+#[test]
+fn a_pendulum_that_stands_on_its_head_stays_and_is_said_to_be_unstable() {
+    let mut s = session(&pendulum("180D"), &["DY(2,1)"]);
+    assert_eq!(rest(&mut s), Status::Completed);
+    assert!((last(&s, "DY(2,1)") - 1.5).abs() < 1e-12);
+    assert!(
+        s.run.record.method.contains("unstable in 1 direction"),
+        "{}",
+        s.run.record.method
+    );
+    assert_eq!(s.run.record.warnings.len(), 1);
+}
+
+#[test]
+fn what_falls_forever_is_named_with_its_direction() {
+    let text = format!(
+        "{GROUND}PART/2, MASS=2, CM=2, IP=1,1,1\nMARKER/2, PART=2\nACCGRAV/ZGRAV=-9.81\nEND\n"
+    )
+    .replace("ZGRAV", "KGRAV");
+    let mut s = session(&text, &[]);
+    assert_eq!(rest(&mut s), Status::NoEquilibrium);
+    let why = &s.run.record.stop_reason;
+    println!("{why}");
+    assert!(
+        why.contains("force of 1.962")
+            && why.contains("PART/2")
+            && why.contains("(0.000000, 0.000000, -1.000000)"),
+        "{why}"
+    );
+}
+
+#[test]
+fn after_rest_a_simulation_begins_there() {
+    let mut s = session(&pendulum("20D"), &["DX(2,1)", "VX(2,1)"]);
+    assert_eq!(rest(&mut s), Status::Completed);
+    let status = s
+        .simulate(Analysis::Dynamic, 1.0, 10, &mut Unwatched)
+        .unwrap();
+    assert_eq!(status, Status::Completed);
+    let x = s.run.column("DX(2,1)").unwrap();
+    assert!(x[1..].iter().all(|x| x.abs() < 1e-12), "{x:?}");
+    let kinds: Vec<&str> = s.run.sequences.iter().map(|q| q.name.as_str()).collect();
+    assert_eq!(
+        kinds,
+        ["initialConditions_001", "static_001", "dynamic_001"]
+    );
+}
+
+#[test]
+fn differential_equations_come_to_rest_or_are_held() {
+    let with = |hold: &str| {
+        format!(
+            "{GROUND}PART/2, MASS=1, CM=2\nMARKER/2, PART=2\nMARKER/3, PART=1\n\
+             JPRIM/1, ORIENTATION, I=2, J=3\n\
+             DIFF/1, IC=0.5{hold}, FUNCTION=DX(2,1)-2*DIF(1)\n\
+             VFORCE/1, I=2, JFLOAT=9, RM=1, FX=1-4*DX(2,1)+DIF(1)\\FY=-DY(2,1)\\FZ=-DZ(2,1)\nMARKER/9, PART=1, FLOATING\nEND\n"
+        )
+    };
+    let mut s = session(&with(""), &["DX(2,1)", "DIF(1)"]);
+    assert_eq!(
+        rest(&mut s),
+        Status::Completed,
+        "{}",
+        s.run.record.stop_reason
+    );
+    // x = 2 y, 1 = 4 x − y
+    assert!((last(&s, "DX(2,1)") - 2.0 / 7.0).abs() < 1e-12);
+    assert!((last(&s, "DIF(1)") - 1.0 / 7.0).abs() < 1e-12);
+    let mut s = session(&with(", STATIC_HOLD"), &["DX(2,1)", "DIF(1)"]);
+    assert_eq!(rest(&mut s), Status::Completed);
+    assert_eq!(last(&s, "DIF(1)"), 0.5);
+    assert!((last(&s, "DX(2,1)") - 1.5 / 4.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_sequence_of_equilibria_follows_a_motion() {
+    let text = pendulum("0D").replace(
+        "ACCGRAV",
+        "MARKER/7, PART=1, QP=0,0,0\nPART/3\nMARKER/8, PART=3\nMARKER/9, PART=3\nJOINT/2, TRANSLATIONAL, I=8, J=12\nMARKER/12, PART=1, REULER=90D,90D,0\nACCGRAV",
+    );
+    let text = text.replace("JOINT/1, REVOLUTE, I=3, J=1", "JOINT/1, REVOLUTE, I=3, J=9");
+    let text = text.replace("MARKER/8, PART=3\n", "MARKER/8, PART=3, REULER=90D,90D,0\n");
+    let text = text.replace(
+        "ACCGRAV",
+        "MOTION/1, JOINT=2, TRANSLATION, FUNCTION=TIME\nACCGRAV",
+    );
+    let mut s = session(&text, &["DX(2,1)", "DY(2,1)", "VX(2,1)"]);
+    let status = s
+        .simulate(Analysis::Static, 2.0, 4, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let x = s.run.column("DX(2,1)").unwrap();
+    for (a, b) in x[1..].iter().zip([0.5, 1.0, 1.5, 2.0]) {
+        assert!((a - b).abs() < 1e-12, "{x:?}");
+    }
+    assert!(
+        s.run.column("VX(2,1)").unwrap()[1..]
+            .iter()
+            .all(|v| *v == 0.0)
+    );
+    assert_eq!(s.run.sequences[1].name, "quasiStatic_001");
+}
