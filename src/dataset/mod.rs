@@ -14,11 +14,13 @@ pub mod row;
 pub mod statement;
 pub mod syntax;
 pub mod value;
+pub mod write;
 
 use crate::diagnostic::{Diagnostic, Severity, Span};
 use crate::model::{MarkerOwner, Model};
 use read::Table;
 use row::Record;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 use syntax::{Item, Source, Syntax};
@@ -38,6 +40,8 @@ pub struct Dataset {
     pub syntax: Syntax,
     /// one for each item: the statement as read, where its head could be understood
     pub records: Vec<Option<Record>>,
+    /// items in which the reader found a mistake
+    pub mistaken: BTreeSet<usize>,
 }
 
 /// What reading a dataset gave: always everything that could be understood, with all that was found wrong.
@@ -111,11 +115,16 @@ pub fn read_source(source: Source) -> Reading {
     check_title(&source, &syntax, out);
     let mut records = Vec::with_capacity(syntax.items.len());
     let mut last_part = None;
-    for item in &syntax.items {
+    let mut mistaken = BTreeSet::new();
+    for (k, item) in syntax.items.iter().enumerate() {
+        let before = out.len();
         let record = match item {
             Item::Comment(_) => None,
             Item::Statement(tokens) => read::record(&source, tokens, TABLE, out),
         };
+        if out[before..].iter().any(|d| d.severity == Severity::Error) {
+            mistaken.insert(k);
+        }
         if let Some(record) = &record {
             enter(&source, &mut reading.model, record, false, out);
             if record.row.keyword() == "PART" {
@@ -133,6 +142,7 @@ pub fn read_source(source: Source) -> Reading {
     for d in reading.model.check() {
         out.push(Diagnostic {
             file: source.file.clone(),
+            span: source.word_at(d.line, d.column),
             ..d
         });
     }
@@ -141,6 +151,7 @@ pub fn read_source(source: Source) -> Reading {
         source,
         syntax,
         records,
+        mistaken,
     };
     reading
 }

@@ -66,6 +66,17 @@ impl Source {
         (line, before.map_or(0, |s| s.chars().count()) + 1)
     }
 
+    /// The word at a 1-based line and column.
+    pub fn word_at(&self, line: usize, column: usize) -> Option<Span> {
+        let start = *self.line_starts.get(line.checked_sub(1)?)?;
+        let rest = self.text.get(start..)?;
+        let offset = rest.char_indices().nth(column.checked_sub(1)?)?.0;
+        let word = rest.get(offset..)?;
+        let ends = |c: char| c.is_whitespace() || matches!(c, ',' | '(' | ')' | '=' | '\\');
+        let length = word.find(ends).unwrap_or(word.len()).max(1);
+        Some(Span::new(start + offset, start + offset + length))
+    }
+
     /// The text of a span.
     pub fn slice(&self, span: Span) -> &str {
         self.text.get(span.start..span.end).unwrap_or("")

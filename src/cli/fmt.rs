@@ -1,0 +1,75 @@
+//! `cognate fmt`: a dataset in the style of Adams View, comments and order kept.
+
+use super::{Exit, Failure, Outcome, remark, say};
+use crate::dataset::{self, Reading};
+use crate::diagnostic::{Diagnostic, Severity};
+use std::path::PathBuf;
+
+/// Write a dataset in the style of Adams View
+///
+/// One argument per line, at most 80 columns, full keywords, shortest numbers. Comments, names and order stay. What the dataset
+/// means stays too: the formatted text is read again and compared before it is written.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate fmt model.adm                  prints the formatted dataset
+  cognate fmt model.adm -o tidy.adm
+  cognate fmt model.adm --check          exit code 8 where the file is not formatted")]
+pub struct Args {
+    /// Dataset (.adm)
+    file: PathBuf,
+    /// Write nothing; exit with code 8 when the file is not formatted
+    #[arg(long)]
+    check: bool,
+    /// File to write; without it the text goes to standard output
+    #[arg(short, long, value_name = "OUT", conflicts_with = "check")]
+    output: Option<PathBuf>,
+}
+
+pub fn run(args: &Args) -> Outcome {
+    let reading = dataset::read(&args.file).map_err(super::check::failure)?;
+    refuse_mistakes(&reading)?;
+    let text = reading.dataset.formatted();
+    let again = dataset::read_text(&text);
+    if again.model.to_text() != reading.model.to_text() {
+        return Err(Failure {
+            exit: Exit::Bug,
+            ..Failure::from(Diagnostic::error(
+                "bug",
+                "the formatted dataset does not mean the same; nothing was written",
+            ))
+        });
+    }
+    if args.check {
+        let same = text == reading.dataset.to_text();
+        if !same {
+            remark(format!("{} is not formatted", args.file.display()));
+        }
+        return Ok(if same { Exit::Done } else { Exit::CheckFailed });
+    }
+    let Some(output) = &args.output else {
+        say(&text);
+        return Ok(Exit::Done);
+    };
+    if super::convert::same_file(&args.file, output) {
+        return Err(Failure::usage("the output is the input, which is never overwritten"));
+    }
+    std::fs::write(output, reading.dataset.source.encode(&text))
+        .map_err(|e| Diagnostic::error("cannot_write", format!("{}: {e}", output.display())))?;
+    Ok(Exit::Done)
+}
+
+/// A statement that was not understood cannot be written; what does not fit together otherwise is no hindrance.
+fn refuse_mistakes(reading: &Reading) -> Result<(), Failure> {
+    if reading.dataset.mistaken.is_empty() {
+        return Ok(());
+    }
+    let lines: Vec<usize> = reading.mistaken_lines();
+    let mut diagnostics = reading.diagnostics.clone();
+    diagnostics.retain(|d| d.severity == Severity::Error && lines.contains(&d.line));
+    Err(Failure {
+        exit: Exit::Input,
+        diagnostics,
+        sources: super::check::sources(reading),
+    })
+}
