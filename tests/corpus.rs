@@ -3,6 +3,7 @@
 
 use cognate::dataset;
 use cognate::dataset::command::{Command, Script, Step};
+use cognate::dataset::syntax::{Item, TokenKind};
 use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::model::Model;
 use std::path::{Path, PathBuf};
@@ -173,5 +174,134 @@ fn message_logs_replay_as_commands() {
                 .apply(&step.command)
                 .unwrap_or_else(|e| panic!("{log}:{}: {e}", step.line));
         }
+    }
+}
+
+/// What a model says, without the places it was read from and without blanks in expressions.
+fn meaning(model: &Model) -> String {
+    let mut out = String::new();
+    let mut inside_breaks = false;
+    for line in format!("{model:#?}").lines().map(str::trim) {
+        match line {
+            "breaks: [" => inside_breaks = true,
+            "]," if inside_breaks => inside_breaks = false,
+            _ if inside_breaks => {}
+            _ if line.starts_with("line: ")
+                || line.starts_with("column: ")
+                || line == "breaks: []," => {}
+            _ if line.starts_with("text: ") => {
+                out.extend(line.chars().filter(|c| *c != ' ').chain(['\n']))
+            }
+            _ => out.extend(line.chars().chain(['\n'])),
+        }
+    }
+    out
+}
+
+/// The first line in which two texts differ.
+fn difference(a: &str, b: &str) -> String {
+    let differ = a
+        .lines()
+        .zip(b.lines())
+        .enumerate()
+        .find(|(_, (a, b))| a != b);
+    differ.map_or_else(
+        || format!("{} and {} lines", a.lines().count(), b.lines().count()),
+        |(k, (a, b))| format!("line {}: {a:?} and {b:?}", k + 1),
+    )
+}
+
+fn same(a: &str, b: &str, what: &str, path: &Path) {
+    assert!(a == b, "{}: {what}: {}", path.display(), difference(a, b));
+}
+
+#[test]
+fn every_real_dataset_is_written_as_it_was_read() {
+    let Some(files) = corpus("adm") else { return };
+    for path in &files {
+        let dataset = dataset::read(path).expect("a readable file").dataset;
+        let bytes = std::fs::read(path).expect("a readable file");
+        assert!(
+            dataset.source.encode(dataset.to_text()) == bytes,
+            "{}",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn formatting_keeps_what_every_real_dataset_means() {
+    let Some(files) = corpus("adm") else { return };
+    for path in files.iter().filter(|p| !made_by_hand(p)) {
+        let first = dataset::read(path).expect("a readable file");
+        let text = first.dataset.formatted();
+        let second = dataset::read_text(&text);
+        same(
+            &meaning(&first.model),
+            &meaning(&second.model),
+            "meaning",
+            path,
+        );
+        same(&text, &second.dataset.formatted(), "formatting again", path);
+        let comments = |r: &dataset::Reading| -> Vec<String> {
+            let source = &r.dataset.source;
+            let all = r.dataset.syntax.items.iter().flat_map(|item| match item {
+                Item::Comment(span) => vec![*span],
+                Item::Statement(tokens) => {
+                    let inside = tokens
+                        .tokens
+                        .iter()
+                        .filter(|t| t.kind == TokenKind::Comment);
+                    inside.map(|t| t.span).collect()
+                }
+            });
+            all.map(|span| source.slice(span).trim_end().to_owned())
+                .collect()
+        };
+        assert_eq!(
+            comments(&first),
+            comments(&second),
+            "comments of {}",
+            path.display()
+        );
+        let heads = |r: &dataset::Reading| -> Vec<String> {
+            r.dataset
+                .records
+                .iter()
+                .flatten()
+                .map(|r| r.element())
+                .collect()
+        };
+        assert_eq!(heads(&first), heads(&second), "order of {}", path.display());
+        let broad = text.lines().skip(1).find(|l| {
+            l.chars().count() > 80 && !l.contains('!') && !l.contains('"') && l.contains(' ')
+        });
+        let texts = ["COMMENT", "STRING", "FILE", "ROUTINE"];
+        let excused = broad.is_none_or(|l| texts.iter().any(|t| l.contains(t)));
+        assert!(excused, "{}: {broad:?}", path.display());
+    }
+}
+
+#[test]
+fn a_model_written_by_itself_says_the_same() {
+    let Some(files) = corpus("adm") else { return };
+    for path in files.iter().filter(|p| !made_by_hand(p)) {
+        let first = dataset::read(path).expect("a readable file").model;
+        let text = first.to_text();
+        let second = dataset::read_text(&text);
+        let wrong = errors(&second.diagnostics);
+        assert!(wrong.is_empty(), "{}: {}", path.display(), wrong[0]);
+        same(&meaning(&first), &meaning(&second.model), "meaning", path);
+    }
+}
+
+#[test]
+fn hand_made_files_are_formatted_without_harm() {
+    let Some(files) = corpus("adm") else { return };
+    for path in files.iter().filter(|p| made_by_hand(p)) {
+        let first = dataset::read(path).expect("a readable file");
+        let text = first.dataset.formatted();
+        let again = dataset::read_text(&text);
+        same(&text, &again.dataset.formatted(), "formatting again", path);
     }
 }

@@ -45,11 +45,18 @@ pub fn run(args: &Args) -> Outcome {
     let count = |s: Severity| all.iter().filter(|d| d.severity == s).count();
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     if args.json {
-        let found: Vec<_> = all.iter().map(render::json).collect();
-        say(&format!("{:#}\n", json!({ "errors": errors, "warnings": warnings, "findings": found })));
+        let findings = render::as_json(&all);
+        say(&format!(
+            "{:#}\n",
+            json!({ "errors": errors, "warnings": warnings, "findings": findings })
+        ));
     } else {
         complain(&all, &sources);
-        remark(format!("{} in {}", tally(errors, warnings), number(args.files.len(), "file")));
+        remark(format!(
+            "{} in {}",
+            tally(errors, warnings),
+            number(args.files.len(), "file")
+        ));
     }
     Ok(if errors > 0 { Exit::Input } else { Exit::Done })
 }
@@ -91,7 +98,11 @@ fn number(n: usize, what: &str) -> String {
 fn tally(errors: usize, warnings: usize) -> String {
     match (errors, warnings) {
         (0, 0) => "nothing wrong".into(),
-        _ => format!("{}, {}", number(errors, "error"), number(warnings, "warning")),
+        _ => format!(
+            "{}, {}",
+            number(errors, "error"),
+            number(warnings, "warning")
+        ),
     }
 }
 

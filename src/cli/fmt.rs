@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, Outcome, remark, say};
 use crate::dataset::{self, Reading};
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Diagnostic, Severity, Span};
 use std::path::PathBuf;
 
 /// Write a dataset in the style of Adams View
@@ -52,7 +52,9 @@ pub fn run(args: &Args) -> Outcome {
         return Ok(Exit::Done);
     };
     if super::convert::same_file(&args.file, output) {
-        return Err(Failure::usage("the output is the input, which is never overwritten"));
+        return Err(Failure::usage(
+            "the output is the input, which is never overwritten",
+        ));
     }
     std::fs::write(output, reading.dataset.source.encode(&text))
         .map_err(|e| Diagnostic::error("cannot_write", format!("{}: {e}", output.display())))?;
@@ -64,9 +66,19 @@ fn refuse_mistakes(reading: &Reading) -> Result<(), Failure> {
     if reading.dataset.mistaken.is_empty() {
         return Ok(());
     }
-    let lines: Vec<usize> = reading.mistaken_lines();
+    let items = &reading.dataset.syntax.items;
+    let spans: Vec<Span> = reading
+        .dataset
+        .mistaken
+        .iter()
+        .map(|&k| items[k].span())
+        .collect();
+    let inside = |d: &Diagnostic| {
+        d.span
+            .is_some_and(|s| spans.iter().any(|i| i.start <= s.start && s.start <= i.end))
+    };
     let mut diagnostics = reading.diagnostics.clone();
-    diagnostics.retain(|d| d.severity == Severity::Error && lines.contains(&d.line));
+    diagnostics.retain(|d| d.severity == Severity::Error && inside(d));
     Err(Failure {
         exit: Exit::Input,
         diagnostics,

@@ -4,10 +4,12 @@
 //! to standard output, everything about it (mistakes, warnings, progress) to standard error.
 
 pub mod card;
+mod check;
 mod convert;
 pub mod data;
 mod eval;
 mod explain;
+mod fmt;
 pub mod formula;
 mod functions;
 pub mod interrupt;
@@ -33,9 +35,11 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Verb {
+    Check(check::Args),
     Convert(convert::Args),
     Eval(eval::Args),
     Explain(explain::Args),
+    Fmt(fmt::Args),
     Functions(functions::Args),
     Plot(plot::Args),
     Repl(repl::Args),
@@ -127,9 +131,11 @@ pub type Outcome = Result<Exit, Failure>;
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
+        Verb::Check(args) => check::run(args),
         Verb::Convert(args) => convert::run(args),
         Verb::Eval(args) => eval::run(args),
         Verb::Explain(args) => explain::run(args),
+        Verb::Fmt(args) => fmt::run(args),
         Verb::Functions(args) => functions::run(args),
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),

@@ -139,6 +139,16 @@ pub enum Item {
     Statement(Tokens),
 }
 
+impl Item {
+    /// From its first byte to its last.
+    pub fn span(&self) -> Span {
+        match self {
+            Item::Comment(span) => *span,
+            Item::Statement(tokens) => tokens.span,
+        }
+    }
+}
+
 /// The tokens of one statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tokens {

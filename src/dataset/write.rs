@@ -31,19 +31,20 @@ impl Dataset {
         let mut last = self.syntax.title.end;
         for (k, (item, record)) in self.syntax.items.iter().zip(&self.records).enumerate() {
             let record = record.as_ref().filter(|_| !self.mistaken.contains(&k));
-            let span = match item {
-                Item::Comment(span) => *span,
-                Item::Statement(tokens) => tokens.span,
-            };
+            let span = item.span();
             let gap = source.slice(Span::new(last, span.start));
             let new_lines = gap.matches('\n').count().max(gap.matches('\r').count());
             if new_lines > 1 {
                 out.push("");
             }
             match (item, record) {
-                (Item::Comment(_), _) if new_lines == 0 && last > 0 => out.append(source.slice(span)),
+                (Item::Comment(_), _) if new_lines == 0 && last > 0 => {
+                    out.append(source.slice(span))
+                }
                 (Item::Comment(_), _) => out.push(source.slice(span).trim_end()),
-                (Item::Statement(tokens), Some(record)) => write_record(&mut out, record, &comments(source, tokens)),
+                (Item::Statement(tokens), Some(record)) => {
+                    write_record(&mut out, record, &comments(source, tokens))
+                }
                 (Item::Statement(_), None) => out.push(source.slice(span)),
             }
             last = span.end;
@@ -57,7 +58,11 @@ impl Dataset {
             }
             rest.for_each(|line| out.push(line));
         }
-        out.text(if source.text.contains("\r\n") { "\r\n" } else { "\n" })
+        out.text(if source.text.contains("\r\n") {
+            "\r\n"
+        } else {
+            "\n"
+        })
     }
 }
 
@@ -99,7 +104,10 @@ impl Model {
                     Some(MarkerOwner::PointMass(n)) => !self.point_masses.contains_key(&n),
                     _ => true,
                 };
-                markers.iter().filter(homeless).for_each(|m| write_named(&mut out, m));
+                markers
+                    .iter()
+                    .filter(homeless)
+                    .for_each(|m| write_named(&mut out, m));
             }
         }
         out.push("!");
@@ -162,13 +170,19 @@ fn comments<'a>(source: &'a Source, tokens: &Tokens) -> Vec<Inside<'a>> {
         }
     };
     let all = tokens.tokens.iter().enumerate();
-    all.filter(|(_, t)| t.kind == TokenKind::Comment).map(inside).collect()
+    all.filter(|(_, t)| t.kind == TokenKind::Comment)
+        .map(inside)
+        .collect()
 }
 
 /// The lines of one statement, comments after the argument they follow.
 fn write_record(out: &mut Lines, record: &Record, comments: &[Inside]) {
     let slash = record.id.is_none();
-    out.push(&format!("{}{}", record.element(), if slash { "/" } else { "" }));
+    out.push(&format!(
+        "{}{}",
+        record.element(),
+        if slash { "/" } else { "" }
+    ));
     let mut comments = comments.iter().peekable();
     let arguments = record.row.arguments();
     let ends = record.given.iter().skip(1).map(|g| g.span.start);
@@ -274,12 +288,18 @@ fn break_at(text: &str, room: usize) -> Option<usize> {
 /// Whether the byte before `at` ends something after which blanks do not matter: `,`, `(`, an operator that is not the
 /// sign of an exponent, nor half of `**`, nor a division (which at the end of a line looks like the end of the function).
 fn after_mark(bytes: &[u8], at: usize) -> bool {
-    let before = |k: usize| at.checked_sub(k).and_then(|k| bytes.get(k)).copied().unwrap_or(b' ');
+    let before = |k: usize| {
+        at.checked_sub(k)
+            .and_then(|k| bytes.get(k))
+            .copied()
+            .unwrap_or(b' ')
+    };
     match before(1) {
         b',' | b'(' | b':' => true,
         b'*' => bytes.get(at) != Some(&b'*'),
         b'+' | b'-' => {
-            let exponent = before(2).eq_ignore_ascii_case(&b'e') && (before(3).is_ascii_digit() || before(3) == b'.');
+            let exponent = before(2).eq_ignore_ascii_case(&b'e')
+                && (before(3).is_ascii_digit() || before(3) == b'.');
             !exponent
         }
         _ => false,
