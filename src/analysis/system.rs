@@ -7,7 +7,8 @@
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Ode};
-use crate::scalar::Dual;
+use crate::scalar::{Dual, Scalar};
+use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, record};
 use crate::scene::{Scene, Source};
@@ -38,6 +39,10 @@ pub struct System {
     dual_numbers: Vec<Dual<WIDTH>>,
     dual_out: Vec<Dual<WIDTH>>,
     change: Vec<f64>,
+    /// rates and weakness   (n + 1)
+    rates: Vec<f64>,
+    /// a stage of a method on the rows   (n)
+    stage: Vec<f64>,
     mover: Mover,
 }
 
@@ -52,17 +57,24 @@ pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
 fn shortest_rate(scene: &mut Scene) -> Result<Program, Vec<Diagnostic>> {
     let depth = scene.depth();
     scene.articulated = true;
-    let articulated = record(scene, |at| at.rates()).map_err(complaints)?;
+    let articulated = record(scene, |at| rates_and_weakness(at)).map_err(complaints)?;
     if depth > 40 {
         return Ok(articulated);
     }
     scene.articulated = false;
-    let matrix = record(scene, |at| at.rates()).map_err(complaints)?;
+    let matrix = record(scene, |at| rates_and_weakness(at)).map_err(complaints)?;
     if matrix.n_operations() <= articulated.n_operations() {
         return Ok(matrix);
     }
     scene.articulated = true;
     Ok(articulated)
+}
+
+/// The rates, and how many pivots of the rows were weak.
+fn rates_and_weakness<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
+    let mut out = at.rates();
+    out.push(at.solved().weak);
+    out
 }
 
 impl System {
@@ -112,6 +124,8 @@ impl System {
             dual_numbers: Vec::new(),
             dual_out: Vec::new(),
             change: vec![0.0; 2 * l.n_v],
+            rates: vec![0.0; l.y().len() + 1],
+            stage: Vec::with_capacity(l.y().len()),
             mover,
             scene,
         })
@@ -205,7 +219,20 @@ impl Ode for System {
 
     fn rate(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.set(t, y);
-        self.rate.run(&self.numbers, &mut self.work, ydot);
+        let n = ydot.len();
+        self.rate.run(&self.numbers, &mut self.work, &mut self.rates);
+        if self.rates[n] > 0.0 && self.projection.is_some() {
+            // near a position where rows become dependent, what violates them is magnified: evaluate on the rows
+            let mut stage = std::mem::take(&mut self.stage);
+            stage.clear();
+            stage.extend_from_slice(y);
+            if self.project(t, &mut stage).is_ok() {
+                self.set(t, &stage);
+                self.rate.run(&self.numbers, &mut self.work, &mut self.rates);
+            }
+            self.stage = stage;
+        }
+        ydot.copy_from_slice(&self.rates[..n]);
         // a sum is finite only if all its terms are
         let sum: f64 = ydot.iter().map(|x| x * 0.0).sum();
         if sum == 0.0 {
@@ -238,7 +265,6 @@ impl Ode for System {
                 break;
             }
             last = size;
-            let dq = dq.to_vec();
             for (v, d) in y[l.n_q..l.n_q + l.n_v].iter_mut().zip(dv) {
                 *v += d;
             }
@@ -270,7 +296,7 @@ impl Ode for System {
             eps: [0.0; WIDTH],
         }));
         self.dual_out.resize(
-            n,
+            n + 1,
             Dual {
                 re: 0.0,
                 eps: [0.0; WIDTH],

@@ -9,7 +9,7 @@
 
 use super::articulated::ArticulatedFactor;
 use super::layout::Layout;
-use super::solve::{Factor, MassFactor, accelerations, solve_symmetric};
+use super::solve::{Factor, MassFactor, Solution, accelerations, solve_symmetric};
 use super::sweep::{self, Coordinates, LinkState, Wrench};
 use super::{Row, RowKind, Scene, Source};
 use crate::expr::measures::{Family, Measure};
@@ -52,6 +52,8 @@ pub struct Solved<S> {
     pub vdot: Vec<S>,
     /// multipliers of the rows; 0 for rows that do not take part   (n_rows)
     pub lambda: Vec<S>,
+    /// how many pivots of the rows were weak: near a position where rows become dependent
+    pub weak: S,
     /// links with all accelerations
     pub links: Vec<LinkState<S>>,
     /// what the carrier exerts on each link, in the link's axes about its origin
@@ -439,7 +441,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             accelerations(&factor, &g, &gamma, &mut f)
         };
         let mut lambda = vec![S::zero(); scene.rows.len()];
-        for ((r, row), &l) in rows.iter().zip(&multipliers) {
+        for ((r, row), &l) in rows.iter().zip(&multipliers.x) {
             lambda[*r] = l;
             if let RowKind::Markers { i, j, .. } = scene.rows[*r].kind {
                 for (m, action) in [(i, &row.actions[0]), (j, &row.actions[1])] {
@@ -461,6 +463,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         Solved {
             vdot: f,
             lambda,
+            weak: multipliers.weak,
             links,
             carried,
             actions,
@@ -478,7 +481,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         g: &[Vec<(usize, S)>],
         gamma: &[S],
         f: &mut [S],
-    ) -> Vec<S> {
+    ) -> Solution<S> {
         let dot = |a: &[(usize, S)], b: &[(usize, S)]| {
             let mut sum = S::zero();
             for &(i, x) in a {
@@ -493,7 +496,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let gram: Vec<Vec<S>> = (0..g.len())
             .map(|r| (0..=r).map(|c| dot(&g[r], &g[c])).collect())
             .collect();
-        let z = solve_symmetric(gram.clone(), gamma.to_vec());
+        let z = solve_symmetric(gram.clone(), gamma.to_vec()).x;
         f.fill(S::zero());
         for (row, &z) in g.iter().zip(&z) {
             for &(v, x) in row {

@@ -142,7 +142,7 @@ pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &
         .collect();
     let mut out = Vec::with_capacity(2 * scene.layout.n_v);
     for rhs in [position, velocity] {
-        let lambda = solve_symmetric(gram.clone(), rhs);
+        let lambda = solve_symmetric(gram.clone(), rhs).x;
         let mut change = vec![S::zero(); scene.layout.n_v];
         for (row, &l) in rows.iter().zip(&lambda) {
             for &(v, g) in &row.gradient {

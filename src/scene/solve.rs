@@ -107,13 +107,13 @@ impl<S: Scalar> MassFactor<S> {
 
 /// Accelerations and multipliers. `g[r]`: sparse row r of G; `gamma[r]` its right side; `f`: loads, overwritten by v̇.
 ///
-/// Returns λ, with `M v̇ = f + Gᵀ λ`.
+/// Returns λ and how well the rows determine it, with `M v̇ = f + Gᵀ λ`.
 pub fn accelerations<S: Scalar>(
     m: &Factor<'_, S>,
     g: &[Vec<(usize, S)>],
     gamma: &[S],
     f: &mut [S],
-) -> Vec<S> {
+) -> Solution<S> {
     let n = f.len();
     let inverse_d = m.inverse_d();
     m.half(f);
@@ -146,7 +146,7 @@ pub fn accelerations<S: Scalar>(
         s.push((0..=r).map(|c| sparse_dot(row, &scaled[c])).collect());
     }
     let lambda = solve_symmetric(s, rhs);
-    for (row, &l) in u.iter().zip(&lambda) {
+    for (row, &l) in u.iter().zip(&lambda.x) {
         for &(k, x) in row {
             f[k] += x * l;
         }
@@ -172,10 +172,22 @@ fn sparse_dot<S: Scalar>(a: &[(usize, S)], b: &[(usize, S)]) -> S {
     sum
 }
 
+/// A solution, and how many pivots were weak: had lost so much that errors are magnified noticeably.
+pub struct Solution<S> {
+    /// x
+    pub x: Vec<S>,
+    /// number of weak pivots
+    pub weak: S,
+}
+
+/// Pivots smaller than this times the diagonal they started from count as weak.
+pub const WEAK: f64 = 0.03;
+
 /// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ` in the given order;
 /// what depends on earlier rows gets the value zero.
-pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
+pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Solution<S> {
     let n = b.len();
+    let mut weak = S::zero();
     let mut inverse = vec![S::zero(); n];
     let mut dependent = Vec::with_capacity(n);
     // a[i][k] holds L_ik D_k until row i is finished, then L_ik
@@ -201,6 +213,9 @@ pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
             a[i][k] = l;
         }
         let tiny = d.le(start.scale(RANK_TOLERANCE));
+        if i > 0 {
+            weak += S::select(d.lt(start.scale(WEAK)), S::one(), S::zero());
+        }
         inverse[i] = S::choose(tiny, S::zero, || S::one() / d);
         dependent.push(tiny);
     }
@@ -213,7 +228,7 @@ pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
         }
         b[i] = S::choose(dependent[i], S::zero, || x);
     }
-    b
+    Solution { x: b, weak }
 }
 
 #[cfg(test)]
@@ -224,7 +239,7 @@ mod tests {
     fn dependent_rows_get_zero_and_the_rest_is_solved() {
         // rows 0 and 1 are the same equation
         let a = vec![vec![2.0], vec![2.0, 2.0], vec![0.5, 0.5, 3.0]];
-        let x = solve_symmetric(a, vec![1.0, 1.0, 2.0]);
+        let x = solve_symmetric(a, vec![1.0, 1.0, 2.0]).x;
         assert_eq!(x[1], 0.0);
         approx::assert_relative_eq!(2.0 * x[0] + 0.5 * x[2], 1.0, max_relative = 1e-14);
         approx::assert_relative_eq!(0.5 * x[0] + 3.0 * x[2], 2.0, max_relative = 1e-14);
