@@ -486,6 +486,37 @@ impl Mover {
         all
     }
 
+    /// The tangent of a small change of positions   (n_v)
+    pub fn tangent(&self, q: &[f64], change: &[f64], n_v: usize) -> Vec<f64> {
+        let mut out = vec![0.0; n_v];
+        for &(k, v) in &self.simple {
+            out[v] = change[k];
+        }
+        for &(k, v) in &self.balls {
+            // 2 q* ∘ δq
+            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
+            let (a, b, c, d) = (change[k], change[k + 1], change[k + 2], change[k + 3]);
+            out[v] = 2.0 * (w * b - x * a - y * d + z * c);
+            out[v + 1] = 2.0 * (w * c + x * d - y * a - z * b);
+            out[v + 2] = 2.0 * (w * d - x * c + y * b - z * a);
+        }
+        out
+    }
+
+    /// The small change of positions that a tangent stands for   (n_q)
+    pub fn untangent(&self, q: &[f64], tangent: &[f64], change: &mut [f64]) {
+        for &(k, v) in &self.simple {
+            change[k] = tangent[v];
+        }
+        for &(k, v) in &self.balls {
+            let rate = crate::space::rotation::quaternion_rate(
+                [q[k], q[k + 1], q[k + 2], q[k + 3]],
+                crate::space::Vec3([tangent[v], tangent[v + 1], tangent[v + 2]]),
+            );
+            change[k..k + 4].copy_from_slice(&rate);
+        }
+    }
+
     /// Scales quaternions to unit length; tells whether that changed any.
     pub fn normalize(&self, q: &mut [f64]) -> bool {
         let mut changed = false;

@@ -41,6 +41,8 @@ pub struct System {
     change: Vec<f64>,
     /// rates and weakness   (n + 1)
     rates: Vec<f64>,
+    /// rows have nearly been dependent since the last accepted step
+    was_weak: bool,
     /// a stage of a method on the rows   (n)
     stage: Vec<f64>,
     mover: Mover,
@@ -70,6 +72,17 @@ fn shortest_rate(scene: &mut Scene) -> Result<Program, Vec<Diagnostic>> {
     Ok(articulated)
 }
 
+/// What the diagonal of `G M⁻¹ Gᵀ` is in an ordinary position: a pivot much below that is weak.
+fn usual_pivots(scene: &mut Scene) {
+    let mut numbers = vec![0.0; scene.layout.len()];
+    numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+    let at = Equations::new(scene, &numbers);
+    let diagonal = at.solved().diagonal.clone();
+    // rows that happen to vanish there are taken to be like the others
+    let largest = diagonal.iter().fold(0.0, |m: f64, &d| if d.is_finite() { m.max(d) } else { m });
+    scene.usual = diagonal.iter().map(|&d| if d > 0.01 * largest { d } else { 0.01 * largest }).collect();
+}
+
 /// The rates, and how many pivots of the rows were weak.
 fn rates_and_weakness<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
     let mut out = at.rates();
@@ -83,6 +96,7 @@ impl System {
     /// # Errors
     /// Functions that the equations cannot supply.
     pub fn new(mut scene: Scene) -> Result<Self, Vec<Diagnostic>> {
+        usual_pivots(&mut scene);
         let rate = shortest_rate(&mut scene)?;
         let any = (0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true));
         let projection = if any {
@@ -125,6 +139,7 @@ impl System {
             dual_out: Vec::new(),
             change: vec![0.0; 2 * l.n_v],
             rates: vec![0.0; l.y().len() + 1],
+            was_weak: false,
             stage: Vec::with_capacity(l.y().len()),
             mover,
             scene,
@@ -222,6 +237,7 @@ impl Ode for System {
         let n = ydot.len();
         self.rate.run(&self.numbers, &mut self.work, &mut self.rates);
         if self.rates[n] > 0.0 && self.projection.is_some() {
+            self.was_weak = true;
             // near a position where rows become dependent, what violates them is magnified: evaluate on the rows
             let mut stage = std::mem::take(&mut self.stage);
             stage.clear();
@@ -277,8 +293,39 @@ impl Ode for System {
                 break;
             }
         }
+        // where rows are nearly dependent the last digits along them are noise
+        if self.was_weak && last < 1e-9 {
+            outcome = Ok(true);
+        }
         self.projection = Some(program);
         outcome
+    }
+
+    fn filter_error(&mut self, t: f64, y: &[f64], error: &mut [f64]) -> bool {
+        let (true, Some(program)) = (self.was_weak, &self.projection) else {
+            return false;
+        };
+        // Δv(v) = −W Gᵀ (G W Gᵀ)⁻¹ (G v + ġ₀): its part linear in v takes away what is normal to the rows
+        let l = self.scene.layout;
+        let n_v = l.n_v;
+        let tangent = self.mover.tangent(&y[..l.n_q], &error[..l.n_q], n_v);
+        let mut state = y.to_vec();
+        let mut normal = |v: &[f64], numbers: &mut [f64]| {
+            state[l.n_q..l.n_q + n_v].copy_from_slice(v);
+            numbers[Layout::TIME] = t;
+            numbers[l.y()].copy_from_slice(&state);
+            program.run(numbers, &mut self.project_work, &mut self.change);
+            self.change[n_v..].to_vec()
+        };
+        let none = normal(&vec![0.0; n_v], &mut self.numbers);
+        let of_q = normal(&tangent, &mut self.numbers);
+        let of_v = normal(&error[l.n_q..l.n_q + n_v], &mut self.numbers);
+        let filtered: Vec<f64> = (0..n_v).map(|k| tangent[k] + of_q[k] - none[k]).collect();
+        self.mover.untangent(&y[..l.n_q], &filtered, &mut error[..l.n_q]);
+        for k in 0..n_v {
+            error[l.n_q + k] += of_v[k] - none[k];
+        }
+        true
     }
 
     fn jacobian(

@@ -51,6 +51,13 @@ pub trait Ode {
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
         Ok(false)
     }
+    /// Removes from an error estimate of a step that ends at `(t, y)` what projection will remove anyway; false: nothing to
+    /// remove. Asked only before a step is rejected.
+    ///
+    /// Where invariants become dependent, rates normal to them are full of magnified rounding that the solution never sees.
+    fn filter_error(&mut self, _t: f64, _y: &[f64], _error: &mut [f64]) -> bool {
+        false
+    }
     /// `jacobian[i + n·j] = ∂fᵢ/∂yⱼ` (by columns), `dfdt[i] = ∂fᵢ/∂t`. Explicit methods never ask for it.
     ///
     /// # Errors

@@ -54,6 +54,8 @@ pub struct Solved<S> {
     pub lambda: Vec<S>,
     /// how many pivots of the rows were weak: near a position where rows become dependent
     pub weak: S,
+    /// diagonal of `G M⁻¹ Gᵀ` over the rows that take part
+    pub diagonal: Vec<S>,
     /// links with all accelerations
     pub links: Vec<LinkState<S>>,
     /// what the carrier exerts on each link, in the link's axes about its origin
@@ -428,17 +430,13 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .collect();
         let g: Vec<Vec<(usize, S)>> = rows.iter().map(|(_, row)| row.gradient.clone()).collect();
         let gamma: Vec<S> = rows.iter().map(|(_, row)| row.gamma).collect();
-        let multipliers = if scene.mode == KINEMATIC {
-            self.determined(&wrenches, &g, &gamma, &mut f)
-        } else if scene.mode == STATIC {
+        let multipliers = if scene.mode == STATIC {
             self.supporting(&g, &mut f)
         } else {
-            let factor = if scene.articulated {
-                Factor::Articulated(ArticulatedFactor::new(scene, &self.links))
-            } else {
-                Factor::Matrix(MassFactor::new(self.mass_rows()))
-            };
-            accelerations(&factor, &g, &gamma, &mut f)
+            match self.mass_factor() {
+                Some(factor) => accelerations(&factor, &g, &gamma, &mut f, &scene.usual),
+                None => self.determined(&wrenches, &g, &gamma, &mut f),
+            }
         };
         let mut lambda = vec![S::zero(); scene.rows.len()];
         for ((r, row), &l) in rows.iter().zip(&multipliers.x) {
@@ -464,10 +462,23 @@ impl<'s, S: Scalar> Equations<'s, S> {
             vdot: f,
             lambda,
             weak: multipliers.weak,
+            diagonal: multipliers.diagonal,
             links,
             carried,
             actions,
         }
+    }
+
+    /// The factored mass matrix; `None` in kinematics, where masses may be zero and do not matter.
+    pub fn mass_factor(&self) -> Option<Factor<'_, S>> {
+        if self.scene.mode == KINEMATIC || self.scene.mode == STATIC {
+            return None;
+        }
+        Some(if self.scene.articulated {
+            Factor::Articulated(ArticulatedFactor::new(self.scene, &self.links))
+        } else {
+            Factor::Matrix(MassFactor::new(self.mass_rows()))
+        })
     }
 
     /// Accelerations (into `f`) and multipliers where the rows leave no freedom, so that masses may be zero.
@@ -496,7 +507,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let gram: Vec<Vec<S>> = (0..g.len())
             .map(|r| (0..=r).map(|c| dot(&g[r], &g[c])).collect())
             .collect();
-        let z = solve_symmetric(gram.clone(), gamma.to_vec()).x;
+        let z = solve_symmetric(gram.clone(), gamma.to_vec(), &[]).x;
         f.fill(S::zero());
         for (row, &z) in g.iter().zip(&z) {
             for &(v, x) in row {
@@ -516,7 +527,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .iter()
             .map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v]))
             .collect();
-        solve_symmetric(gram, rhs)
+        solve_symmetric(gram, rhs, &[])
     }
 
     /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are zero.
@@ -524,7 +535,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
     /// ```text
     /// λ = −(G W Gᵀ)⁻¹ G W f
     /// ```
-    fn supporting(&self, g: &[Vec<(usize, S)>], f: &mut [S]) -> Vec<S> {
+    fn supporting(&self, g: &[Vec<(usize, S)>], f: &mut [S]) -> Solution<S> {
         let w = super::programs::weights(self.scene);
         let gram: Vec<Vec<S>> = (0..g.len())
             .map(|r| {
@@ -551,7 +562,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             })
             .collect();
         f.fill(S::zero());
-        solve_symmetric(gram, rhs)
+        solve_symmetric(gram, rhs, &[])
     }
 
     /// Loads along the free coordinates, gravity included, with the forces of the active rows at the given multipliers: all

@@ -278,6 +278,8 @@ pub struct Scene {
     pub layout: Layout,
     /// positions from the dataset, before assembly   (n_q)
     pub initial_q: Vec<f64>,
+    /// typical diagonal of `G M⁻¹ Gᵀ` over the rows that take part; empty: not known
+    pub usual: Vec<f64>,
     /// eliminate freedoms link by link (long chains) rather than from the mass matrix (short ones)
     pub articulated: bool,
     /// a typical length of the mechanism, for tolerances and scales

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::equations::{Equations, STATIC};
-use super::solve::solve_symmetric;
+use super::solve::{gram, solve_symmetric};
 use crate::expr::program::{Builder, Folding, Input, Program, Sym};
 use crate::scalar::Scalar;
 use std::cell::RefCell;
@@ -104,49 +104,53 @@ pub fn weights(scene: &Scene) -> Vec<f64> {
 /// Least changes that satisfy the active rows to first order: of the positions (as a tangent, n_v), then of the velocities.
 ///
 /// ```text
-/// Δq = −W Gᵀ (G W Gᵀ)⁻¹ g        Δv = −W Gᵀ (G W Gᵀ)⁻¹ (G v + ġ₀)
+/// Δq = −A Gᵀ (G A Gᵀ)⁻¹ g        Δv = −A Gᵀ (G A Gᵀ)⁻¹ (G v + ġ₀)
 /// ```
+///
+/// with `A = M⁻¹`: what is taken away is orthogonal in kinetic energy to all motions that the rows allow, so that noise normal
+/// to the rows, however large where they are nearly dependent, leaves those motions alone. In kinematics, where masses
+/// may be zero, A is a diagonal matrix of [`weights`].
 pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &[S]) -> Vec<S> {
-    let w = weights(scene);
     let rows: Vec<_> = (0..scene.rows.len())
         .filter(|&r| at.is_active(r))
         .map(|r| at.row(r))
         .collect();
-    let gram: Vec<Vec<S>> = rows
+    let n = scene.layout.n_v;
+    let factor = at.mass_factor();
+    let w = weights(scene);
+    // u with uᵀ D⁻¹ u = G A Gᵀ, and D⁻¹
+    let inverse_d = match &factor {
+        Some(factor) => factor.inverse_d(),
+        None => w.iter().map(|&w| S::constant(w)).collect(),
+    };
+    let u: Vec<Vec<(usize, S)>> = rows
         .iter()
-        .enumerate()
-        .map(|(r, row)| {
-            (0..=r)
-                .map(|c| {
-                    let mut sum = S::zero();
-                    for &(v, x) in &row.gradient {
-                        for &(u, y) in &rows[c].gradient {
-                            if u == v {
-                                sum += (x * y).scale(w[v]);
-                            }
-                        }
-                    }
-                    sum
-                })
-                .collect()
+        .map(|row| match &factor {
+            Some(factor) => factor.half_row(&row.gradient, n),
+            None => row.gradient.clone(),
         })
         .collect();
+    let gram = gram(&u, &inverse_d);
     let position: Vec<S> = rows.iter().map(|r| -r.value).collect();
     let velocity: Vec<S> = rows
         .iter()
-        .map(|r| {
-            r.gradient
-                .iter()
-                .fold(-r.drift, |s, &(v, g)| s - g * velocities[v])
-        })
+        .map(|r| r.gradient.iter().fold(-r.drift, |s, &(v, g)| s - g * velocities[v]))
         .collect();
-    let mut out = Vec::with_capacity(2 * scene.layout.n_v);
+    let mut out = Vec::with_capacity(2 * n);
     for rhs in [position, velocity] {
-        let lambda = solve_symmetric(gram.clone(), rhs).x;
-        let mut change = vec![S::zero(); scene.layout.n_v];
-        for (row, &l) in rows.iter().zip(&lambda) {
-            for &(v, g) in &row.gradient {
-                change[v] += (g * l).scale(w[v]);
+        let lambda = solve_symmetric(gram.clone(), rhs, &[]).x;
+        let mut change = vec![S::zero(); n];
+        for (row, &l) in u.iter().zip(&lambda) {
+            for &(v, x) in row {
+                change[v] += x * l;
+            }
+        }
+        match &factor {
+            Some(factor) => factor.finish(&mut change),
+            None => {
+                for (x, &a) in change.iter_mut().zip(&inverse_d) {
+                    *x = *x * a;
+                }
             }
         }
         out.extend(change);

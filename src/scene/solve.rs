@@ -30,19 +30,31 @@ pub enum Factor<'s, S> {
 }
 
 impl<S: Scalar> Factor<'_, S> {
-    fn half(&self, x: &mut [S]) {
+    /// `x ← L⁻ᵀ x`
+    pub fn half(&self, x: &mut [S]) {
         match self {
             Factor::Matrix(m) => m.half(x),
             Factor::Articulated(m) => m.half(x),
         }
     }
-    fn finish(&self, x: &mut [S]) {
+    /// `x ← L⁻¹ D⁻¹ x`
+    pub fn finish(&self, x: &mut [S]) {
         match self {
             Factor::Matrix(m) => m.finish(x),
             Factor::Articulated(m) => m.finish(x),
         }
     }
-    fn inverse_d(&self) -> Vec<S> {
+    /// `L⁻ᵀ g` of a sparse row of G, by ascending places.
+    pub fn half_row(&self, row: &[(usize, S)], n: usize) -> Vec<(usize, S)> {
+        let mut x = vec![S::zero(); n];
+        for &(k, value) in row {
+            x[k] += value;
+        }
+        self.half(&mut x);
+        x.into_iter().enumerate().filter(|e| !e.1.is_known_zero()).collect()
+    }
+    /// 1/D
+    pub fn inverse_d(&self) -> Vec<S> {
         match self {
             Factor::Matrix(m) => m.inverse_d.clone(),
             Factor::Articulated(m) => m.inverse(),
@@ -107,45 +119,27 @@ impl<S: Scalar> MassFactor<S> {
 
 /// Accelerations and multipliers. `g[r]`: sparse row r of G; `gamma[r]` its right side; `f`: loads, overwritten by v̇.
 ///
-/// Returns λ and how well the rows determine it, with `M v̇ = f + Gᵀ λ`.
+/// `usual`: typical diagonal of S, row by row. Returns λ and how well the rows determine it, with `M v̇ = f + Gᵀ λ`.
 pub fn accelerations<S: Scalar>(
     m: &Factor<'_, S>,
     g: &[Vec<(usize, S)>],
     gamma: &[S],
     f: &mut [S],
+    usual: &[f64],
 ) -> Solution<S> {
     let n = f.len();
     let inverse_d = m.inverse_d();
     m.half(f);
-    let u: Vec<Vec<(usize, S)>> = g
-        .iter()
-        .map(|row| {
-            let mut x = vec![S::zero(); n];
-            for &(k, value) in row {
-                x[k] += value;
-            }
-            m.half(&mut x);
-            x.into_iter()
-                .enumerate()
-                .filter(|e| !e.1.is_known_zero())
-                .collect()
-        })
-        .collect();
-    // (u/D, for one side of the products)
-    let scaled: Vec<Vec<(usize, S)>> = u
-        .iter()
-        .map(|row| row.iter().map(|&(k, x)| (k, x * inverse_d[k])).collect())
-        .collect();
-    let rhs: Vec<S> = scaled
+    let u: Vec<Vec<(usize, S)>> = g.iter().map(|row| m.half_row(row, n)).collect();
+    let s = gram(&u, &inverse_d);
+    let rhs: Vec<S> = u
         .iter()
         .zip(gamma)
-        .map(|(row, &gamma)| row.iter().fold(gamma, |s, &(k, x)| s - x * f[k]))
+        .map(|(row, &gamma)| {
+            row.iter().fold(gamma, |s, &(k, x)| s - x * inverse_d[k] * f[k])
+        })
         .collect();
-    let mut s: Vec<Vec<S>> = Vec::with_capacity(g.len());
-    for (r, row) in u.iter().enumerate() {
-        s.push((0..=r).map(|c| sparse_dot(row, &scaled[c])).collect());
-    }
-    let lambda = solve_symmetric(s, rhs);
+    let lambda = solve_symmetric(s, rhs, usual);
     for (row, &l) in u.iter().zip(&lambda.x) {
         for &(k, x) in row {
             f[k] += x * l;
@@ -153,6 +147,17 @@ pub fn accelerations<S: Scalar>(
     }
     m.finish(f);
     lambda
+}
+
+/// `U D⁻¹ Uᵀ`, lower triangle by rows.
+pub fn gram<S: Scalar>(u: &[Vec<(usize, S)>], inverse_d: &[S]) -> Vec<Vec<S>> {
+    let scaled: Vec<Vec<(usize, S)>> =
+        u.iter().map(|row| row.iter().map(|&(k, x)| (k, x * inverse_d[k])).collect()).collect();
+    let mut s: Vec<Vec<S>> = Vec::with_capacity(u.len());
+    for (r, row) in u.iter().enumerate() {
+        s.push((0..=r).map(|c| sparse_dot(row, &scaled[c])).collect());
+    }
+    s
 }
 
 /// Product of two rows given by ascending indices.
@@ -178,16 +183,20 @@ pub struct Solution<S> {
     pub x: Vec<S>,
     /// number of weak pivots
     pub weak: S,
+    /// diagonal of A
+    pub diagonal: Vec<S>,
 }
 
 /// Pivots smaller than this times the diagonal they started from count as weak.
 pub const WEAK: f64 = 0.03;
 
 /// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ` in the given order;
-/// what depends on earlier rows gets the value zero.
-pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Solution<S> {
+/// what depends on earlier rows gets the value zero. `reference`: what each pivot is compared with to call it weak; empty:
+/// its own diagonal.
+pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>, reference: &[f64]) -> Solution<S> {
     let n = b.len();
     let mut weak = S::zero();
+    let diagonal = (0..n).map(|i| a[i][i]).collect();
     let mut inverse = vec![S::zero(); n];
     let mut dependent = Vec::with_capacity(n);
     // a[i][k] holds L_ik D_k until row i is finished, then L_ik
@@ -213,9 +222,8 @@ pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Solution
             a[i][k] = l;
         }
         let tiny = d.le(start.scale(RANK_TOLERANCE));
-        if i > 0 {
-            weak += S::select(d.lt(start.scale(WEAK)), S::one(), S::zero());
-        }
+        let usual = reference.get(i).map_or(start, |&r| S::constant(r));
+        weak += S::select(d.lt(usual.scale(WEAK)), S::one(), S::zero());
         inverse[i] = S::choose(tiny, S::zero, || S::one() / d);
         dependent.push(tiny);
     }
@@ -228,7 +236,11 @@ pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Solution
         }
         b[i] = S::choose(dependent[i], S::zero, || x);
     }
-    Solution { x: b, weak }
+    Solution {
+        x: b,
+        weak,
+        diagonal,
+    }
 }
 
 #[cfg(test)]
@@ -239,7 +251,7 @@ mod tests {
     fn dependent_rows_get_zero_and_the_rest_is_solved() {
         // rows 0 and 1 are the same equation
         let a = vec![vec![2.0], vec![2.0, 2.0], vec![0.5, 0.5, 3.0]];
-        let x = solve_symmetric(a, vec![1.0, 1.0, 2.0]).x;
+        let x = solve_symmetric(a, vec![1.0, 1.0, 2.0], &[]).x;
         assert_eq!(x[1], 0.0);
         approx::assert_relative_eq!(2.0 * x[0] + 0.5 * x[2], 1.0, max_relative = 1e-14);
         approx::assert_relative_eq!(0.5 * x[0] + 3.0 * x[2], 2.0, max_relative = 1e-14);
@@ -255,7 +267,7 @@ mod tests {
         ];
         let m = Factor::Matrix(MassFactor::new(rows));
         let mut x = vec![1.0, 2.0, 3.0];
-        accelerations(&m, &[], &[], &mut x);
+        accelerations(&m, &[], &[], &mut x, &[]);
         approx::assert_relative_eq!(5.0 * x[0] + x[1] - x[2], 1.0, max_relative = 1e-14);
         approx::assert_relative_eq!(x[0] + 2.0 * x[1], 2.0, max_relative = 1e-14);
         approx::assert_relative_eq!(-x[0] + 3.0 * x[2], 3.0, max_relative = 1e-14);
