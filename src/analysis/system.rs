@@ -79,8 +79,19 @@ fn usual_pivots(scene: &mut Scene) {
     let at = Equations::new(scene, &numbers);
     let diagonal = at.solved().diagonal.clone();
     // rows that happen to vanish there are taken to be like the others
-    let largest = diagonal.iter().fold(0.0, |m: f64, &d| if d.is_finite() { m.max(d) } else { m });
-    scene.usual = diagonal.iter().map(|&d| if d > 0.01 * largest { d } else { 0.01 * largest }).collect();
+    let largest = diagonal
+        .iter()
+        .fold(0.0, |m: f64, &d| if d.is_finite() { m.max(d) } else { m });
+    scene.usual = diagonal
+        .iter()
+        .map(|&d| {
+            if d > 0.01 * largest {
+                d
+            } else {
+                0.01 * largest
+            }
+        })
+        .collect();
 }
 
 /// The rates, and how many pivots of the rows were weak.
@@ -235,7 +246,8 @@ impl Ode for System {
     fn rate(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.set(t, y);
         let n = ydot.len();
-        self.rate.run(&self.numbers, &mut self.work, &mut self.rates);
+        self.rate
+            .run(&self.numbers, &mut self.work, &mut self.rates);
         if self.rates[n] > 0.0 && self.projection.is_some() {
             self.was_weak = true;
             // near a position where rows become dependent, what violates them is magnified: evaluate on the rows
@@ -244,7 +256,8 @@ impl Ode for System {
             stage.extend_from_slice(y);
             if self.project(t, &mut stage).is_ok() {
                 self.set(t, &stage);
-                self.rate.run(&self.numbers, &mut self.work, &mut self.rates);
+                self.rate
+                    .run(&self.numbers, &mut self.work, &mut self.rates);
             }
             self.stage = stage;
         }
@@ -321,7 +334,8 @@ impl Ode for System {
         let of_q = normal(&tangent, &mut self.numbers);
         let of_v = normal(&error[l.n_q..l.n_q + n_v], &mut self.numbers);
         let filtered: Vec<f64> = (0..n_v).map(|k| tangent[k] + of_q[k] - none[k]).collect();
-        self.mover.untangent(&y[..l.n_q], &filtered, &mut error[..l.n_q]);
+        self.mover
+            .untangent(&y[..l.n_q], &filtered, &mut error[..l.n_q]);
         for k in 0..n_v {
             error[l.n_q + k] += of_v[k] - none[k];
         }

@@ -95,7 +95,11 @@ const NOISE: f64 = 3e-10;
 /// `‖e₅‖² / √(‖e₅‖² + ‖e₃‖²/100)`
 fn blended(e5: f64, e3: f64) -> f64 {
     let blend = e5 * e5 + 0.01 * e3 * e3;
-    if blend > 0.0 { e5 * e5 / blend.sqrt() } else { 0.0 }
+    if blend > 0.0 {
+        e5 * e5 / blend.sqrt()
+    } else {
+        0.0
+    }
 }
 
 impl Dop853 {

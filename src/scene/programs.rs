@@ -134,7 +134,11 @@ pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &
     let position: Vec<S> = rows.iter().map(|r| -r.value).collect();
     let velocity: Vec<S> = rows
         .iter()
-        .map(|r| r.gradient.iter().fold(-r.drift, |s, &(v, g)| s - g * velocities[v]))
+        .map(|r| {
+            r.gradient
+                .iter()
+                .fold(-r.drift, |s, &(v, g)| s - g * velocities[v])
+        })
         .collect();
     let mut out = Vec::with_capacity(2 * n);
     for rhs in [position, velocity] {

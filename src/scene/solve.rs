@@ -51,7 +51,10 @@ impl<S: Scalar> Factor<'_, S> {
             x[k] += value;
         }
         self.half(&mut x);
-        x.into_iter().enumerate().filter(|e| !e.1.is_known_zero()).collect()
+        x.into_iter()
+            .enumerate()
+            .filter(|e| !e.1.is_known_zero())
+            .collect()
     }
     /// 1/D
     pub fn inverse_d(&self) -> Vec<S> {
@@ -136,7 +139,8 @@ pub fn accelerations<S: Scalar>(
         .iter()
         .zip(gamma)
         .map(|(row, &gamma)| {
-            row.iter().fold(gamma, |s, &(k, x)| s - x * inverse_d[k] * f[k])
+            row.iter()
+                .fold(gamma, |s, &(k, x)| s - x * inverse_d[k] * f[k])
         })
         .collect();
     let lambda = solve_symmetric(s, rhs, usual);
@@ -151,8 +155,10 @@ pub fn accelerations<S: Scalar>(
 
 /// `U D⁻¹ Uᵀ`, lower triangle by rows.
 pub fn gram<S: Scalar>(u: &[Vec<(usize, S)>], inverse_d: &[S]) -> Vec<Vec<S>> {
-    let scaled: Vec<Vec<(usize, S)>> =
-        u.iter().map(|row| row.iter().map(|&(k, x)| (k, x * inverse_d[k])).collect()).collect();
+    let scaled: Vec<Vec<(usize, S)>> = u
+        .iter()
+        .map(|row| row.iter().map(|&(k, x)| (k, x * inverse_d[k])).collect())
+        .collect();
     let mut s: Vec<Vec<S>> = Vec::with_capacity(u.len());
     for (r, row) in u.iter().enumerate() {
         s.push((0..=r).map(|c| sparse_dot(row, &scaled[c])).collect());
@@ -193,7 +199,11 @@ pub const WEAK: f64 = 0.03;
 /// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ` in the given order;
 /// what depends on earlier rows gets the value zero. `reference`: what each pivot is compared with to call it weak; empty:
 /// its own diagonal.
-pub fn solve_symmetric<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>, reference: &[f64]) -> Solution<S> {
+pub fn solve_symmetric<S: Scalar>(
+    mut a: Vec<Vec<S>>,
+    mut b: Vec<S>,
+    reference: &[f64],
+) -> Solution<S> {
     let n = b.len();
     let mut weak = S::zero();
     let diagonal = (0..n).map(|i| a[i][i]).collect();
