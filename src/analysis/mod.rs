@@ -4,6 +4,7 @@ pub mod assemble;
 pub mod columns;
 pub mod dynamics;
 pub mod kinematics;
+pub mod script;
 pub mod session;
 pub mod statics;
 pub mod system;

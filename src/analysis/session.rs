@@ -45,6 +45,8 @@ pub struct Options {
     pub columns: Vec<String>,
     /// columns of all parts and joints
     pub full: bool,
+    /// keywords of statements that are left out where they are not solved
+    pub skip: std::collections::BTreeSet<String>,
 }
 
 /// State carried from one simulation to the next, by the names of the unknowns.
@@ -104,6 +106,7 @@ impl Session {
         let options = build::Options {
             mode,
             extra: self.columns.extra.clone(),
+            skip: self.options.skip.clone(),
             ..build::Options::default()
         };
         let mut scene = Scene::compile(&self.model, &options)?;

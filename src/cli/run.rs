@@ -1,11 +1,14 @@
 //! `cognate run`: a model with its commands, from file to results.
 
 use super::progress::Progress;
+use super::render::Sources;
 use super::{Exit, Failure, Outcome, interrupt, remark};
 use crate::analysis::dynamics::Watch;
-use crate::analysis::session::{Analysis, Options, Session};
-use crate::diagnostic::Diagnostic;
-use crate::model::Model;
+use crate::analysis::script::obey;
+use crate::analysis::session::{Options, Session};
+use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
+use crate::dataset::{self, Reading};
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::numeric::Stats;
 use crate::results::{self, Event, Status, csv, json, msg, res};
 use std::path::{Path, PathBuf};
@@ -45,6 +48,9 @@ pub struct Args {
     /// Solve N times and report the median time
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeat: usize,
+    /// Leave out elements of this kind where they are not solved (repeatable)
+    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
+    skip: Vec<String>,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -64,7 +70,7 @@ enum KindName {
 
 /// Shows progress and listens for Ctrl-C.
 struct Terminal<'a> {
-    progress: &'a Progress,
+    progress: &'a std::cell::RefCell<Progress>,
 }
 
 impl Watch for Terminal<'_> {
@@ -72,29 +78,21 @@ impl Watch for Terminal<'_> {
         interrupt::requested()
     }
     fn progress(&mut self, t: f64, _h: f64, _stats: &Stats) {
-        self.progress.at(t);
+        self.progress.borrow().at(t);
     }
-}
-
-/// One SIMULATE.
-struct Step {
-    analysis: Analysis,
-    end: f64,
-    steps: usize,
 }
 
 pub fn run(args: &Args) -> Outcome {
     let clock = Instant::now();
     interrupt::install();
-    let is_command = args
-        .model
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("acf"));
-    let (model, base, steps) = if is_command {
-        script(&args.model)?
-    } else {
-        alone(args)?
-    };
+    let is_command = args.model.extension().is_some_and(|e| e.eq_ignore_ascii_case("acf"));
+    let Job { reading, base, steps } = if is_command { script(&args.model)? } else { alone(args)? };
+    let warnings: Vec<Diagnostic> =
+        reading.diagnostics.iter().filter(|d| d.severity == Severity::Warning).cloned().collect();
+    if !args.quiet && !warnings.is_empty() {
+        remark(format!("{} warnings in the dataset: cognate check tells them", warnings.len()));
+    }
+    let model = reading.model;
     let full = model.settings.contains_key("RESULTS");
     let options = Options {
         error: args.error,
@@ -102,49 +100,30 @@ pub fn run(args: &Args) -> Outcome {
         repeat: args.repeat,
         columns: args.columns.clone(),
         full,
+        skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
     };
     let mut session = Session::new(model, &base, options);
     session.run.record.model = args.model.display().to_string();
-    session
-        .run
-        .log
-        .push(Event::Title(session.run.title.clone()));
+    session.run.log.push(Event::Title(session.run.title.clone()));
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
-    let mut status = Status::Completed;
-    let mut failure = None;
-    for step in steps {
-        let progress = Progress::new(args.quiet, session.time(), step.end);
-        let outcome = session.simulate(
-            step.analysis,
-            step.end,
-            step.steps,
-            &mut Terminal {
-                progress: &progress,
-            },
-        );
-        progress.done();
-        match outcome {
-            Ok(Status::Completed) => {}
-            Ok(other) => {
-                status = other;
-                break;
-            }
-            Err(errors) => {
-                failure = Some(errors);
-                break;
-            }
+    let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
+    let begin = |start: f64, end: f64| {
+        progress.borrow().done();
+        *progress.borrow_mut() = Progress::new(args.quiet, start, end);
+    };
+    let outcome = obey(&mut session, &steps, begin, &mut Terminal { progress: &progress });
+    progress.borrow().done();
+    let record = &mut session.run.record;
+    let (status, failure) = match outcome {
+        Ok(status) => (status, None),
+        Err(errors) => {
+            record.status = Status::Model;
+            record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
+            session.run.log.extend(errors.iter().map(|e| Event::Error(e.to_string())));
+            (Status::Model, Some(errors))
         }
-    }
+    };
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    if let Some(errors) = &failure {
-        let record = &mut session.run.record;
-        record.status = Status::Model;
-        record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
-        session
-            .run
-            .log
-            .extend(errors.iter().map(|e| Event::Error(e.to_string())));
-    }
     let written = write(&mut session.run, &dir, full)?;
     if args.json {
         println!("{}", json::text(&json::record(&session.run)));
@@ -152,16 +131,19 @@ pub fn run(args: &Args) -> Outcome {
         report(&session.run, &written);
     }
     if let Some(diagnostics) = failure {
-        return Err(Failure {
-            exit: Exit::Model,
-            diagnostics,
-            sources: super::render::Sources::default(),
-        });
+        return Err(Failure { exit: Exit::Model, diagnostics, sources: Sources::default() });
     }
-    if status != Status::Completed && !args.quiet {
+    if status != Status::Completed {
         remark(&session.run.record.stop_reason);
     }
     Ok(exit(status))
+}
+
+/// What is to be run.
+struct Job {
+    reading: Reading,
+    base: String,
+    steps: Vec<Step>,
 }
 
 fn exit(status: Status) -> Exit {
@@ -176,94 +158,58 @@ fn exit(status: Status) -> Exit {
 }
 
 /// A dataset with one simulation given by options.
-fn alone(args: &Args) -> Result<(Model, String, Vec<Step>), Failure> {
-    let model = read(&args.model)?;
-    let analysis = match args.kind.unwrap_or(KindName::Transient) {
-        KindName::Dynamic => Analysis::Dynamic,
-        KindName::Kinematic => Analysis::Kinematic,
-        KindName::Static => Analysis::Static,
-        KindName::Transient => Analysis::Transient,
-        KindName::InitialConditions => Analysis::InitialConditions,
+fn alone(args: &Args) -> Result<Job, Failure> {
+    let reading = read(&args.model)?;
+    let kind = match args.kind.unwrap_or(KindName::Transient) {
+        KindName::Dynamic => SimulationKind::Dynamic,
+        KindName::Kinematic => SimulationKind::Kinematic,
+        KindName::Static => SimulationKind::Static,
+        KindName::Transient => SimulationKind::Transient,
+        KindName::InitialConditions => SimulationKind::InitialConditions,
     };
-    let needs_end = !matches!(analysis, Analysis::Static | Analysis::InitialConditions);
-    if needs_end && args.end.is_none() {
-        return Err(Failure::usage(
-            "a dataset without a command file needs --end TIME",
-        ));
+    let over_time = !matches!(kind, SimulationKind::Static | SimulationKind::InitialConditions);
+    if over_time && args.end.is_none() {
+        return Err(Failure::usage("a dataset without a command file needs --end TIME"));
     }
-    let step = Step {
-        analysis,
-        end: args.end.unwrap_or(0.0),
-        steps: args.steps.unwrap_or(50),
-    };
-    Ok((model, stem(&args.model), vec![step]))
+    let steps = args.steps.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+    let simulate = Simulate { kind, end: args.end, duration: None, steps, dtout: None };
+    let step = Step { command: Command::Simulate(simulate), text: "SIMULATE".into(), line: 0 };
+    Ok(Job { reading, base: stem(&args.model), steps: vec![step] })
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem()
-        .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
-fn read(path: &Path) -> Result<Model, Failure> {
-    Model::read(path).map_err(|errors| Failure {
-        exit: Exit::Input,
-        diagnostics: errors.0,
-        sources: super::render::Sources::default(),
-    })
+/// All mistakes of an input, with the texts they stand in.
+fn mistakes(diagnostics: Vec<Diagnostic>) -> Failure {
+    let mut sources = Sources::default();
+    for file in diagnostics.iter().filter_map(|d| d.file.clone()) {
+        if let Ok(bytes) = std::fs::read(&file) {
+            sources.add(file, String::from_utf8_lossy(&bytes).into_owned());
+        }
+    }
+    Failure { exit: Exit::Input, diagnostics, sources }
+}
+
+fn read(path: &Path) -> Result<Reading, Failure> {
+    let reading = dataset::read(path).map_err(|e| mistakes(e.0))?;
+    if reading.failed() {
+        let errors = reading.diagnostics.into_iter().filter(|d| d.severity == Severity::Error);
+        return Err(mistakes(errors.collect()));
+    }
+    Ok(reading)
 }
 
 /// A command file and the dataset it names.
-fn script(path: &Path) -> Result<(Model, String, Vec<Step>), Failure> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Diagnostic::error("cannot_open", format!("{}: {e}", path.display())))?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut steps = Vec::new();
-    let mut lines = text.lines().map(str::trim);
-    let first = lines.next().unwrap_or_default().to_string();
-    let mut name = first.clone();
-    for line in text.lines().map(str::trim) {
-        let upper = line.to_ascii_uppercase();
-        if let Some(rest) = upper.strip_prefix("FILE/MODEL=") {
-            name = line[line.len() - rest.len()..].to_string();
-        }
-        let Some(rest) = upper.strip_prefix("SIM") else {
-            continue;
-        };
-        let Some((_, rest)) = rest.split_once('/') else {
-            continue;
-        };
-        let value = |key: &str| {
-            rest.split(',').find_map(|p| {
-                p.trim()
-                    .strip_prefix(key)?
-                    .trim_start_matches('=')
-                    .trim()
-                    .parse::<f64>()
-                    .ok()
-            })
-        };
-        let analysis = if rest.starts_with("STAT") {
-            Analysis::Static
-        } else if rest.starts_with("KIN") {
-            Analysis::Kinematic
-        } else if rest.starts_with("TRAN") {
-            Analysis::Transient
-        } else {
-            Analysis::Dynamic
-        };
-        let end = value("END").unwrap_or(0.0);
-        let steps_given = value("STEPS").or_else(|| value("DTOUT").map(|d| (end / d).round()));
-        steps.push(Step {
-            analysis,
-            end,
-            steps: steps_given.unwrap_or(50.0) as usize,
-        });
-    }
-    let mut file = folder.join(&name);
-    if file.extension().is_none() {
-        file.set_extension("adm");
-    }
-    Ok((read(&file)?, stem(path), steps))
+fn script(path: &Path) -> Result<Job, Failure> {
+    let script = Script::read(path).map_err(|e| mistakes(e.0))?;
+    let Some(file) = script.model_file() else {
+        let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
+        return Err(d.help("begin it with FILE/MODEL=name").into());
+    };
+    let base = script.output.clone().unwrap_or_else(|| stem(path));
+    Ok(Job { reading: read(&file)?, base, steps: script.steps })
 }
 
 /// Writes everything the run produced; the names of the files.

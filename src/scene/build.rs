@@ -8,7 +8,7 @@ use super::{
     ConstraintElement, Formula, LinkIx, LinkMotion, Row, RowKind, Scene, SceneDifferential,
     SceneMotion, Source,
 };
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::interpolation::Bindings;
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
@@ -31,6 +31,8 @@ pub struct Options {
     pub mode: u32,
     /// expressions to be evaluated beside those of the model: (name, text)
     pub extra: Vec<(String, String)>,
+    /// keywords of statements that are left out where they are not solved
+    pub skip: BTreeSet<String>,
 }
 
 /// Keeps an element of a model unless it has been switched off.
@@ -58,6 +60,12 @@ impl Scene {
             bindings,
             unusable,
         };
+        for d in super::unsupported::report(model, &options.skip) {
+            match d.severity {
+                Severity::Error => c.errors.push(d),
+                _ => b.scene.warnings.push(d),
+            }
+        }
         c.frames();
         b.scene.mode = f64::from(options.mode);
         b.data();

@@ -14,6 +14,7 @@ pub mod layout;
 pub mod programs;
 pub mod solve;
 pub mod sweep;
+mod unsupported;
 
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
@@ -278,6 +279,8 @@ pub struct Scene {
     pub layout: Layout,
     /// positions from the dataset, before assembly   (n_q)
     pub initial_q: Vec<f64>,
+    /// what was left out
+    pub warnings: Vec<crate::diagnostic::Diagnostic>,
     /// typical diagonal of `G M⁻¹ Gᵀ` over the rows that take part; empty: not known
     pub usual: Vec<f64>,
     /// eliminate freedoms link by link (long chains) rather than from the mass matrix (short ones)

@@ -1,0 +1,88 @@
+//! Commands one after another: what a command file does to a session.
+
+use super::dynamics::Watch;
+use super::session::{Analysis, Session};
+use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
+use crate::diagnostic::Diagnostic;
+use crate::results::{Event, Status};
+
+/// Output steps where a command gives neither STEPS nor DTOUT.
+pub const DEFAULT_STEPS: usize = 50;
+
+impl Simulate {
+    /// Kind, end and number of output steps, when the clock shows `now`.
+    ///
+    /// # Errors
+    /// When a simulation over time has no end, or no time to go.
+    pub fn resolved(&self, now: f64) -> Result<(Analysis, f64, usize), Diagnostic> {
+        let analysis = match self.kind {
+            SimulationKind::Kinematic => Analysis::Kinematic,
+            SimulationKind::Dynamic => Analysis::Dynamic,
+            SimulationKind::Static => Analysis::Static,
+            SimulationKind::Transient => Analysis::Transient,
+            SimulationKind::InitialConditions => Analysis::InitialConditions,
+        };
+        let end = self.end.or(self.duration.map(|d| now + d));
+        let over_time = !matches!(analysis, Analysis::Static | Analysis::InitialConditions);
+        let Some(end) = end else {
+            if over_time {
+                let d = Diagnostic::error("no_end", "the simulation has no end");
+                return Err(d.help("give END, the time at which it ends, or DURATION"));
+            }
+            return Ok((analysis, now, 0));
+        };
+        if over_time && (end <= now || !end.is_finite()) {
+            let message = format!("the simulation should end at {end}, but the clock shows {now}");
+            return Err(Diagnostic::error("no_end", message)
+                .help("END is absolute time; DURATION counts from here"));
+        }
+        let steps = match (self.steps, self.dtout) {
+            (Some(steps), _) => steps.max(1) as usize,
+            (None, Some(dt)) if dt > 0.0 => (((end - now) / dt) - 1e-9).ceil().clamp(1.0, 1e8) as usize,
+            _ => DEFAULT_STEPS,
+        };
+        Ok((analysis, end, steps))
+    }
+}
+
+/// Obeys commands until one of them ends the run; how the last simulation ended.
+///
+/// `before` is told of each simulation: its start and end.
+///
+/// # Errors
+/// What is wrong in a command or in the model as the commands have left it.
+pub fn obey(
+    session: &mut Session,
+    steps: &[Step],
+    mut before: impl FnMut(f64, f64),
+    watch: &mut dyn Watch,
+) -> Result<Status, Vec<Diagnostic>> {
+    let mut status = Status::Completed;
+    for step in steps {
+        session.run.log.push(Event::Command(step.text.clone()));
+        let located = |mut d: Diagnostic| {
+            d.element.get_or_insert_with(|| step.text.clone());
+            d
+        };
+        match &step.command {
+            Command::Simulate(simulate) => {
+                let (analysis, end, n) = simulate.resolved(session.time()).map_err(|d| vec![located(d)])?;
+                before(session.time(), end);
+                status = session.simulate(analysis, end, n, watch)?;
+                if status != Status::Completed {
+                    return Ok(status);
+                }
+            }
+            Command::Change(_) | Command::Activate { .. } => {
+                session.model.apply(&step.command).map_err(|e| e.0)?;
+            }
+            Command::Stop => break,
+            Command::Show(_) => {}
+            Command::File { .. } | Command::Save(_) | Command::Reload(_) | Command::Linear(_) => {
+                let d = Diagnostic::error("unsupported", "this command is not obeyed yet");
+                return Err(vec![located(d)]);
+            }
+        }
+    }
+    Ok(status)
+}
