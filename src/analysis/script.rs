@@ -38,7 +38,9 @@ impl Simulate {
         }
         let steps = match (self.steps, self.dtout) {
             (Some(steps), _) => steps.max(1) as usize,
-            (None, Some(dt)) if dt > 0.0 => (((end - now) / dt) - 1e-9).ceil().clamp(1.0, 1e8) as usize,
+            (None, Some(dt)) if dt > 0.0 => {
+                (((end - now) / dt) - 1e-9).ceil().clamp(1.0, 1e8) as usize
+            }
             _ => DEFAULT_STEPS,
         };
         Ok((analysis, end, steps))
@@ -66,7 +68,9 @@ pub fn obey(
         };
         match &step.command {
             Command::Simulate(simulate) => {
-                let (analysis, end, n) = simulate.resolved(session.time()).map_err(|d| vec![located(d)])?;
+                let (analysis, end, n) = simulate
+                    .resolved(session.time())
+                    .map_err(|d| vec![located(d)])?;
                 before(session.time(), end);
                 status = session.simulate(analysis, end, n, watch)?;
                 if status != Status::Completed {

@@ -85,12 +85,30 @@ impl Watch for Terminal<'_> {
 pub fn run(args: &Args) -> Outcome {
     let clock = Instant::now();
     interrupt::install();
-    let is_command = args.model.extension().is_some_and(|e| e.eq_ignore_ascii_case("acf"));
-    let Job { reading, base, steps } = if is_command { script(&args.model)? } else { alone(args)? };
-    let warnings: Vec<Diagnostic> =
-        reading.diagnostics.iter().filter(|d| d.severity == Severity::Warning).cloned().collect();
+    let is_command = args
+        .model
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("acf"));
+    let Job {
+        reading,
+        base,
+        steps,
+    } = if is_command {
+        script(&args.model)?
+    } else {
+        alone(args)?
+    };
+    let warnings: Vec<Diagnostic> = reading
+        .diagnostics
+        .iter()
+        .filter(|d| d.severity == Severity::Warning)
+        .cloned()
+        .collect();
     if !args.quiet && !warnings.is_empty() {
-        remark(format!("{} warnings in the dataset: cognate check tells them", warnings.len()));
+        remark(format!(
+            "{} warnings in the dataset: cognate check tells them",
+            warnings.len()
+        ));
     }
     let model = reading.model;
     let full = model.settings.contains_key("RESULTS");
@@ -104,14 +122,24 @@ pub fn run(args: &Args) -> Outcome {
     };
     let mut session = Session::new(model, &base, options);
     session.run.record.model = args.model.display().to_string();
-    session.run.log.push(Event::Title(session.run.title.clone()));
+    session
+        .run
+        .log
+        .push(Event::Title(session.run.title.clone()));
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
     let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
     let begin = |start: f64, end: f64| {
         progress.borrow().done();
         *progress.borrow_mut() = Progress::new(args.quiet, start, end);
     };
-    let outcome = obey(&mut session, &steps, begin, &mut Terminal { progress: &progress });
+    let outcome = obey(
+        &mut session,
+        &steps,
+        begin,
+        &mut Terminal {
+            progress: &progress,
+        },
+    );
     progress.borrow().done();
     let record = &mut session.run.record;
     let (status, failure) = match outcome {
@@ -119,7 +147,10 @@ pub fn run(args: &Args) -> Outcome {
         Err(errors) => {
             record.status = Status::Model;
             record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
-            session.run.log.extend(errors.iter().map(|e| Event::Error(e.to_string())));
+            session
+                .run
+                .log
+                .extend(errors.iter().map(|e| Event::Error(e.to_string())));
             (Status::Model, Some(errors))
         }
     };
@@ -131,7 +162,11 @@ pub fn run(args: &Args) -> Outcome {
         report(&session.run, &written);
     }
     if let Some(diagnostics) = failure {
-        return Err(Failure { exit: Exit::Model, diagnostics, sources: Sources::default() });
+        return Err(Failure {
+            exit: Exit::Model,
+            diagnostics,
+            sources: Sources::default(),
+        });
     }
     if status != Status::Completed {
         remark(&session.run.record.stop_reason);
@@ -167,18 +202,38 @@ fn alone(args: &Args) -> Result<Job, Failure> {
         KindName::Transient => SimulationKind::Transient,
         KindName::InitialConditions => SimulationKind::InitialConditions,
     };
-    let over_time = !matches!(kind, SimulationKind::Static | SimulationKind::InitialConditions);
+    let over_time = !matches!(
+        kind,
+        SimulationKind::Static | SimulationKind::InitialConditions
+    );
     if over_time && args.end.is_none() {
-        return Err(Failure::usage("a dataset without a command file needs --end TIME"));
+        return Err(Failure::usage(
+            "a dataset without a command file needs --end TIME",
+        ));
     }
     let steps = args.steps.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
-    let simulate = Simulate { kind, end: args.end, duration: None, steps, dtout: None };
-    let step = Step { command: Command::Simulate(simulate), text: "SIMULATE".into(), line: 0 };
-    Ok(Job { reading, base: stem(&args.model), steps: vec![step] })
+    let simulate = Simulate {
+        kind,
+        end: args.end,
+        duration: None,
+        steps,
+        dtout: None,
+    };
+    let step = Step {
+        command: Command::Simulate(simulate),
+        text: "SIMULATE".into(),
+        line: 0,
+    };
+    Ok(Job {
+        reading,
+        base: stem(&args.model),
+        steps: vec![step],
+    })
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
+    path.file_stem()
+        .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
 /// All mistakes of an input, with the texts they stand in.
@@ -189,13 +244,20 @@ fn mistakes(diagnostics: Vec<Diagnostic>) -> Failure {
             sources.add(file, String::from_utf8_lossy(&bytes).into_owned());
         }
     }
-    Failure { exit: Exit::Input, diagnostics, sources }
+    Failure {
+        exit: Exit::Input,
+        diagnostics,
+        sources,
+    }
 }
 
 fn read(path: &Path) -> Result<Reading, Failure> {
     let reading = dataset::read(path).map_err(|e| mistakes(e.0))?;
     if reading.failed() {
-        let errors = reading.diagnostics.into_iter().filter(|d| d.severity == Severity::Error);
+        let errors = reading
+            .diagnostics
+            .into_iter()
+            .filter(|d| d.severity == Severity::Error);
         return Err(mistakes(errors.collect()));
     }
     Ok(reading)
@@ -209,7 +271,11 @@ fn script(path: &Path) -> Result<Job, Failure> {
         return Err(d.help("begin it with FILE/MODEL=name").into());
     };
     let base = script.output.clone().unwrap_or_else(|| stem(path));
-    Ok(Job { reading: read(&file)?, base, steps: script.steps })
+    Ok(Job {
+        reading: read(&file)?,
+        base,
+        steps: script.steps,
+    })
 }
 
 /// Writes everything the run produced; the names of the files.

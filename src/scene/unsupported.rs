@@ -17,13 +17,28 @@ fn unsolved(model: &Model) -> Vec<(&'static str, u32)> {
         "FIELD" fields, "BEAM" beams, "NFORCE" nodal_forces, "CONTACT" contacts, "FRICTION" frictions,
         "LSE" linear_systems, "GSE" general_systems, "TFSISO" transfer_functions, "SENSOR" sensors,
     );
-    const FLEXIBLE: [&str; 9] =
-        ["FLEX_BODY", "FE_PART", "FE_LOAD", "MFORCE", "UCON", "TIRE", "WHEEL", "PTSF", "CVSF"];
+    const FLEXIBLE: [&str; 9] = [
+        "FLEX_BODY",
+        "FE_PART",
+        "FE_LOAD",
+        "MFORCE",
+        "UCON",
+        "TIRE",
+        "WHEEL",
+        "PTSF",
+        "CVSF",
+    ];
     for (keyword, id) in model.others.keys() {
         found.extend(FLEXIBLE.iter().filter(|k| *k == keyword).map(|k| (*k, *id)));
     }
     let unsolved_joint = |kind| matches!(kind, JointKind::Screw | JointKind::Rackpin);
-    found.extend(model.joints.iter().filter(|(_, j)| unsolved_joint(j.kind)).map(|(&id, _)| ("JOINT", id)));
+    found.extend(
+        model
+            .joints
+            .iter()
+            .filter(|(_, j)| unsolved_joint(j.kind))
+            .map(|(&id, _)| ("JOINT", id)),
+    );
     found.retain(|(keyword, id)| !model.inactive.contains(&((*keyword).to_string(), *id)));
     found
 }
