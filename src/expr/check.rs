@@ -448,3 +448,93 @@ impl Check<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(text: &str, limits: Limits) -> (&'static str, usize) {
+        let found = check(text, Dialect::Function, Profile::Adams, limits);
+        let fault = found.expect_err(text);
+        (fault.code, fault.span.start + 1)
+    }
+
+    #[test]
+    fn the_first_mistake_from_the_left_is_reported() {
+        for (text, code, column) in [
+            ("FOO+2^3", "unknown_name", 1),
+            ("2^3+FOO", "bad_char", 2),
+            ("SIN(1,2)+FOO", "arity", 1),
+            ("MAX(FOO(1,2),^)", "unknown_name", 5),
+            ("2 FOO", "unexpected_token", 3),
+            ("2 3.4.5", "bad_number", 3),
+        ] {
+            assert_eq!(fault(text, Limits::NONE), (code, column), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_call_is_checked_syntax_first_then_count_then_identifiers() {
+        for (text, code, column) in [
+            ("DX(1.5,2,^)", "bad_char", 10),
+            ("DX(1.5,,2)", "empty_argument", 8),
+            ("DX(1.5,2,3,4)", "arity", 1),
+            ("DX(1.5,0,-3)", "integer_required", 4),
+            ("DX(0,1.5)", "out_of_range", 4),
+            ("SIN(DX(1.5),2)", "integer_required", 8),
+            ("DX((1))", "integer_required", 4),
+            ("DX(2147483647)", "out_of_range", 4),
+            ("DX(99999999999999999999)", "out_of_range", 4),
+            ("CURVE(TIME,3,4,0)", "out_of_range", 12),
+        ] {
+            assert_eq!(fault(text, Limits::NONE), (code, column), "{text}");
+        }
+    }
+
+    #[test]
+    fn parts_of_an_if_are_counted_and_not_empty() {
+        for (text, code, column) in [
+            ("IF()", "empty_argument", 4),
+            ("IF(,1,2,3)", "empty_argument", 4),
+            ("IF(1)", "unexpected_token", 5),
+            ("IF(1:)", "empty_argument", 6),
+            ("IF(1:2)", "unexpected_token", 7),
+            ("IF(1:2,3:4)", "unexpected_token", 9),
+            ("IF(1:2,3,4", "unexpected_end", 11),
+            ("IF", "missing_arguments", 1),
+            ("IF(1:(2,3),4,5)", "unexpected_token", 8),
+        ] {
+            assert_eq!(fault(text, Limits::NONE), (code, column), "{text}");
+        }
+    }
+
+    #[test]
+    fn every_limit_is_met_exactly() {
+        let limits = |change: fn(&mut Limits)| {
+            let mut limits = Limits::NONE;
+            change(&mut limits);
+            limits
+        };
+        let accepted =
+            |text, limits| check(text, Dialect::Function, Profile::Adams, limits).is_ok();
+        let nesting = limits(|l| l.nesting = 2);
+        assert!(accepted("ABS(IF(1:2,3,4))", nesting));
+        assert_eq!(fault("ABS(IF(1:2,3,(4)))", nesting), ("limit_nesting", 14));
+        let symbols = limits(|l| l.symbols = 4);
+        assert!(accepted("SIN(1)", symbols));
+        assert_eq!(fault("SIN(1)+1", symbols), ("limit_symbols", 7));
+        let elements = limits(|l| l.elements = 2);
+        assert!(accepted("DX(1,2)+DY(2,1,0)+VARVAL(1)+VARVAL(3)", elements));
+        assert_eq!(
+            fault("DX(1,2)+VARVAL(1)+DX(2,3)", elements),
+            ("limit_elements", 24)
+        );
+        let lines = limits(|l| l.lines = 2);
+        assert!(accepted("1\n+1\n", lines));
+        assert_eq!(fault("1\n+1 \n +1", lines), ("limit_lines", 7));
+        let characters = limits(|l| l.characters = 5);
+        assert!(accepted("1+1  ", characters));
+        assert_eq!(fault("1+1   ", characters), ("limit_length", 6));
+        assert_eq!(fault("1+1+TIME", characters), ("limit_length", 6));
+    }
+}

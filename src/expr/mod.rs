@@ -1,7 +1,29 @@
 //! The function language: from text to number.
 //!
-//! `text → Ast → Program → number`. Parsing finds every mistake with its place; compiling resolves names, folds constants
-//! and shares equal parts; running allocates nothing.
+//! ```
+//! use cognate::expr::Expr;
+//! let f = Expr::parse("STEP5(TIME, 0, 0, 1, 10) * SIN(2*PI*TIME)")?;
+//! let y = f.eval(&[("TIME", 0.25)])?;
+//! assert_eq!(y, 1.03515625);
+//! # Ok::<(), cognate::diagnostic::Diagnostic>(())
+//! ```
+//!
+//! ```text
+//! text ── check, parse ──▶ Ast ── compile ──▶ Program ──▶ numbers, derivatives, batches
+//!                           └──── walk ──────────────────▶ the same number, or why there is none
+//! ```
+//!
+//! | step | file | |
+//! |---|---|---|
+//! | names | `functions/` `measures.rs` `interpolation.rs` | the tables; `signature.rs` says what arguments are, `symbols.rs` what a name means |
+//! | text | `token.rs` `check.rs` | words; one ordered pass that finds the first mistake, exactly placed |
+//! | | `advice.rs` `lint.rs` | what is said about mistakes, and about what is legal but hardly meant |
+//! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | the grammars, the tree, and back to source |
+//! | value | `walk.rs` | the reference: lazily correct, names what has no value |
+//! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
+//!
+//! Parsing finds every mistake with its place; compiling resolves names, folds constants and shares equal parts; running
+//! allocates nothing.
 
 mod advice;
 pub mod ast;

@@ -74,7 +74,7 @@ impl Ast {
     fn begin(&self, ix: NodeIx, f: &mut fmt::Formatter<'_>, rest: &mut Vec<Piece>) -> fmt::Result {
         match *self.node(ix) {
             Node::Number { literal, degrees } => {
-                write_number(f, literal)?;
+                write!(f, "{}", Digits(literal))?;
                 f.write_str(if degrees { "D" } else { "" })
             }
             Node::Constant(c) => f.write_str(c.name(self.dialect)),
@@ -147,13 +147,17 @@ impl BinaryOp {
     }
 }
 
-/// The fewest digits that give this number again.
-fn write_number(f: &mut fmt::Formatter<'_>, x: f64) -> fmt::Result {
-    let size = x.abs();
-    if size != 0.0 && !(1e-4..1e15).contains(&size) {
-        write!(f, "{x:E}")
-    } else {
-        write!(f, "{x}")
+/// A number in the fewest digits that give it again.
+pub(super) struct Digits(pub f64);
+
+impl fmt::Display for Digits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (x, size) = (self.0, self.0.abs());
+        if size != 0.0 && !(1e-4..1e15).contains(&size) {
+            write!(f, "{x:E}")
+        } else {
+            write!(f, "{x}")
+        }
     }
 }
 

@@ -10,6 +10,7 @@ use super::ast::{Ast, BinaryOp, Callee, Constant, Node, NodeIx};
 use super::compile::{constant_value, literal_value};
 use super::functions::Function;
 use super::interpolation::{Bindings, Interpolation};
+use super::print::Digits;
 use super::program::Input;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::scalar::Scalar;
@@ -309,11 +310,31 @@ impl<'a> Walk<'a> {
         match host.bindings().unwrap_or(&empty).bind(function, args) {
             Ok(bound) => Ok(bound.eval(args)),
             Err(said) => {
-                let mut trouble = self.trouble(said.code, ix, said.message);
+                let mut trouble =
+                    self.trouble(said.code, self.culprit(ix, said.code), said.message);
                 trouble.help = said.help;
                 Err(trouble)
             }
         }
+    }
+
+    /// The argument of a call over data that a mistake is about: the identifier, or the order.
+    fn culprit(&self, ix: NodeIx, code: &str) -> NodeIx {
+        let Node::Call {
+            callee: Callee::Interpolation(f),
+            ref args,
+        } = *self.ast.node(ix)
+        else {
+            return ix;
+        };
+        let place = match (f, code) {
+            (Interpolation::Curve, "unknown_element") => 3,
+            (Interpolation::Invpsd, "unknown_element") => 1,
+            (_, "unknown_element") => 2,
+            (Interpolation::Akispl | Interpolation::Cubspl | Interpolation::Interp, _) => 3,
+            _ => return ix,
+        };
+        args.get(place).copied().unwrap_or(ix)
     }
 
     fn trouble(&self, code: &'static str, node: NodeIx, message: String) -> Trouble {
@@ -338,7 +359,7 @@ impl<'a> Walk<'a> {
             if x.is_nan() {
                 "…".to_string()
             } else {
-                x.to_string()
+                Digits(*x).to_string()
             }
         };
         let list = || operands.iter().map(shown).collect::<Vec<_>>().join(", ");
@@ -374,7 +395,11 @@ impl<'a> Walk<'a> {
             _ => (list(), "not a number"),
         };
         let when = match self.host.and_then(|host| host.input(Input::Time)) {
-            Some(time) => format!(" at {} = {time}", Constant::Time.name(self.ast.dialect)),
+            Some(time) => format!(
+                " at {} = {}",
+                Constant::Time.name(self.ast.dialect),
+                Digits(time)
+            ),
             None => String::new(),
         };
         self.trouble("domain", ix, format!("{what} has no value{when}: {why}"))
@@ -398,5 +423,123 @@ impl Ast {
     /// A node as it would be written.
     pub fn written(&self, ix: NodeIx) -> String {
         super::print::Written { ast: self, ix }.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ast::Dialect;
+    use super::super::{Profile, parse};
+    use super::*;
+
+    fn tree(text: &str) -> Ast {
+        parse(text, Dialect::Function, Profile::Adams).unwrap_or_else(|e| panic!("{text}: {e}"))
+    }
+    fn at(text: &str, time: f64) -> Result<f64, Trouble> {
+        value(&tree(text), &|input| (input == Input::Time).then_some(time))
+    }
+
+    #[test]
+    fn only_the_selected_branch_is_looked_at() {
+        let text = "IF(TIME-1: SQRT(1-TIME), 1/0*0, SQRT(TIME-1))";
+        assert_eq!(at(text, 0.75), Ok(0.5));
+        assert_eq!(at(text, 1.25), Ok(0.5));
+        assert_eq!(
+            at(text, 1.0).unwrap_err().message,
+            "1 / 0 has no value at TIME = 1: division by zero"
+        );
+        assert_eq!(at("IF(-0.0: 1, 2, 3)", 0.0), Ok(2.0));
+    }
+
+    #[test]
+    fn what_has_no_value_is_named_with_its_numbers() {
+        for (text, message) in [
+            (
+                "2*LOG(TIME-1.5)",
+                "LOG of -0.5 has no value at TIME = 1: LOG takes positive numbers",
+            ),
+            (
+                "ATAN2(TIME-1,0)",
+                "ATAN2(0, 0) has no value at TIME = 1: the point (0, 0) has no angle",
+            ),
+            (
+                "(TIME-2)**0.5",
+                "-1 ** 0.5 has no value at TIME = 1: a negative number has whole powers only",
+            ),
+            (
+                "EXP(1000*TIME)",
+                "EXP of 1000 has no value at TIME = 1: too large for a number",
+            ),
+            (
+                "1E300*(TIME*1E10)",
+                "1E300 * 1E10 has no value at TIME = 1: too large for a number",
+            ),
+        ] {
+            let said = at(text, 1.0).unwrap_err();
+            assert_eq!(said.code, "domain");
+            assert!(
+                said.message.starts_with(message),
+                "{text}: {}",
+                said.message
+            );
+        }
+    }
+
+    #[test]
+    fn infinities_do_not_travel_on() {
+        assert_eq!(at("ATAN(1/(TIME-1))", 1.0).unwrap_err().code, "domain");
+        assert_eq!(at("1/EXP(1000*TIME)", 1.0).unwrap_err().code, "domain");
+    }
+
+    #[test]
+    fn mistakes_of_constants_are_found_where_they_are_certain() {
+        for (text, column) in [
+            ("TIME/0", 5),
+            ("STEP(TIME,1,0,1,1)", 1),
+            ("IF(1/0: 1, 2, 3)", 5),
+            ("IF(1: 2, 3, 4/0)", 14),
+            ("MOD(TIME,0)", 1),
+        ] {
+            let found = check_constants(&tree(text)).unwrap_err();
+            assert_eq!(
+                (found.code, found.span.start + 1),
+                ("domain", column),
+                "{text}"
+            );
+        }
+        for text in [
+            "IF(TIME: 1/0, 2, 3)",
+            "IF(1: 2/0, 3/0, 4)",
+            "STEP(TIME,TIME,0,1,1)",
+            "SQRT(DX(1)-5)",
+            "AKISPL(1,0,1)",
+        ] {
+            assert_eq!(check_constants(&tree(text)), Ok(()), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_a_host_lacks_is_named() {
+        let said = at("TIME+DX(1, 02, 0)", 1.0).unwrap_err();
+        assert_eq!((said.code, said.span.start), ("missing_value", 5));
+        assert_eq!(said.message, "DX(1, 2, 0) has no value here");
+        assert_eq!(
+            at("DELAY(TIME,0.5,0)", 1.0).unwrap_err().code,
+            "needs_history"
+        );
+        let said = at("2*AKISPL(TIME,0,7)", 1.0).unwrap_err();
+        assert_eq!((said.code, said.span.start), ("unknown_element", 16));
+    }
+
+    #[test]
+    fn values_are_told_for_what_was_looked_at() {
+        let ast = tree("IF(TIME: 1, 2, 3)+4");
+        let found = values(&ast, &|_| Some(1.0)).unwrap();
+        let shown: Vec<Option<f64>> = (0..)
+            .zip(found)
+            .filter(|(ix, _)| ast.written(*ix).len() == 1)
+            .map(|(_, v)| v)
+            .collect();
+        assert_eq!(shown, [None, None, Some(3.0), Some(4.0)]);
     }
 }
