@@ -3,7 +3,10 @@
 
 mod problems;
 
-use cognate::numeric::{Dop853, Failure, METHODS, Method, Ode, Options, Reason, ode_method};
+use cognate::numeric::{
+    Dae, Dop853, Failure, Form, Kind, METHODS, Method, MethodRow, Ode, Options, Reason, dae_method,
+    ode_method,
+};
 use problems::*;
 
 fn options(tolerance: f64) -> Options {
@@ -203,6 +206,102 @@ fn stiff_bushing(name: &str, tolerance: f64) -> (f64, usize) {
     (judge.verdict(), method.stats().evaluations)
 }
 
+/// Final error of a DAE method on equations with a known end.
+fn dae_trial<E: Equations>(
+    name: &str,
+    tolerance: f64,
+    equations: E,
+    end: f64,
+    start: &[f64],
+    judge: &mut Judge,
+    mut see: impl FnMut(&mut Judge, &[f64]),
+) -> (f64, usize) {
+    let mut problem = Implicit::new(equations);
+    let mut y = start.to_vec();
+    y.resize(problem.size(), 0.0);
+    let mut method = dae_method(name, y.len(), &options(tolerance)).expect("the table has it");
+    let outcome = run(&mut *method, &mut problem, (0.0, end), &y, 1, |_, y| {
+        see(judge, y)
+    });
+    if std::env::var("STATS").is_ok() {
+        println!("{:?}", method.stats());
+    }
+    outcome.expect("it arrives");
+    (judge.verdict(), method.stats().evaluations)
+}
+
+fn dae_pendulum(name: &str, tolerance: f64) -> (f64, usize) {
+    let mut judge = Judge::new(4);
+    dae_trial(
+        name,
+        tolerance,
+        Written(Pendulum),
+        10.0,
+        &Pendulum::START,
+        &mut judge,
+        |j, y| j.see(&Pendulum::point(y), &Pendulum::AFTER_10),
+    )
+}
+
+fn dae_hires(name: &str, tolerance: f64) -> (f64, usize) {
+    let mut judge = Judge::new(8);
+    dae_trial(
+        name,
+        tolerance,
+        Written(Hires),
+        Hires::END,
+        &Hires::START,
+        &mut judge,
+        |j, y| j.see(y, &Hires::AT_END),
+    )
+}
+
+fn dae_robertson(name: &str, tolerance: f64) -> (f64, usize) {
+    let mut judge = Judge::new(3);
+    dae_trial(
+        name,
+        tolerance,
+        Written(Robertson),
+        40.0,
+        &Robertson::START,
+        &mut judge,
+        |j, y| j.see(y, &Robertson::AFTER_40),
+    )
+}
+
+fn dae_van_der_pol(name: &str, tolerance: f64) -> (f64, usize) {
+    let mut judge = Judge::new(2);
+    dae_trial(
+        name,
+        tolerance,
+        Written(VanDerPol),
+        2.0,
+        &VanDerPol::START,
+        &mut judge,
+        |j, y| j.see(y, &VanDerPol::AFTER_2),
+    )
+}
+
+fn constrained(index: usize, name: &str, tolerance: f64) -> (f64, usize) {
+    let mut judge = Judge::new(4);
+    dae_trial(
+        name,
+        tolerance,
+        ConstrainedPendulum { index },
+        10.0,
+        &[-1.0, 0.0, 0.0, 0.0],
+        &mut judge,
+        |j, y| j.see(&y[..4], &Pendulum::AFTER_10),
+    )
+}
+
+fn index_1(name: &str, tolerance: f64) -> (f64, usize) {
+    constrained(1, name, tolerance)
+}
+fn index_2(name: &str, tolerance: f64) -> (f64, usize) {
+    constrained(2, name, tolerance)
+}
+
 /// Work and true error over the range of requests.
 fn proportional(name: &str, what: &str, trial: Trial, requests: &[i32], allowed: f64) {
     let mut table = String::new();
@@ -262,6 +361,123 @@ fn error_follows_the_request_on_what_is_stiff() {
 }
 
 #[test]
+fn error_follows_the_request_of_dae_methods() {
+    let requests = [3, 4, 5, 6, 7, 8, 9, 10];
+    for name in ["BDF"] {
+        proportional(name, "pendulum", dae_pendulum, &requests, 40.0);
+        proportional(name, "van der Pol", dae_van_der_pol, &requests, 10.0);
+        proportional(name, "Robertson", dae_robertson, &requests, 10.0);
+        proportional(name, "HIRES", dae_hires, &requests, 10.0);
+        proportional(name, "index 2 pendulum", index_2, &requests, 50.0);
+        // the position constraint comes from accelerations alone and drifts
+        proportional(name, "index 1 pendulum", index_1, &requests, 500.0);
+    }
+}
+
+#[test]
+fn error_follows_the_request_of_second_order_methods() {
+    let requests = [2, 3, 4, 5, 6];
+    for name in ["HHT", "NEWMARK"] {
+        proportional(name, "pendulum", dae_pendulum, &requests, 40.0);
+        proportional(name, "HIRES", dae_hires, &requests, 10.0);
+        proportional(name, "Robertson", dae_robertson, &requests, 10.0);
+        proportional(name, "index 2 pendulum", index_2, &requests, 60.0);
+    }
+}
+
+/// Error at the end, largest error of the interpolant, and steps, of a DAE method on the oscillator.
+fn oscillator_run(name: &str, max_order: usize, tolerance: f64) -> (f64, f64, usize) {
+    let mut problem = Implicit::new(Written(Oscillator));
+    let options = Options {
+        tolerance,
+        max_order,
+        ..Options::default()
+    };
+    let mut method = dae_method(name, 2, &options).unwrap();
+    method.start(&mut problem, 0.0, &[0.0, 1.0]).unwrap();
+    let (mut inside, mut y, mut ydot) = (0.0f64, [0.0; 2], [0.0; 2]);
+    while method.t() < 10.0 {
+        let step = method.step(&mut problem, 10.0).unwrap();
+        for part in [0.21, 0.5, 0.83] {
+            let t = step.t0 + part * step.h;
+            method.interpolate(&mut problem, t, &mut y).unwrap();
+            inside = inside
+                .max((y[0] - t.sin()).abs())
+                .max((y[1] - t.cos()).abs());
+            method.interpolate_rate(&mut problem, t, &mut ydot).unwrap();
+            assert!((ydot[0] - y[1]).abs() < 0.3 * tolerance.sqrt());
+        }
+    }
+    (
+        (method.y()[0] - f64::sin(10.0)).abs(),
+        inside,
+        method.stats().steps,
+    )
+}
+
+#[test]
+fn methods_of_variable_step_show_their_order_as_work() {
+    for (name, order) in [
+        ("BDF", 1),
+        ("BDF", 2),
+        ("BDF", 3),
+        ("BDF", 4),
+        ("BDF", 5),
+        ("HHT", 2),
+        ("NEWMARK", 2),
+    ] {
+        let (coarse, fine) = if order == 1 {
+            (1e-1, 1e-2)
+        } else {
+            (1e-3, 1e-6)
+        };
+        let (a, b) = (
+            oscillator_run(name, order, coarse),
+            oscillator_run(name, order, fine),
+        );
+        let more = (b.2 as f64 / a.2 as f64).ln();
+        let (slope, inside) = ((a.0 / b.0).ln() / more, (a.1 / b.1).ln() / more);
+        let order = order as f64;
+        assert!(
+            slope > order - 0.3 && slope < order + 0.7,
+            "{name} {order}: {slope} at the end"
+        );
+        assert!(
+            inside > order - 0.3 && inside < order + 0.7,
+            "{name} {order}: {inside} inside steps"
+        );
+    }
+}
+
+#[test]
+fn index_3_keeps_its_constraint_and_gains_with_the_request() {
+    let mut last = f64::INFINITY;
+    for request in [1e-4, 1e-6, 1e-8] {
+        let mut problem = Implicit::new(ConstrainedPendulum { index: 3 });
+        let mut method = dae_method("BDF", 5, &options(request)).unwrap();
+        method
+            .start(&mut problem, 0.0, &[-1.0, 0.0, 0.0, 0.0, 0.0])
+            .unwrap();
+        let (mut drift, mut gap) = (0.0f64, 0.0f64);
+        while method.t() < 10.0 {
+            method.step(&mut problem, 10.0).unwrap();
+            let y = method.y();
+            gap = gap.max((y[0] * y[0] + y[1] * y[1] - 1.0).abs());
+            drift = drift.max((0.5 * (y[2] * y[2] + y[3] * y[3]) + 9.81 * y[1]).abs());
+        }
+        assert!(
+            gap < 0.1 * request,
+            "constraint is off by {gap} at {request}"
+        );
+        assert!(
+            drift < 0.2 * last,
+            "energy is off by {drift} at {request}, by {last} before"
+        );
+        last = drift;
+    }
+}
+
+#[test]
 fn projection_keeps_invariants_and_costs_no_evaluation() {
     let mut problem = System::new(CartesianPendulum);
     let mut method = Dop853::new(4, &options(1e-6));
@@ -282,7 +498,7 @@ fn projection_keeps_invariants_and_costs_no_evaluation() {
     );
 }
 
-/// Counts calls and fails as told after a time.
+/// An oscillator that counts calls and goes wrong as told.
 struct Faulty {
     fault: fn(f64, &mut [f64]) -> Result<(), Failure>,
     calls: usize,
@@ -313,15 +529,58 @@ impl Ode for Faulty {
     }
 }
 
-/// Where a run of `name` over a faulty problem stops, why, and after how many calls.
-fn stop_of(name: &str, fault: fn(f64, &mut [f64]) -> Result<(), Failure>) -> (f64, Reason, usize) {
+impl Dae for Faulty {
+    fn size(&self) -> usize {
+        2
+    }
+    fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        self.calls += 1;
+        (r[0], r[1]) = (ydot[0] - y[1], ydot[1] + y[0]);
+        (self.fault)(t, r)
+    }
+    fn pattern(&self) -> Vec<(usize, usize)> {
+        vec![(0, 0), (1, 0), (0, 1), (1, 1)]
+    }
+    fn jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        cj: f64,
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        values.copy_from_slice(&[cj, 1.0, -1.0, cj]);
+        Ok(())
+    }
+    fn consistent(&mut self, _t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        (ydot[0], ydot[1]) = (y[1], -y[0]);
+        Ok(())
+    }
+    fn kinds(&self) -> Vec<Kind> {
+        vec![Kind::Differential; 2]
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1.0);
+    }
+}
+
+/// Where a run over a faulty problem stops, why, and after how many calls.
+fn stop_of(
+    row: &MethodRow,
+    fault: fn(f64, &mut [f64]) -> Result<(), Failure>,
+) -> (f64, Reason, usize) {
     let mut problem = Faulty { fault, calls: 0 };
-    let mut method = ode_method(name, 2, &options(1e-6)).unwrap();
+    let options = options(1e-5);
+    let mut method = match row.form {
+        Form::Ode => ode_method::<Faulty>(row.name, 2, &options),
+        Form::Dae => dae_method::<Faulty>(row.name, 2, &options),
+    }
+    .unwrap();
     let stop = match method.start(&mut problem, 0.0, &[0.0, 1.0]) {
         Err(stop) => stop,
         Ok(()) => loop {
             match method.step(&mut problem, 10.0) {
-                Ok(_) => assert!(method.t() < 10.0, "{name} ran through a fault"),
+                Ok(_) => assert!(method.t() < 10.0, "{} ran through a fault", row.name),
                 Err(stop) => break stop,
             }
         },
@@ -331,11 +590,8 @@ fn stop_of(name: &str, fault: fn(f64, &mut [f64]) -> Result<(), Failure>) -> (f6
 
 #[test]
 fn a_fault_is_approached_and_then_named() {
-    for row in METHODS
-        .iter()
-        .filter(|row| row.form == cognate::numeric::Form::Ode)
-    {
-        let (t, reason, calls) = stop_of(row.name, |t, ydot| {
+    for row in METHODS {
+        let (t, reason, calls) = stop_of(row, |t, ydot| {
             if t > 3.0 {
                 ydot[1] = f64::NAN;
             }
@@ -345,11 +601,8 @@ fn a_fault_is_approached_and_then_named() {
         assert_eq!(reason, Reason::NotFinite(1), "{}", row.name);
         assert!(calls < 20_000, "{}: {calls} calls", row.name);
 
-        let failure = Failure {
-            what: 7,
-            recoverable: true,
-        };
-        let (t, reason, calls) = stop_of(row.name, |t, _| {
+        let failure = |what, recoverable| Failure { what, recoverable };
+        let (t, reason, calls) = stop_of(row, |t, _| {
             if t > 3.0 {
                 Err(Failure {
                     what: 7,
@@ -360,10 +613,10 @@ fn a_fault_is_approached_and_then_named() {
             }
         });
         assert!(t <= 3.0 && t > 2.999, "{} stops at {t}", row.name);
-        assert_eq!(reason, Reason::Evaluation(failure), "{}", row.name);
+        assert_eq!(reason, Reason::Evaluation(failure(7, true)), "{}", row.name);
         assert!(calls < 20_000, "{}: {calls} calls", row.name);
 
-        let (t, reason, _) = stop_of(row.name, |t, _| {
+        let (t, reason, _) = stop_of(row, |t, _| {
             if t > 3.0 {
                 Err(Failure {
                     what: 8,
@@ -376,13 +629,17 @@ fn a_fault_is_approached_and_then_named() {
         assert!(t <= 3.0, "{} stops at {t}", row.name);
         assert_eq!(
             reason,
-            Reason::Evaluation(Failure {
-                what: 8,
-                recoverable: false
-            }),
+            Reason::Evaluation(failure(8, false)),
             "{}",
             row.name
         );
+
+        let (t, reason, calls) = stop_of(row, |_, ydot| {
+            ydot[0] = f64::INFINITY;
+            Ok(())
+        });
+        assert_eq!((t, reason), (0.0, Reason::NotFinite(0)), "{}", row.name);
+        assert!(calls < 20_000, "{}: {calls} calls", row.name);
     }
 }
 
@@ -397,10 +654,7 @@ fn a_pole_stops_with_an_underflow_of_the_step() {
             ydot[0] = y[0].square();
         }
     }
-    for row in METHODS
-        .iter()
-        .filter(|row| row.form == cognate::numeric::Form::Ode)
-    {
+    for row in METHODS.iter().filter(|row| row.form == Form::Ode) {
         let mut problem = System::new(Pole);
         let mut method = ode_method(row.name, 1, &options(1e-6)).unwrap();
         method.start(&mut problem, 0.0, &[1.0]).unwrap();

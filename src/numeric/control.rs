@@ -227,14 +227,9 @@ impl Starter<'_> {
     }
 }
 
-/// The shortest sensible step at `t` on the way to `t_limit`.
-pub fn shortest(t: f64, t_limit: f64, options: &Options) -> f64 {
-    let reach = if t_limit.is_finite() {
-        t.abs().max(t_limit.abs())
-    } else {
-        t.abs()
-    };
-    options.h_min.max(16.0 * f64::EPSILON * reach).max(1e-280)
+/// The shortest sensible step at `t`: time must visibly pass.
+pub fn shortest(t: f64, options: &Options) -> f64 {
+    options.h_min.max(16.0 * f64::EPSILON * t.abs()).max(1e-200)
 }
 
 /// Fits a step to the limit: never beyond, and never leaving a remnant that is much shorter than the step.

@@ -15,14 +15,19 @@
 //! The requested tolerance is the permitted local error of each unknown relative to the largest magnitude it has had so far
 //! (see [`control::Weights`]).
 
+pub mod bdf;
 pub mod control;
+pub mod corrector;
 pub mod dense;
 pub mod event;
+pub mod hht;
 pub mod radau;
 pub mod rank;
 pub mod runge_kutta;
 pub mod sparse;
 
+pub use bdf::Bdf;
+pub use hht::Hht;
 pub use radau::Radau;
 pub use runge_kutta::Dop853;
 
@@ -325,8 +330,8 @@ pub enum Form {
 /// Writes the table of methods, and the constructors that read it.
 macro_rules! methods {
     (
-        ode { $($ode:ident = $ode_name:literal, $ode_explicit:literal, $ode_order:literal, $ode_summary:literal;)* }
-        dae { $($dae:ident = $dae_name:literal, $dae_explicit:literal, $dae_order:literal, $dae_summary:literal;)* }
+        ode { $($ode_name:literal, $ode_explicit:literal, $ode_order:literal, $ode_summary:literal => $ode:expr;)* }
+        dae { $($dae_name:literal, $dae_explicit:literal, $dae_order:literal, $dae_summary:literal => $dae:expr;)* }
     ) => {
         /// All methods. The first of each form is the default of its kind.
         pub const METHODS: &[MethodRow] = &[
@@ -337,15 +342,15 @@ macro_rules! methods {
         /// The method of that name for problems `ẏ = f(t, y)` of `n` unknowns.
         pub fn ode_method<P: Ode + ?Sized>(name: &str, n: usize, options: &Options) -> Option<Box<dyn Method<P>>> {
             match name {
-                $($ode_name => Some(Box::new($ode::new(n, options))),)*
+                $($ode_name => Some(Box::new($ode(n, options))),)*
                 _ => None,
             }
         }
 
         /// The method of that name for problems `F(t, y, ẏ) = 0` of `n` unknowns.
-        pub fn dae_method<P: Dae + ?Sized>(name: &str, _n: usize, _options: &Options) -> Option<Box<dyn Method<P>>> {
+        pub fn dae_method<P: Dae + ?Sized>(name: &str, n: usize, options: &Options) -> Option<Box<dyn Method<P>>> {
             match name {
-                $($dae_name => Some(Box::new($dae::new(_n, _options))),)*
+                $($dae_name => Some(Box::new($dae(n, options))),)*
                 _ => None,
             }
         }
@@ -354,9 +359,12 @@ macro_rules! methods {
 
 methods! {
     ode {
-        Dop853 = "DOP853", true, 8, "explicit Runge–Kutta of Dormand and Prince, 8(5,3), projected onto invariants";
-        Radau = "RADAU5", false, 5, "Radau IIA of three stages for stiff problems, projected onto invariants";
+        "DOP853", true, 8, "explicit Runge–Kutta of Dormand and Prince, 8(5,3), projected onto invariants" => Dop853::new;
+        "RADAU5", false, 5, "Radau IIA of three stages for stiff problems, projected onto invariants" => Radau::new;
     }
     dae {
+        "BDF", false, 5, "backward differentiation of order 1 to 5, variable step, fixed leading coefficient" => Bdf::new;
+        "HHT", false, 2, "generalized-α with damping of high frequencies (α = −0.3)" => Hht::new;
+        "NEWMARK", false, 2, "generalized-α without damping (average acceleration)" => Hht::newmark;
     }
 }

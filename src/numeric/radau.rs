@@ -492,7 +492,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
             self.advanced = false;
         }
         let t0 = self.t0;
-        let shortest = control::shortest(t0, t_limit, &self.options);
+        let shortest = control::shortest(t0, &self.options);
         let mut cause = Reason::TooManySteps;
         let mut rejected = 0;
         self.calm = false;

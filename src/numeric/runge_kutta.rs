@@ -431,7 +431,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
             self.advanced = false;
         }
         self.dense_ready = false;
-        let shortest = control::shortest(self.t0, t_limit, &self.options);
+        let shortest = control::shortest(self.t0, &self.options);
         let mut cause = Reason::TooManySteps;
         let mut rejected = 0;
         loop {

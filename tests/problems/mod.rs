@@ -3,7 +3,7 @@
 //! A problem is one formula over [`Scalar`]; its Jacobian is the same formula over dual numbers.
 #![allow(dead_code)] // each test binary uses its own part
 
-use cognate::numeric::{Failure, Method, Ode, Stop};
+use cognate::numeric::{Dae, Failure, Kind, Levels, Method, Ode, Stop};
 use cognate::scalar::{Dual, Scalar};
 
 /// `ẏ = f(t, y)`, once for every kind of number.
@@ -476,5 +476,197 @@ impl Field for StiffBushing {
         (ydot[0], ydot[1], ydot[2]) = (y[3], y[4], y[5]);
         (ydot[3], ydot[4]) = (fx, fy);
         ydot[5] = (torque + px * fy - py * fx).scale(1.0 / 0.04);
+    }
+}
+
+/// `F(t, y, ẏ) = 0`, once for every kind of number.
+pub trait Equations {
+    /// Number of unknowns.
+    fn size(&self) -> usize;
+    /// `r = F(t, y, ydot)`
+    fn residual<S: Scalar>(&self, t: f64, y: &[S], ydot: &[S], r: &mut [S]);
+    /// Algebraic unknowns and rates that belong to the differential unknowns in `y`.
+    fn consistent(&self, t: f64, y: &mut [f64], ydot: &mut [f64]);
+    /// How each unknown is treated.
+    fn kinds(&self) -> Vec<Kind> {
+        vec![Kind::Differential; self.size()]
+    }
+    /// Powers of the step in rows and unknowns.
+    fn levels(&self) -> Levels {
+        Levels {
+            rows: vec![0; self.size()],
+            unknowns: vec![0; self.size()],
+        }
+    }
+    /// Typical magnitudes.
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1.0);
+    }
+}
+
+/// An explicit system written implicitly: `ẏ − f(t, y) = 0`.
+pub struct Written<F>(pub F);
+
+impl<F: Field> Equations for Written<F> {
+    fn size(&self) -> usize {
+        self.0.size()
+    }
+    fn residual<S: Scalar>(&self, t: f64, y: &[S], ydot: &[S], r: &mut [S]) {
+        self.0.rate(S::constant(t), y, r);
+        for (r, ydot) in r.iter_mut().zip(ydot) {
+            *r = *ydot - *r;
+        }
+    }
+    fn consistent(&self, t: f64, y: &mut [f64], ydot: &mut [f64]) {
+        self.0.rate(t, y, ydot);
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        self.0.typical(typical);
+    }
+}
+
+/// [`Equations`] as the methods want them; the pattern is full.
+pub struct Implicit<E> {
+    pub equations: E,
+    y: Vec<Dual<1>>,
+    ydot: Vec<Dual<1>>,
+    r: Vec<Dual<1>>,
+}
+
+impl<E: Equations> Implicit<E> {
+    pub fn new(equations: E) -> Self {
+        let zeros = vec![Dual::constant(0.0); equations.size()];
+        Implicit {
+            y: zeros.clone(),
+            ydot: zeros.clone(),
+            r: zeros,
+            equations,
+        }
+    }
+}
+
+impl<E: Equations> Dae for Implicit<E> {
+    fn size(&self) -> usize {
+        self.equations.size()
+    }
+    fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        self.equations.residual(t, y, ydot, r);
+        Ok(())
+    }
+    fn pattern(&self) -> Vec<(usize, usize)> {
+        let n = self.size();
+        (0..n * n).map(|e| (e % n, e / n)).collect()
+    }
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        cj: f64,
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        let n = y.len();
+        for j in 0..n {
+            for i in 0..n {
+                let (dy, dydot) = if i == j { (1.0, cj) } else { (0.0, 0.0) };
+                self.y[i] = Dual {
+                    re: y[i],
+                    eps: [dy],
+                };
+                self.ydot[i] = Dual {
+                    re: ydot[i],
+                    eps: [dydot],
+                };
+            }
+            self.equations.residual(t, &self.y, &self.ydot, &mut self.r);
+            for i in 0..n {
+                values[i + n * j] = self.r[i].eps[0];
+            }
+        }
+        Ok(())
+    }
+    fn consistent(&mut self, t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.equations.consistent(t, y, ydot);
+        Ok(())
+    }
+    fn kinds(&self) -> Vec<Kind> {
+        self.equations.kinds()
+    }
+    fn levels(&self) -> Levels {
+        self.equations.levels()
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        self.equations.typical(typical);
+    }
+}
+
+/// The plane pendulum as positions, velocities and multiplier (x, y, u, v, λ[, μ]).
+pub struct ConstrainedPendulum {
+    /// 3: the constraint on positions alone; 2: stabilized, with the constraint on velocities and a second multiplier μ; 1: on accelerations
+    pub index: usize,
+}
+
+impl Equations for ConstrainedPendulum {
+    fn size(&self) -> usize {
+        if self.index == 2 { 6 } else { 5 }
+    }
+    fn residual<S: Scalar>(&self, _t: f64, y: &[S], ydot: &[S], r: &mut [S]) {
+        let g = S::constant(9.81);
+        let mu = if self.index == 2 { y[5] } else { S::zero() };
+        r[0] = ydot[0] - y[2] + mu * y[0];
+        r[1] = ydot[1] - y[3] + mu * y[1];
+        r[2] = ydot[2] + y[4] * y[0];
+        r[3] = ydot[3] + y[4] * y[1] + g;
+        let position = (y[0].square() + y[1].square() - S::one()).scale(0.5);
+        if self.index == 1 {
+            r[4] = y[2].square() + y[3].square() + y[0] * ydot[2] + y[1] * ydot[3];
+        } else {
+            r[4] = position;
+        }
+        if self.index == 2 {
+            r[5] = y[0] * y[2] + y[1] * y[3];
+        }
+    }
+    fn consistent(&self, _t: f64, y: &mut [f64], ydot: &mut [f64]) {
+        let g = 9.81;
+        let lambda = (y[2] * y[2] + y[3] * y[3] - g * y[1]) / (y[0] * y[0] + y[1] * y[1]);
+        y[4] = lambda;
+        ydot.fill(0.0);
+        ydot[..4].copy_from_slice(&[y[2], y[3], -lambda * y[0], -lambda * y[1] - g]);
+        // λ̇ = −3 g ẏ at unit length
+        ydot[4] = -3.0 * g * y[3];
+    }
+    fn kinds(&self) -> Vec<Kind> {
+        use Kind::{Algebraic, Differential, DifferentialUncontrolled};
+        match self.index {
+            3 => [
+                vec![Differential; 2],
+                vec![DifferentialUncontrolled; 2],
+                vec![Algebraic],
+            ]
+            .concat(),
+            2 => [vec![Differential; 4], vec![Algebraic; 2]].concat(),
+            _ => [vec![Differential; 4], vec![Algebraic]].concat(),
+        }
+    }
+    fn levels(&self) -> Levels {
+        match self.index {
+            3 => Levels {
+                rows: vec![1, 1, 2, 2, 0],
+                unknowns: vec![0, 0, 1, 1, 2],
+            },
+            2 => Levels {
+                rows: vec![1, 1, 2, 2, 0, 1],
+                unknowns: vec![0, 0, 1, 1, 2, 1],
+            },
+            _ => Levels {
+                rows: vec![1, 1, 2, 2, 2],
+                unknowns: vec![0, 0, 1, 1, 2],
+            },
+        }
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1.0);
+        typical[4] = 10.0;
     }
 }

@@ -1,0 +1,593 @@
+//! Backward differentiation of order 1 to 5 for `F(t, y, ẏ) = 0`: variable step, fixed leading coefficient.
+//!
+//! ```text
+//! φ₀ = yₙ,  φⱼ = ψ₁ … ψⱼ [yₙ, yₙ₋₁, … yₙ₋ⱼ]           modified divided differences, ψⱼ = tₙ₊₁ − tₙ₊₁₋ⱼ             (1)
+//! φ*ⱼ = βⱼ φⱼ                                          for the step to come                                        (2)
+//! ŷ = Σ φ*ⱼ,  ẏ̂ = Σ γⱼ φ*ⱼ                             prediction: the polynomial of degree k through the past       (3)
+//! y = ŷ + e,  ẏ = ẏ̂ + cj e,  cj = Σ_{j≤k} (1/j) / h    F(t, y, ẏ) = 0 solved by `corrector.rs`                     (4)
+//! error = C ‖e‖,  C = max(αₖ₊₁, |αₖ₊₁ + αₛ − α₀|)      of the step and of the interpolant                           (5)
+//! order k ± 1  where the error terms ‖h^{j+1} y^{(j+1)}‖, from e and the φ, fall or rise with j                     (6)
+//! ```
+//!
+//! *Start*: order 1 and a short step; step doubled and order raised at every step until the error speaks (phase 0).
+//! *Interpolant*: the polynomial of degree k through the newest k + 1 points; continuous.
+//! *Index 3*: every change of step or order disturbs velocities by O(h) and multipliers by O(1) of the error in positions, and the disturbed velocities are
+//! integrated on; positions alone are controlled, so the accuracy of a run is far below the request. Stabilized index-2 rows have no such loss: prefer them.
+//! Rows and unknowns are scaled by their levels; see `corrector.rs`.
+//! *Oscillations*: from order 3 on the region of stability leaves out modes of little damping; where they are present the step is held
+//! down. `max_order` 2 or Radau is the remedy.
+//!
+//! Source: Brenan, Campbell & Petzold, Numerical Solution of Initial-Value Problems in DAEs, 5.2 (program DASSL); Hindmarsh et al., ACM TOMS 31
+//! (2005) (program IDA).
+#![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
+
+use super::control::{self, Weights, worst, worst_index};
+use super::corrector::Corrector;
+use super::{Dae, Failure, Method, Options, Reason, Stats, Step, Stop};
+
+/// Highest order.
+const MAX_ORDER: usize = 5;
+
+/// Backward differentiation; see the file's card.
+#[derive(Clone, Debug)]
+pub struct Bdf {
+    options: Options,
+    weights: Weights,
+    stats: Stats,
+    max_order: usize,
+    /// permitted error of a step
+    tolerance: f64,
+    past: Past,
+    /// the past before the last step, for undo
+    before: Past,
+    /// beginning of the last step; whether there is one to undo
+    t0: f64,
+    can_undo: bool,
+    /// coefficients of (2) to (6) for the step in work
+    alpha: [f64; MAX_ORDER + 2],
+    beta: [f64; MAX_ORDER + 2],
+    gamma: [f64; MAX_ORDER + 2],
+    sigma: [f64; MAX_ORDER + 2],
+    /// which unknowns are controlled: 1 or 0; that over the error permitted   (n)
+    controlled: Vec<f64>,
+    scale: Vec<f64>,
+    /// solution and rate in work and at the end; correction; scratch   (n each)
+    y: Vec<f64>,
+    ydot: Vec<f64>,
+    e: Vec<f64>,
+    work: Vec<f64>,
+    predicted: [Vec<f64>; 2],
+    corrector: Corrector,
+}
+
+/// What the next step builds on.
+#[derive(Clone, Debug)]
+struct Past {
+    /// end of the last step, its length and order
+    t: f64,
+    h_used: f64,
+    k_used: usize,
+    /// step and order of the next one
+    h: f64,
+    k: usize,
+    /// steps of this length and order; steps since the start; still doubling
+    constant: usize,
+    steps: usize,
+    rising: bool,
+    /// ψ of (1)
+    psi: [f64; MAX_ORDER + 2],
+    /// φ of (1)   (7 × n)
+    phi: [Vec<f64>; MAX_ORDER + 2],
+    /// rate at t   (n)
+    ydot: Vec<f64>,
+}
+
+impl Past {
+    fn copy_from(&mut self, other: &Past) {
+        for (a, b) in self.phi.iter_mut().zip(&other.phi) {
+            a.copy_from_slice(b);
+        }
+        self.ydot.copy_from_slice(&other.ydot);
+        (self.t, self.h_used, self.k_used) = (other.t, other.h_used, other.k_used);
+        (self.h, self.k, self.constant) = (other.h, other.k, other.constant);
+        (self.steps, self.rising, self.psi) = (other.steps, other.rising, other.psi);
+    }
+}
+
+/// Errors as the order tests see them (6): of the step, and terms per order.
+struct Errors {
+    step: f64,
+    /// estimate at k − 1; terms at k and k − 1
+    below: f64,
+    term: f64,
+    term_below: f64,
+    /// the order to go down to, or the same
+    k_new: usize,
+    /// the estimate at k_new
+    estimate: f64,
+}
+
+impl Bdf {
+    /// The method for `n` unknowns.
+    pub fn new(n: usize, options: &Options) -> Self {
+        let zeros = || vec![0.0; n];
+        let weights = Weights::new(n, options);
+        let past = Past {
+            t: 0.0,
+            h_used: 0.0,
+            k_used: 0,
+            h: 0.0,
+            k: 1,
+            constant: 0,
+            steps: 0,
+            rising: true,
+            psi: [0.0; MAX_ORDER + 2],
+            phi: std::array::from_fn(|_| zeros()),
+            ydot: zeros(),
+        };
+        Bdf {
+            options: options.clone(),
+            tolerance: inner_tolerance(weights.tolerance()),
+            weights,
+            stats: Stats::default(),
+            max_order: options.max_order.clamp(1, MAX_ORDER),
+            before: past.clone(),
+            past,
+            t0: 0.0,
+            can_undo: false,
+            alpha: [0.0; MAX_ORDER + 2],
+            beta: [0.0; MAX_ORDER + 2],
+            gamma: [0.0; MAX_ORDER + 2],
+            sigma: [0.0; MAX_ORDER + 2],
+            controlled: vec![1.0; n],
+            scale: zeros(),
+            y: zeros(),
+            ydot: zeros(),
+            e: zeros(),
+            work: zeros(),
+            predicted: [zeros(), zeros()],
+            corrector: Corrector::new(n, options),
+        }
+    }
+
+    fn begin<P: Dae + ?Sized>(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
+        let stop = |reason| Stop { reason, t, h: 0.0 };
+        self.can_undo = false;
+        self.y.copy_from_slice(y);
+        problem
+            .consistent(t, &mut self.y, &mut self.ydot)
+            .map_err(|f| stop(Reason::Evaluation(f)))?;
+        let all = self.y.iter().chain(&self.ydot);
+        if !worst(all.clone().copied()).is_finite() {
+            return Err(stop(Reason::NotFinite(
+                worst_index(all.copied()) % self.y.len().max(1),
+            )));
+        }
+        self.weights.see(&self.y);
+        self.corrector.forget();
+        // a first step of order 1: its error h² ÿ/2 is a guess from the time scale y/ẏ
+        let typical = self.weights.typical();
+        let speed = worst(
+            (0..y.len())
+                .map(|i| self.controlled[i] * self.ydot[i] / self.y[i].abs().max(typical[i])),
+        );
+        let guess = self.tolerance.sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
+        let h = self
+            .options
+            .h_initial
+            .unwrap_or(guess)
+            .min(self.options.h_max);
+        let past = &mut self.past;
+        (past.t, past.h, past.k, past.h_used, past.k_used) = (t, h, 1, 0.0, 0);
+        (past.constant, past.steps, past.rising) = (0, 0, true);
+        past.psi = [h; MAX_ORDER + 2];
+        past.phi.iter_mut().for_each(|phi| phi.fill(0.0));
+        past.phi[0].copy_from_slice(&self.y);
+        past.ydot.copy_from_slice(&self.ydot);
+        for (phi, rate) in past.phi[1].iter_mut().zip(&self.ydot) {
+            *phi = h * rate;
+        }
+        Ok(())
+    }
+
+    /// The coefficients for a step of length `h` at order k, and φ → φ* (2). Gives cj and C of (5).
+    fn set_coefficients(&mut self, h: f64) -> (f64, f64) {
+        let past = &mut self.past;
+        let k = past.k;
+        if h != past.h_used || k != past.k_used {
+            past.constant = 0;
+        }
+        past.constant = (past.constant + 1).min(past.k_used + 2);
+        if k + 1 >= past.constant {
+            (self.alpha[0], self.beta[0], self.gamma[0], self.sigma[0]) = (1.0, 1.0, 0.0, 1.0);
+            let mut reach = h;
+            for i in 1..=k {
+                let old = past.psi[i - 1];
+                past.psi[i - 1] = reach;
+                self.beta[i] = self.beta[i - 1] * reach / old;
+                reach = old + h;
+                self.alpha[i] = h / reach;
+                self.sigma[i] = i as f64 * self.sigma[i - 1] * self.alpha[i];
+                self.gamma[i] = self.gamma[i - 1] + self.alpha[i - 1] / h;
+            }
+            past.psi[k] = reach;
+        }
+        let alpha_s: f64 = -(1..=k).map(|j| 1.0 / j as f64).sum::<f64>();
+        let alpha_0: f64 = -self.alpha[..k].iter().sum::<f64>();
+        let c = (self.alpha[k] + alpha_s - alpha_0).abs().max(self.alpha[k]);
+        for i in past.constant..=k {
+            let beta = self.beta[i];
+            past.phi[i].iter_mut().for_each(|phi| *phi *= beta);
+        }
+        (-alpha_s / h, c)
+    }
+
+    /// Takes back what `set_coefficients` did to ψ and φ.
+    fn restore(&mut self, h: f64) {
+        let past = &mut self.past;
+        for j in 1..=past.k {
+            past.psi[j - 1] = past.psi[j] - h;
+        }
+        for j in past.constant..=past.k {
+            let beta = self.beta[j].recip();
+            past.phi[j].iter_mut().for_each(|phi| *phi *= beta);
+        }
+    }
+
+    /// (3)
+    fn predict(&mut self) {
+        let past = &self.past;
+        self.y.copy_from_slice(&past.phi[0]);
+        self.ydot.fill(0.0);
+        for j in 1..=past.k {
+            let gamma = self.gamma[j];
+            for ((y, ydot), phi) in self.y.iter_mut().zip(&mut self.ydot).zip(&past.phi[j]) {
+                *y += phi;
+                *ydot += gamma * phi;
+            }
+        }
+        for (i, scale) in self.scale.iter_mut().enumerate() {
+            let (m, y) = (self.weights.magnitude()[i], self.y[i].abs());
+            *scale = 1.0 / (self.tolerance * if y > m { y } else { m });
+        }
+    }
+
+    /// `‖x‖` over the controlled unknowns.
+    fn norm(&self, x: &[f64]) -> f64 {
+        worst(
+            x.iter()
+                .zip(&self.scale)
+                .zip(&self.controlled)
+                .map(|((x, s), c)| x * s * c),
+        )
+    }
+
+    /// (5) and (6) downward.
+    fn errors(&mut self, c: f64) -> Errors {
+        let k = self.past.k;
+        let size = self.norm(&self.e);
+        let at_k = self.sigma[k] * size;
+        let term = (k + 1) as f64 * at_k;
+        let mut errors = Errors {
+            step: c * size,
+            below: 0.0,
+            term,
+            term_below: 0.0,
+            k_new: k,
+            estimate: at_k,
+        };
+        if k > 1 {
+            for ((w, e), phi) in self.work.iter_mut().zip(&self.e).zip(&self.past.phi[k]) {
+                *w = e + phi;
+            }
+            errors.below = self.sigma[k - 1] * self.norm(&self.work);
+            errors.term_below = k as f64 * errors.below;
+            let lower = if k > 2 {
+                for (w, phi) in self.work.iter_mut().zip(&self.past.phi[k - 1]) {
+                    *w += phi;
+                }
+                let second = (k - 1) as f64 * self.sigma[k - 2] * self.norm(&self.work);
+                errors.term_below.max(second) <= term
+            } else {
+                errors.term_below <= 0.5 * term
+            };
+            if lower {
+                (errors.k_new, errors.estimate) = (k - 1, errors.below);
+            }
+        }
+        errors
+    }
+
+    /// After an accepted step: order and length of the next one, and the new φ.
+    fn complete(&mut self, t1: f64, h: f64, errors: &Errors) {
+        let k = self.past.k;
+        let rise = k as isize - self.past.k_used as isize;
+        let raised_norm = (k < self.max_order).then(|| {
+            for ((w, e), phi) in self.work.iter_mut().zip(&self.e).zip(&self.past.phi[k + 1]) {
+                *w = e - phi;
+            }
+            self.norm(&self.work)
+        });
+        let past = &mut self.past;
+        past.steps += 1;
+        (past.k_used, past.h_used, past.t) = (k, h, t1);
+        if errors.k_new < k || k == self.max_order {
+            past.rising = false;
+        }
+        let mut h_next = h;
+        if past.rising {
+            if past.steps > 1 {
+                past.k = k + 1;
+                h_next = 2.0 * h;
+            }
+        } else {
+            let may_rise = errors.k_new == k && k + 1 < past.constant && rise != 1;
+            let (mut k_next, mut estimate) = (errors.k_new, errors.estimate);
+            if let (true, Some(size)) = (may_rise, raised_norm) {
+                let above = size / (k + 2) as f64;
+                let term_above = size;
+                if k > 1 && errors.term_below <= errors.term.min(term_above) {
+                    (k_next, estimate) = (k - 1, errors.below);
+                } else if term_above
+                    < if k > 1 {
+                        errors.term
+                    } else {
+                        0.5 * errors.term
+                    }
+                {
+                    (k_next, estimate) = (k + 1, above);
+                }
+            }
+            past.k = k_next;
+            let factor = (2.0 * estimate + 1e-4).powf(-1.0 / (k_next + 1) as f64);
+            if factor >= 2.0 {
+                h_next = 2.0 * h;
+            } else if factor <= 1.0 {
+                h_next = h * factor.clamp(0.5, 0.9);
+            }
+        }
+        past.h = h_next;
+        if k < self.max_order {
+            past.phi[k + 1].copy_from_slice(&self.e);
+        }
+        for (phi, e) in past.phi[k].iter_mut().zip(&self.e) {
+            *phi += e;
+        }
+        for j in (0..k).rev() {
+            let (low, high) = past.phi.split_at_mut(j + 1);
+            for (phi, above) in low[j].iter_mut().zip(&high[0]) {
+                *phi += above;
+            }
+        }
+        past.ydot.copy_from_slice(&self.ydot);
+    }
+
+    /// One attempt of length `h` to `t1`; gives the errors of an acceptable one. The past is restored otherwise.
+    fn attempt<P: Dae + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        h: f64,
+        t1: f64,
+    ) -> Result<Errors, Rejection> {
+        let (cj, c) = self.set_coefficients(h);
+        self.predict();
+        let corrected = self.corrector.correct(
+            problem,
+            (t1, cj),
+            &mut self.y,
+            &mut self.ydot,
+            &mut self.e,
+            &self.scale,
+            &mut self.predicted,
+            &mut self.stats,
+        );
+        if let Err(trouble) = corrected {
+            self.restore(h);
+            return Err(Rejection {
+                reason: trouble.reason,
+                recoverable: trouble.recoverable,
+                factor: 0.25,
+                k: None,
+            });
+        }
+        let errors = self.errors(c);
+        if errors.step <= 1.0 {
+            return Ok(errors);
+        }
+        self.restore(h);
+        let unknown = worst_index(
+            self.e
+                .iter()
+                .zip(&self.scale)
+                .zip(&self.controlled)
+                .map(|((x, s), c)| x * s * c),
+        );
+        let factor = 0.9 * (2.0 * errors.estimate + 1e-4).powf(-1.0 / (errors.k_new + 1) as f64);
+        let factor = if factor.is_finite() {
+            factor.clamp(0.25, 0.9)
+        } else {
+            0.25
+        };
+        Err(Rejection {
+            reason: Reason::ErrorTest(unknown),
+            recoverable: true,
+            factor,
+            k: Some(errors.k_new),
+        })
+    }
+
+    /// Values and slopes at `t` of the interpolant's terms; calls `term(j, value, slope)` for each φⱼ.
+    fn basis(&self, t: f64, mut term: impl FnMut(usize, f64, f64)) {
+        let past = &self.past;
+        let k = past.k_used.max(1);
+        let d = t - past.t;
+        let (mut value, mut slope) = (1.0, 0.0);
+        let mut factor = d / past.psi[0];
+        term(0, 1.0, 0.0);
+        for j in 1..=k {
+            slope = slope * factor + value / past.psi[j - 1];
+            value *= factor;
+            factor = (d + past.psi[j - 1]) / past.psi[j];
+            term(j, value, slope);
+        }
+    }
+}
+
+/// Why an attempt came to nothing, and what to try next.
+struct Rejection {
+    reason: Reason,
+    recoverable: bool,
+    factor: f64,
+    k: Option<usize>,
+}
+
+/// The permitted error of a step for a requested accuracy.
+///
+/// A run of order k sums some h⁻¹ errors of h^(k+1), so the permitted one must fall a little faster than the request. Measured over pendulum, van der Pol,
+/// Robertson, HIRES and the stabilized index-2 pendulum, requests 1e-3 … 1e-10: the error at the end is 0.01 to 25 times the request.
+fn inner_tolerance(request: f64) -> f64 {
+    (0.05 * request.powf(1.1)).max(2e-13)
+}
+
+impl<P: Dae + ?Sized> Method<P> for Bdf {
+    fn start(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
+        self.stats = Stats::default();
+        self.weights.reset(|typical| problem.typical(typical));
+        self.controlled = Corrector::controlled(&problem.kinds());
+        self.corrector.start(problem, self.weights.tolerance());
+        self.begin(problem, t, y)
+    }
+
+    fn reinitialize(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
+        self.begin(problem, t, y)
+    }
+
+    fn step(&mut self, problem: &mut P, t_limit: f64) -> Result<Step, Stop> {
+        let t0 = self.past.t;
+        self.before.copy_from(&self.past);
+        let shortest = control::shortest(t0, &self.options);
+        let mut cause = Reason::TooManySteps;
+        let (mut rejected, mut failed_tests) = (0, 0);
+        loop {
+            let proposed = self.past.h.min(self.options.h_max);
+            let (h, at_limit) = control::fit(t0, proposed, t_limit);
+            let stop = |reason| Err(Stop { reason, t: t0, h });
+            if self.stats.steps + self.stats.rejected >= self.options.max_steps {
+                return stop(Reason::TooManySteps);
+            }
+            if h < shortest && (rejected > 0 || !at_limit) {
+                return stop(cause);
+            }
+            if self.past.steps == 0 {
+                // the first step knows one rate only; its divided difference belongs to the step taken
+                self.past.psi[0] = h;
+                for (phi, rate) in self.past.phi[1].iter_mut().zip(&self.past.ydot) {
+                    *phi = h * rate;
+                }
+            }
+            let t1 = if at_limit { t_limit } else { t0 + h };
+            match self.attempt(problem, h, t1) {
+                Ok(errors) => {
+                    let order = self.past.k;
+                    self.complete(t1, h, &errors);
+                    if h < proposed && self.past.h >= h {
+                        // a step that the limit cut short says little against the one that was proposed
+                        self.past.h = self.past.h.max(proposed);
+                    }
+                    self.weights.see(&self.y);
+                    self.stats.steps += 1;
+                    (self.t0, self.can_undo) = (t0, true);
+                    return Ok(Step {
+                        t0,
+                        t1,
+                        h,
+                        order,
+                        rejected,
+                    });
+                }
+                Err(rejection) => {
+                    cause = rejection.reason;
+                    if !rejection.recoverable {
+                        return stop(cause);
+                    }
+                    self.past.rising = false;
+                    let mut factor = rejection.factor;
+                    if let Some(k) = rejection.k {
+                        failed_tests += 1;
+                        (self.past.k, factor) = match failed_tests {
+                            1 => (k, factor),
+                            2 => (k, 0.25),
+                            _ => (1, 0.25),
+                        };
+                    }
+                    self.past.h = h * factor;
+                }
+            }
+            rejected += 1;
+            self.stats.rejected += 1;
+        }
+    }
+
+    fn undo(&mut self) {
+        if self.can_undo {
+            std::mem::swap(&mut self.past, &mut self.before);
+            self.past.h = self.past.h.min(self.before.h_used);
+            self.y.copy_from_slice(&self.past.phi[0]);
+            self.ydot.copy_from_slice(&self.past.ydot);
+            self.can_undo = false;
+        }
+    }
+
+    fn interpolate(&mut self, _problem: &mut P, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        if t == self.past.t || self.past.steps == 0 {
+            y.copy_from_slice(&self.past.phi[0]);
+            return Ok(());
+        }
+        y.fill(0.0);
+        self.basis(t, |j, value, _| {
+            for (y, phi) in y.iter_mut().zip(&self.past.phi[j]) {
+                *y += value * phi;
+            }
+        });
+        Ok(())
+    }
+
+    fn interpolate_rate(
+        &mut self,
+        _problem: &mut P,
+        t: f64,
+        ydot: &mut [f64],
+    ) -> Result<(), Failure> {
+        if t == self.past.t || self.past.steps == 0 {
+            ydot.copy_from_slice(&self.past.ydot);
+            return Ok(());
+        }
+        ydot.fill(0.0);
+        self.basis(t, |j, _, slope| {
+            for (ydot, phi) in ydot.iter_mut().zip(&self.past.phi[j]) {
+                *ydot += slope * phi;
+            }
+        });
+        Ok(())
+    }
+
+    fn propose(&mut self, h: f64) {
+        self.past.h = h;
+    }
+
+    fn t(&self) -> f64 {
+        self.past.t
+    }
+
+    fn y(&self) -> &[f64] {
+        &self.past.phi[0]
+    }
+
+    fn ydot(&self) -> &[f64] {
+        &self.past.ydot
+    }
+
+    fn stats(&self) -> &Stats {
+        &self.stats
+    }
+}
