@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> Outcome {
         ));
     }
     std::fs::write(output, reading.dataset.source.encode(&text))
-        .map_err(|e| Diagnostic::error("cannot_write", format!("{}: {e}", output.display())))?;
+        .map_err(|e| Diagnostic::error("file_unwritable", format!("{}: {e}", output.display())))?;
     Ok(Exit::Done)
 }
 

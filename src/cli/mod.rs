@@ -18,6 +18,7 @@ pub mod progress;
 pub mod render;
 mod repl;
 mod run;
+mod summary;
 
 use crate::diagnostic::Diagnostic;
 use clap::{Parser, Subcommand};
@@ -115,6 +116,15 @@ impl From<Diagnostic> for Failure {
 }
 
 impl Failure {
+    /// Mistakes in files: their texts are read again, to show the places.
+    pub fn in_files(exit: Exit, diagnostics: Vec<Diagnostic>) -> Self {
+        let sources = Sources::of_files(&diagnostics);
+        Self {
+            exit,
+            diagnostics,
+            sources,
+        }
+    }
     /// The command was understood but contradicts itself.
     pub fn usage(message: impl Into<String>) -> Self {
         Self {
@@ -164,6 +174,11 @@ pub fn complain(diagnostics: &[Diagnostic], sources: &Sources) {
     let text = render::render(diagnostics, sources, render::colour_on_stderr());
     // Where nobody listens there is nothing to say.
     let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// Says what is wrong or doubtful in files, on standard error, with the places.
+pub fn complain_in_files(diagnostics: &[Diagnostic]) {
+    complain(diagnostics, &Sources::of_files(diagnostics));
 }
 
 /// Says on standard error what was done beside what was asked for.

@@ -18,6 +18,18 @@ impl Sources {
         sources.add("", text);
         sources
     }
+    /// The texts of the files that diagnostics name; a file that cannot be read any more has none.
+    pub fn of_files(diagnostics: &[Diagnostic]) -> Self {
+        let mut sources = Self::default();
+        for file in diagnostics.iter().filter_map(|d| d.file.as_deref()) {
+            if sources.text(Some(file)).is_none()
+                && let Ok(bytes) = std::fs::read(file)
+            {
+                sources.add(file, String::from_utf8_lossy(&bytes));
+            }
+        }
+        sources
+    }
     /// Adds the text of a file.
     pub fn add(&mut self, file: impl Into<String>, text: impl Into<String>) {
         self.texts.push((file.into(), text.into()));

@@ -1,8 +1,8 @@
 //! `cognate run`: a model with its commands, from file to results.
 
 use super::progress::Progress;
-use super::render::Sources;
-use super::{Exit, Failure, Outcome, interrupt, remark};
+
+use super::{Exit, Failure, Outcome, interrupt, remark, say, summary};
 use crate::analysis::dynamics::Watch;
 use crate::analysis::script::obey;
 use crate::analysis::session::{Options, Session};
@@ -10,7 +10,7 @@ use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::numeric::Stats;
-use crate::results::{self, Event, Status, csv, json, msg, res};
+use crate::results::{self, Event, Run, Status, csv, json, msg, res};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -154,21 +154,24 @@ pub fn run(args: &Args) -> Outcome {
             (Status::Model, Some(errors))
         }
     };
+    let elapsed = clock.elapsed().as_secs_f64();
+    session.run.log.push(Event::Finished {
+        elapsed,
+        cpu: cpu_seconds().unwrap_or(elapsed),
+    });
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    let written = write(&mut session.run, &dir, full)?;
+    let mut written = write(&mut session.run, &dir, full)?;
     if args.json {
-        println!("{}", json::text(&json::record(&session.run)));
+        say(&json::text(&json::record(&session.run)));
     } else if !args.quiet {
-        report(&session.run, &written);
+        written.extend(summary::picture(&session.run, &dir));
+        say(&summary::table(&session.run));
+        remark(summary::facts(&session.run, &written).trim_end());
     }
     if let Some(diagnostics) = failure {
-        return Err(Failure {
-            exit: Exit::Model,
-            diagnostics,
-            sources: Sources::default(),
-        });
+        return Err(Failure::in_files(Exit::Model, diagnostics));
     }
-    if status != Status::Completed {
+    if status != Status::Completed && (args.quiet || args.json) {
         remark(&session.run.record.stop_reason);
     }
     Ok(exit(status))
@@ -236,36 +239,21 @@ fn stem(path: &Path) -> String {
         .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
-/// All mistakes of an input, with the texts they stand in.
-fn mistakes(diagnostics: Vec<Diagnostic>) -> Failure {
-    let mut sources = Sources::default();
-    for file in diagnostics.iter().filter_map(|d| d.file.clone()) {
-        if let Ok(bytes) = std::fs::read(&file) {
-            sources.add(file, String::from_utf8_lossy(&bytes).into_owned());
-        }
-    }
-    Failure {
-        exit: Exit::Input,
-        diagnostics,
-        sources,
-    }
-}
-
 fn read(path: &Path) -> Result<Reading, Failure> {
-    let reading = dataset::read(path).map_err(|e| mistakes(e.0))?;
+    let reading = dataset::read(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
     if reading.failed() {
         let errors = reading
             .diagnostics
             .into_iter()
             .filter(|d| d.severity == Severity::Error);
-        return Err(mistakes(errors.collect()));
+        return Err(Failure::in_files(Exit::Input, errors.collect()));
     }
     Ok(reading)
 }
 
 /// A command file and the dataset it names.
 fn script(path: &Path) -> Result<Job, Failure> {
-    let script = Script::read(path).map_err(|e| mistakes(e.0))?;
+    let script = Script::read(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
     let Some(file) = script.model_file() else {
         let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
         return Err(d.help("begin it with FILE/MODEL=name").into());
@@ -278,44 +266,29 @@ fn script(path: &Path) -> Result<Job, Failure> {
     })
 }
 
-/// Writes everything the run produced; the names of the files.
-fn write(run: &mut results::Run, dir: &Path, full: bool) -> Result<Vec<PathBuf>, Failure> {
+/// Writes everything the run produced; the names of the files. The record comes last: who sees it finds the others complete.
+fn write(run: &mut Run, dir: &Path, full: bool) -> Result<Vec<PathBuf>, Failure> {
     let clock = Instant::now();
     std::fs::create_dir_all(dir)
-        .map_err(|e| Diagnostic::error("cannot_write", format!("{}: {e}", dir.display())))?;
+        .map_err(|e| Diagnostic::error("file_unwritable", format!("{}: {e}", dir.display())))?;
     let path = |ending: &str| dir.join(format!("{}.{ending}", run.name));
-    let mut written = Vec::new();
-    let mut save = |ending: &str, text: String| -> Result<(), Failure> {
-        let p = path(ending);
-        results::write_text(&p, &text)?;
-        written.push(p);
-        Ok(())
-    };
-    save("csv", csv::write(run, true))?;
+    let mut texts = vec![(path("csv"), csv::write(run, true))];
     if full {
-        save("res", res::write(run))?;
+        texts.push((path("res"), res::write(run)));
     }
-    save("msg", msg::write(run))?;
-    let seconds = clock.elapsed().as_secs_f64();
-    run.record.write_seconds = seconds;
-    let p = dir.join(format!("{}.json", run.name));
-    results::write_text(&p, &json::text(&json::record(run)))?;
-    written.push(p);
-    Ok(written)
+    texts.push((path("msg"), msg::write(run)));
+    let record = path("json");
+    for (file, text) in &texts {
+        results::write_text(file, text)?;
+    }
+    run.record.write_seconds = clock.elapsed().as_secs_f64();
+    results::write_text(&record, &json::text(&json::record(run)))?;
+    Ok(texts.into_iter().map(|t| t.0).chain([record]).collect())
 }
 
-/// What happened, in a few lines.
-fn report(run: &results::Run, written: &[PathBuf]) {
-    let r = &run.record;
-    remark(format!(
-        "{}: {} rows, {} steps of {}, {:.3} ms",
-        r.status.word(),
-        run.table_rows().count(),
-        r.counts.steps,
-        r.method,
-        1e3 * r.solve_seconds
-    ));
-    for p in written {
-        remark(p.display().to_string());
-    }
+/// Time that this process has computed, where the system tells.
+fn cpu_seconds() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
 }

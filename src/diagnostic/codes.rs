@@ -244,6 +244,23 @@ give degrees: sin(30). SIN(30) is a legal direct-entry function, but thirty radi
     2**3**2        is 2**(3**2) = 512",
     },
     Code {
+        name: "no_model",
+        summary: "a command file names no dataset",
+        explanation: "\
+A command file begins with FILE/MODEL=name, after blank lines or comments; or, as answers to the old prompts, with the
+name of the dataset on its first line and that of the results on its second.",
+    },
+    Code {
+        name: "no_end",
+        summary: "a simulation has no end, or one that is over",
+        explanation: "\
+The clock goes on from one simulation to the next. END is a time of that clock, DURATION a time from now on:
+
+    SIMULATE/DYNAMIC, END=2, STEPS=100
+    SIMULATE/DYNAMIC, END=3, STEPS=100        one more second
+    SIMULATE/DYNAMIC, DURATION=1, STEPS=100   one more second",
+    },
+    Code {
         name: "file_unreadable",
         summary: "a file cannot be read",
         explanation: "\

@@ -87,6 +87,33 @@ impl Plot {
         })
     }
 
+    /// The columns of a run's table in panels: those of one unit together, those without one by themselves; at most `most`.
+    pub fn by_unit(run: &Run, most: usize) -> Vec<Plot> {
+        let mut panels: Vec<Plot> = Vec::new();
+        for column in run.table_columns().into_iter().skip(1) {
+            let Some(Ok(plot)) = run
+                .columns
+                .get(column)
+                .map(|c| Plot::of_run(run, None, std::slice::from_ref(&c.name)))
+            else {
+                continue;
+            };
+            if plot.ranges().is_err() {
+                continue;
+            }
+            let unit = run.columns[column].unit.as_str();
+            let fits = |p: &Plot| {
+                !unit.is_empty() && p.common_unit() == Some(unit) && p.curves.len() < MOST_CURVES
+            };
+            match panels.iter().position(fits) {
+                Some(same) => panels[same].curves.extend(plot.curves),
+                None if panels.len() < most => panels.push(plot),
+                None => {}
+            }
+        }
+        panels
+    }
+
     /// The common unit of the curves, if they have one.
     fn common_unit(&self) -> Option<&str> {
         let first = self.curves.first()?.unit.as_str();
@@ -143,10 +170,7 @@ impl Plot {
         };
         match (range(|p| p.0), range(|p| p.1)) {
             (Some(x), Some(y)) => Ok((x, y)),
-            _ => Err(Diagnostic::error(
-                "empty_plot",
-                "there is no finite value to show",
-            )),
+            _ => Err(nothing_to_show()),
         }
     }
 }
@@ -177,6 +201,11 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     } else {
         format!("{name} [{unit}]")
     }
+}
+
+/// What to say when there is nothing to draw.
+pub(super) fn nothing_to_show() -> Diagnostic {
+    Diagnostic::error("empty_plot", "there is no finite value to show")
 }
 
 /// What to say when a run has no column of this name: which are near, or all there are.

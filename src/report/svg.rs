@@ -1,16 +1,17 @@
 //! A [`Plot`] as an SVG file: light ground, axes with units, ticks at round numbers, a legend above the curves.
 
-use super::plot::{Plot, pieces};
+use super::plot::{Plot, Range, pieces};
 use crate::diagnostic::Diagnostic;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Size of the picture as it is shown.   [px]
-const SHOWN: (u32, u32) = (960, 540);
+/// Width of the picture as it is shown, height with one panel, and of each of several.   [px]
+const WIDTH: u32 = 960;
+const HEIGHT: u32 = 540;
+const PANEL: u32 = 230;
 /// Dots per pixel: the backend places points on whole dots, and curves must not wobble. All lengths below are in dots.
 const DOTS: u32 = 10;
-const SIZE: (u32, u32) = (SHOWN.0 * DOTS, SHOWN.1 * DOTS);
 const LETTERS: u32 = 15 * DOTS;
 const TITLE_LETTERS: u32 = 19 * DOTS;
 /// Width of an average letter of a common sans-serif face, per size.
@@ -39,59 +40,122 @@ type Drawn<T> = Result<T, Box<dyn std::error::Error>>;
 /// # Errors
 /// When there is no finite value to show.
 pub fn svg(plot: &Plot) -> Result<String, Diagnostic> {
-    let (x, y) = plot.ranges()?;
-    let margin = 0.04 * (y.1 - y.0);
+    panels(std::slice::from_ref(plot))
+}
+
+/// Plots below each other, each with its own y, as the text of an SVG file. The first has the title, the last the name of x.
+///
+/// # Errors
+/// When there is nothing to show, or a plot has no finite value.
+pub fn panels(plots: &[Plot]) -> Result<String, Diagnostic> {
+    let ranges = plots
+        .iter()
+        .map(Plot::ranges)
+        .collect::<Result<Vec<_>, _>>()?;
+    if plots.is_empty() {
+        return Err(super::plot::nothing_to_show());
+    }
+    let height = if plots.len() == 1 {
+        HEIGHT
+    } else {
+        60 + PANEL * plots.len() as u32
+    };
     let mut text = String::new();
-    let drawn = draw(plot, x, (y.0 - margin, y.1 + margin), &mut text);
+    let drawn = draw(plots, &ranges, (WIDTH * DOTS, height * DOTS), &mut text);
     drawn.map_err(|e| {
         Diagnostic::error(
             "plot_failed",
             format!("the picture could not be drawn: {e}"),
         )
     })?;
-    let size = |(w, h): (u32, u32)| format!("width=\"{w}\" height=\"{h}\"");
-    Ok(text.replacen(&size(SIZE), &size(SHOWN), 1))
+    let size = |w: u32, h: u32| format!("width=\"{w}\" height=\"{h}\"");
+    Ok(text.replacen(&size(WIDTH * DOTS, height * DOTS), &size(WIDTH, height), 1))
 }
 
-fn draw(plot: &Plot, x: (f64, f64), y: (f64, f64), text: &mut String) -> Drawn<()> {
-    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
+fn draw(
+    plots: &[Plot],
+    ranges: &[(Range, Range)],
+    size: (u32, u32),
+    text: &mut String,
+) -> Drawn<()> {
+    let root = SVGBackend::with_string(text, size).into_drawing_area();
     root.fill(&WHITE)?;
-    let root = root.margin(14 * DOTS, 12 * DOTS, 14 * DOTS, 26 * DOTS);
-    let (x_step, y_step) = (tick_step(x), tick_step(y));
-    let left = y_labels_width(y, y_step);
-    let mut top = 4 * DOTS as i32;
-    if !plot.title.is_empty() {
-        root.draw_text(
-            &plot.title,
+    let mut area = root.margin(14 * DOTS, 12 * DOTS, 14 * DOTS, 26 * DOTS);
+    // The axes of all panels stand below each other.
+    let left = ranges
+        .iter()
+        .map(|(_, y)| y_labels_width(*y, tick_step(*y)))
+        .max()
+        .unwrap_or(0);
+    if let Some(title) = plots
+        .first()
+        .map(|p| p.title.as_str())
+        .filter(|t| !t.is_empty())
+    {
+        area.draw_text(
+            title,
             &("sans-serif", TITLE_LETTERS).into_font().color(&INK),
             (left as i32, 0),
         )?;
-        top += (TITLE_LETTERS + 8 * DOTS) as i32;
+        area = area.split_vertically((TITLE_LETTERS + 8 * DOTS) as i32).1;
     }
-    top = draw_legend(&root, &plot.legend(), left as i32, top)?;
-    let (_, below) = root.split_vertically(top);
+    let last = plots.len() - 1;
+    for (k, (plot, &(x, y))) in plots.iter().zip(ranges).enumerate() {
+        let height = area.dim_in_pixel().1 / (plots.len() - k) as u32;
+        // The last panel has the name of x below it; all have curves of one height.
+        let name = 24 * DOTS;
+        let shorter = if k == last {
+            0
+        } else {
+            name * (plots.len() - k) as u32 / plots.len() as u32 / 2
+        };
+        let (panel, rest) = area.split_vertically(height.saturating_sub(shorter));
+        draw_panel(plot, &panel, (x, y), left, k == last)?;
+        area = rest;
+    }
+    root.present()?;
+    Ok(())
+}
 
-    let mut chart = (ChartBuilder::on(&below)
-        .set_label_area_size(LabelAreaPosition::Bottom, 52 * DOTS))
+fn draw_panel<B: DrawingBackend>(
+    plot: &Plot,
+    area: &DrawingArea<B, Shift>,
+    (x, y): (Range, Range),
+    left: u32,
+    named: bool,
+) -> Drawn<()>
+where
+    B::ErrorType: 'static,
+{
+    let (x_step, y_step) = (tick_step(x), tick_step(y));
+    let margin = 0.04 * (y.1 - y.0);
+    let y = (y.0 - margin, y.1 + margin);
+    let top = draw_legend(area, &plot.legend(), left as i32, 4 * DOTS as i32)?;
+    let (_, below) = area.split_vertically(top);
+    let mut chart = (ChartBuilder::on(&below).set_label_area_size(
+        LabelAreaPosition::Bottom,
+        if named { 52 } else { 30 } * DOTS,
+    ))
     .set_label_area_size(LabelAreaPosition::Left, left)
     .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
-    (chart
-        .configure_mesh()
+    let lines = (below.dim_in_pixel().1 / (55 * DOTS)).clamp(3, 9) as usize;
+    let mut mesh = chart.configure_mesh();
+    (mesh
         .light_line_style(TRANSPARENT)
         .bold_line_style(GRID.stroke_width(DOTS))
         .axis_style(AXIS.stroke_width(DOTS)))
     .x_labels(12)
-    .y_labels(9)
+    .y_labels(lines)
     .set_all_tick_mark_size(5 * DOTS)
     .x_label_formatter(&|v| tick(*v, x_step))
     .y_label_formatter(&|v| tick(*v, y_step))
-    .x_desc(plot.x_label.as_str())
+    .x_desc(if named { plot.x_label.as_str() } else { "" })
     .y_desc(plot.y_axis())
     .label_style(("sans-serif", LETTERS - DOTS).into_font().color(&INK))
     .axis_desc_style(("sans-serif", LETTERS).into_font().color(&INK))
     .draw()?;
     for (curve, colour) in plot.curves.iter().zip(COLOURS.iter().cycle()) {
-        for mut piece in pieces(&curve.points, x, SHOWN.0) {
+        for mut piece in pieces(&curve.points, x, WIDTH) {
             // The range may be narrower than the largest numbers, which have no place in pixels.
             piece
                 .iter_mut()
@@ -103,7 +167,6 @@ fn draw(plot: &Plot, x: (f64, f64), y: (f64, f64), text: &mut String) -> Drawn<(
             }
         }
     }
-    below.present()?;
     Ok(())
 }
 

@@ -1,0 +1,154 @@
+//! What `cognate run` says at its end: a short table, how it went, and which files it wrote; and a picture of the results.
+
+use crate::report::{Plot, svg::panels};
+use crate::results::{Run, write_text};
+use std::path::{Path, PathBuf};
+
+/// Rows and columns of the table; results can have thousands of either.
+const ROWS: usize = 9;
+const COLUMNS: usize = 7;
+const WIDTH: usize = 13;
+
+/// A few rows of the table, from the first to the last at equal distances.
+pub fn table(run: &Run) -> String {
+    let columns: Vec<usize> = run
+        .table_columns()
+        .into_iter()
+        .filter(|&c| c < run.columns.len())
+        .collect();
+    let rows: Vec<usize> = run.table_rows().collect();
+    let shown: Vec<usize> = match rows.len() {
+        n if n <= ROWS => rows,
+        n => (0..ROWS).map(|k| rows[k * (n - 1) / (ROWS - 1)]).collect(),
+    };
+    if shown.is_empty() || columns.len() < 2 {
+        return String::new();
+    }
+    let more = columns.len().saturating_sub(COLUMNS);
+    let columns = &columns[..columns.len().min(COLUMNS)];
+    let line = |cell: &dyn Fn(usize) -> String| {
+        columns
+            .iter()
+            .map(|&c| format!("{:>WIDTH$}", cell(c)))
+            .collect::<Vec<_>>()
+            .join(" ")
+            + "\n"
+    };
+    let mut text = line(&|c| shortened(&run.columns[c].name));
+    if columns.iter().any(|&c| !run.columns[c].unit.is_empty()) {
+        text += &line(&|c| shortened(&run.columns[c].unit));
+    }
+    for row in shown {
+        text += &line(&|c| number(run.columns[c].values[row]));
+    }
+    if more > 0 {
+        text += &format!("… and {more} more columns\n");
+    }
+    text
+}
+
+/// A name cut to the width of a column.
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= WIDTH {
+        name.to_owned()
+    } else {
+        name.chars().take(WIDTH - 1).chain(['…']).collect()
+    }
+}
+
+/// Six digits, as many as one reads; the files have them all.
+fn number(x: f64) -> String {
+    let size = x.abs();
+    if x == 0.0 {
+        "0".into()
+    } else if (1e-4..1e6).contains(&size) {
+        let decimals = 5 - size.log10().floor() as i32;
+        format!("{x:.*}", usize::try_from(decimals).unwrap_or(0))
+    } else {
+        format!("{x:.5e}")
+    }
+}
+
+/// How it went, and the files that were written.
+pub fn facts(run: &Run, written: &[PathBuf]) -> String {
+    let r = &run.record;
+    let mut text = format!(
+        "{}: {} rows, {} steps",
+        r.status.word(),
+        run.table_rows().count(),
+        r.counts.steps
+    );
+    if !r.method.is_empty() {
+        text += &format!(" of {}", r.method);
+    }
+    text += &format!(", {:.3} ms\n", 1e3 * r.solve_seconds);
+    if !r.stop_reason.is_empty() {
+        text += &format!("{}\n", r.stop_reason);
+    }
+    for simulation in r.simulations.iter().filter(|s| !s.worst.is_empty()) {
+        text += &format!(
+            "worst at the end of {} at time {}: {}\n",
+            simulation.kind.name(),
+            simulation.end,
+            simulation.worst.join(", ")
+        );
+    }
+    for warning in &r.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    for file in written {
+        text += &format!("{}\n", file.display());
+    }
+    text
+}
+
+/// Most panels of the picture.
+const PANELS: usize = 6;
+
+/// Draws the table over time, a panel per unit, to `DIR/<base>.svg`; the file, if there is anything to draw.
+pub fn picture(run: &Run, dir: &Path) -> Option<PathBuf> {
+    let file = dir.join(format!("{}.svg", run.name));
+    let text = panels(&Plot::by_unit(run, PANELS)).ok()?;
+    write_text(&file, &text).ok().map(|()| file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{Kind, Units};
+
+    #[test]
+    fn the_table_has_the_first_and_the_last_row_and_fits() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("a rather long expression", "mm");
+        run.begin(Kind::Dynamic);
+        (0..=1000).for_each(|k| run.push(&[f64::from(k) * 1e-3, -1e-7 * f64::from(k)]));
+        run.end();
+        let text = table(&run);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 2 + ROWS);
+        assert!(lines[0].ends_with("a rather lon…") && lines[1].ends_with("mm"));
+        assert!(
+            lines[2].trim_start().starts_with('0')
+                && lines[10].trim_start().starts_with("1.00000")
+                && lines[10].ends_with("-1.00000e-4"),
+            "{text}"
+        );
+        assert_eq!(table(&Run::new("r", "t", Units::default())), "");
+    }
+
+    #[test]
+    fn numbers_have_six_digits() {
+        assert_eq!(
+            [3.25, 199.99999, 1e6, 1e-5, 0.0, 123456.7].map(number),
+            [
+                "3.25000",
+                "200.000",
+                "1.00000e6",
+                "1.00000e-5",
+                "0",
+                "123457"
+            ]
+        );
+    }
+}
