@@ -8,3 +8,4 @@ pub mod script;
 pub mod session;
 pub mod statics;
 pub mod system;
+mod unknowns;

@@ -115,7 +115,9 @@ impl Session {
         let names = unknown_names(&scene);
         let mut x = vec![0.0; l.n_x];
         for d in &scene.differentials {
-            x[d.state] = d.initial;
+            if let Some(state) = d.state {
+                x[state] = d.initial[0];
+            }
         }
         let mut q = scene.initial_q.clone();
         let mut v = None;
@@ -162,6 +164,16 @@ impl Session {
         y.extend(v);
         y.extend(x);
         system.numbers[l.turns()].copy_from_slice(&turns);
+        system.numbers[0] = t;
+        system.numbers[l.y()].copy_from_slice(&y);
+        if let Err(k) = system.resolve() {
+            let name = system.scene.loops[k].name.clone();
+            return Err(vec![
+                Diagnostic::error("loop", "it depends on itself, and no value solves that")
+                    .element(name)
+                    .help("give an IC near the solution, where it has one"),
+            ]);
+        }
         let row = system.row(t, &y);
         system.numbers.copy_from_slice(&row);
         let y = row[l.y()].to_vec();
@@ -612,13 +624,19 @@ fn counts(stats: &crate::numeric::Stats) -> Counts {
 /// A stop in words: status, sentence, and the name of the worst unknown or row.
 fn explain(scene: &Scene, stop: &Stop) -> (Status, String, String) {
     let names = unknown_names(scene);
-    let unknown = |k: usize| {
-        names
-            .get(k)
-            .cloned()
-            .unwrap_or_else(|| format!("unknown {k}"))
+    let unknown = |k: usize| match (names.get(k), k.checked_sub(names.len())) {
+        (Some(name), _) => name.clone(),
+        (None, loops) => loops
+            .and_then(|k| scene.loops.get(k))
+            .map_or_else(|| format!("unknown {k}"), |u| u.name.clone()),
     };
+    let n = names.len();
     let (status, what, worst) = match stop.reason {
+        Reason::Evaluation(f) if f.what >= n => (
+            Status::Stopped,
+            "a function that depends on itself has no solution near",
+            unknown(f.what),
+        ),
         Reason::Evaluation(f) => (
             Status::Stopped,
             "the equations have no finite value",

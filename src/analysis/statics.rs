@@ -17,6 +17,7 @@
 
 use super::dynamics::Watch;
 use super::system::System;
+use super::unknowns::WIDTH;
 use crate::expr::program::{Program, Work};
 use crate::model;
 use crate::numeric::dense::Lu;
@@ -28,8 +29,6 @@ use crate::scene::programs::record_more;
 use crate::scene::{Scene, Source};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Directions of a dual number in one sweep of the Jacobian.
-const WIDTH: usize = 8;
 /// Part of the loads below which what is left of them is rounding.
 const ROUNDING: f64 = 1e-13;
 /// Part of the loads below which an iteration that no longer improves has arrived.
@@ -179,21 +178,20 @@ impl<'a> Settler<'a> {
         let rows: Vec<usize> = (0..scene.rows.len())
             .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
             .collect();
-        let sought: Vec<_> = scene
-            .differentials
-            .iter()
+        let states: Vec<usize> = (scene.differentials.iter())
             .filter(|d| !d.static_hold)
+            .filter_map(|d| d.state)
             .collect();
         let (program, complaints) = record_more(scene, rows.len(), |at, multipliers| {
             let mut out = at.balance(multipliers);
             out.extend(rows.iter().map(|&r| at.row(r).value));
-            out.extend(sought.iter().map(|d| at.formula(d.formula)));
+            let rates = at.state_rates();
+            out.extend(states.iter().map(|&x| rates[x]));
             out
         });
         if let Some(first) = complaints.first() {
             return Err(NoEquilibrium::Unbalanced(first.clone(), String::new()));
         }
-        let states = sought.iter().map(|d| d.state).collect();
         Ok(Self {
             program,
             work: Work::default(),
@@ -276,6 +274,9 @@ impl<'a> Settler<'a> {
             for &(k, place, slope) in seeds.iter().filter(|s| range.contains(&s.0)) {
                 input[place].eps[k - first] = slope;
             }
+            if self.system.follow_along(&mut input, first == 0).is_err() {
+                break;
+            }
             self.program.eval(&input, &mut self.dual_work, &mut out);
             for k in range {
                 for i in 0..n {
@@ -355,6 +356,9 @@ impl<'a> Settler<'a> {
         self.system.project(numbers[0], &mut y).ok()?;
         y[l.n_q..l.n_q + l.n_v].fill(0.0);
         numbers[l.y()].copy_from_slice(&y);
+        self.system.numbers.copy_from_slice(&numbers);
+        self.system.resolve().ok()?;
+        numbers.copy_from_slice(&self.system.numbers);
         Some(numbers)
     }
 
@@ -585,7 +589,7 @@ impl<'a> Settler<'a> {
         });
         if let (Some(k), true) = (state, worst.as_ref().is_none_or(|w| w.0 < 1e-9)) {
             let place = self.states[k];
-            let found = scene.differentials.iter().find(|d| d.state == place);
+            let found = scene.differentials.iter().find(|d| d.state == Some(place));
             let name = found.map_or_else(String::new, |d| format!("DIFF/{}", d.id));
             let sentence = format!("no equilibrium: {name} keeps the rate {:.6e}", p.state[k]);
             return NoEquilibrium::Unbalanced(sentence, name);

@@ -10,13 +10,11 @@ use crate::numeric::{Failure, Ode};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
-use crate::scene::programs::{self, record};
+use crate::scene::programs::{self, Switching, record};
 use crate::scene::{Scene, Source};
 
 use super::assemble::Mover;
-
-/// Directions of a dual number in one sweep of the Jacobian.
-const WIDTH: usize = 8;
+use super::unknowns::{Unknowns, WIDTH};
 
 /// A scene with its programs, ready to be integrated.
 #[derive(Debug)]
@@ -26,14 +24,21 @@ pub struct System {
     rate: Program,
     projection: Option<Program>,
     /// values that change sign where a force or a differential equation changes branch
-    switching: Option<Program>,
+    switching: Option<Switching>,
+    /// unknowns of linear loops, which the switches read after the numbers
+    switch_numbers: Vec<f64>,
+    /// unknowns of loops that are not linear
+    unknowns: Option<Unknowns>,
+    /// the loop that had no solution at the last numbers
+    unsolved: Option<usize>,
     /// angles whose turns are counted
     counted: Option<Program>,
-    /// what the programs read: t | q | v | x | turns
+    /// what the programs read: t | q | v | x | turns | loops | supplied
     pub numbers: Vec<f64>,
     work: Work,
     project_work: Work,
     switch_work: Work,
+    unknown_work: Work,
     count_work: Work,
     dual_work: Work<Dual<WIDTH>>,
     dual_numbers: Vec<Dual<WIDTH>>,
@@ -74,6 +79,9 @@ fn shortest_rate(scene: &mut Scene) -> Result<Program, Vec<Diagnostic>> {
 
 /// What the diagonal of `G M⁻¹ Gᵀ` is in an ordinary position: a pivot much below that is weak.
 fn usual_pivots(scene: &mut Scene) {
+    if scene.rows.is_empty() {
+        return;
+    }
     let mut numbers = vec![0.0; scene.layout.len()];
     numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
     let at = Equations::new(scene, &numbers);
@@ -121,6 +129,7 @@ impl System {
             None
         };
         let switching = programs::switching(&scene).map_err(complaints)?;
+        let unknowns = Unknowns::new(&scene).map_err(complaints)?;
         let counted = if scene.counted.is_empty() {
             None
         } else {
@@ -135,15 +144,23 @@ impl System {
         };
         let l = scene.layout;
         let mover = Mover::new(&scene);
+        let mut numbers = vec![0.0; l.len()];
+        for (z, u) in numbers[l.loops()].iter_mut().zip(&scene.loops) {
+            *z = u.guess;
+        }
         Ok(Self {
             rate,
             projection,
             switching,
+            switch_numbers: Vec::new(),
+            unknowns,
+            unsolved: None,
             counted,
-            numbers: vec![0.0; l.len()],
+            numbers,
             work: Work::default(),
             project_work: Work::default(),
             switch_work: Work::default(),
+            unknown_work: Work::default(),
             count_work: Work::default(),
             dual_work: Work::default(),
             dual_numbers: Vec::new(),
@@ -174,15 +191,27 @@ impl System {
 
     /// How many switching functions there are.
     pub fn n_switches(&self) -> usize {
-        self.switching.as_ref().map_or(0, Program::n_outputs)
+        self.switching
+            .as_ref()
+            .map_or(0, |s| s.switches.n_outputs())
     }
 
     /// Their values   (n_switches)
     pub fn switches(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.set(t, y);
-        if let Some(program) = &self.switching {
-            program.run(&self.numbers, &mut self.switch_work, values);
-        }
+        let Some(Switching { switches, unknowns }) = &self.switching else {
+            return;
+        };
+        let Some(unknowns) = unknowns else {
+            switches.run(&self.numbers, &mut self.switch_work, values);
+            return;
+        };
+        let n = self.numbers.len();
+        let all = &mut self.switch_numbers;
+        all.resize(n + unknowns.n_outputs(), 0.0);
+        all[..n].copy_from_slice(&self.numbers);
+        unknowns.run(&self.numbers, &mut self.unknown_work, &mut all[n..]);
+        switches.run(all, &mut self.switch_work, values);
     }
 
     /// Whether there are angles whose turns are counted.
@@ -235,6 +264,45 @@ impl System {
         self.numbers[Layout::TIME] = t;
         let places = self.scene.layout.y();
         self.numbers[places].copy_from_slice(y);
+        if let Some(unknowns) = &mut self.unknowns {
+            self.unsolved = unknowns.solve(&mut self.numbers).err();
+        }
+    }
+
+    /// Solves the loops at the present numbers, after some of them have been changed.
+    ///
+    /// # Errors
+    /// The index of a loop without a solution near, in [`Scene::loops`].
+    pub fn resolve(&mut self) -> Result<(), usize> {
+        if let Some(unknowns) = &mut self.unknowns {
+            self.unsolved = unknowns.solve(&mut self.numbers).err();
+        }
+        self.unsolved.map_or(Ok(()), Err)
+    }
+
+    /// Derivatives of the loops' unknowns along the directions of a row of numbers, into their places; `first`: at new numbers.
+    ///
+    /// # Errors
+    /// The index of a loop that nothing determines, in [`Scene::loops`].
+    pub fn follow_along(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
+        match &mut self.unknowns {
+            Some(unknowns) => unknowns.follow(numbers, first),
+            None => Ok(()),
+        }
+    }
+
+    /// The same for the system's own numbers.
+    fn follow(&mut self, first: bool) -> Result<(), Failure> {
+        let n = self.scene.layout.y().len();
+        match &mut self.unknowns {
+            Some(unknowns) => unknowns
+                .follow(&mut self.dual_numbers, first)
+                .map_err(|k| Failure {
+                    what: n + k,
+                    recoverable: true,
+                }),
+            None => Ok(()),
+        }
     }
 }
 
@@ -245,6 +313,12 @@ impl Ode for System {
 
     fn rate(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.set(t, y);
+        if let Some(k) = self.unsolved {
+            return Err(Failure {
+                what: y.len() + k,
+                recoverable: true,
+            });
+        }
         let n = ydot.len();
         self.rate
             .run(&self.numbers, &mut self.work, &mut self.rates);
@@ -369,6 +443,7 @@ impl Ode for System {
             for k in first..last {
                 self.dual_numbers[k].eps[k - first] = 1.0;
             }
+            self.follow(first == 0)?;
             self.rate
                 .eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
             for k in first..last {
@@ -381,6 +456,9 @@ impl Ode for System {
                 for (entry, out) in column.iter_mut().zip(&self.dual_out) {
                     *entry = out.eps[k - first];
                 }
+            }
+            if let Some(unknowns) = &self.unknowns {
+                unknowns.forget(&mut self.dual_numbers);
             }
         }
         match jacobian.iter().position(|x| !x.is_finite()) {

@@ -3,6 +3,7 @@
 use super::compile::{Compiler, NamedTie, part_name};
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
+use super::loops::{self, Key};
 use super::sweep::Freedom;
 use super::{
     ConstraintElement, Formula, LinkIx, LinkMotion, Row, RowKind, Scene, SceneDifferential,
@@ -87,6 +88,9 @@ impl Scene {
             b.scene.extra.push(f);
         }
         b.counted();
+        if c.errors.is_empty() {
+            b.loops(&mut c);
+        }
         if c.errors.is_empty() {
             Ok(b.scene)
         } else {
@@ -512,21 +516,77 @@ impl<'m> Builder<'m> {
         }
         for (id, d) in active(model, "DIFF", &model.differentials) {
             let name = format!("DIFF/{id}");
-            if d.implicit {
-                c.error(&name, "IMPLICIT differential equations are not solved yet");
-            }
             let formula = self.formula(c, &format!("{name} FUNCTION"), &d.function);
-            let state = self.scene.layout.n_x;
-            self.scene.layout.n_x += 1;
-            let initial = d.ic[0].unwrap_or(0.0);
-            let static_hold = d.static_hold;
             self.scene.differentials.push(SceneDifferential {
                 id,
-                state,
+                state: None,
                 formula,
-                initial,
-                static_hold,
+                initial: d.ic.map(|x| x.unwrap_or(0.0)),
+                static_hold: d.static_hold,
+                implicit: d.implicit,
             });
+        }
+        for d in 0..self.scene.differentials.len() {
+            let SceneDifferential {
+                id,
+                formula,
+                implicit,
+                ..
+            } = self.scene.differentials[d];
+            if !implicit || self.reads_rate(formula, id) {
+                self.scene.differentials[d].state = Some(self.scene.layout.n_x);
+                self.scene.layout.n_x += 1;
+            }
+        }
+    }
+
+    /// Whether a formula reads DIF1 of an equation, itself or through VARIABLEs and other rates.
+    fn reads_rate(&self, formula: usize, id: u32) -> bool {
+        let mut seen = BTreeSet::new();
+        let mut next = vec![formula];
+        while let Some(f) = next.pop() {
+            let Some(formula) = self.scene.formulas.get(f).filter(|_| seen.insert(f)) else {
+                continue;
+            };
+            for input in formula.program.inputs() {
+                match input {
+                    Input::Measure(Measure::Dif1, [d, ..]) if *d == id => return true,
+                    Input::Measure(Measure::Dif1, [d, ..]) => {
+                        let other = self.scene.differentials.iter().find(|x| x.id == *d);
+                        next.extend(other.map(|x| x.formula));
+                    }
+                    Input::Measure(Measure::Varval, [v, ..]) => {
+                        next.extend(self.scene.variables.get(v));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        false
+    }
+
+    /// Unknowns that functions define through each other.
+    fn loops(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        let variables: BTreeMap<usize, u32> = self
+            .scene
+            .variables
+            .iter()
+            .map(|(&id, &f)| (f, id))
+            .collect();
+        let equations: Vec<[f64; 2]> = self.scene.differentials.iter().map(|d| d.initial).collect();
+        let guess = |key: &Key| match key {
+            Key::Formula(f) => variables
+                .get(f)
+                .and_then(|id| model.variables.get(id)?.ic)
+                .unwrap_or(0.0),
+            Key::Measure(..) => 0.0,
+            Key::Rate(d) => equations[*d][1],
+            Key::Value(d) => equations[*d][0],
+        };
+        if let Err(unsolvable) = loops::find(&mut self.scene, &guess) {
+            let error = |what: String| Diagnostic::error("loop", what);
+            c.errors.extend(unsolvable.into_iter().map(error));
         }
     }
 
@@ -587,7 +647,9 @@ pub fn unknown_names(scene: &Scene) -> Vec<String> {
         }
     }
     for d in &scene.differentials {
-        names[l.n_q + l.n_v + d.state] = format!("DIFF/{}", d.id);
+        if let Some(state) = d.state {
+            names[l.n_q + l.n_v + state] = format!("DIFF/{}", d.id);
+        }
     }
     for m in &scene.motions {
         if let Some(s) = m.state {

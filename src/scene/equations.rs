@@ -9,6 +9,7 @@
 
 use super::articulated::ArticulatedFactor;
 use super::layout::Layout;
+use super::loops::Key;
 use super::solve::{Factor, MassFactor, Solution, accelerations, solve_symmetric};
 use super::sweep::{self, Coordinates, LinkState, Wrench};
 use super::{Row, RowKind, Scene, Source};
@@ -42,6 +43,11 @@ pub struct Equations<'s, S: Scalar> {
     open: RefCell<Vec<usize>>,
     solved: OnceCell<Solved<S>>,
     solving: Cell<bool>,
+    /// values of the unknowns of algebraic loops
+    loops: Vec<S>,
+    /// notes what is asked for too early instead of complaining
+    discovering: bool,
+    discovered: RefCell<Vec<Key>>,
     /// what went wrong, for the compiler to report
     complaints: RefCell<Vec<String>>,
 }
@@ -81,6 +87,17 @@ pub struct RowValue<S> {
 impl<'s, S: Scalar> Equations<'s, S> {
     /// From the flat row of numbers that [`Layout`] describes.
     pub fn new(scene: &'s Scene, numbers: &[S]) -> Self {
+        let loops = numbers[scene.layout.loops()].to_vec();
+        Self::with_unknowns(scene, numbers, loops, false)
+    }
+
+    /// As [`Equations::new`], with values for the unknowns of algebraic loops; or to find out which these are.
+    pub(super) fn with_unknowns(
+        scene: &'s Scene,
+        numbers: &[S],
+        loops: Vec<S>,
+        discovering: bool,
+    ) -> Self {
         let l = &scene.layout;
         let mut this = Self {
             scene,
@@ -96,6 +113,9 @@ impl<'s, S: Scalar> Equations<'s, S> {
             open: RefCell::new(Vec::new()),
             solved: OnceCell::new(),
             solving: Cell::new(false),
+            loops,
+            discovering,
+            discovered: RefCell::new(Vec::new()),
             complaints: RefCell::new(Vec::new()),
         };
         this.driven = (0..scene.motions.len()).map(|m| this.drive(m)).collect();
@@ -114,6 +134,82 @@ impl<'s, S: Scalar> Equations<'s, S> {
             complaints.push(what);
         }
         S::constant(f64::NAN)
+    }
+
+    // ---- algebraic loops --------------------------------------------------------------------------------------------
+
+    /// What was asked for too early.
+    pub(super) fn discovered(self) -> Vec<Key> {
+        self.discovered.into_inner()
+    }
+
+    /// Value of an unknown of the loops; `None`: it is none.
+    fn unknown(&self, key: Key) -> Option<S> {
+        if self.scene.loops.is_empty() {
+            return None;
+        }
+        let k = self.scene.loops.iter().position(|u| u.key == key)?;
+        match self.loops.get(k) {
+            Some(&value) => Some(value),
+            None => Some(self.complain(format!(
+                "{} is known only where its loop is solved",
+                self.scene.loops[k].name
+            ))),
+        }
+    }
+
+    /// The first `count` unknowns of the loops.
+    pub(super) fn unknowns(&self, count: usize) -> Vec<S> {
+        self.loops[..count].to_vec()
+    }
+
+    /// Something is asked for that depends on who asks.
+    fn too_early(&self, key: Key, why: impl FnOnce() -> String) -> S {
+        if !self.discovering {
+            return self.complain(why());
+        }
+        let mut found = self.discovered.borrow_mut();
+        if !found.contains(&key) {
+            found.push(key);
+        }
+        S::zero()
+    }
+
+    /// Asks for all that loads, rates and functions ask for, without solving anything.
+    pub(super) fn discover(&self) {
+        self.solving.set(true);
+        self.loads();
+        self.solving.set(false);
+        self.state_rates();
+        for f in 0..self.scene.formulas.len() {
+            self.formula(f);
+        }
+        for unknown in &self.scene.loops {
+            if let Key::Formula(f) = unknown.key {
+                self.evaluate(f);
+            }
+        }
+    }
+
+    /// ρ of the loops: zero at their solution.
+    pub(super) fn loop_residuals(&self) -> Vec<S> {
+        let keys = self.scene.loops.iter().zip(&self.loops);
+        keys.map(|(unknown, &z)| match unknown.key {
+            Key::Formula(f) => self.evaluate(f) - z,
+            Key::Measure(m, ids) => self.measure_itself(m, ids, &unknown.name) - z,
+            Key::Rate(d) | Key::Value(d) => self.formula(self.scene.differentials[d].formula),
+        })
+        .collect()
+    }
+
+    /// Values of the formulas that close loops, where they change branch.
+    pub(super) fn loop_formulas(&self) -> Vec<S> {
+        let formulas = self.scene.loops.iter().filter_map(|u| match u.key {
+            Key::Formula(f) => Some(self.evaluate(f)),
+            Key::Rate(d) | Key::Value(d) => Some(self.formula(self.scene.differentials[d].formula)),
+            Key::Measure(..) => None,
+        });
+        formulas.collect()
     }
 
     fn coordinates<'a>(&'a self, vdot: &'a [S]) -> Coordinates<'a, S> {
@@ -235,13 +331,24 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Value of a formula.
     pub fn formula(&self, f: usize) -> S {
+        if let Some(value) = self.unknown(Key::Formula(f)) {
+            return value;
+        }
         if let Some(value) = self.formulas.borrow()[f] {
             return value;
         }
-        let formula = &self.scene.formulas[f];
         if self.open.borrow().contains(&f) {
-            return self.complain(format!("{} depends on itself", formula.name));
+            let why = || format!("{} depends on itself", self.scene.formulas[f].name);
+            return self.too_early(Key::Formula(f), why);
         }
+        let value = self.evaluate(f);
+        self.formulas.borrow_mut()[f] = Some(value);
+        value
+    }
+
+    /// What a formula turns out to be, also where it closes a loop.
+    fn evaluate(&self, f: usize) -> S {
+        let formula = &self.scene.formulas[f];
         self.open.borrow_mut().push(f);
         let inputs: Vec<S> = formula
             .program
@@ -254,7 +361,6 @@ impl<'s, S: Scalar> Equations<'s, S> {
         formula
             .program
             .eval(&inputs, &mut Work::default(), &mut out);
-        self.formulas.borrow_mut()[f] = Some(out[0]);
         out[0]
     }
 
@@ -273,6 +379,12 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Value of a measure.
     pub fn measure(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+        self.unknown(Key::Measure(measure, ids))
+            .unwrap_or_else(|| self.measure_itself(measure, ids, asked_by))
+    }
+
+    /// What a measure turns out to be, also where a load reads it.
+    fn measure_itself(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
         let row = measure.row();
         match row.family {
             Family::Displacement | Family::Velocity => {
@@ -288,10 +400,15 @@ impl<'s, S: Scalar> Equations<'s, S> {
             }
             Family::Acceleration => {
                 if self.solving.get() {
-                    return self.complain(format!(
-                        "{asked_by}: {} reads an acceleration that depends on this very function",
-                        row.name
-                    ));
+                    return self.too_early(Key::Measure(measure, ids), || {
+                        format!(
+                            "{asked_by}: {} reads an acceleration that depends on this very function",
+                            row.name
+                        )
+                    });
+                }
+                if self.discovering {
+                    return S::zero();
                 }
                 let state = |id: u32| {
                     self.scene
@@ -339,12 +456,36 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 Some(x) => S::constant(x),
                 None => self.complain(format!("{asked_by}: ARRAY/{id} has no entry {k}")),
             },
-            Measure::Dif | Measure::Dif1 => match scene.differentials.iter().find(|d| d.id == id) {
-                Some(d) if measure == Measure::Dif => self.x[d.state],
-                Some(d) => self.formula(d.formula),
-                None => self.complain(format!("{asked_by}: DIFF/{id} does not exist")),
-            },
+            Measure::Dif | Measure::Dif1 => {
+                match scene.differentials.iter().position(|d| d.id == id) {
+                    Some(d) if measure == Measure::Dif => self.state_of(d),
+                    Some(d) => self.rate_of(d),
+                    None => self.complain(format!("{asked_by}: DIFF/{id} does not exist")),
+                }
+            }
             _ => self.complain(format!("{asked_by}: {} is not solved yet", measure.name())),
+        }
+    }
+
+    /// Value of a differential equation.
+    fn state_of(&self, d: usize) -> S {
+        let unknown = || self.unknown(Key::Value(d)).unwrap_or_else(S::zero);
+        self.scene.differentials[d]
+            .state
+            .map_or_else(unknown, |s| self.x[s])
+    }
+
+    /// Rate of a differential equation.
+    fn rate_of(&self, d: usize) -> S {
+        let equation = &self.scene.differentials[d];
+        match (equation.implicit, equation.state) {
+            (false, _) => self.formula(equation.formula),
+            (true, None) => self.complain(format!(
+                "DIF1({0}): DIFF/{0} is an equation without a rate",
+                equation.id
+            )),
+            // at rest there is no rate
+            (true, Some(_)) => self.unknown(Key::Rate(d)).unwrap_or_else(S::zero),
         }
     }
 
@@ -648,8 +789,14 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 }
             }
         }
-        for d in &self.scene.differentials {
-            out[d.state] = self.formula(d.formula);
+        for (k, d) in self.scene.differentials.iter().enumerate() {
+            let Some(state) = d.state else { continue };
+            // at rest the residual of an implicit equation stands for its rate
+            out[state] = if d.implicit && self.scene.mode == STATIC {
+                self.formula(d.formula)
+            } else {
+                self.rate_of(k)
+            };
         }
         out
     }
@@ -746,6 +893,15 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     // ---- reactions and forces as measures ---------------------------------------------------------------------------
 
+    /// Action of a force element on its I marker.
+    fn force_action(&self, f: usize) -> Action<S> {
+        if self.solving.get() || self.discovering {
+            self.scene.forces[f].action(self)
+        } else {
+            self.solved().actions[f]
+        }
+    }
+
     /// Action of an element on its I marker, with the points of I and J; `None` when there is no such element.
     fn element(&self, keyword: &str, id: u32) -> Option<(Action<S>, Vec3<S>, Vec3<S>)> {
         let scene = self.scene;
@@ -755,11 +911,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .position(|f| f.keyword == keyword && f.id == id)
         {
             let force = &scene.forces[f];
-            let action = if self.solving.get() {
-                force.action(self)
-            } else {
-                self.solved().actions[f]
-            };
+            let action = self.force_action(f);
             let p_I = self.marker(force.i).p_GM;
             let p_J = force.j.map_or(p_I, |j| self.marker(j).p_GM);
             return Some((action, p_I, p_J));
@@ -769,7 +921,12 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .iter()
             .position(|c| c.keyword == keyword && c.id == id)?;
         let (i, j) = scene.constraints[c].markers?;
-        Some((self.reaction(c), self.marker(i).p_GM, self.marker(j).p_GM))
+        let action = if self.discovering {
+            Action::zero()
+        } else {
+            self.reaction(c)
+        };
+        Some((action, self.marker(i).p_GM, self.marker(j).p_GM))
     }
 
     /// The reaction of a constraint on its I marker.
@@ -854,10 +1011,12 @@ impl<'s, S: Scalar> Equations<'s, S> {
                 .iter()
                 .any(|c| c.keyword == keyword && c.id == id)
         {
-            return self.complain(format!(
-                "{asked_by}: {} reads a reaction that depends on this very function",
-                measure.name()
-            ));
+            return self.too_early(Key::Measure(measure, [id, jflag, comp, rm]), || {
+                format!(
+                    "{asked_by}: {} reads a reaction that depends on this very function",
+                    measure.name()
+                )
+            });
         }
         let Some((action, p_I, p_J)) = self.element(keyword, id) else {
             return self.complain(format!(
@@ -897,8 +1056,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     /// FM … TZ: all that acts between two markers.
-    fn generic_force(&self, measure: Measure, [i, j, k, _]: [u32; 4], asked_by: &str) -> S {
+    fn generic_force(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
         use Measure as M;
+        let [i, j, k, _] = ids;
+        if self.solving.get() && self.carries_reaction(i, j) {
+            return self.too_early(Key::Measure(measure, ids), || {
+                format!(
+                    "{asked_by}: {} reads a reaction that depends on this very function",
+                    measure.name()
+                )
+            });
+        }
         let comp = match measure {
             M::Fm => 1,
             M::Fx => 2,
@@ -909,12 +1077,19 @@ impl<'s, S: Scalar> Equations<'s, S> {
             M::Ty => 7,
             _ => 8,
         };
-        let total = self.between(i, j, asked_by);
+        let total = self.between(i, j);
         self.component(&total, comp, k, asked_by)
     }
 
+    /// Whether a constraint acts between two markers, given by their numbers.
+    fn carries_reaction(&self, i: u32, j: u32) -> bool {
+        let id = |m: usize| self.scene.markers[m].id;
+        let mut markers = self.scene.constraints.iter().filter_map(|c| c.markers);
+        markers.any(|(a, b)| [(i, j), (j, i)].contains(&(id(a), id(b))))
+    }
+
     /// Sum of what acts on marker `i` from elements between `i` and `j`; `j` = 0: from action-only forces.
-    fn between(&self, i: u32, j: u32, asked_by: &str) -> Action<S> {
+    fn between(&self, i: u32, j: u32) -> Action<S> {
         let scene = self.scene;
         let mut sum = Action::zero();
         let id = |m: usize| scene.markers[m].id;
@@ -935,11 +1110,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             if markers != (i, j) && markers != (j, i) {
                 continue;
             }
-            let action = if self.solving.get() {
-                force.action(self)
-            } else {
-                self.solved().actions[f]
-            };
+            let action = self.force_action(f);
             let p_I = self.marker(force.i).p_GM;
             let p_J = force.j.map_or(p_I, |m| self.marker(m).p_GM);
             add(markers, action, p_I, p_J);
@@ -952,10 +1123,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             if markers != (i, j) && markers != (j, i) {
                 continue;
             }
-            if self.solving.get() {
-                self.complain(format!(
-                    "{asked_by}: reads a reaction that depends on this very function"
-                ));
+            if self.discovering {
                 continue;
             }
             add(

@@ -1,7 +1,7 @@
 //! Places and sizes: the only file with index arithmetic over what a program of the scene reads.
 //!
-//! A program of the scene reads one flat row of numbers: `t | q | v | x | turns`. The integrator's y is its middle part
-//! `q | v | x`.
+//! A program of the scene reads one flat row of numbers: `t | q | v | x | turns | loops | supplied`. The integrator's y is
+//! its middle part `q | v | x`.
 
 use crate::expr::program::Input;
 use std::ops::Range;
@@ -17,6 +17,10 @@ pub struct Layout {
     pub n_x: usize,
     /// last accepted values of angles whose turns are counted
     pub n_turns: usize,
+    /// unknowns of algebraic loops that are solved beside the programs
+    pub n_loops: usize,
+    /// values that come from outside: hooks, delayed values, sensors
+    pub n_supplied: usize,
 }
 
 impl Layout {
@@ -42,9 +46,17 @@ impl Layout {
     pub fn turns(&self) -> Range<usize> {
         self.x().end..self.x().end + self.n_turns
     }
+    /// Places of the unknowns of algebraic loops.
+    pub fn loops(&self) -> Range<usize> {
+        self.turns().end..self.turns().end + self.n_loops
+    }
+    /// Places of what comes from outside.
+    pub fn supplied(&self) -> Range<usize> {
+        self.loops().end..self.loops().end + self.n_supplied
+    }
     /// How many numbers a program reads.
     pub fn len(&self) -> usize {
-        self.turns().end
+        self.supplied().end
     }
     /// Never: there is always time.
     pub fn is_empty(&self) -> bool {

@@ -11,6 +11,7 @@ pub mod forces;
 pub mod forest;
 mod formula;
 pub mod layout;
+pub mod loops;
 pub mod programs;
 pub mod solve;
 pub mod sweep;
@@ -203,14 +204,16 @@ pub struct SceneMotion {
 pub struct SceneDifferential {
     /// user's number
     pub id: u32,
-    /// place in x
-    pub state: usize,
-    /// index in [`Scene::formulas`]
+    /// place in x; `None`: implicit without DIF1, an algebraic equation
+    pub state: Option<usize>,
+    /// index in [`Scene::formulas`]: the rate, or what is zero
     pub formula: usize,
-    /// value at the start
-    pub initial: f64,
+    /// value and rate at the start
+    pub initial: [f64; 2],
     /// frozen in statics
     pub static_hold: bool,
+    /// IMPLICIT: the formula is zero
+    pub implicit: bool,
 }
 
 /// A constraint element: whose reaction can be asked for.
@@ -271,6 +274,10 @@ pub struct Scene {
     pub extra: Vec<usize>,
     /// angles whose turns are counted, in the order of their places in the layout
     pub counted: Vec<(Measure, [u32; 4])>,
+    /// what functions read too early: unknowns of their own
+    pub loops: Vec<loops::Unknown>,
+    /// their equations are linear, so that programs eliminate them
+    pub loops_linear: bool,
     /// in ground axes
     pub gravity: Vec3<f64>,
     /// value of MODE

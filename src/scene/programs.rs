@@ -2,8 +2,9 @@
 
 use super::Scene;
 use super::equations::{Equations, STATIC};
+use super::loops;
 use super::solve::{gram, solve_symmetric};
-use crate::expr::program::{Builder, Folding, Input, Program, Sym};
+use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
 use crate::scalar::Scalar;
 use std::cell::RefCell;
 
@@ -37,6 +38,16 @@ pub fn record_more<F>(scene: &Scene, n_more: usize, f: F) -> (Program, Vec<Strin
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
 {
+    recorded(scene, n_more, false, f, |_, values| values)
+}
+
+/// Records what `f` computes, and what `end` makes of the values. The unknowns of linear loops are eliminated, or, where
+/// `known`, read after the numbers of the layout.
+fn recorded<F, E>(scene: &Scene, n_more: usize, known: bool, f: F, end: E) -> (Program, Vec<String>)
+where
+    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
+    E: FnOnce(&mut Builder, Vec<Value>) -> Vec<Value>,
+{
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let n = scene.layout.len();
     let layout: Vec<Input> = (0..n + n_more).map(|k| Input::Slot(k as u32)).collect();
@@ -47,47 +58,68 @@ where
     if scene.mode == STATIC {
         numbers[scene.layout.v()].fill(Sym::Constant(0.0));
     }
-    let equations = Equations::new(scene, &numbers[..n]);
+    let mut solved = numbers[scene.layout.loops()].to_vec();
+    if scene.layout.n_loops == 0 && !scene.loops.is_empty() {
+        solved = if known {
+            numbers[n..].to_vec()
+        } else {
+            loops::eliminated(scene, &numbers, &builder)
+        };
+    }
+    let equations = Equations::with_unknowns(scene, &numbers[..n], solved, false);
     let out = f(&equations, &numbers[n..]);
-    let values: Vec<_> = out
-        .iter()
-        .map(|s| s.value(&mut builder.borrow_mut()))
-        .collect();
-    let program = builder.borrow().finish_with_inputs(&values, &layout);
+    let recorder = &mut *builder.borrow_mut();
+    let values: Vec<_> = out.iter().map(|s| s.value(recorder)).collect();
+    let values = end(recorder, values);
+    let program = recorder.finish_with_inputs(&values, &layout);
     (program, equations.complaints())
 }
 
-/// Where loads and differential equations change branch: one value per switch, changing sign there. `None`: nowhere.
+/// Where loads and differential equations change branch.
+#[derive(Debug)]
+pub struct Switching {
+    /// one value per switch, changing sign there; reads the unknowns of linear loops after the layout's numbers
+    pub switches: Program,
+    /// these unknowns
+    pub unknowns: Option<Program>,
+}
+
+/// Where loads and differential equations change branch. `None`: nowhere.
 ///
 /// # Errors
 /// What the equations complained about.
-pub fn switching(scene: &Scene) -> Result<Option<Program>, Vec<String>> {
-    let builder = RefCell::new(Builder::new(Folding::Structural));
-    let layout = scene.layout.inputs();
-    let numbers: Vec<Sym<'_>> = layout
-        .iter()
-        .map(|&input| Sym::input(input, &builder))
-        .collect();
-    let equations = Equations::new(scene, &numbers);
-    let mut sources = equations.state_rates();
-    for force in &scene.forces {
-        let action = force.action(&equations);
-        sources.extend(action.force.0.into_iter().chain(action.torque.0));
-    }
-    let complaints = equations.complaints();
+pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
+    let linear = scene.loops_linear && !scene.loops.is_empty();
+    let n_more = if linear { scene.loops.len() } else { 0 };
+    // unknowns are known here, so that their elimination does not count as a switch
+    let (switches, complaints) = recorded(
+        scene,
+        n_more,
+        linear,
+        |at, _| {
+            let mut sources = at.state_rates();
+            for force in &scene.forces {
+                let action = force.action(at);
+                sources.extend(action.force.0.into_iter().chain(action.torque.0));
+            }
+            sources.extend(at.loop_formulas());
+            sources
+        },
+        |builder, values| builder.switching(&values),
+    );
     if !complaints.is_empty() {
         return Err(complaints);
     }
-    let values: Vec<_> = sources
-        .iter()
-        .map(|s| s.value(&mut builder.borrow_mut()))
-        .collect();
-    let switches = builder.borrow_mut().switching(&values);
-    if switches.is_empty() {
+    if switches.n_outputs() == 0 {
         return Ok(None);
     }
-    let program = builder.borrow().finish_with_inputs(&switches, &layout);
-    Ok(Some(program))
+    let unknowns = if linear {
+        let count = scene.loops.len();
+        Some(record(scene, |at| at.unknowns(count))?)
+    } else {
+        None
+    };
+    Ok(Some(Switching { switches, unknowns }))
 }
 
 /// Weight of a coordinate's change in a projection: angles count as such, lengths against the size of the mechanism.

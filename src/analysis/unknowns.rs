@@ -1,0 +1,186 @@
+//! Numbers that stand beside the state and follow from it: unknowns of algebraic loops that are not linear.
+//!
+//! ```text
+//! ρ(z; t, y) = 0:   z ← z − (∂ρ/∂z)⁻¹ ρ,  shortened while ρ would grow        dz/dy = −(∂ρ/∂z)⁻¹ ∂ρ/∂y
+//! ```
+//!
+//! The iteration begins where the last one ended, so that z follows its branch as the state moves.
+
+use crate::expr::program::{Program, Work};
+use crate::numeric::dense::Lu;
+use crate::scalar::Dual;
+use crate::scene::Scene;
+use crate::scene::loops;
+use std::ops::Range;
+
+/// Directions of a dual number in one sweep.
+pub(super) const WIDTH: usize = 8;
+const ITERATIONS: usize = 60;
+/// Change of an unknown, relative to its size, that counts as rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// Solves the loops of a scene.
+#[derive(Debug)]
+pub(super) struct Unknowns {
+    residual: Program,
+    places: Range<usize>,
+    work: Work,
+    dual_work: Work<Dual<WIDTH>>,
+    dual_numbers: Vec<Dual<WIDTH>>,
+    dual_out: Vec<Dual<WIDTH>>,
+    rho: Vec<f64>,
+    trial: Vec<f64>,
+    step: Vec<f64>,
+    lu: Lu,
+}
+
+fn lift(x: f64) -> Dual<WIDTH> {
+    Dual {
+        re: x,
+        eps: [0.0; WIDTH],
+    }
+}
+
+impl Unknowns {
+    /// Of a scene; `None` when it has no such unknowns.
+    pub fn new(scene: &Scene) -> Result<Option<Self>, Vec<String>> {
+        let n = scene.layout.n_loops;
+        Ok(loops::program(scene)?.map(|residual| Self {
+            residual,
+            places: scene.layout.loops(),
+            work: Work::default(),
+            dual_work: Work::default(),
+            dual_numbers: Vec::new(),
+            dual_out: vec![lift(0.0); n],
+            rho: vec![0.0; n],
+            trial: vec![0.0; n],
+            step: vec![0.0; n],
+            lu: Lu::new(n),
+        }))
+    }
+
+    fn evaluate(&mut self, numbers: &[f64]) -> f64 {
+        self.residual.run(numbers, &mut self.work, &mut self.rho);
+        self.rho.iter().map(|r| r * r).sum::<f64>().sqrt()
+    }
+
+    /// Factors ∂ρ/∂z.
+    fn factor(&mut self, numbers: &[f64]) -> Result<(), usize> {
+        let n = self.rho.len();
+        self.dual_numbers.clear();
+        self.dual_numbers.extend(numbers.iter().map(|&x| lift(x)));
+        for first in (0..n).step_by(WIDTH) {
+            let last = (first + WIDTH).min(n);
+            for k in first..last {
+                self.dual_numbers[self.places.start + k].eps[k - first] = 1.0;
+            }
+            self.residual
+                .eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
+            for k in first..last {
+                self.dual_numbers[self.places.start + k].eps[k - first] = 0.0;
+                for (i, out) in self.dual_out.iter().enumerate() {
+                    self.lu.matrix_mut()[i + n * k] = out.eps[k - first];
+                }
+            }
+        }
+        self.lu.factor(1e-14)
+    }
+
+    /// Solves for the unknowns in a row of numbers.
+    ///
+    /// # Errors
+    /// The index of an unknown whose loop has no solution near.
+    pub fn solve(&mut self, numbers: &mut [f64]) -> Result<(), usize> {
+        let mut size = self.evaluate(numbers);
+        for _ in 0..ITERATIONS {
+            if size == 0.0 {
+                return Ok(());
+            }
+            if !size.is_finite() {
+                break;
+            }
+            self.factor(numbers)?;
+            self.step.copy_from_slice(&self.rho);
+            self.lu.solve(&mut self.step);
+            let z = &numbers[self.places.clone()];
+            let small = z.iter().zip(&self.step);
+            let arrived = small.fold(true, |all, (z, d)| all && d.abs() <= ROUNDING * z.abs());
+            self.trial.copy_from_slice(z);
+            let mut part = 1.0;
+            let better = loop {
+                for ((z, old), d) in numbers[self.places.clone()]
+                    .iter_mut()
+                    .zip(&self.trial)
+                    .zip(&self.step)
+                {
+                    *z = old - part * d;
+                }
+                let next = self.evaluate(numbers);
+                if next < size {
+                    size = next;
+                    break true;
+                }
+                part *= 0.5;
+                if part < 1e-6 || arrived {
+                    numbers[self.places.clone()].copy_from_slice(&self.trial);
+                    break false;
+                }
+            };
+            if arrived {
+                return Ok(());
+            }
+            if !better {
+                // no better number: rounding, or no solution
+                self.evaluate(numbers);
+                let z = &numbers[self.places.clone()];
+                let rounding = |(z, d): (&f64, &f64)| d.abs() <= 1e-9 * z.abs().max(1e-300);
+                if z.iter().zip(&self.step).all(rounding) {
+                    return Ok(());
+                }
+                break;
+            }
+        }
+        let worst = (0..self.rho.len()).max_by(|&a, &b| {
+            let size = |k: usize| {
+                if self.rho[k].is_finite() {
+                    self.rho[k].abs()
+                } else {
+                    f64::INFINITY
+                }
+            };
+            size(a).total_cmp(&size(b))
+        });
+        Err(worst.unwrap_or(0))
+    }
+
+    /// Puts dz along the directions of the other numbers into the places of the unknowns, whose own derivatives are zero;
+    /// the loops are solved at these numbers.
+    ///
+    /// # Errors
+    /// The index of an unknown that nothing determines.
+    pub fn follow(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
+        if first {
+            let plain: Vec<f64> = numbers.iter().map(|x| x.re).collect();
+            self.factor(&plain)?;
+        }
+        self.residual
+            .eval(numbers, &mut self.dual_work, &mut self.dual_out);
+        for direction in 0..WIDTH {
+            for (s, out) in self.step.iter_mut().zip(&self.dual_out) {
+                *s = -out.eps[direction];
+            }
+            self.lu.solve(&mut self.step);
+            for (z, s) in numbers[self.places.clone()].iter_mut().zip(&self.step) {
+                z.eps[direction] = *s;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the derivatives of the unknowns away again.
+    pub fn forget(&self, numbers: &mut [Dual<WIDTH>]) {
+        for z in &mut numbers[self.places.clone()] {
+            z.eps = [0.0; WIDTH];
+        }
+    }
+}

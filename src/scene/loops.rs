@@ -1,0 +1,269 @@
+//! Functions that read what depends on them: VARIABLEs that read themselves, forces that read accelerations or reactions, rates
+//! of implicit differential equations. What is read too early becomes an unknown of its own, with one equation.
+//!
+//! ```text
+//! ρ(z) = φ(z) − z = 0        z: what is read,  φ: what it turns out to be;   implicit DIFF: ρ = e, z = ẏ (or y where no ẏ occurs)
+//! ```
+//!
+//! Which these are is found by evaluating once and noting what is asked for while it is being computed. Where ρ is linear in z
+//! the unknowns are eliminated inside each recorded program, `(−∂ρ/∂z) z = ρ(0)`, and are gone; else they have places in the row
+//! of numbers, and whoever fills that row solves ρ = 0 by Newton's iteration.
+
+use super::Scene;
+use super::equations::Equations;
+use crate::expr::measures::Measure;
+use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
+use crate::scalar::Scalar;
+use std::cell::RefCell;
+
+/// What an unknown of the loops is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Key {
+    /// value of a formula that reads itself: index in the formulas
+    Formula(usize),
+    /// a measure that loads read although it depends on all loads
+    Measure(Measure, [u32; 4]),
+    /// DIF1 of an implicit differential equation: its index
+    Rate(usize),
+    /// DIF of an implicit differential equation without DIF1: its index
+    Value(usize),
+}
+
+/// An unknown of the loops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknown {
+    /// what it is
+    pub key: Key,
+    /// the element it belongs to, for messages
+    pub name: String,
+    /// where Newton's iteration begins
+    pub guess: f64,
+}
+
+/// Places of the first unknowns, beyond all that a host could lay out.
+const PLACEHOLDER: u32 = u32::MAX / 2;
+
+/// Finds the unknowns, and whether they can be eliminated.
+///
+/// # Errors
+/// Loops without a solution, by name.
+pub(super) fn find(scene: &mut Scene, guesses: &dyn Fn(&Key) -> f64) -> Result<(), Vec<String>> {
+    let mut keys: Vec<Key> = scene
+        .differentials
+        .iter()
+        .enumerate()
+        .filter(|(_, d)| d.implicit)
+        .map(|(k, d)| match d.state {
+            Some(_) => Key::Rate(k),
+            None => Key::Value(k),
+        })
+        .collect();
+    // the rate of an implicit equation is zero in statics, and its value is sought there
+    if scene.mode == super::equations::STATIC {
+        keys.retain(|k| matches!(k, Key::Value(_)));
+    }
+    scene.loops = keys.iter().map(|k| unknown(scene, *k, guesses)).collect();
+    let mut numbers = vec![0.0; scene.layout.len()];
+    numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+    loop {
+        let found = discover(scene, &numbers);
+        if found.is_empty() {
+            break;
+        }
+        for key in found {
+            let unknown = unknown(scene, key, guesses);
+            scene.loops.push(unknown);
+        }
+    }
+    if scene.loops.is_empty() {
+        return Ok(());
+    }
+    scene.loops_linear = linear(scene)?;
+    scene.layout.n_loops = if scene.loops_linear {
+        0
+    } else {
+        scene.loops.len()
+    };
+    Ok(())
+}
+
+fn unknown(scene: &Scene, key: Key, guesses: &dyn Fn(&Key) -> f64) -> Unknown {
+    let name = match key {
+        Key::Formula(f) => scene.formulas[f].name.clone(),
+        Key::Measure(m, ids) => {
+            let last = ids.iter().rposition(|&i| i != 0).unwrap_or(0);
+            let ids: Vec<String> = ids[..=last].iter().map(u32::to_string).collect();
+            format!("{}({})", m.name(), ids.join(","))
+        }
+        Key::Rate(d) | Key::Value(d) => format!("DIFF/{}", scene.differentials[d].id),
+    };
+    Unknown {
+        key,
+        name,
+        guess: guesses(&key),
+    }
+}
+
+/// What is asked for too early when everything is asked for once.
+fn discover(scene: &Scene, numbers: &[f64]) -> Vec<Key> {
+    let unknowns = vec![0.0; scene.loops.len()];
+    let at = Equations::with_unknowns(scene, numbers, unknowns, true);
+    at.discover();
+    at.discovered()
+}
+
+/// A builder with numbers for the layout, as they are recorded.
+fn inputs<'b>(scene: &Scene, builder: &'b RefCell<Builder>) -> Vec<Sym<'b>> {
+    let layout = scene.layout.inputs();
+    let mut numbers: Vec<Sym<'_>> = layout.iter().map(|&i| Sym::input(i, builder)).collect();
+    if scene.mode == super::equations::STATIC {
+        numbers[scene.layout.v()].fill(Sym::Constant(0.0));
+    }
+    numbers
+}
+
+/// ρ with unknowns as inputs, and ∂ρ/∂z by rows.
+fn residuals<'b>(
+    scene: &Scene,
+    numbers: &[Sym<'b>],
+    builder: &'b RefCell<Builder>,
+) -> (Vec<Sym<'b>>, Vec<Vec<Sym<'b>>>) {
+    let n = scene.loops.len();
+    let z: Vec<Sym<'b>> = (0..n)
+        .map(|k| Sym::input(Input::Slot(PLACEHOLDER + k as u32), builder))
+        .collect();
+    let at = Equations::with_unknowns(scene, numbers, z.clone(), false);
+    let rho = at.loop_residuals();
+    let recorder = &mut *builder.borrow_mut();
+    let variables: Vec<Value> = z.iter().map(|z| z.value(recorder)).collect();
+    let gradients: Vec<Vec<Value>> = rho
+        .iter()
+        .map(|r| {
+            let r = r.value(recorder);
+            recorder.gradient(r, &variables)
+        })
+        .collect();
+    let number = |v: Value| match recorder.constant_of(v) {
+        Some(c) => Sym::Constant(c),
+        None => Sym::Recorded(v, builder),
+    };
+    let jacobian = gradients
+        .into_iter()
+        .map(|row| row.into_iter().map(number).collect())
+        .collect();
+    (rho, jacobian)
+}
+
+/// Whether ρ is linear in its unknowns.
+fn linear(scene: &Scene) -> Result<bool, Vec<String>> {
+    let builder = RefCell::new(Builder::new(Folding::Structural));
+    let numbers = inputs(scene, &builder);
+    let (_, jacobian) = residuals(scene, &numbers, &builder);
+    let recorder = &mut *builder.borrow_mut();
+    let mut lost = Vec::new();
+    for (k, u) in scene.loops.iter().enumerate() {
+        // an equation that determines nothing, or an unknown that no equation determines
+        let zero = |s: &Sym<'_>| matches!(s, Sym::Constant(c) if *c == 0.0);
+        let column = jacobian.iter().all(|row| zero(&row[k]));
+        if jacobian[k].iter().all(zero) || column {
+            lost.push(format!(
+                "{}: its loop has no solution, or any: nothing determines the value that it reads of itself",
+                u.name
+            ));
+        }
+    }
+    if !lost.is_empty() {
+        return Err(lost);
+    }
+    let entries: Vec<Value> = jacobian
+        .iter()
+        .flatten()
+        .map(|s| s.value(recorder))
+        .collect();
+    let program = recorder.finish(&entries);
+    Ok(!program
+        .inputs()
+        .iter()
+        .any(|i| matches!(i, Input::Slot(k) if *k >= PLACEHOLDER)))
+}
+
+/// Solves linear loops while a program is being recorded: the values of the unknowns.
+pub(super) fn eliminated<'b>(
+    scene: &Scene,
+    numbers: &[Sym<'b>],
+    builder: &'b RefCell<Builder>,
+) -> Vec<Sym<'b>> {
+    let n = scene.loops.len();
+    if n == 0 || !scene.loops_linear {
+        return Vec::new();
+    }
+    let (_, jacobian) = residuals(scene, numbers, builder);
+    let at = Equations::with_unknowns(scene, numbers, vec![Sym::Constant(0.0); n], false);
+    let rhs: Vec<Sym<'b>> = at.loop_residuals().into_iter().map(|r| -r).collect();
+    solve(jacobian, rhs)
+}
+
+/// `A x = b` by elimination with the largest pivot of each column, chosen when it is evaluated.
+fn solve<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
+    let n = b.len();
+    for k in 0..n {
+        for i in k + 1..n {
+            if a[i][k].is_known_zero() {
+                continue;
+            }
+            let larger = a[k][k].abs().lt(a[i][k].abs());
+            let (upper, lower) = a.split_at_mut(i);
+            for (x, y) in upper[k][k..].iter_mut().zip(&mut lower[0][k..]) {
+                (*x, *y) = (S::select(larger, *y, *x), S::select(larger, *x, *y));
+            }
+            (b[k], b[i]) = (S::select(larger, b[i], b[k]), S::select(larger, b[k], b[i]));
+        }
+        for i in k + 1..n {
+            if a[i][k].is_known_zero() {
+                continue;
+            }
+            let factor = a[i][k] / a[k][k];
+            for j in k + 1..n {
+                let pivot = a[k][j];
+                a[i][j] -= factor * pivot;
+            }
+            let pivot = b[k];
+            b[i] -= factor * pivot;
+        }
+    }
+    for k in (0..n).rev() {
+        for j in k + 1..n {
+            let known = a[k][j] * b[j];
+            b[k] -= known;
+        }
+        b[k] = b[k] / a[k][k];
+    }
+    b
+}
+
+/// ρ of loops that are not linear, as a program of the numbers; `None` when there are none.
+///
+/// # Errors
+/// What the equations complained about.
+pub fn program(scene: &Scene) -> Result<Option<Program>, Vec<String>> {
+    if scene.layout.n_loops == 0 {
+        return Ok(None);
+    }
+    super::programs::record(scene, |at| at.loop_residuals()).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::solve;
+
+    #[test]
+    fn elimination_exchanges_rows_where_it_must() {
+        let a = vec![
+            vec![0.0, 2.0, 1.0],
+            vec![1.0, 0.0, 0.0],
+            vec![3.0, 1.0, 0.0],
+        ];
+        let x = solve(a, vec![7.0, 1.0, 5.0]);
+        assert_eq!(x, [1.0, 2.0, 3.0]);
+    }
+}

@@ -1,0 +1,258 @@
+//! Functions that read what depends on them: VARIABLEs through each other, forces from accelerations, reactions and themselves,
+//! implicit differential equations; and what is said when there is no solution.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::model::Model;
+use cognate::results::Status;
+
+const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+
+fn session(text: &str, columns: &[&str], method: &str, error: f64) -> Session {
+    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        method: Some(method.to_string()),
+        error: Some(error),
+        ..Options::default()
+    };
+    Session::new(model, "test", options)
+}
+
+fn run(text: &str, columns: &[&str], method: &str, end: f64) -> Session {
+    let mut s = session(text, columns, method, 1e-10);
+    let status = s
+        .simulate(Analysis::Dynamic, end, 4, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    s
+}
+
+fn fails(text: &str) -> String {
+    let mut s = session(text, &["VARVAL(1)"], "AUTO", 1e-6);
+    let errors = s
+        .simulate(Analysis::Dynamic, 1.0, 4, &mut Unwatched)
+        .expect_err("no solution");
+    format!(
+        "{} {}",
+        errors[0].element.clone().unwrap_or_default(),
+        errors[0].message
+    )
+}
+
+fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
+    s.run.column(column).unwrap()
+}
+
+/// A mass that may move along x.
+const BODY: &str = "PART/2, MASS=1, CM=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
+                    JOINT/1, TRANSLATIONAL, I=2, J=3\n";
+
+#[test]
+fn variables_that_read_themselves_are_solved() {
+    let text = format!(
+        "{BODY}VARIABLE/1, FUNCTION=0.5*VARVAL(1)+1\n\
+         VARIABLE/2, FUNCTION=VARVAL(3)+1+TIME\nVARIABLE/3, FUNCTION=VARVAL(2)/2\n\
+         VARIABLE/4, IC=0.5, FUNCTION=COS(VARVAL(4))\n\
+         VARIABLE/5, IC=3, FUNCTION=VARVAL(5)**2-2\nVARIABLE/6, IC=-3, FUNCTION=VARVAL(6)**2-2\n"
+    );
+    let columns = [
+        "VARVAL(1)",
+        "VARVAL(2)",
+        "VARVAL(3)",
+        "VARVAL(4)",
+        "VARVAL(5)",
+        "VARVAL(6)",
+    ];
+    let s = run(&text, &columns, "AUTO", 1.0);
+    for (row, &t) in values(&s, "time").iter().enumerate() {
+        let expected = [
+            2.0,
+            2.0 + 2.0 * t,
+            1.0 + t,
+            0.739_085_133_215_160_6,
+            2.0,
+            -1.0,
+        ];
+        for (column, e) in columns.iter().zip(expected) {
+            let x = values(&s, column)[row];
+            assert!((x - e).abs() < 1e-12, "{column} = {x} at {t}");
+        }
+    }
+}
+
+#[test]
+fn loops_without_a_solution_are_named() {
+    let always = fails("VARIABLE/1, FUNCTION=VARVAL(1)+1\n");
+    assert!(always.contains("VARIABLE/1"), "{always}");
+    let together = fails("VARIABLE/1, FUNCTION=VARVAL(2)+1\nVARIABLE/2, FUNCTION=VARVAL(1)\n");
+    assert!(together.contains("VARIABLE/1"), "{together}");
+    let nowhere = fails("VARIABLE/1, FUNCTION=VARVAL(1)**2+1\n");
+    assert!(nowhere.contains("VARIABLE/1"), "{nowhere}");
+}
+
+#[test]
+fn a_force_against_its_acceleration_is_added_mass() {
+    let text =
+        format!("{BODY}SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=3-0.5*ACCX(2,1)\n");
+    for method in ["DOP853", "RADAU5"] {
+        let s = run(
+            &text,
+            &["ACCX(2,1)", "DX(2,1)", "SFORCE(1,0,2,0)"],
+            method,
+            1.0,
+        );
+        let t = values(&s, "time").to_vec();
+        for (row, t) in t.iter().enumerate() {
+            assert!((values(&s, "ACCX(2,1)")[row] - 2.0).abs() < 1e-13);
+            assert!((values(&s, "DX(2,1)")[row] - t * t).abs() < 1e-9);
+            assert!((values(&s, "SFORCE(1,0,2,0)")[row] - 2.0).abs() < 1e-13);
+        }
+    }
+}
+
+#[test]
+fn a_force_that_is_not_linear_in_its_acceleration_is_solved_by_iteration() {
+    // a = 2 − v − a³, so at rest a + a³ = 2
+    let text = format!(
+        "{BODY}SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=2-VX(2,1)-ACCX(2,1)**3\n"
+    );
+    let mut ends = Vec::new();
+    for method in ["DOP853", "RADAU5"] {
+        let s = run(&text, &["ACCX(2,1)", "VX(2,1)"], method, 2.0);
+        let (a, v) = (values(&s, "ACCX(2,1)"), values(&s, "VX(2,1)"));
+        assert!((a[0] - 1.0).abs() < 1e-13);
+        // dv/dt = a, v = 2 − a − a³: t = ∫ −(1 + 3a²)/a da = −ln a − 1.5 (a² − 1)
+        for ((a, v), t) in a.iter().zip(v).zip(values(&s, "time")) {
+            assert!((a + a.powi(3) + v - 2.0).abs() < 1e-12);
+            assert!(
+                (-a.ln() - 1.5 * (a * a - 1.0) - t).abs() < 1e-8,
+                "{method}: {a} at {t}"
+            );
+        }
+        ends.push(v[v.len() - 1]);
+    }
+    assert!((ends[0] - ends[1]).abs() < 1e-8);
+}
+
+#[test]
+fn friction_in_proportion_to_the_reaction_slides_as_coulomb_says() {
+    // an incline of 30 degrees; z of the joint points downhill
+    let text = "PART/2, MASS=2, CM=2, IP=1,1,1\nMARKER/2, PART=2, REULER=90D,120D,0\nMARKER/3, PART=1, REULER=90D,120D,0\n\
+                JOINT/1, TRANSLATIONAL, I=2, J=3\nACCGRAV/KGRAV=-9.81\n\
+                SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=-0.2*JOINT(1,0,1,0)\n\
+                VARIABLE/1, FUNCTION=SQRT(JOINT(1,0,2,0)**2+JOINT(1,0,3,0)**2+JOINT(1,0,4,0)**2)\n";
+    let s = run(
+        text,
+        &["ACCM(2,1)", "JOINT(1,0,1,0)", "VARVAL(1)"],
+        "AUTO",
+        0.1,
+    );
+    let (sin, cos) = (0.5, 0.75_f64.sqrt());
+    for row in 0..values(&s, "time").len() {
+        assert!((values(&s, "JOINT(1,0,1,0)")[row] - 2.0 * 9.81 * cos).abs() < 1e-9);
+        assert!((values(&s, "VARVAL(1)")[row] - 2.0 * 9.81 * cos).abs() < 1e-9);
+        assert!((values(&s, "ACCM(2,1)")[row] - 9.81 * (sin - 0.2 * cos)).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn forces_that_read_themselves_and_each_other_are_solved() {
+    let text = format!(
+        "{BODY}SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=1+0.5*SFORCE(2,0,2,0)\n\
+         SFORCE/2, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=SFORCE(1,0,2,0)-0.5*SFORCE(2,0,2,0)\n"
+    );
+    // f = 1 + g/2, 1.5 g = f: f = 1.5, g = 1
+    let s = run(
+        &text,
+        &["SFORCE(1,0,2,0)", "SFORCE(2,0,2,0)", "ACCX(2,1)"],
+        "AUTO",
+        1.0,
+    );
+    for (column, e) in [
+        ("SFORCE(1,0,2,0)", 1.5),
+        ("SFORCE(2,0,2,0)", 1.0),
+        ("ACCX(2,1)", 2.5),
+    ] {
+        assert!(
+            values(&s, column).iter().all(|x| (x - e).abs() < 1e-12),
+            "{column}"
+        );
+    }
+}
+
+#[test]
+fn implicit_differential_equations_are_solved() {
+    let text = format!(
+        "{BODY}DIFF/1, IC=1, IMPLICIT, FUNCTION=2*DIF1(1)+DIF(1)\n\
+         DIFF/2, IC=-2,1, IMPLICIT, FUNCTION=DIF1(2)**3+DIF1(2)+DIF(2)\n\
+         DIFF/3, IC=1, IMPLICIT, FUNCTION=DIF(3)**2-1-TIME\n\
+         DIFF/4, IC=0, FUNCTION=DIF(3)\n"
+    );
+    let columns = ["DIF(1)", "DIF1(1)", "DIF(2)", "DIF1(2)", "DIF(3)", "DIF(4)"];
+    for method in ["DOP853", "RADAU5"] {
+        let s = run(&text, &columns, method, 2.0);
+        for (row, &t) in values(&s, "time").iter().enumerate() {
+            let at = |c: &str| values(&s, c)[row];
+            let y = (-t / 2.0).exp();
+            assert!((at("DIF(1)") - y).abs() < 1e-9 && (at("DIF1(1)") + y / 2.0).abs() < 1e-9);
+            let p = at("DIF1(2)");
+            assert!((p.powi(3) + p + at("DIF(2)")).abs() < 1e-12);
+            assert!(
+                (-p.ln() - 1.5 * (p * p - 1.0) - t).abs() < 1e-8,
+                "{p} at {t}"
+            );
+            assert!((at("DIF(3)") - (1.0 + t).sqrt()).abs() < 1e-12);
+            assert!((at("DIF(4)") - 2.0 / 3.0 * ((1.0 + t).powf(1.5) - 1.0)).abs() < 1e-8);
+        }
+    }
+}
+
+#[test]
+fn a_loop_that_changes_branch_is_located() {
+    // v = |t − 1| + v/2: twice |t − 1|, whose integral is exact only when the kink is met
+    let text = format!(
+        "{BODY}VARIABLE/1, FUNCTION=ABS(TIME-1)+VARVAL(1)/2\nDIFF/1, IC=0, FUNCTION=VARVAL(1)\n"
+    );
+    let s = run(&text, &["DIF(1)"], "AUTO", 2.0);
+    assert!((values(&s, "DIF(1)").last().unwrap() - 2.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_loop_that_ends_stops_the_run_and_is_named() {
+    // v = v² + t has a solution until t = 1/4
+    let text =
+        format!("{BODY}VARIABLE/1, FUNCTION=VARVAL(1)**2+TIME\nDIFF/1, IC=0, FUNCTION=VARVAL(1)\n");
+    let mut s = session(&text, &["DIF(1)", "VARVAL(1)"], "AUTO", 1e-6);
+    let status = s
+        .simulate(Analysis::Dynamic, 1.0, 100, &mut Unwatched)
+        .unwrap();
+    assert_eq!(status, Status::Stopped);
+    let why = &s.run.record.stop_reason;
+    assert!(why.contains("VARIABLE/1"), "{why}");
+    let reached = *values(&s, "time").last().unwrap();
+    assert!((0.2..=0.25).contains(&reached), "{reached}: {why}");
+}
+
+#[test]
+fn statics_solves_loops_too() {
+    let text = format!(
+        "{BODY}SPRINGDAMPER/1, TRANSLATION, I=2, J=9, K=10, LENGTH=1\nMARKER/9, PART=1, QP=-1,0,0\n\
+         VARIABLE/1, IC=0, FUNCTION=0.1*VARVAL(1)**2+1-DX(2,1)\n\
+         SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=VARVAL(1)\n"
+    );
+    let mut s = session(&text, &["DX(2,1)", "VARVAL(1)"], "AUTO", 1e-6);
+    let status = s
+        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
+        .unwrap();
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let (x, v) = (
+        *values(&s, "DX(2,1)").last().unwrap(),
+        *values(&s, "VARVAL(1)").last().unwrap(),
+    );
+    assert!(
+        (v - 10.0 * x).abs() < 1e-11 && (0.1 * v * v + 1.0 - x - v).abs() < 1e-11,
+        "{x} {v}"
+    );
+}
