@@ -472,7 +472,7 @@ mod tests {
             ),
             (
                 "1E300*(TIME*1E10)",
-                "1E300 * 1E10 has no value at TIME = 1: too large for a number",
+                "1E300 * 10000000000 has no value at TIME = 1: too large for a number",
             ),
         ] {
             let said = at(text, 1.0).unwrap_err();

@@ -405,8 +405,11 @@ pub fn laws_of_trees(bytes: &[u8], dialect: Dialect, time: f64) {
     }
 }
 
+/// A claim about any bytes.
+pub type Law = fn(&[u8]);
+
 /// What fuzzing calls, by the name of the target.
-pub const TARGETS: [(&str, fn(&[u8])); 3] = [
+pub const TARGETS: [(&str, Law); 3] = [
     ("parse", fuzz_parse),
     ("evaluate", fuzz_evaluate),
     ("expression", fuzz_expression),
