@@ -32,6 +32,8 @@ pub struct Options {
     pub error: f64,
     /// name of a method of [`numeric::METHODS`], or "AUTO"
     pub method: String,
+    /// what AUTO begins with: see [`first_method`]
+    pub first: String,
     /// first step
     pub h_initial: Option<f64>,
     /// longest step
@@ -51,6 +53,7 @@ impl Default for Options {
         Self {
             error: 1e-6,
             method: "AUTO".into(),
+            first: "DOP853".into(),
             h_initial: None,
             h_max: f64::INFINITY,
             h_min: 0.0,
@@ -141,7 +144,7 @@ pub fn integrate(
     };
     let auto = options.method.eq_ignore_ascii_case("AUTO");
     let mut name = if auto {
-        "DOP853".to_string()
+        options.first.clone()
     } else {
         options.method.to_ascii_uppercase()
     };
@@ -178,6 +181,38 @@ pub fn integrate(
             }
         }
     }
+}
+
+/// Steps of an explicit method that stability may force before an implicit one is taken from the start.
+const STABLE_STEPS: f64 = 2000.0;
+/// Largest system whose eigenvalues are looked at.
+const LARGEST_LOOK: usize = 120;
+
+/// The method to begin with when the choice is ours: an implicit one where damped modes at the start are so fast that
+/// stability, not accuracy, would set the steps of an explicit one.
+///
+/// Only modes that decay count: an undamped oscillation has to be followed anyway.
+pub fn first_method(system: &mut System, duration: f64) -> &'static str {
+    let n = system.size();
+    if n == 0 || n > LARGEST_LOOK {
+        return "DOP853";
+    }
+    let t = system.numbers[0];
+    let y = system.numbers[system.scene.layout.y()].to_vec();
+    let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
+    if system.jacobian(t, &y, &mut jacobian, &mut dfdt).is_err() {
+        return "DOP853";
+    }
+    let matrix = nalgebra::DMatrix::from_vec(n, n, jacobian);
+    let Some(schur) = nalgebra::linalg::Schur::try_new(matrix, f64::EPSILON, 1000) else {
+        return "DOP853";
+    };
+    let fastest = schur
+        .complex_eigenvalues()
+        .iter()
+        .filter(|l| -l.re > 0.03 * l.norm())
+        .fold(0.0, |m: f64, l| m.max(l.norm()));
+    if fastest * duration > 5.0 * STABLE_STEPS { "RADAU5" } else { "DOP853" }
 }
 
 enum Finished {

@@ -318,7 +318,10 @@ impl Session {
             Kind::Dynamic
         };
         let outputs = output_times(start, end, steps);
-        let settings = self.integration();
+        let mut settings = self.integration();
+        if settings.method == "AUTO" && kind == Kind::Dynamic {
+            settings.first = dynamics::first_method(system, end - start).into();
+        }
         let name = self
             .model
             .integrator

@@ -1,0 +1,121 @@
+//! Problems with trusted solutions: the true error stays in proportion to the request.
+//!
+//! `tests/data/references` holds datasets with their command files, and solutions good to more digits than are compared.
+//! The true error is the largest difference over samples and columns, each column relative to its largest magnitude.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::script::obey;
+use cognate::analysis::session::{Options, Session};
+use cognate::dataset::command::Script;
+use cognate::model::{Formula, Model, RequestKind};
+use cognate::results::Status;
+use std::path::Path;
+
+/// The expressions of the requests of a model.
+fn expressions(model: &Model) -> Vec<String> {
+    let mut all = Vec::new();
+    for request in model.requests.values() {
+        if let RequestKind::Functions(functions) = &request.kind {
+            for f in functions.iter().flatten() {
+                if let Formula::Expression { text, .. } = f {
+                    all.push(text.clone());
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Columns of a CSV with a header line.
+fn columns(path: &Path) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows: Vec<Vec<f64>> =
+        text.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+    (0..rows[0].len()).map(|k| rows.iter().map(|r| r[k]).collect()).collect()
+}
+
+fn distance(reference: &[f64], ours: &[f64]) -> f64 {
+    let scale = reference.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let scale = if scale > 0.0 { scale } else { 1.0 };
+    reference.iter().zip(ours).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max)
+}
+
+/// The true error at a requested error, and the largest residual of a row.
+fn solve(problem: &str, error: f64) -> (f64, f64) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
+    let script = Script::read(folder.join(format!("{problem}.acf"))).unwrap();
+    let model = Model::read(script.model_file().unwrap()).unwrap();
+    let reference = columns(&folder.join(format!("{problem}.csv")));
+    let asked = expressions(&model);
+    let options = Options { error: Some(error), columns: asked.clone(), ..Options::default() };
+    let mut session = Session::new(model, problem, options);
+    let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+    assert_eq!(status, Status::Completed, "{problem}: {}", session.run.record.stop_reason);
+    let mut worst: f64 = 0.0;
+    for expression in &asked {
+        let ours = session.run.column(expression).unwrap();
+        assert_eq!(ours.len(), reference[0].len(), "{problem}: rows");
+        // each of our columns belongs to the reference column that it is closest to
+        let nearest = reference[1..].iter().map(|r| distance(r, ours)).fold(f64::INFINITY, f64::min);
+        worst = worst.max(nearest);
+    }
+    (worst, session.run.record.constraint_drift.unwrap_or(0.0))
+}
+
+/// At each request the true error is below `factor` times it, and rows hold to 1e-10.
+fn stays_in_proportion(problem: &str, requests: &[f64], factor: f64) {
+    for &request in requests {
+        let (error, drift) = solve(problem, request);
+        println!("{problem}: request {request:e}, true error {error:.1e}, rows {drift:.1e}");
+        assert!(error < factor * request, "{problem}: request {request:e}, true error {error:e}");
+        assert!(drift < 1e-10, "{problem}: request {request:e}, rows off by {drift:e}");
+    }
+}
+
+const REQUESTS: [f64; 5] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
+
+#[test]
+fn pendulum() {
+    stays_in_proportion("a01_pendulum", &REQUESTS, 100.0);
+}
+#[test]
+fn double_pendulum_which_is_chaotic() {
+    stays_in_proportion("double_pendulum", &REQUESTS, 1000.0);
+}
+#[test]
+fn four_bars_pass_their_singular_positions() {
+    // below 1e-9 the rounding of nearly dependent rows is what is left
+    stays_in_proportion("a02_nfourbar_2", &REQUESTS[..4], 100.0);
+    stays_in_proportion("a02_nfourbar_10", &REQUESTS[..3], 100.0);
+}
+#[test]
+fn andrews_squeezer() {
+    stays_in_proportion("a03_andrews", &REQUESTS, 100.0);
+}
+#[test]
+fn bricard_which_moves_although_it_should_not() {
+    stays_in_proportion("a04_bricard", &REQUESTS, 100.0);
+}
+#[test]
+fn heavy_top() {
+    stays_in_proportion("heavy_top", &REQUESTS, 100.0);
+}
+#[test]
+fn free_body_that_flips() {
+    stays_in_proportion("dzhanibekov", &REQUESTS, 100.0);
+}
+#[test]
+fn driven_slider_crank_with_its_torque() {
+    // no error control: positions are solved
+    stays_in_proportion("slider_crank_kin", &[1e-11], 100.0);
+}
+#[test]
+fn chains_of_rods() {
+    stays_in_proportion("chain_10", &REQUESTS, 1000.0);
+    stays_in_proportion("chain_40", &[1e-4], 1000.0);
+}
+#[test]
+fn ten_masses_in_a_row() {
+    stays_in_proportion("spring_mass_chain", &REQUESTS, 100.0);
+}
