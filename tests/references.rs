@@ -30,15 +30,24 @@ fn expressions(model: &Model) -> Vec<String> {
 /// Columns of a CSV with a header line.
 fn columns(path: &Path) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(path).unwrap();
-    let rows: Vec<Vec<f64>> =
-        text.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
-    (0..rows[0].len()).map(|k| rows.iter().map(|r| r[k]).collect()).collect()
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|l| l.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    (0..rows[0].len())
+        .map(|k| rows.iter().map(|r| r[k]).collect())
+        .collect()
 }
 
 fn distance(reference: &[f64], ours: &[f64]) -> f64 {
     let scale = reference.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let scale = if scale > 0.0 { scale } else { 1.0 };
-    reference.iter().zip(ours).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max)
+    reference
+        .iter()
+        .zip(ours)
+        .map(|(a, b)| (a - b).abs() / scale)
+        .fold(0.0, f64::max)
 }
 
 /// The true error at a requested error, and the largest residual of a row.
@@ -48,16 +57,28 @@ fn solve(problem: &str, error: f64) -> (f64, f64) {
     let model = Model::read(script.model_file().unwrap()).unwrap();
     let reference = columns(&folder.join(format!("{problem}.csv")));
     let asked = expressions(&model);
-    let options = Options { error: Some(error), columns: asked.clone(), ..Options::default() };
+    let options = Options {
+        error: Some(error),
+        columns: asked.clone(),
+        ..Options::default()
+    };
     let mut session = Session::new(model, problem, options);
     let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched).unwrap();
-    assert_eq!(status, Status::Completed, "{problem}: {}", session.run.record.stop_reason);
+    assert_eq!(
+        status,
+        Status::Completed,
+        "{problem}: {}",
+        session.run.record.stop_reason
+    );
     let mut worst: f64 = 0.0;
     for expression in &asked {
         let ours = session.run.column(expression).unwrap();
         assert_eq!(ours.len(), reference[0].len(), "{problem}: rows");
         // each of our columns belongs to the reference column that it is closest to
-        let nearest = reference[1..].iter().map(|r| distance(r, ours)).fold(f64::INFINITY, f64::min);
+        let nearest = reference[1..]
+            .iter()
+            .map(|r| distance(r, ours))
+            .fold(f64::INFINITY, f64::min);
         worst = worst.max(nearest);
     }
     (worst, session.run.record.constraint_drift.unwrap_or(0.0))
@@ -68,8 +89,14 @@ fn stays_in_proportion(problem: &str, requests: &[f64], factor: f64) {
     for &request in requests {
         let (error, drift) = solve(problem, request);
         println!("{problem}: request {request:e}, true error {error:.1e}, rows {drift:.1e}");
-        assert!(error < factor * request, "{problem}: request {request:e}, true error {error:e}");
-        assert!(drift < 1e-10, "{problem}: request {request:e}, rows off by {drift:e}");
+        assert!(
+            error < factor * request,
+            "{problem}: request {request:e}, true error {error:e}"
+        );
+        assert!(
+            drift < 1e-10,
+            "{problem}: request {request:e}, rows off by {drift:e}"
+        );
     }
 }
 

@@ -212,7 +212,11 @@ pub fn first_method(system: &mut System, duration: f64) -> &'static str {
         .iter()
         .filter(|l| -l.re > 0.03 * l.norm())
         .fold(0.0, |m: f64, l| m.max(l.norm()));
-    if fastest * duration > 5.0 * STABLE_STEPS { "RADAU5" } else { "DOP853" }
+    if fastest * duration > 5.0 * STABLE_STEPS {
+        "RADAU5"
+    } else {
+        "DOP853"
+    }
 }
 
 enum Finished {
