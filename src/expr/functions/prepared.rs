@@ -7,7 +7,7 @@ use super::Function;
 use super::contact;
 use super::series;
 use super::step::{cubic, haversine, quintic};
-use crate::scalar::{Dual, Exponent, Scalar};
+use crate::scalar::{Dual, Exponent, Lanes, Scalar};
 
 /// What a prepared function is; its parameters stand in a slice beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,6 +168,17 @@ impl Power for f64 {
             Exponent::Whole(n) => Scalar::powi(self, n),
             Exponent::Half(n) => Scalar::powi(self, n) * self.sqrt(),
             Exponent::Other => f64::powf(self, e),
+        }
+    }
+}
+
+impl<const N: usize> Power for Lanes<N> {
+    #[inline(always)]
+    fn power(self, exponent: Exponent, e: f64) -> Self {
+        match exponent {
+            Exponent::Whole(n) => Scalar::powi(self, n),
+            Exponent::Half(n) => Scalar::powi(self, n) * Scalar::sqrt(self),
+            Exponent::Other => Self(self.0.map(|x| f64::powf(x, e))),
         }
     }
 }

@@ -14,6 +14,7 @@
 //! assert_eq!(out, [9.0]);
 //! ```
 
+mod batch;
 mod builder;
 mod expand;
 mod gradient;
@@ -27,6 +28,7 @@ mod switching;
 #[cfg(test)]
 mod tests;
 
+pub use batch::Batch;
 pub use builder::{Builder, Folding};
 pub use operation::{BinaryOp, Comparison, UnaryOp, Value};
 pub use record::{Condition, Sym};
@@ -370,11 +372,11 @@ impl Core {
             Code::Lookup { table, order } => r(a).lookup(&self.tables[table as usize], order),
             Code::Call(function, count) => {
                 let arguments = &self.lists[a as usize..(a + count) as usize];
-                gathered(arguments, registers, |args| function.eval(args))
+                gathered(arguments, r, |args| function.eval(args))
             }
             Code::Partial(function, count, k) => {
                 let arguments = &self.lists[a as usize..(a + count) as usize];
-                gathered(arguments, registers, |args| {
+                gathered(arguments, r, |args| {
                     partial(function, args, k as usize)
                 })
             }
@@ -383,26 +385,23 @@ impl Core {
 }
 
 /// A function of arguments that are gathered from the registers.
-fn gathered<S: Scalar>(arguments: &[u32], registers: &[S], function: impl FnOnce(&[S]) -> S) -> S {
+#[inline(always)]
+fn gathered<S: Scalar>(arguments: &[u32], register: impl Fn(u32) -> S, function: impl FnOnce(&[S]) -> S) -> S {
+    #[inline(always)]
     fn few<S: Scalar, const N: usize>(
         arguments: &[u32],
-        registers: &[S],
+        register: impl Fn(u32) -> S,
         function: impl FnOnce(&[S]) -> S,
     ) -> S {
         let mut numbers = [S::zero(); N];
         for (number, &k) in numbers.iter_mut().zip(arguments) {
-            *number = registers[k as usize];
+            *number = register(k);
         }
         function(&numbers[..arguments.len().min(N)])
     }
     match arguments.len() {
-        0..=8 => few::<S, 8>(arguments, registers, function),
-        9..=40 => few::<S, 40>(arguments, registers, function),
-        _ => function(
-            &arguments
-                .iter()
-                .map(|&k| registers[k as usize])
-                .collect::<Vec<S>>(),
-        ),
+        0..=8 => few::<S, 8>(arguments, register, function),
+        9..=40 => few::<S, 40>(arguments, register, function),
+        _ => function(&arguments.iter().map(|&k| register(k)).collect::<Vec<S>>()),
     }
 }

@@ -1,0 +1,339 @@
+//! Many points at once: every instruction runs over a block of points before the next one starts.
+//!
+//! A register is a block of 128 numbers; the working set of an expression stays in the innermost cache, and the inner
+//! loops are what compilers turn into vector instructions. The same code is compiled for several sets of vector
+//! instructions; which one runs is decided when the batch is made. The result of each point is that of [`Program::run`], to
+//! the bit.
+
+use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask, truth};
+use super::{Code, Instruction, Program};
+use crate::expr::functions::Function;
+use crate::expr::functions::prepared::{self, Prepared};
+use crate::scalar::{Lanes, Scalar};
+
+/// Numbers that one vector operation works on.
+const WIDTH: usize = 8;
+/// Vectors per block.
+const VECTORS: usize = 16;
+/// Points per block.
+const BLOCK: usize = WIDTH * VECTORS;
+
+type Vector = Lanes<WIDTH>;
+
+/// One register for some points.
+type Block = [Vector; VECTORS];
+
+/// A program that runs over columns of points.
+///
+/// ```
+/// use cognate::expr::program::{BinaryOp, Builder, Folding, Input};
+/// let mut builder = Builder::new(Folding::Strict);
+/// let (x, y) = (builder.input(Input::Slot(0)), builder.input(Input::Slot(1)));
+/// let product = builder.binary(BinaryOp::Mul, x, y);
+/// let mut batch = builder.finish(&[product]).batch();
+/// let mut out = [0.0; 3];
+/// batch.run(&[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0]], &mut [&mut out]);
+/// assert_eq!(out, [4.0, 10.0, 18.0]);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Batch {
+    program: Program,
+    registers: Vec<Block>,
+    steps: Vec<Step>,
+    instructions: Instructions,
+}
+
+/// The vector instructions of this machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Instructions {
+    Portable,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+/// An instruction, prepared where its parameters are constant.
+#[derive(Clone, Debug)]
+enum Step {
+    Plain(Instruction),
+    Prepared { what: Prepared, parameters: Vec<f64>, a: u32, b: u32, to: u32 },
+}
+
+impl Program {
+    /// For running over many points at once.
+    pub fn batch(&self) -> Batch {
+        let core = self.core();
+        let nothing = [Vector::constant(f64::NAN); VECTORS];
+        let mut registers = vec![nothing; core.size as usize];
+        for (register, &c) in registers.iter_mut().zip(&core.constants) {
+            *register = [Vector::constant(c); VECTORS];
+        }
+        let steps = core.code.iter().map(|i| self.batch_step(i)).collect();
+        Batch { program: self.clone(), registers, steps, instructions: Instructions::of_this_machine() }
+    }
+
+    fn batch_step(&self, instruction: &Instruction) -> Step {
+        let core = self.core();
+        if let Code::Call(function, count) = instruction.code {
+            let list = &core.lists[instruction.a as usize..(instruction.a + count) as usize];
+            let known: Vec<Option<f64>> = list.iter().map(|&r| core.constants.get(r as usize).copied()).collect();
+            if let Some((what, parameters)) = Prepared::of(function, &known) {
+                let b = if what.n_variables() == 2 { list[1] } else { list[0] };
+                return Step::Prepared { what, parameters, a: list[0], b, to: instruction.to };
+            }
+        }
+        Step::Plain(*instruction)
+    }
+}
+
+impl Instructions {
+    fn of_this_machine() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {
+                return Instructions::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Instructions::Avx2;
+            }
+        }
+        Instructions::Portable
+    }
+}
+
+impl Batch {
+    /// The program.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// Runs over columns: one per input of the program, in its order, and one per output wanted. Allocates nothing.
+    ///
+    /// # Panics
+    ///
+    /// When there are fewer input columns or more output columns than the program has, or an input column is shorter than
+    /// the longest output column.
+    pub fn run(&mut self, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) {
+        let n = outputs.iter().map(|out| out.len()).max().unwrap_or(0);
+        assert!(inputs.len() >= self.program.inputs.len(), "the program reads {} inputs", self.program.inputs.len());
+        assert!(outputs.len() <= self.program.outputs.len(), "the program has {} outputs", self.program.outputs.len());
+        assert!(self.program.used.iter().all(|&k| inputs[k as usize].len() >= n), "an input column is too short");
+        for start in (0..n).step_by(BLOCK) {
+            self.enter(inputs, start, n);
+            match self.instructions {
+                Instructions::Portable => self.steps(),
+                // SAFETY: the machine has these instructions, see `of_this_machine`
+                #[cfg(target_arch = "x86_64")]
+                Instructions::Avx2 => unsafe { self.steps_avx2() },
+                // SAFETY: as before
+                #[cfg(target_arch = "x86_64")]
+                Instructions::Avx512 => unsafe { self.steps_avx512() },
+            }
+            self.leave(outputs, start);
+        }
+    }
+
+    /// Copies the inputs of a block into their registers.
+    fn enter(&mut self, inputs: &[&[f64]], start: usize, n: usize) {
+        let first = self.program.core().constants.len();
+        let end = n.min(start + BLOCK);
+        for (register, &k) in self.registers[first..].iter_mut().zip(&self.program.used) {
+            let column = &inputs[k as usize][start..end];
+            let (vectors, rest) = column.as_chunks::<WIDTH>();
+            for (to, from) in register.iter_mut().zip(vectors) {
+                to.0 = *from;
+            }
+            if let (Some(to), false) = (register.get_mut(vectors.len()), rest.is_empty()) {
+                to.0[..rest.len()].copy_from_slice(rest);
+            }
+        }
+    }
+
+    /// Copies the results of a block out.
+    fn leave(&self, outputs: &mut [&mut [f64]], start: usize) {
+        for (out, &r) in outputs.iter_mut().zip(&self.program.outputs) {
+            let end = out.len().min(start + BLOCK);
+            let Some(column) = out.get_mut(start..end) else { continue };
+            let register = &self.registers[r as usize];
+            let (vectors, rest) = column.as_chunks_mut::<WIDTH>();
+            let n = vectors.len();
+            for (to, from) in vectors.iter_mut().zip(register) {
+                *to = from.0;
+            }
+            if let (Some(from), false) = (register.get(n), rest.is_empty()) {
+                rest.copy_from_slice(&from.0[..rest.len()]);
+            }
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    unsafe fn steps_avx2(&mut self) {
+        self.steps();
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
+    unsafe fn steps_avx512(&mut self) {
+        self.steps();
+    }
+
+    /// All instructions over the block in the registers.
+    #[inline(always)]
+    fn steps(&mut self) {
+        let r = &mut self.registers[..];
+        for step in &self.steps {
+            match step {
+                Step::Plain(instruction) => plain(&self.program, instruction, r),
+                Step::Prepared { what, parameters, a, b, to } => prepared(*what, parameters, [*a, *b, *to], r),
+            }
+        }
+    }
+}
+
+/// `to = f(a)` for all points of the block.
+#[inline(always)]
+fn map(r: &mut [Block], a: u32, to: u32, f: impl Fn(Vector) -> Vector) {
+    for k in 0..VECTORS {
+        let value = f(r[a as usize][k]);
+        r[to as usize][k] = value;
+    }
+}
+
+/// `to = f(a, b)` for all points of the block.
+#[inline(always)]
+fn zip(r: &mut [Block], a: u32, b: u32, to: u32, f: impl Fn(Vector, Vector) -> Vector) {
+    for k in 0..VECTORS {
+        let value = f(r[a as usize][k], r[b as usize][k]);
+        r[to as usize][k] = value;
+    }
+}
+
+/// `to = a ? b : c`, where `f` compares the first two.
+#[inline(always)]
+fn choose(r: &mut [Block], [a, b, c, d]: [u32; 4], to: u32, f: impl Fn(Vector, Vector) -> [bool; WIDTH]) {
+    for k in 0..VECTORS {
+        let mask = f(r[a as usize][k], r[b as usize][k]);
+        let value = Vector::select(mask, r[c as usize][k], r[d as usize][k]);
+        r[to as usize][k] = value;
+    }
+}
+
+#[inline(always)]
+fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
+    let Instruction { code, to, a, b, c, d } = *instruction;
+    let core = program.core();
+    match code {
+        Code::Binary(BinaryOp::Add) => zip(r, a, b, to, |x, y| x + y),
+        Code::Binary(BinaryOp::Sub) => zip(r, a, b, to, |x, y| x - y),
+        Code::Binary(BinaryOp::Mul) => zip(r, a, b, to, |x, y| x * y),
+        Code::Binary(BinaryOp::Div) => zip(r, a, b, to, |x, y| x / y),
+        Code::Unary(UnaryOp::Neg) => map(r, a, to, |x| -x),
+        Code::Unary(UnaryOp::Abs) => map(r, a, to, Scalar::abs),
+        Code::Unary(UnaryOp::Sqrt) => map(r, a, to, Scalar::sqrt),
+        Code::CompareSelect(Comparison::Lt) => choose(r, [a, b, c, d], to, Scalar::lt),
+        Code::CompareSelect(Comparison::Le) => choose(r, [a, b, c, d], to, Scalar::le),
+        Code::CompareSelect(Comparison::Eq) => choose(r, [a, b, c, d], to, Scalar::same),
+        Code::If => {
+            for k in 0..VECTORS {
+                let [selector, negative, zero, positive] = [a, b, c, d].map(|x| r[x as usize][k]);
+                let nothing = Vector::constant(f64::NAN);
+                let origin = Vector::constant(0.0);
+                let value = Vector::select(selector.same(origin), zero, nothing);
+                let value = Vector::select(origin.lt(selector), positive, value);
+                r[to as usize][k] = Vector::select(selector.lt(origin), negative, value);
+            }
+        }
+        Code::Call(function @ (Function::Max | Function::Min), 2) => {
+            let (a, b) = (core.lists[a as usize], core.lists[a as usize + 1]);
+            zip(r, a, b, to, |x, y| function.eval(&[x, y]));
+        }
+        Code::Unary(op) => map(r, a, to, |x| op.apply(x)),
+        Code::Binary(op) => zip(r, a, b, to, |x, y| op.apply(x, y)),
+        Code::Whole(n) => map(r, a, to, |x| x.powi(n)),
+        Code::Compare(op) => zip(r, a, b, to, |x, y| from_mask(op.apply(x, y))),
+        Code::Select => {
+            for k in 0..VECTORS {
+                let mask = truth(r[a as usize][k]);
+                let value = Vector::select(mask, r[b as usize][k], r[c as usize][k]);
+                r[to as usize][k] = value;
+            }
+        }
+        Code::Lookup { table, order } => map(r, a, to, |x| x.lookup(&core.tables[table as usize], order)),
+        Code::Call(_, count) | Code::Partial(_, count, _) => {
+            let arguments = &core.lists[a as usize..(a + count) as usize];
+            for k in 0..VECTORS {
+                let value = super::gathered(arguments, |x| r[x as usize][k], |args| match code {
+                    Code::Partial(function, _, which) => super::partial(function, args, which as usize),
+                    Code::Call(function, _) => function.eval(args),
+                    _ => unreachable!("only functions have lists of arguments"),
+                });
+                r[to as usize][k] = value;
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn prepared(what: Prepared, p: &[f64], [a, b, to]: [u32; 3], r: &mut [Block]) {
+    match (what, p) {
+        (Prepared::Step, &[x0, x1, h0, h1, l, h]) => {
+            map(r, a, to, |x| prepared::step3(x, &[x0, x1, h0, h1, l, h]));
+        }
+        (Prepared::Step5, &[x0, x1, h0, h1, l, h]) => {
+            map(r, a, to, |x| prepared::step5(x, &[x0, x1, h0, h1, l, h]));
+        }
+        (Prepared::Havsin, &[x0, x1, h0, h1, l, h]) => {
+            map(r, a, to, |x| prepared::havsin(x, &[x0, x1, h0, h1, l, h]));
+        }
+        (Prepared::Poly, _) => map(r, a, to, |x| prepared::poly(x, p)),
+        (Prepared::Cheby, _) => map(r, a, to, |x| prepared::cheby(x, p)),
+        (Prepared::Forcos, _) => map(r, a, to, |x| prepared::forcos(x, p)),
+        (Prepared::Forsin, _) => map(r, a, to, |x| prepared::forsin(x, p)),
+        (Prepared::Impact(e), &[x1, k, c, d, w, n]) => {
+            zip(r, a, b, to, |x, v| prepared::impact(x, v, &[x1, k, c, d, w, n], e));
+        }
+        (Prepared::Bistop(e), &[x1, x2, k, c, d, w, n]) => {
+            zip(r, a, b, to, |x, v| prepared::bistop(x, v, &[x1, x2, k, c, d, w, n], e));
+        }
+        _ => unreachable!("a prepared function comes with as many parameters as it says"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::program::{Builder, Folding, Input, Work};
+
+    #[test]
+    fn batches_of_any_length_are_single_runs() {
+        let mut b = Builder::new(Folding::Strict);
+        let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
+        let constants = [0.2, 0.0, 0.9, 3.0, 1.5, 40.0, 0.3].map(|c| b.constant(c));
+        let [x0, h0, x1, h1, e, k, d] = constants;
+        let step = b.call(Function::Step, &[x, x0, h0, x1, h1]);
+        let impact = b.call(Function::Impact, &[x, y, x1, k, e, h1, d]);
+        let sine = b.unary(UnaryOp::Sin, y);
+        let branch = b.arithmetic_if(y, step, impact, sine);
+        let larger = b.call(Function::Max, &[branch, impact]);
+        let harmonic = b.call(Function::Forsin, &[x, x0, k, h1, e, d]);
+        let slope = b.gradient(impact, &[x])[0];
+        let program = b.finish(&[branch, larger, harmonic, slope]);
+        let mut batch = program.batch();
+        for n in [0, 1, 7, 8, 127, 128, 129, 300] {
+            let columns: Vec<Vec<f64>> =
+                (0..2).map(|c| (0..n).map(|k| ((k * 37 + c * 11) % 101) as f64 / 50.0 - 1.0).collect()).collect();
+            let mut out = vec![vec![0.0; n]; 4];
+            let mut outputs: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+            batch.run(&[&columns[0], &columns[1]], &mut outputs);
+            let (mut work, mut single) = (Work::default(), [0.0; 4]);
+            for k in 0..n {
+                program.run(&[columns[0][k], columns[1][k]], &mut work, &mut single);
+                for (column, want) in out.iter().zip(single) {
+                    assert_eq!(column[k].to_bits(), want.to_bits(), "point {k} of {n}");
+                }
+            }
+        }
+    }
+}
