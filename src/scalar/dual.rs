@@ -15,6 +15,7 @@ pub struct Dual<const N: usize, S = f64> {
 
 impl<const N: usize, S: Scalar> Dual<N, S> {
     /// The number that varies along direction `k` with slope one.
+    #[inline(always)]
     pub fn variable(re: S, k: usize) -> Self {
         let mut eps = [S::zero(); N];
         eps[k] = S::one();
@@ -59,18 +60,22 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
             eps: self.eps.map(|x| if x.is_known_zero() { x } else { d1 * x }),
         }
     }
+    #[inline(always)]
     fn value_part(&self) -> S {
         self.re
     }
+    #[inline(always)]
     fn value_part_mut(&mut self) -> &mut S {
         &mut self.re
     }
+    #[inline(always)]
     fn from_value(re: S) -> Self {
         Self {
             re,
             eps: [S::zero(); N],
         }
     }
+    #[inline(always)]
     fn is_value_only(&self) -> bool {
         self.eps.iter().all(Scalar::is_known_zero)
     }
@@ -81,9 +86,11 @@ operators!([const N: usize, S: Scalar] Dual<N, S>);
 impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
     type Mask = S::Mask;
 
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Self::from_value(S::constant(x))
     }
+    #[inline(always)]
     fn known(&self) -> Option<f64> {
         if self.is_value_only() {
             self.re.known()
@@ -91,20 +98,25 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
             None
         }
     }
+    #[inline(always)]
     fn lt(self, other: Self) -> S::Mask {
         self.re.lt(other.re)
     }
+    #[inline(always)]
     fn le(self, other: Self) -> S::Mask {
         self.re.le(other.re)
     }
+    #[inline(always)]
     fn same(self, other: Self) -> S::Mask {
         self.re.same(other.re)
     }
+    #[inline(always)]
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
         yes.map2(no, S::select(mask, yes.re, no.re), |x, y| {
             S::select(mask, x, y)
         })
     }
+    #[inline(always)]
     fn scale(self, factor: f64) -> Self {
         Self {
             re: self.re.scale(factor),

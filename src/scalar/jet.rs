@@ -17,6 +17,7 @@ pub struct Jet<S = f64> {
 
 impl<S: Scalar> Jet<S> {
     /// The variable itself: slope one, no curvature.
+    #[inline(always)]
     pub fn variable(value: S) -> Self {
         Self {
             value,
@@ -25,6 +26,7 @@ impl<S: Scalar> Jet<S> {
         }
     }
     /// From a value and its two derivatives.
+    #[inline(always)]
     pub fn new(value: S, first: S, second: S) -> Self {
         Self {
             value,
@@ -93,15 +95,19 @@ impl<S: Scalar> Jet<S> {
         };
         Self::new(f, first, second + curvature)
     }
+    #[inline(always)]
     fn value_part(&self) -> S {
         self.value
     }
+    #[inline(always)]
     fn value_part_mut(&mut self) -> &mut S {
         &mut self.value
     }
+    #[inline(always)]
     fn from_value(value: S) -> Self {
         Self::new(value, S::zero(), S::zero())
     }
+    #[inline(always)]
     fn is_value_only(&self) -> bool {
         self.first.is_known_zero() && self.second.is_known_zero()
     }
@@ -112,9 +118,11 @@ operators!([S: Scalar] Jet<S>);
 impl<S: Scalar> Scalar for Jet<S> {
     type Mask = S::Mask;
 
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Self::from_value(S::constant(x))
     }
+    #[inline(always)]
     fn known(&self) -> Option<f64> {
         if self.is_value_only() {
             self.value.known()
@@ -122,15 +130,19 @@ impl<S: Scalar> Scalar for Jet<S> {
             None
         }
     }
+    #[inline(always)]
     fn lt(self, other: Self) -> S::Mask {
         self.value.lt(other.value)
     }
+    #[inline(always)]
     fn le(self, other: Self) -> S::Mask {
         self.value.le(other.value)
     }
+    #[inline(always)]
     fn same(self, other: Self) -> S::Mask {
         self.value.same(other.value)
     }
+    #[inline(always)]
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
         Self::new(
             S::select(mask, yes.value, no.value),
@@ -138,6 +150,7 @@ impl<S: Scalar> Scalar for Jet<S> {
             S::select(mask, yes.second, no.second),
         )
     }
+    #[inline(always)]
     fn scale(self, factor: f64) -> Self {
         Self::new(
             self.value.scale(factor),

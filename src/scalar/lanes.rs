@@ -7,15 +7,19 @@ use super::{Mask, Scalar, operators};
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Mask for [bool; N] {
+    #[inline(always)]
     fn and(self, other: Self) -> Self {
         std::array::from_fn(|k| self[k] && other[k])
     }
+    #[inline(always)]
     fn or(self, other: Self) -> Self {
         std::array::from_fn(|k| self[k] || other[k])
     }
+    #[inline(always)]
     fn not(self) -> Self {
         self.map(|x| !x)
     }
+    #[inline(always)]
     fn known(self) -> Option<bool> {
         let first = *self.first()?;
         self.iter().all(|&x| x == first).then_some(first)
@@ -58,6 +62,7 @@ operators!([const N: usize] Lanes<N>);
 /// Functions of one number that each lane computes for itself.
 macro_rules! lane_by_lane {
     ($($name:ident)*) => { $(
+        #[inline(always)]
         fn $name(self) -> Self {
             self.map(f64::$name)
         }
@@ -67,40 +72,51 @@ macro_rules! lane_by_lane {
 impl<const N: usize> Scalar for Lanes<N> {
     type Mask = [bool; N];
 
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Self([x; N])
     }
+    #[inline(always)]
     fn known(&self) -> Option<f64> {
         let first = *self.0.first()?;
         self.0.iter().all(|&x| x == first).then_some(first)
     }
+    #[inline(always)]
     fn lt(self, other: Self) -> [bool; N] {
         std::array::from_fn(|k| self.0[k] < other.0[k])
     }
+    #[inline(always)]
     fn le(self, other: Self) -> [bool; N] {
         std::array::from_fn(|k| self.0[k] <= other.0[k])
     }
+    #[inline(always)]
     fn same(self, other: Self) -> [bool; N] {
         std::array::from_fn(|k| self.0[k] == other.0[k])
     }
+    #[inline(always)]
     fn select(mask: [bool; N], yes: Self, no: Self) -> Self {
         Self(std::array::from_fn(|k| {
             if mask[k] { yes.0[k] } else { no.0[k] }
         }))
     }
     lane_by_lane!(sqrt sin cos tan asin acos atan sinh cosh tanh exp ln log10 abs trunc round floor);
+    #[inline(always)]
     fn atan2(self, other: Self) -> Self {
         self.zip(other, f64::atan2)
     }
+    #[inline(always)]
     fn powi(self, n: i32) -> Self {
         self.map(|x| Scalar::powi(x, n))
     }
+    #[inline(always)]
     fn powf(self, exponent: Self) -> Self {
         self.zip(exponent, Scalar::powf)
     }
+    #[inline(always)]
     fn rem(self, other: Self) -> Self {
         self.zip(other, |x, y| x % y)
     }
+    #[inline(always)]
     fn lookup(self, table: &std::sync::Arc<dyn super::Table>, order: u32) -> Self {
         self.map(|x| table.at(x, order))
     }

@@ -75,16 +75,19 @@ pub trait Scalar:
     /// A number that depends on nothing.
     fn constant(x: f64) -> Self;
     /// Zero.
+    #[inline(always)]
     fn zero() -> Self {
         Self::constant(0.0)
     }
     /// One.
+    #[inline(always)]
     fn one() -> Self {
         Self::constant(1.0)
     }
     /// The number, when it is a constant and known now. Physics may leave out what is a known zero.
     fn known(&self) -> Option<f64>;
     /// Whether the number is known to be zero, with all its derivatives.
+    #[inline(always)]
     fn is_known_zero(&self) -> bool {
         self.known() == Some(0.0)
     }
@@ -98,6 +101,7 @@ pub trait Scalar:
     /// `yes` where the mask is true, `no` elsewhere. Both have been evaluated; the other one is dropped, NaN included.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// As [`Scalar::select`], evaluating only what is needed where the answer is the same everywhere.
+    #[inline(always)]
     fn choose(mask: Self::Mask, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
         match mask.known() {
             Some(true) => yes(),
@@ -107,14 +111,17 @@ pub trait Scalar:
     }
 
     /// Product with a plain number.
+    #[inline(always)]
     fn scale(self, factor: f64) -> Self {
         self * Self::constant(factor)
     }
     /// Square.
+    #[inline(always)]
     fn square(self) -> Self {
         self * self
     }
     /// 1/x
+    #[inline(always)]
     fn recip(self) -> Self {
         Self::one() / self
     }
@@ -125,6 +132,7 @@ pub trait Scalar:
     /// Cosine, of radians.
     fn cos(self) -> Self;
     /// Sine and cosine together.
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         (self.sin(), self.cos())
     }
@@ -169,10 +177,12 @@ pub trait Scalar:
     fn lookup(self, table: &std::sync::Arc<dyn Table>, order: u32) -> Self;
 
     /// The larger; the first on a tie.
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.lt(other), other, self)
     }
     /// The smaller; the first on a tie.
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(other.lt(self), other, self)
     }
@@ -353,68 +363,83 @@ use operators;
 /// The derivatives stand here once, for every type that carries derivatives.
 macro_rules! elementary_functions {
     ($S:ty) => {
+        #[inline]
         fn sqrt(self) -> Self {
             let r = self.value_part().sqrt();
             let d = <$S>::constant(0.5) / r;
             self.chain(r, d, || -(d / self.value_part()).scale(0.5))
         }
+        #[inline]
         fn sin(self) -> Self {
             let (s, c) = self.value_part().sin_cos();
             self.chain(s, c, || -s)
         }
+        #[inline]
         fn cos(self) -> Self {
             let (s, c) = self.value_part().sin_cos();
             self.chain(c, -s, || -c)
         }
+        #[inline]
         fn sin_cos(self) -> (Self, Self) {
             let (s, c) = self.value_part().sin_cos();
             (self.chain(s, c, || -s), self.chain(c, -s, || -c))
         }
+        #[inline]
         fn tan(self) -> Self {
             let t = self.value_part().tan();
             let d = <$S>::one() + t * t;
             self.chain(t, d, || (t * d).scale(2.0))
         }
+        #[inline]
         fn asin(self) -> Self {
             let x = self.value_part();
             let w = <$S>::one() / (<$S>::one() - x * x).sqrt();
             self.chain(x.asin(), w, || x * w * w * w)
         }
+        #[inline]
         fn acos(self) -> Self {
             let x = self.value_part();
             let w = <$S>::one() / (<$S>::one() - x * x).sqrt();
             self.chain(x.acos(), -w, || -(x * w * w * w))
         }
+        #[inline]
         fn atan(self) -> Self {
             let x = self.value_part();
             let w = <$S>::one() / (<$S>::one() + x * x);
             self.chain(x.atan(), w, || -(x * w * w).scale(2.0))
         }
+        #[inline]
         fn sinh(self) -> Self {
             let (s, c) = (self.value_part().sinh(), self.value_part().cosh());
             self.chain(s, c, || s)
         }
+        #[inline]
         fn cosh(self) -> Self {
             let (s, c) = (self.value_part().sinh(), self.value_part().cosh());
             self.chain(c, s, || c)
         }
+        #[inline]
         fn tanh(self) -> Self {
             let t = self.value_part().tanh();
             let d = <$S>::one() - t * t;
             self.chain(t, d, || -(t * d).scale(2.0))
         }
+        #[inline]
         fn exp(self) -> Self {
             let e = self.value_part().exp();
             self.chain(e, e, || e)
         }
+        #[inline]
         fn ln(self) -> Self {
             let w = <$S>::one() / self.value_part();
             self.chain(self.value_part().ln(), w, || -(w * w))
         }
+        #[inline]
         fn log10(self) -> Self {
             let w = <$S>::constant(std::f64::consts::LOG10_E) / self.value_part();
             self.chain(self.value_part().log10(), w, || -(w / self.value_part()))
         }
+        #[inline]
         fn powi(self, n: i32) -> Self {
             let x = self.value_part();
             let k = f64::from(n);
@@ -431,6 +456,7 @@ macro_rules! elementary_functions {
                 }
             })
         }
+        #[inline]
         fn abs(self) -> Self {
             let x = self.value_part();
             let sign = <$S>::select(
@@ -440,15 +466,19 @@ macro_rules! elementary_functions {
             );
             self.chain(x.abs(), sign, <$S>::zero)
         }
+        #[inline]
         fn trunc(self) -> Self {
             Self::from_value(self.value_part().trunc())
         }
+        #[inline]
         fn round(self) -> Self {
             Self::from_value(self.value_part().round())
         }
+        #[inline]
         fn floor(self) -> Self {
             Self::from_value(self.value_part().floor())
         }
+        #[inline]
         fn rem(self, other: Self) -> Self {
             // a − trunc(a/b) b, whose value is taken from the exact remainder
             let (a, b) = (self.value_part(), other.value_part());
@@ -458,6 +488,7 @@ macro_rules! elementary_functions {
             *result.value_part_mut() = exact;
             result
         }
+        #[inline]
         fn atan2(self, other: Self) -> Self {
             // dφ = (x dy − y dx)/(x² + y²): the derivative parts of atan2 are those of atan of whichever quotient is
             // well conditioned there; the value is the four-quadrant one.
@@ -468,12 +499,14 @@ macro_rules! elementary_functions {
             *result.value_part_mut() = y.atan2(x);
             result
         }
+        #[inline]
         fn lookup(self, table: &std::sync::Arc<dyn $crate::scalar::Table>, order: u32) -> Self {
             let x = self.value_part();
             self.chain(x.lookup(table, order), x.lookup(table, order + 1), || {
                 x.lookup(table, order + 2)
             })
         }
+        #[inline]
         fn powf(self, exponent: Self) -> Self {
             // d(aᵇ) = b aᵇ⁻¹ da + aᵇ ln a db, the second term only where b varies
             let (a, b) = (self.value_part(), exponent.value_part());

@@ -13,35 +13,14 @@ use crate::scalar::{Mask, Scalar};
 /// `IMPACT(x, x_dot, x1, k, e, cmax, d)`; `per_depth` is 1/d.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
-pub fn impact<S: Scalar>(
-    x: S,
-    x_dot: S,
-    x1: S,
-    k: S,
-    cmax: S,
-    d: S,
-    per_depth: S,
-    power: impl FnOnce(S) -> S,
-) -> S {
-    S::choose(x1.le(x), S::zero, || {
-        contact(x1 - x, -x_dot, k, cmax, d, per_depth, power)
-    })
+pub fn impact<S: Scalar>(x: S, x_dot: S, x1: S, k: S, cmax: S, d: S, per_depth: S, power: impl FnOnce(S) -> S) -> S {
+    S::choose(x1.le(x), S::zero, || contact(x1 - x, -x_dot, k, cmax, d, per_depth, power))
 }
 
 /// `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
-pub fn bistop<S: Scalar>(
-    x: S,
-    x_dot: S,
-    x1: S,
-    x2: S,
-    k: S,
-    cmax: S,
-    d: S,
-    per_depth: S,
-    power: impl Fn(S) -> S,
-) -> S {
+pub fn bistop<S: Scalar>(x: S, x_dot: S, x1: S, x2: S, k: S, cmax: S, d: S, per_depth: S, power: impl Fn(S) -> S) -> S {
     S::choose(x1.le(x).and(x.le(x2)), S::zero, || {
         S::choose(
             x.lt(x1),
@@ -53,15 +32,7 @@ pub fn bistop<S: Scalar>(
 
 /// Force at penetration `p > 0` and penetration rate `p_dot`; never attractive. `power` is `pᵉ`.
 #[inline(always)]
-fn contact<S: Scalar>(
-    p: S,
-    p_dot: S,
-    k: S,
-    cmax: S,
-    d: S,
-    per_depth: S,
-    power: impl FnOnce(S) -> S,
-) -> S {
+fn contact<S: Scalar>(p: S, p_dot: S, k: S, cmax: S, d: S, per_depth: S, power: impl FnOnce(S) -> S) -> S {
     let elastic = k * power(p);
     let c = S::choose(d.le(p), || cmax, || cmax * cubic(p * per_depth));
     let force = elastic + c * p_dot;

@@ -35,11 +35,7 @@ impl Prepared {
             Function::Impact | Function::Bistop => 2,
             _ => 1,
         };
-        let constants = args
-            .get(variable..)?
-            .iter()
-            .copied()
-            .collect::<Option<Vec<f64>>>()?;
+        let constants = args.get(variable..)?.iter().copied().collect::<Option<Vec<f64>>>()?;
         let mut known = vec![f64::NAN; variable];
         known.extend(&constants);
         if function.violation(&known).is_some() {
@@ -58,14 +54,12 @@ impl Prepared {
             (Function::Cheby, _) => (Prepared::Cheby, constants),
             (Function::Forcos, _) => (Prepared::Forcos, constants),
             (Function::Forsin, _) => (Prepared::Forsin, constants),
-            (Function::Impact, &[x1, k, e, cmax, d]) => (
-                Prepared::Impact(Exponent::of(e)),
-                vec![x1, k, cmax, d, d.recip(), e],
-            ),
-            (Function::Bistop, &[x1, x2, k, e, cmax, d]) => (
-                Prepared::Bistop(Exponent::of(e)),
-                vec![x1, x2, k, cmax, d, d.recip(), e],
-            ),
+            (Function::Impact, &[x1, k, e, cmax, d]) => {
+                (Prepared::Impact(Exponent::of(e)), vec![x1, k, cmax, d, d.recip(), e])
+            }
+            (Function::Bistop, &[x1, x2, k, e, cmax, d]) => {
+                (Prepared::Bistop(Exponent::of(e)), vec![x1, x2, k, cmax, d, d.recip(), e])
+            }
             _ => return None,
         };
         Some(prepared)
@@ -85,17 +79,7 @@ impl Prepared {
 pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
     let [x0, x1, h0, h1, per_length, rise] = *p;
     let [x0, x1, h0, h1] = [x0, x1, h0, h1].map(S::constant);
-    S::choose(
-        x.le(x0),
-        || h0,
-        || {
-            S::choose(
-                x1.le(x),
-                || h1,
-                || h0 + shape((x - x0).scale(per_length)).scale(rise),
-            )
-        },
-    )
+    S::choose(x.le(x0), || h0, || S::choose(x1.le(x), || h1, || h0 + shape((x - x0).scale(per_length)).scale(rise)))
 }
 
 /// STEP
@@ -140,9 +124,7 @@ pub(crate) fn forsin<S: Scalar>(x: S, p: &[f64]) -> S {
 pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent) -> S {
     let [x1, k, cmax, d, per_depth, e] = *p;
     let [x1, k, cmax, d, per_depth] = [x1, k, cmax, d, per_depth].map(S::constant);
-    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| {
-        p.power(exponent, e)
-    })
+    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| p.power(exponent, e))
 }
 
 /// BISTOP
@@ -150,9 +132,7 @@ pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent)
 pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent) -> S {
     let [x1, x2, k, cmax, d, per_depth, e] = *p;
     let [x1, x2, k, cmax, d, per_depth] = [x1, x2, k, cmax, d, per_depth].map(S::constant);
-    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| {
-        p.power(exponent, e)
-    })
+    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| p.power(exponent, e))
 }
 
 /// A number that can be raised to a power whose kind is known.
@@ -192,9 +172,6 @@ impl<const N: usize> Power for Dual<N> {
             Exponent::Half(_) | Exponent::Other => Exponent::Other,
         };
         let slope = e * self.re.power(less, e - 1.0);
-        Self {
-            re: self.re.power(exponent, e),
-            eps: self.eps.map(|x| slope * x),
-        }
+        Self { re: self.re.power(exponent, e), eps: self.eps.map(|x| slope * x) }
     }
 }

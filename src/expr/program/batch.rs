@@ -264,11 +264,15 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
         Code::Call(_, count) | Code::Partial(_, count, _) => {
             let arguments = &core.lists[a as usize..(a + count) as usize];
             for k in 0..VECTORS {
-                let value = super::gathered(arguments, |x| r[x as usize][k], |args| match code {
-                    Code::Partial(function, _, which) => super::partial(function, args, which as usize),
-                    Code::Call(function, _) => function.eval(args),
-                    _ => unreachable!("only functions have lists of arguments"),
-                });
+                let value = super::gathered(
+                    arguments,
+                    |x| r[x as usize][k],
+                    |args| match code {
+                        Code::Partial(function, _, which) => super::partial(function, args, which as usize),
+                        Code::Call(function, _) => function.eval(args),
+                        _ => unreachable!("only functions have lists of arguments"),
+                    },
+                );
                 r[to as usize][k] = value;
             }
         }

@@ -16,6 +16,7 @@
 
 mod batch;
 mod builder;
+mod display;
 mod expand;
 mod gradient;
 mod guard;
@@ -104,7 +105,8 @@ pub struct Program {
     used: Vec<u32>,
     /// registers
     outputs: Vec<u32>,
-    code: Arc<(Core, machine::Machine)>,
+    core: Arc<Core>,
+    machine: machine::Machine,
 }
 
 /// The operations and what they need; the registers are `constants | inputs | temporaries`.
@@ -128,34 +130,19 @@ pub struct Work<S = f64> {
 
 impl<S> Default for Work<S> {
     fn default() -> Self {
-        Self {
-            owner: 0,
-            registers: Vec::new(),
-        }
+        Self { owner: 0, registers: Vec::new() }
     }
 }
 
 impl Program {
-    fn new(
-        inputs: Vec<Input>,
-        used: Vec<u32>,
-        outputs: Vec<u32>,
-        core: Core,
-        machine: machine::Machine,
-    ) -> Self {
+    fn new(inputs: Vec<Input>, used: Vec<u32>, outputs: Vec<u32>, core: Arc<Core>, machine: machine::Machine) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Self {
-            id,
-            inputs,
-            used,
-            outputs,
-            code: Arc::new((core, machine)),
-        }
+        Self { id, inputs, used, outputs, core, machine }
     }
 
     fn core(&self) -> &Core {
-        &self.code.0
+        &self.core
     }
 
     /// What the host supplies, in this order.
@@ -172,7 +159,7 @@ impl Program {
     }
     /// How many steps the machine takes for them, at most.
     pub fn n_steps(&self) -> usize {
-        self.code.1.len()
+        self.machine.len()
     }
     /// How many registers it takes.
     pub fn work_size(&self) -> usize {
@@ -180,48 +167,23 @@ impl Program {
     }
     /// The numbers that come out, if they depend on no input.
     pub fn constant_outputs(&self) -> Option<Vec<f64>> {
-        self.outputs
-            .iter()
-            .map(|&r| self.core().constants.get(r as usize).copied())
-            .collect()
+        self.outputs.iter().map(|&r| self.core().constants.get(r as usize).copied()).collect()
     }
 
     /// Records this program into a builder: the values of its outputs there.
     pub fn record(&self, builder: &mut Builder) -> Vec<Value> {
         let core = self.core();
-        let mut values: Vec<Value> = core
-            .constants
-            .iter()
-            .map(|&c| builder.constant(c))
-            .collect();
-        values.extend(
-            self.used
-                .iter()
-                .map(|&k| builder.input(self.inputs[k as usize])),
-        );
-        let none = values
-            .first()
-            .copied()
-            .unwrap_or_else(|| builder.constant(f64::NAN));
+        let mut values: Vec<Value> = core.constants.iter().map(|&c| builder.constant(c)).collect();
+        values.extend(self.used.iter().map(|&k| builder.input(self.inputs[k as usize])));
+        let none = values.first().copied().unwrap_or_else(|| builder.constant(f64::NAN));
         values.resize(core.size as usize, none);
         let mut arguments = Vec::new();
         for instruction in &core.code {
-            let Instruction {
-                code,
-                to,
-                a,
-                b,
-                c,
-                d,
-            } = *instruction;
+            let Instruction { code, to, a, b, c, d } = *instruction;
             let r = |k: u32| values[k as usize];
             arguments.clear();
             if let Code::Call(_, count) | Code::Partial(_, count, _) = code {
-                arguments.extend(
-                    core.lists[a as usize..(a + count) as usize]
-                        .iter()
-                        .map(|&k| r(k)),
-                );
+                arguments.extend(core.lists[a as usize..(a + count) as usize].iter().map(|&k| r(k)));
             }
             values[to as usize] = match code {
                 Code::Unary(op) => builder.unary(op, r(a)),
@@ -234,9 +196,7 @@ impl Program {
                     builder.select(condition, r(c), r(d))
                 }
                 Code::If => builder.arithmetic_if(r(a), r(b), r(c), r(d)),
-                Code::Lookup { table, order } => {
-                    builder.lookup(&core.tables[table as usize], order, r(a))
-                }
+                Code::Lookup { table, order } => builder.lookup(&core.tables[table as usize], order, r(a)),
                 Code::Call(function, _) => builder.call(function, &arguments),
                 Code::Partial(function, _, k) => builder.partial_of(function, &arguments, k),
             };
@@ -266,14 +226,8 @@ impl Program {
     /// When there are fewer inputs or more places for outputs than the program has.
     #[inline]
     pub fn run(&self, inputs: &[f64], work: &mut Work, out: &mut [f64]) {
-        assert!(
-            out.len() <= self.outputs.len(),
-            "the program has {} outputs",
-            self.outputs.len()
-        );
-        self.enter(inputs, work);
-        let (core, machine) = &*self.code;
-        machine.run(&mut work.registers, core);
+        assert!(out.len() <= self.outputs.len(), "the program has {} outputs", self.outputs.len());
+        self.start(inputs, work);
         for (out, &r) in out.iter_mut().zip(&self.outputs) {
             *out = work.registers[r as usize];
         }
@@ -286,14 +240,19 @@ impl Program {
     /// When there are fewer inputs than the program has, or no output.
     #[inline]
     pub fn value(&self, inputs: &[f64], work: &mut Work) -> f64 {
-        self.enter(inputs, work);
-        let (core, machine) = &*self.code;
-        let last = machine.run(&mut work.registers, core);
-        if machine.ends_with_output() {
-            last
-        } else {
-            work.registers[self.outputs[0] as usize]
+        let last = self.start(inputs, work);
+        match &self.outputs[..] {
+            [_] => last,
+            several => work.registers[several[0] as usize],
         }
+    }
+
+    /// Runs the machine; the last result, which is the output if there is but one.
+    #[inline(always)]
+    fn start(&self, inputs: &[f64], work: &mut Work) -> f64 {
+        self.enter(inputs, work);
+        // SAFETY: `enter` has seen to there being enough inputs, and to the registers being those of this program
+        unsafe { self.machine.run(work.registers.as_mut_ptr(), inputs.as_ptr()) }
     }
 
     /// Runs over any number.
@@ -302,14 +261,13 @@ impl Program {
     ///
     /// When there are fewer inputs or more places for outputs than the program has.
     pub fn eval<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>, out: &mut [S]) {
-        assert!(
-            out.len() <= self.outputs.len(),
-            "the program has {} outputs",
-            self.outputs.len()
-        );
+        assert!(out.len() <= self.outputs.len(), "the program has {} outputs", self.outputs.len());
         self.enter(inputs, work);
         let core = self.core();
         let registers = &mut work.registers[..];
+        for (register, &k) in registers[core.constants.len()..].iter_mut().zip(&self.used) {
+            *register = inputs[k as usize];
+        }
         for instruction in &core.code {
             core.step(instruction, registers);
         }
@@ -318,48 +276,42 @@ impl Program {
         }
     }
 
-    /// Puts constants, parameters and inputs into their registers.
+    /// Checks the inputs, and lays out the registers unless they are those of this program.
     #[inline(always)]
     fn enter<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>) {
-        assert!(
-            inputs.len() >= self.inputs.len(),
-            "the program reads {} inputs",
-            self.inputs.len()
-        );
+        if inputs.len() < self.inputs.len() {
+            self.lacks_inputs(inputs.len());
+        }
         if work.owner != self.id {
             self.prepare(work);
         }
-        let first = self.core().constants.len();
-        for (register, &k) in work.registers[first..].iter_mut().zip(&self.used) {
-            *register = inputs[k as usize];
-        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn lacks_inputs(&self, n: usize) {
+        panic!("the program reads {} inputs, not {n}", self.inputs.len());
     }
 
     /// Lays out the registers for this program.
     #[cold]
     fn prepare<S: Scalar>(&self, work: &mut Work<S>) {
-        let (core, machine) = &*self.code;
-        work.owner = self.id;
+        let core = self.core();
+        // whatever happens here, these registers belong to nobody until they are complete
+        work.owner = 0;
         work.registers.clear();
-        work.registers
-            .extend(core.constants.iter().map(|&c| S::constant(c)));
-        work.registers
-            .resize(core.size as usize, S::constant(f64::NAN));
-        work.registers.extend(machine.tail(core).map(S::constant));
+        work.registers.extend(core.constants.iter().map(|&c| S::constant(c)));
+        work.registers.resize(core.size as usize, S::constant(f64::NAN));
+        work.registers.extend(self.machine.tail().map(S::constant));
+        assert!(work.registers.len() >= self.machine.n_registers());
+        work.owner = self.id;
     }
 }
 
 impl Core {
     #[inline(always)]
     fn step<S: Scalar>(&self, instruction: &Instruction, registers: &mut [S]) {
-        let Instruction {
-            code,
-            to,
-            a,
-            b,
-            c,
-            d,
-        } = *instruction;
+        let Instruction { code, to, a, b, c, d } = *instruction;
         let r = |k: u32| registers[k as usize];
         registers[to as usize] = match code {
             Code::Unary(op) => op.apply(r(a)),
@@ -376,9 +328,7 @@ impl Core {
             }
             Code::Partial(function, count, k) => {
                 let arguments = &self.lists[a as usize..(a + count) as usize];
-                gathered(arguments, r, |args| {
-                    partial(function, args, k as usize)
-                })
+                gathered(arguments, r, |args| partial(function, args, k as usize))
             }
         };
     }

@@ -1,29 +1,34 @@
 //! From a schedule to threaded code: arithmetic fused, functions prepared, costly sides jumped over.
 
-use super::handlers::{self, ADD, BUS, DIV, FIRST, LAST, MUL, REGISTERS, SUB, VID};
-use super::{Handler, Kind, LONGEST_CHAIN, Machine, Op};
+use super::handlers::{self, ABS, ADD, ADDED, BUS, DIV, FIRST, LAST, MUL, REGISTERS, SQRT, SUB, VID};
+use super::{Handler, Kind, LONGEST_CHAIN, Machine, Op, halves};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::Prepared;
+use crate::expr::program::Core;
 use crate::expr::program::operation::{BinaryOp, Node, UnaryOp, Value};
 use crate::expr::program::order::{Item, side_operands};
 use crate::expr::program::schedule::Schedule;
-use crate::expr::program::{Code, Core};
 use crate::scalar::Exponent;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// The threaded code of a schedule.
+///
+/// `used` are the numbers of the inputs that are read, in the order of their registers.
 pub(in crate::expr::program) fn lower(
     schedule: &Schedule,
-    core: &Core,
+    core: &Arc<Core>,
     outputs: &[Value],
+    used: &[u32],
 ) -> Machine {
     let mut lowering = Lowering::new(schedule, core);
+    lowering.load(used);
     let items = &schedule.order.items;
     let mut k = 0;
     while k < items.len() {
         k += lowering.item(&items[k..]);
     }
-    lowering.finish(outputs)
+    lowering.finish(outputs, used)
 }
 
 /// Arithmetic that is not emitted yet, because what follows may join it.
@@ -56,19 +61,37 @@ enum Shape {
     Balanced,
 }
 
-/// A side that is being emitted.
+/// A selection whose sides are being emitted.
 #[derive(Debug)]
-struct Side {
+struct Sides {
     selection: Value,
     /// the operation that jumps to the sides
     branch: usize,
-    /// the jumps to the end
+    /// the operations that store the value of a side and jump to the end
     exits: Vec<usize>,
+}
+
+/// A selection that was just closed: its exits lead to `end`.
+#[derive(Debug)]
+struct Closed {
+    selection: Value,
+    exits: Vec<usize>,
+    end: usize,
+}
+
+/// The last operation, when its value is that of one node: its place, and which operand is its register.
+#[derive(Clone, Copy, Debug)]
+struct Produced {
+    node: Value,
+    op: usize,
+    operand: usize,
+    /// the node whose value was in `acc` before
+    before: Option<Value>,
 }
 
 struct Lowering<'a> {
     schedule: &'a Schedule<'a>,
-    core: &'a Core,
+    core: &'a Arc<Core>,
     ops: Vec<Op>,
     kinds: Vec<Kind>,
     parameters: Vec<f64>,
@@ -77,7 +100,12 @@ struct Lowering<'a> {
     pending: Vec<Pending>,
     /// the node whose value is in `acc`
     last: Option<Value>,
-    sides: Vec<Side>,
+    /// the last operation, if it is a function of one variable to which `acc` may be added
+    addable: Option<(usize, Prepared)>,
+    /// how that value came about, if by the last operation
+    produced: Option<Produced>,
+    sides: Vec<Sides>,
+    closed: Option<Closed>,
     /// operations since the last pause
     chain: usize,
     /// registers of constants by their bits
@@ -85,13 +113,8 @@ struct Lowering<'a> {
 }
 
 impl<'a> Lowering<'a> {
-    fn new(schedule: &'a Schedule<'a>, core: &'a Core) -> Self {
-        let constants = core
-            .constants
-            .iter()
-            .zip(0u32..)
-            .map(|(c, k)| (c.to_bits(), k))
-            .collect();
+    fn new(schedule: &'a Schedule<'a>, core: &'a Arc<Core>) -> Self {
+        let constants = core.constants.iter().zip(0u32..).map(|(c, k)| (c.to_bits(), k)).collect();
         Self {
             schedule,
             core,
@@ -101,15 +124,35 @@ impl<'a> Lowering<'a> {
             parameter_operands: Vec::new(),
             pending: Vec::new(),
             last: None,
+            addable: None,
+            produced: None,
             sides: Vec::new(),
+            closed: None,
             chain: 0,
             constants,
         }
     }
 
-    fn finish(mut self, outputs: &[Value]) -> Machine {
+    /// Emits the operations that read the inputs.
+    fn load(&mut self, used: &[u32]) {
+        let first = self.core.constants.len() as u32;
+        for (k, numbers) in used.chunks(handlers::LOADS.len()).enumerate() {
+            let register = first + (k * handlers::LOADS.len()) as u32;
+            let operands: Vec<u32> = std::iter::once(register).chain(numbers.iter().copied()).collect();
+            let n = numbers.len();
+            self.emit(handlers::LOADS[n - 1], &operands, Kind::Inputs(n as u8));
+        }
+    }
+
+    fn finish(mut self, outputs: &[Value], used: &[u32]) -> Machine {
         self.flush();
-        let ends_with_output = self.last.is_some() && self.last == outputs.first().copied();
+        if let &[output] = outputs
+            && self.last != Some(output)
+        {
+            // the last result shall be the output
+            let register = self.register(output);
+            self.emit(handlers::copy, &[register, self.core.size], Kind::Registers(2));
+        }
         self.emit(handlers::halt, &[], Kind::Halt);
         // behind the registers of the core: one scratch register, then parameters
         let first_parameter = self.core.size + 1;
@@ -117,14 +160,10 @@ impl<'a> Lowering<'a> {
             self.ops[op].operands[operand] += first_parameter;
         }
         let n_registers = first_parameter as usize + self.parameters.len();
-        let machine = Machine {
-            ops: self.ops,
-            kinds: self.kinds,
-            parameters: self.parameters,
-            n_registers,
-            ends_with_output,
-        };
-        machine.check(self.core);
+        let n_inputs = used.iter().map(|&k| k as usize + 1).max().unwrap_or(0);
+        let (ops, parameters, core) = (self.ops.into(), self.parameters, self.core.clone());
+        let machine = Machine { ops, parameters, n_registers, n_inputs, core };
+        machine.check(&self.kinds);
         machine
     }
 
@@ -154,16 +193,17 @@ impl<'a> Lowering<'a> {
                 self.arithmetic(v, MUL, x, minus);
                 return 1;
             }
+            Node::Unary(op @ (UnaryOp::Sqrt | UnaryOp::Abs), x) => {
+                let x = self.operand(x);
+                let code = if op == UnaryOp::Sqrt { SQRT } else { ABS };
+                self.arithmetic(v, code, x, Operand { node: None, ..x });
+                return 1;
+            }
             Node::Whole(x, n @ (3 | 4)) => {
                 let x = self.operand(x);
                 self.flush_if_full();
                 let shape = if n == 3 { Shape::Two } else { Shape::Balanced };
-                self.pending.push(Pending {
-                    node: v,
-                    shape,
-                    codes: [MUL; 3],
-                    operands: [x; 4],
-                });
+                self.pending.push(Pending { node: v, shape, codes: [MUL; 3], operands: [x; 4] });
                 return 1;
             }
             _ => {}
@@ -176,11 +216,9 @@ impl<'a> Lowering<'a> {
         match node {
             Node::Unary(op, x) => {
                 let source = self.source(x);
-                self.emit(
-                    handlers::unary_handler(op, source),
-                    &[self.register(x), to],
-                    Kind::Registers(2),
-                );
+                let op = self.emit(handlers::unary_handler(op, source), &[self.register(x), to], Kind::Registers(2));
+                self.produced(v, op, 1);
+                return 1;
             }
             Node::Select(condition, yes, no) => {
                 if self.close(v) {
@@ -199,11 +237,7 @@ impl<'a> Lowering<'a> {
                     _ => {
                         let zero = self.constant(0.0).register;
                         let [condition, yes, no] = [condition, yes, no].map(|x| self.register(x));
-                        self.emit(
-                            handlers::select::<0>,
-                            &[zero, condition, yes, no, to],
-                            Kind::Registers(5),
-                        );
+                        self.emit(handlers::select::<0>, &[zero, condition, yes, no, to], Kind::Registers(5));
                     }
                 }
             }
@@ -212,27 +246,15 @@ impl<'a> Lowering<'a> {
                     return 1;
                 }
                 let mut operands: Vec<u32> = Vec::new();
-                self.schedule
-                    .builder
-                    .operands(&node, |x| operands.push(self.register(x)));
+                self.schedule.builder.operands(&node, |x| operands.push(self.register(x)));
                 operands.push(to);
                 self.emit(handlers::arithmetic_if, &operands, Kind::Registers(5));
             }
-            Node::Call {
-                function: function @ (Function::Max | Function::Min),
-                count: 2,
-                ..
-            } => {
+            Node::Call { function: function @ (Function::Max | Function::Min), count: 2, .. } => {
                 let mut operands: Vec<u32> = Vec::new();
-                self.schedule
-                    .builder
-                    .operands(&node, |x| operands.push(self.register(x)));
+                self.schedule.builder.operands(&node, |x| operands.push(self.register(x)));
                 operands.push(to);
-                let handler = if function == Function::Max {
-                    handlers::larger
-                } else {
-                    handlers::smaller
-                };
+                let handler = if function == Function::Max { handlers::larger } else { handlers::smaller };
                 self.emit(handler, &operands, Kind::Registers(3));
             }
             _ => self.instruction(v),
@@ -250,8 +272,7 @@ impl<'a> Lowering<'a> {
                     return None;
                 };
                 match (op, builder.nodes[w.index()]) {
-                    (UnaryOp::Sin, Node::Unary(UnaryOp::Cos, y))
-                    | (UnaryOp::Cos, Node::Unary(UnaryOp::Sin, y))
+                    (UnaryOp::Sin, Node::Unary(UnaryOp::Cos, y)) | (UnaryOp::Cos, Node::Unary(UnaryOp::Sin, y))
                         if x == y =>
                     {
                         let (sine, cosine) = if op == UnaryOp::Sin { (v, w) } else { (w, v) };
@@ -321,45 +342,25 @@ impl<'a> Lowering<'a> {
         if slopes == [None; 2] {
             let v = value?;
             if prepared.n_variables() == 2 {
-                let operands = [
-                    self.register(x),
-                    self.register(args[1]),
-                    self.register(v),
-                    place,
-                    length,
-                ];
+                let operands = [self.register(x), self.register(args[1]), self.register(v), place, length];
                 self.with_parameters(contact_handler(prepared, false), &operands, 3, n_parameters);
             } else {
                 let source = self.source(x);
                 let operands = [self.register(x), self.register(v), place, length];
-                self.with_parameters(
-                    prepared_handler(prepared, source),
-                    &operands,
-                    2,
-                    n_parameters,
-                );
+                let op = self.with_parameters(prepared_handler(prepared, source), &operands, 2, n_parameters);
+                self.produced(v, op, 1);
+                if source == REGISTERS {
+                    self.addable = Some((op, prepared));
+                }
             }
             self.last = value;
         } else if prepared.n_variables() == 2 {
             let [p, q] = slopes.map(|v| to(self, v));
-            let operands = [
-                self.register(x),
-                self.register(args[1]),
-                to(self, value),
-                p,
-                q,
-                place,
-            ];
+            let operands = [self.register(x), self.register(args[1]), to(self, value), p, q, place];
             self.with_parameters(contact_handler(prepared, true), &operands, 5, n_parameters);
             self.last = slopes[1];
         } else {
-            let operands = [
-                self.register(x),
-                to(self, value),
-                to(self, slopes[0]),
-                place,
-                length,
-            ];
+            let operands = [self.register(x), to(self, value), to(self, slopes[0]), place, length];
             self.with_parameters(slope_handler(prepared), &operands, 3, n_parameters);
             self.last = slopes[0];
         }
@@ -367,23 +368,21 @@ impl<'a> Lowering<'a> {
     }
 
     /// Emits an operation whose parameters stand at `operands[at]`, counted from the first parameter.
-    fn with_parameters(&mut self, handler: Handler, operands: &[u32], at: u8, length: usize) {
+    fn with_parameters(&mut self, handler: Handler, operands: &[u32], at: u8, length: usize) -> usize {
         let kind = match operands.len() {
             n if n == at as usize + 2 => Kind::Parameters(at),
             _ => Kind::Fixed(at, length as u8),
         };
         let op = self.emit(handler, operands, kind);
         self.parameter_operands.push((op, at as usize));
+        op
     }
 
     /// The instruction of the core as it is.
     fn instruction(&mut self, v: Value) {
         let instruction = self.schedule.instructions[v.index()];
-        debug_assert!(!matches!(
-            self.core.code[instruction as usize].code,
-            Code::CompareSelect(_)
-        ));
-        self.emit(handlers::instruction, &[instruction], Kind::Instruction);
+        let [low, high] = halves(Arc::as_ptr(self.core));
+        self.emit(handlers::instruction, &[instruction, low, high], Kind::Instruction);
     }
 
     // arithmetic
@@ -395,10 +394,12 @@ impl<'a> Lowering<'a> {
             [last] => (None, Some(*last)),
             [] => (None, None),
         };
-        let is = |p: Option<Pending>, x: Operand| {
-            p.is_some_and(|p| x.node == Some(p.node) && self.is_single(p.node))
-        };
+        if op == ADD && self.pending.is_empty() && self.add_to_function(v, a, b) {
+            return;
+        }
+        let is = |p: Option<Pending>, x: Operand| p.is_some_and(|p| x.node == Some(p.node) && self.is_single(p.node));
         let simple = |codes: &[u8]| codes.iter().all(|&c| c <= MUL);
+        let short = |codes: &[u8]| codes.iter().all(|&c| c <= MUL || c >= SQRT);
         // (a p b) op (c r d)
         if let (Some(p), Some(q)) = (before, last)
             && (p.shape, q.shape) == (Shape::One, Shape::One)
@@ -440,7 +441,7 @@ impl<'a> Lowering<'a> {
                     joined.codes[1] = op;
                     joined.operands[2] = other;
                 }
-                Shape::Two if simple(&[p.codes[0], p.codes[1], op]) => {
+                Shape::Two if short(&[p.codes[0], p.codes[1], op]) => {
                     joined.shape = Shape::Chain;
                     joined.codes[2] = op;
                     joined.operands[3] = other;
@@ -449,10 +450,7 @@ impl<'a> Lowering<'a> {
                     return self.push_one(
                         v,
                         op,
-                        Operand {
-                            register: self.register(p.node),
-                            node: Some(p.node),
-                        },
+                        Operand { register: self.register(p.node), node: Some(p.node) },
                         other,
                     );
                 }
@@ -464,14 +462,26 @@ impl<'a> Lowering<'a> {
         self.push_one(v, op, a, b);
     }
 
+    /// A function that was just emitted, and the result before it: one operation.
+    fn add_to_function(&mut self, v: Value, a: Operand, b: Operand) -> bool {
+        let (Some((op, prepared)), Some(produced)) = (self.addable, self.produced) else { return false };
+        let Some(before) = produced.before else { return false };
+        let these = [a.node, b.node];
+        let fits = these == [Some(before), Some(produced.node)] || these == [Some(produced.node), Some(before)];
+        if op != produced.op || !fits || before == produced.node || !self.is_single(produced.node) {
+            return false;
+        }
+        self.ops[op].run = prepared_handler(prepared, ADDED);
+        self.ops[op].operands[produced.operand] = self.register(v);
+        self.addable = None;
+        self.produced = Some(Produced { node: v, before: None, ..produced });
+        self.last = Some(v);
+        true
+    }
+
     fn push_one(&mut self, node: Value, op: u8, a: Operand, b: Operand) {
         self.flush_if_full();
-        self.pending.push(Pending {
-            node,
-            shape: Shape::One,
-            codes: [op, 0, 0],
-            operands: [a, b, a, a],
-        });
+        self.pending.push(Pending { node, shape: Shape::One, codes: [op, 0, 0], operands: [a, b, a, a] });
     }
 
     fn flush_if_full(&mut self) {
@@ -488,12 +498,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn emit_arithmetic(&mut self, pending: Pending) {
-        let Pending {
-            node,
-            shape,
-            codes: [mut p, mut q, mut r],
-            operands: [mut a, mut b, mut c, mut d],
-        } = pending;
+        let Pending { node, shape, codes: [mut p, mut q, mut r], operands: [mut a, mut b, mut c, mut d] } = pending;
         let in_acc = |x: Operand| x.node.is_some() && x.node == self.last;
         // bring the last result to the first place, or else to the last
         if in_acc(b) && !in_acc(a) {
@@ -507,6 +512,7 @@ impl<'a> Lowering<'a> {
             }
         }
         let to = self.register(node);
+        let short = [p, q, r].map(|code| usize::from(if code >= SQRT { code - SQRT + MUL + 1 } else { code }));
         let [p, q, r] = [p, q, r].map(usize::from);
         let first = in_acc(a);
         let source = |last: Operand| match (first, in_acc(last)) {
@@ -519,76 +525,103 @@ impl<'a> Lowering<'a> {
         let (handler, operands): (Handler, &[u32]) = match shape {
             Shape::One => (handlers::ONES[p][usize::from(first)], &[ra, rb, to]),
             Shape::Two => (handlers::TWOS[p][q][source(c)], &[ra, rb, rc, to]),
-            Shape::Chain => (handlers::CHAINS[p][q][r][source(d)], &[ra, rb, rc, rd, to]),
-            Shape::Balanced => (
-                handlers::BALANCED[p][q][r][source(d)],
-                &[ra, rb, rc, rd, to],
-            ),
+            Shape::Chain => {
+                let [p, q, r] = short;
+                (handlers::CHAINS[p][q][r][source(d)], &[ra, rb, rc, rd, to])
+            }
+            Shape::Balanced => (handlers::BALANCED[p][q][r][source(d)], &[ra, rb, rc, rd, to]),
         };
-        self.emit(handler, operands, Kind::Registers(operands.len() as u8));
-        self.last = Some(node);
+        let op = self.emit(handler, operands, Kind::Registers(operands.len() as u8));
+        self.produced(node, op, operands.len() - 1);
     }
 
     // sides
 
     fn begin(&mut self, v: Value, side: u8) {
-        self.flush();
         if side == 0 {
             let branch = self.branch(v);
-            self.sides.push(Side {
-                selection: v,
-                branch,
-                exits: Vec::new(),
-            });
-        } else if let Some(open) = self.sides.last() {
-            let branch = open.branch;
-            let target = self.next_op();
-            let operand = self.jump_operand(branch, side);
-            self.ops[branch].operands[operand] = (target - branch) as u32;
+            self.sides.push(Sides { selection: v, branch, exits: Vec::new() });
+            if self.is_if(v) {
+                // where the selector is no number
+                let nothing = self.constant(f64::NAN).register;
+                self.exit(handlers::fetch, nothing, v);
+                self.set_jump(v, side);
+            }
+        } else {
+            self.flush();
+            self.set_jump(v, side);
         }
-        self.last = None;
+        self.forget();
+    }
+
+    fn is_if(&self, v: Value) -> bool {
+        matches!(self.schedule.builder.nodes[v.index()], Node::If(_))
+    }
+
+    /// Lets the branch of the open selection lead here for a side.
+    fn set_jump(&mut self, v: Value, side: u8) {
+        let Some(branch) = self.sides.last().map(|open| open.branch) else { return };
+        let operand = if self.is_if(v) { 2 + side as usize } else { 2 };
+        self.ops[branch].operands[operand] = (self.ops.len() - branch) as u32;
+    }
+
+    /// Emits an operation that stores the value of a side and jumps to the end.
+    fn exit(&mut self, handler: Handler, from: u32, v: Value) {
+        let to = self.register(v);
+        let exit = self.emit(handler, &[from, to, 1], Kind::Jumps(2, 1));
+        if let Some(open) = self.sides.last_mut() {
+            open.exits.push(exit);
+        }
     }
 
     /// Emits the operation that chooses a side; its jumps are set when the sides are there.
     fn branch(&mut self, v: Value) -> usize {
         let builder = self.schedule.builder;
         match builder.nodes[v.index()] {
-            Node::Select(condition, ..) => match builder.nodes[condition.index()] {
-                Node::Compare(op, a, b) if self.schedule.order.inlined[condition.index()] => {
-                    let handler = match handlers::comparison_code(op) {
-                        0 => handlers::unless::<0>,
-                        1 => handlers::unless::<1>,
-                        _ => handlers::unless::<2>,
-                    };
-                    self.emit(
-                        handler,
-                        &[self.register(a), self.register(b), 1],
-                        Kind::Jumps(2, 1),
-                    )
+            Node::Select(condition, ..) => {
+                self.flush();
+                match builder.nodes[condition.index()] {
+                    Node::Compare(op, a, b) if self.schedule.order.inlined[condition.index()] => {
+                        let handler = match handlers::comparison_code(op) {
+                            0 => handlers::unless::<0>,
+                            1 => handlers::unless::<1>,
+                            _ => handlers::unless::<2>,
+                        };
+                        self.emit(handler, &[self.register(a), self.register(b), 1], Kind::Jumps(2, 1))
+                    }
+                    _ => {
+                        let zero = self.constant(0.0).register;
+                        self.emit(handlers::unless::<0>, &[zero, self.register(condition), 1], Kind::Jumps(2, 1))
+                    }
                 }
-                _ => {
-                    let zero = self.constant(0.0).register;
-                    self.emit(
-                        handlers::unless::<0>,
-                        &[zero, self.register(condition), 1],
-                        Kind::Jumps(2, 1),
-                    )
-                }
-            },
+            }
             node => {
                 let mut selector = None;
                 builder.operands(&node, |x| selector = selector.or(Some(x)));
-                let selector = selector.map_or(0, |x| self.register(x));
-                self.emit(handlers::branch, &[selector, 1, 1, 1], Kind::Jumps(1, 3))
+                let selector = selector.unwrap_or(v);
+                // an operation that only the selector needs joins the branch
+                if let Some(last) = self.pending.last().copied()
+                    && last.node == selector
+                    && last.shape == Shape::One
+                    && last.codes[0] <= VID
+                    && self.is_single(selector)
+                {
+                    self.pending.pop();
+                    self.flush();
+                    let [mut a, mut b, ..] = last.operands;
+                    let mut code = last.codes[0];
+                    if self.last.is_some() && b.node == self.last {
+                        (a, b, code) = (b, a, reversed(code));
+                    }
+                    let source = if self.last.is_some() && a.node == self.last { FIRST } else { REGISTERS };
+                    let handler = handlers::BRANCHES[code as usize][source as usize];
+                    return self.emit(handler, &[a.register, b.register, 1, 1, 1], Kind::Jumps(2, 3));
+                }
+                self.flush();
+                let handler = handlers::BRANCHES[handlers::BRANCHES.len() - 1][self.source(selector) as usize];
+                let register = self.register(selector);
+                self.emit(handler, &[register, register, 1, 1, 1], Kind::Jumps(2, 3))
             }
-        }
-    }
-
-    /// Which operand of a branch leads to a side.
-    fn jump_operand(&self, branch: usize, side: u8) -> usize {
-        match self.kinds[branch] {
-            Kind::Jumps(registers, 1) => registers as usize,
-            _ => side as usize,
         }
     }
 
@@ -596,38 +629,36 @@ impl<'a> Lowering<'a> {
         self.flush();
         let node = self.schedule.builder.nodes[v.index()];
         let sides = side_operands(self.schedule.builder, &node);
-        let Some(&x) = sides.get(side as usize) else {
-            return;
-        };
-        self.copy(x, v);
-        let is_if = matches!(node, Node::If(_));
-        if usize::from(side) + 1 < sides.len() || is_if {
-            let exit = self.emit(handlers::jump, &[1], Kind::Jumps(0, 1));
+        let Some(&x) = sides.get(side as usize) else { return };
+        let (from, to) = (self.register(x), self.register(v));
+        let is_here = self.last == Some(x);
+        // the value of an inner selection goes from its sides straight to where it is wanted
+        if let Some(closed) = self.closed.take()
+            && (closed.selection, closed.end) == (x, self.ops.len())
+            && self.is_single(x)
+        {
+            for &exit in &closed.exits {
+                self.ops[exit].operands[1] = to;
+            }
             if let Some(open) = self.sides.last_mut() {
-                open.exits.push(exit);
+                open.exits.extend(closed.exits);
             }
         }
-        if is_if && usize::from(side) + 1 == sides.len() {
-            // the selector is no number
-            let branch = self.sides.last().map_or(0, |open| open.branch);
-            self.ops[branch].operands[3] = (self.next_op() - branch) as u32;
-            let nothing = self.constant(f64::NAN).register;
-            self.emit(
-                handlers::copy,
-                &[nothing, self.register(v)],
-                Kind::Registers(2),
-            );
-        }
-        self.last = None;
-    }
-
-    /// Puts the value of a side into the register of the selection.
-    fn copy(&mut self, x: Value, v: Value) {
-        let operands = [self.register(x), self.register(v)];
-        if self.last == Some(x) {
-            self.emit(handlers::keep, &operands, Kind::Registers(2));
-        } else {
-            self.emit(handlers::copy, &operands, Kind::Registers(2));
+        let is_last = usize::from(side) + 1 == sides.len();
+        match self.produced {
+            Some(p) if is_last && p.node == x && p.op + 1 == self.ops.len() && self.is_single(x) => {
+                self.ops[p.op].operands[p.operand] = to;
+                self.produced = Some(Produced { node: v, ..p });
+            }
+            _ if is_last => {
+                let handler = if is_here { handlers::keep } else { handlers::copy };
+                let op = self.emit(handler, &[from, to], Kind::Registers(2));
+                self.produced(v, op, 1);
+            }
+            _ => {
+                self.exit(if is_here { handlers::leave } else { handlers::fetch }, from, v);
+                self.forget();
+            }
         }
     }
 
@@ -636,34 +667,42 @@ impl<'a> Lowering<'a> {
         if self.sides.last().is_none_or(|side| side.selection != v) {
             return false;
         }
-        if let Some(side) = self.sides.pop() {
-            let target = self.next_op();
-            for exit in side.exits {
-                self.ops[exit].operands[0] = (target - exit) as u32;
+        if let Some(sides) = self.sides.pop() {
+            let end = self.ops.len();
+            for &exit in &sides.exits {
+                self.ops[exit].operands[2] = (end - exit) as u32;
             }
+            self.closed = Some(Closed { selection: v, exits: sides.exits, end });
         }
         self.last = Some(v);
+        self.addable = None;
         true
+    }
+
+    /// What is in `acc` is not known.
+    fn forget(&mut self) {
+        self.last = None;
+        self.produced = None;
+        self.addable = None;
+    }
+
+    /// The operation `op` yields the value of a node and stores it where an operand says.
+    fn produced(&mut self, node: Value, op: usize, operand: usize) {
+        self.produced = Some(Produced { node, op, operand, before: self.last });
+        self.last = Some(node);
     }
 
     // emission
 
-    /// Where the next operation will stand, or a pause before it.
-    fn next_op(&self) -> usize {
-        self.ops.len()
-    }
-
     /// Appends an operation; its place.
     fn emit(&mut self, run: Handler, operands: &[u32], kind: Kind) -> usize {
         if self.chain >= LONGEST_CHAIN {
-            self.ops.push(Op {
-                run: handlers::pause,
-                operands: [0; 6],
-            });
+            self.ops.push(Op { run: handlers::pause, operands: [0; 6] });
             self.kinds.push(Kind::Registers(0));
             self.chain = 0;
         }
         self.chain += 1;
+        self.addable = None;
         let mut all = [0; 6];
         all[..operands.len()].copy_from_slice(operands);
         self.ops.push(Op { run, operands: all });
@@ -675,37 +714,24 @@ impl<'a> Lowering<'a> {
         self.schedule.registers[v.index()]
     }
     fn operand(&self, v: Value) -> Operand {
-        Operand {
-            register: self.register(v),
-            node: Some(v),
-        }
+        Operand { register: self.register(v), node: Some(v) }
     }
     /// The register of a constant of our own.
     fn constant(&mut self, c: f64) -> Operand {
         if let Some(&register) = self.constants.get(&c.to_bits()) {
-            return Operand {
-                register,
-                node: None,
-            };
+            return Operand { register, node: None };
         }
         let place = self.parameters.len() as u32;
         self.parameters.push(c);
         let register = self.core.size + 1 + place;
         self.constants.insert(c.to_bits(), register);
-        Operand {
-            register,
-            node: None,
-        }
+        Operand { register, node: None }
     }
     fn is_single(&self, v: Value) -> bool {
         self.schedule.order.uses[v.index()] == 1
     }
     fn source(&self, x: Value) -> u8 {
-        if self.last == Some(x) {
-            FIRST
-        } else {
-            REGISTERS
-        }
+        if self.last == Some(x) { FIRST } else { REGISTERS }
     }
 }
 
@@ -734,10 +760,10 @@ fn reversed(code: u8) -> u8 {
 fn prepared_handler(prepared: Prepared, source: u8) -> Handler {
     macro_rules! by_source {
         ($f:ident) => {
-            if source == FIRST {
-                handlers::$f::<FIRST>
-            } else {
-                handlers::$f::<REGISTERS>
+            match source {
+                FIRST => handlers::$f::<FIRST>,
+                ADDED => handlers::$f::<ADDED>,
+                _ => handlers::$f::<REGISTERS>,
             }
         };
     }
@@ -767,14 +793,15 @@ fn slope_handler(prepared: Prepared) -> Handler {
 }
 
 fn contact_handler(prepared: Prepared, slopes: bool) -> Handler {
-    use handlers::{ANY, ONE, THREE_HALVES, TWO};
+    use handlers::{ONE, OTHER, THREE_HALVES, TWO, WHOLE_OR_HALF};
     macro_rules! by_exponent {
         ($f:ident, $e:expr) => {
             match $e {
                 Exponent::Whole(1) => handlers::$f::<ONE>,
                 Exponent::Half(1) => handlers::$f::<THREE_HALVES>,
                 Exponent::Whole(2) => handlers::$f::<TWO>,
-                _ => handlers::$f::<ANY>,
+                Exponent::Other => handlers::$f::<OTHER>,
+                _ => handlers::$f::<WHOLE_OR_HALF>,
             }
         };
     }

@@ -13,7 +13,7 @@
 //! - [`lower()`] emits only registers below `n_registers`, parameters inside the frame, and jumps inside the code;
 //!   [`Machine::check`] verifies that for each operation before the code can run, and panics otherwise (our own mistake),
 //! - the last operation of the code is `halt`, and no jump leads backwards, so that every run ends,
-//! - [`Machine::run`] checks that the frame has `n_registers` numbers.
+//! - the caller of [`Machine::run`] provides `n_registers` registers and as many inputs as the program says.
 //!
 //! Were the jumps of a build ordinary calls, each would take a stack frame; `pause` returns to the loop in `run` at least
 //! every [`LONGEST_CHAIN`] operations, which bounds the stack in any build.
@@ -24,6 +24,7 @@ mod lower;
 pub(super) use lower::lower;
 
 use super::Core;
+use std::sync::Arc;
 
 /// Most operations between two returns to the loop.
 const LONGEST_CHAIN: usize = 128;
@@ -38,8 +39,7 @@ struct Op {
 }
 
 /// Performs an operation and all that follow it.
-type Handler =
-    unsafe extern "C" fn(op: *const Op, registers: *mut f64, core: *const Core, acc: f64) -> Stop;
+type Handler = unsafe extern "C" fn(op: *const Op, registers: *mut f64, inputs: *const f64, acc: f64) -> Stop;
 
 /// Where a chain of operations stopped.
 #[repr(C)]
@@ -63,6 +63,8 @@ enum Kind {
     Jumps(u8, u8),
     /// the number of an instruction of the core
     Instruction,
+    /// the first of some registers, then the numbers of this many inputs
+    Inputs(u8),
     /// nothing follows
     Halt,
 }
@@ -70,23 +72,20 @@ enum Kind {
 /// Threaded code.
 #[derive(Clone)]
 pub(super) struct Machine {
-    ops: Vec<Op>,
-    /// what the operands of each operation mean
-    kinds: Vec<Kind>,
+    ops: Arc<[Op]>,
     /// numbers behind the registers of the core: parameters of prepared functions
     parameters: Vec<f64>,
     /// registers of the core, scratch registers and parameters
     n_registers: usize,
-    /// whether the last result is the first output
-    ends_with_output: bool,
+    /// how many inputs there must be
+    n_inputs: usize,
+    /// what `instruction` operations point to
+    core: Arc<Core>,
 }
 
 impl std::fmt::Debug for Machine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Machine")
-            .field("n_ops", &self.ops.len())
-            .field("n_registers", &self.n_registers)
-            .finish()
+        f.debug_struct("Machine").field("n_ops", &self.ops.len()).field("n_registers", &self.n_registers).finish()
     }
 }
 
@@ -95,44 +94,49 @@ impl Machine {
     pub(super) fn len(&self) -> usize {
         self.ops.len()
     }
-
-    /// Whether the last result is the first output.
-    #[inline(always)]
-    pub(super) fn ends_with_output(&self) -> bool {
-        self.ends_with_output
+    /// How many registers a frame has.
+    pub(super) fn n_registers(&self) -> usize {
+        self.n_registers
     }
 
     /// The numbers that stand behind the registers of the core, scratch registers first.
-    pub(super) fn tail(&self, core: &Core) -> impl Iterator<Item = f64> + '_ {
-        let scratch = self.n_registers - core.size as usize - self.parameters.len();
+    pub(super) fn tail(&self) -> impl Iterator<Item = f64> + '_ {
+        let scratch = self.n_registers - self.core.size as usize - self.parameters.len();
         std::iter::repeat_n(f64::NAN, scratch).chain(self.parameters.iter().copied())
     }
 
-    /// Runs over a frame whose constants, parameters and inputs are in place; the last result.
+    /// Runs over a frame whose constants and parameters are in place; the last result.
+    ///
+    /// # Safety
+    ///
+    /// There are at least `n_registers` registers, and as many inputs as the program says.
     #[inline(always)]
-    pub(super) fn run(&self, registers: &mut [f64], core: &Core) -> f64 {
-        assert!(registers.len() >= self.n_registers);
-        let mut op: *const Op = self.ops.as_ptr();
-        let mut acc = 0.0;
-        loop {
-            // SAFETY: see the head of this file; `op` is the first operation or one that `pause` names
-            let stop = unsafe { ((*op).run)(op, registers.as_mut_ptr(), core, acc) };
-            if stop.next.is_null() {
-                return stop.acc;
-            }
-            (op, acc) = (stop.next, stop.acc);
+    pub(super) unsafe fn run(&self, registers: *mut f64, inputs: *const f64) -> f64 {
+        let op: *const Op = self.ops.as_ptr();
+        // SAFETY: see the head of this file
+        let stop = unsafe { ((*op).run)(op, registers, inputs, 0.0) };
+        if stop.next.is_null() {
+            return stop.acc;
         }
+        // SAFETY: as before
+        unsafe { Self::go_on(stop, registers, inputs) }
+    }
+
+    #[inline(never)]
+    unsafe fn go_on(mut stop: Stop, registers: *mut f64, inputs: *const f64) -> f64 {
+        while !stop.next.is_null() {
+            // SAFETY: `next` is an operation that `pause` named
+            stop = unsafe { ((*stop.next).run)(stop.next, registers, inputs, stop.acc) };
+        }
+        stop.acc
     }
 
     /// That no operation reaches outside the frame or the code.
-    fn check(&self, core: &Core) {
+    fn check(&self, kinds: &[Kind]) {
         let (n, end) = (self.n_registers, self.ops.len());
-        for (k, (op, kind)) in self.ops.iter().zip(&self.kinds).enumerate() {
-            let registers_are_inside = |count: u8| {
-                op.operands[..count as usize]
-                    .iter()
-                    .all(|&r| (r as usize) < n)
-            };
+        assert_eq!((kinds.len(), kinds.last()), (end, Some(&Kind::Halt)));
+        for (k, (op, kind)) in self.ops.iter().zip(kinds).enumerate() {
+            let registers_are_inside = |count: u8| op.operands[..count as usize].iter().all(|&r| (r as usize) < n);
             let sound = match *kind {
                 Kind::Registers(count) => registers_are_inside(count),
                 Kind::Parameters(count) => {
@@ -140,25 +144,37 @@ impl Machine {
                     registers_are_inside(count) && place + length <= n
                 }
                 Kind::Fixed(count, length) => {
-                    registers_are_inside(count)
-                        && op.operands[count as usize] as usize + length as usize <= n
+                    registers_are_inside(count) && op.operands[count as usize] as usize + length as usize <= n
                 }
                 Kind::Jumps(count, jumps) => {
                     let jumps = &op.operands[count as usize..(count + jumps) as usize];
-                    registers_are_inside(count)
-                        && jumps.iter().all(|&j| j >= 1 && k + (j as usize) < end)
+                    registers_are_inside(count) && jumps.iter().all(|&j| j >= 1 && k + (j as usize) < end)
                 }
                 Kind::Instruction => {
-                    (op.operands[0] as usize) < core.code.len() && n >= core.size as usize
+                    (op.operands[0] as usize) < self.core.code.len()
+                        && n >= self.core.size as usize
+                        && [op.operands[1], op.operands[2]] == halves(Arc::as_ptr(&self.core))
+                }
+                Kind::Inputs(count) => {
+                    let numbers = &op.operands[1..=count as usize];
+                    op.operands[0] as usize + count as usize <= n
+                        && numbers.iter().all(|&k| (k as usize) < self.n_inputs)
                 }
                 Kind::Halt => k + 1 == end,
             };
-            assert!(
-                sound,
-                "operation {k} reaches outside: {kind:?} {:?}",
-                op.operands
-            );
+            assert!(sound, "operation {k} reaches outside: {kind:?} {:?}", op.operands);
         }
-        assert_eq!(self.kinds.last(), Some(&Kind::Halt));
     }
+}
+
+/// An address as two operands.
+fn halves(core: *const Core) -> [u32; 2] {
+    let address = core.expose_provenance() as u64;
+    [address as u32, (address >> 32) as u32]
+}
+
+/// The address that two operands are.
+#[inline(always)]
+fn pointer(halves: [u32; 2]) -> *const Core {
+    std::ptr::with_exposed_provenance((u64::from(halves[0]) | u64::from(halves[1]) << 32) as usize)
 }
