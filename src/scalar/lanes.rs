@@ -29,11 +29,20 @@ impl<const N: usize> Mask for [bool; N] {
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(self.0.map(f))
+        // a loop, not `array::map`: this must become vector instructions wherever it is used
+        let mut result = self.0;
+        for x in &mut result {
+            *x = f(*x);
+        }
+        Self(result)
     }
     #[inline(always)]
     fn zip(self, b: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self(std::array::from_fn(|k| f(self.0[k], b.0[k])))
+        let mut result = self.0;
+        for (x, y) in result.iter_mut().zip(b.0) {
+            *x = f(*x, y);
+        }
+        Self(result)
     }
     #[inline(always)]
     fn sum(self, b: Self) -> Self {
@@ -106,7 +115,20 @@ impl<const N: usize> Scalar for Lanes<N> {
     }
     #[inline(always)]
     fn powi(self, n: i32) -> Self {
-        self.map(|x| Scalar::powi(x, n))
+        // as for a single number, on all samples at once
+        let mut rest = n.unsigned_abs();
+        let (mut square, mut product) = (self, Self::constant(1.0));
+        loop {
+            if rest & 1 == 1 {
+                product = product * square;
+            }
+            rest >>= 1;
+            if rest == 0 {
+                break;
+            }
+            square = square * square;
+        }
+        if n < 0 { Self::constant(1.0) / product } else { product }
     }
     #[inline(always)]
     fn powf(self, exponent: Self) -> Self {

@@ -513,9 +513,25 @@ macro_rules! elementary_functions {
             if exponent.is_value_only() {
                 let zero = <$S>::zero();
                 let one = <$S>::one();
+                let value = a.powf(b);
+                if b
+                    .known()
+                    .is_some_and(|b| $crate::scalar::Exponent::of(b) == $crate::scalar::Exponent::Other)
+                {
+                    // a power that costs is not computed again: aᵇ⁻¹ = aᵇ/a, except at a = 0
+                    let at_zero = a.same(zero);
+                    let d1 = <$S>::choose(at_zero, || b * a.powf(b - one), || b * (value / a));
+                    return self.chain(value, d1, || {
+                        <$S>::choose(
+                            at_zero,
+                            || b * (b - one) * a.powf(b - one - one),
+                            || (b - one) * (d1 / a),
+                        )
+                    });
+                }
                 // b = 0 and b = 1 have derivatives 0 and 1, also at a = 0
                 let d1 = <$S>::choose(b.same(zero), || zero, || b * a.powf(b - one));
-                return self.chain(a.powf(b), d1, || {
+                return self.chain(value, d1, || {
                     <$S>::choose(
                         b.same(zero).or(b.same(one)),
                         || zero,

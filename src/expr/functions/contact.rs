@@ -20,13 +20,24 @@ pub fn impact<S: Scalar>(x: S, x_dot: S, x1: S, k: S, cmax: S, d: S, per_depth: 
 /// `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
-pub fn bistop<S: Scalar>(x: S, x_dot: S, x1: S, x2: S, k: S, cmax: S, d: S, per_depth: S, power: impl Fn(S) -> S) -> S {
+pub fn bistop<S: Scalar>(
+    x: S,
+    x_dot: S,
+    x1: S,
+    x2: S,
+    k: S,
+    cmax: S,
+    d: S,
+    per_depth: S,
+    power: impl FnOnce(S) -> S,
+) -> S {
     S::choose(x1.le(x).and(x.le(x2)), S::zero, || {
-        S::choose(
-            x.lt(x1),
-            || contact(x1 - x, -x_dot, k, cmax, d, per_depth, &power),
-            || -contact(x - x2, x_dot, k, cmax, d, per_depth, &power),
-        )
+        // one law for both stops; the upper one pushes back
+        let low = x.lt(x1);
+        let p = S::select(low, x1 - x, x - x2);
+        let p_dot = S::select(low, -x_dot, x_dot);
+        let force = contact(p, p_dot, k, cmax, d, per_depth, power);
+        S::select(low, force, S::zero() - force)
     })
 }
 

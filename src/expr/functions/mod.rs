@@ -6,7 +6,7 @@
 mod contact;
 pub(crate) mod prepared;
 mod series;
-mod step;
+pub(crate) mod step;
 mod table;
 
 pub use table::Function;

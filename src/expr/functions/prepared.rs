@@ -82,6 +82,15 @@ pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) ->
     S::choose(x.le(x0), || h0, || S::choose(x1.le(x), || h1, || h0 + shape((x - x0).scale(per_length)).scale(rise)))
 }
 
+/// A step whose three pieces are all computed: the better way for many samples at once.
+#[inline(always)]
+pub(crate) fn step_everywhere<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
+    let [x0, x1, h0, h1, per_length, rise] = *p;
+    let [x0, x1, h0, h1] = [x0, x1, h0, h1].map(S::constant);
+    let between = h0 + shape((x - x0).scale(per_length)).scale(rise);
+    S::select(x.le(x0), h0, S::select(x1.le(x), h1, between))
+}
+
 /// STEP
 #[inline(always)]
 pub(crate) fn step3<S: Scalar>(x: S, p: &[f64; 6]) -> S {
@@ -158,7 +167,14 @@ impl<const N: usize> Power for Lanes<N> {
         match exponent {
             Exponent::Whole(n) => Scalar::powi(self, n),
             Exponent::Half(n) => Scalar::powi(self, n) * Scalar::sqrt(self),
-            Exponent::Other => Self(self.0.map(|x| f64::powf(x, e))),
+            // the base of a contact is positive; samples without contact are not looked at
+            Exponent::Other => {
+                let mut result = self.0;
+                for x in &mut result {
+                    *x = if *x > 0.0 { f64::powf(*x, e) } else { 0.0 };
+                }
+                Self(result)
+            }
         }
     }
 }
@@ -166,12 +182,14 @@ impl<const N: usize> Power for Lanes<N> {
 impl<const N: usize> Power for Dual<N> {
     #[inline(always)]
     fn power(self, exponent: Exponent, e: f64) -> Self {
-        let less = match exponent {
-            Exponent::Whole(n) => Exponent::Whole(n - 1),
-            Exponent::Half(n) if n > 0 => Exponent::Half(n - 1),
-            Exponent::Half(_) | Exponent::Other => Exponent::Other,
+        // as `Dual::powf`; the base of a contact is not zero
+        let value = self.re.power(exponent, e);
+        let slope = match exponent {
+            Exponent::Whole(n) => e * Scalar::powi(self.re, n - 1),
+            Exponent::Half(n) if n > 0 => e * self.re.power(Exponent::Half(n - 1), e - 1.0),
+            Exponent::Half(_) => e * f64::powf(self.re, e - 1.0),
+            Exponent::Other => e * (value / self.re),
         };
-        let slope = e * self.re.power(less, e - 1.0);
-        Self { re: self.re.power(exponent, e), eps: self.eps.map(|x| slope * x) }
+        Self { re: value, eps: self.eps.map(|x| slope * x) }
     }
 }

@@ -5,10 +5,11 @@
 //! instructions; which one runs is decided when the batch is made. The result of each point is that of [`Program::run`], to
 //! the bit.
 
-use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask, truth};
+use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
 use super::{Code, Instruction, Program};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::{self, Prepared};
+use crate::expr::functions::step::{cubic, quintic};
 use crate::scalar::{Lanes, Scalar};
 
 /// Numbers that one vector operation works on.
@@ -192,32 +193,27 @@ impl Batch {
     }
 }
 
-/// `to = f(a)` for all points of the block.
-#[inline(always)]
-fn map(r: &mut [Block], a: u32, to: u32, f: impl Fn(Vector) -> Vector) {
-    for k in 0..VECTORS {
-        let value = f(r[a as usize][k]);
-        r[to as usize][k] = value;
-    }
+/// `to = f(a, …)` for all points of the block. A macro, because what it calls must be compiled for the vector instructions of
+/// its surroundings.
+macro_rules! each {
+    ($r:ident, $to:ident = |$($x:ident = $register:ident),+| $value:expr) => {{
+        let to = $to as usize;
+        for k in 0..VECTORS {
+            $(let $x = $r[$register as usize][k];)+
+            $r[to][k] = $value;
+        }
+    }};
 }
 
-/// `to = f(a, b)` for all points of the block.
-#[inline(always)]
-fn zip(r: &mut [Block], a: u32, b: u32, to: u32, f: impl Fn(Vector, Vector) -> Vector) {
-    for k in 0..VECTORS {
-        let value = f(r[a as usize][k], r[b as usize][k]);
-        r[to as usize][k] = value;
-    }
-}
-
-/// `to = a ? b : c`, where `f` compares the first two.
-#[inline(always)]
-fn choose(r: &mut [Block], [a, b, c, d]: [u32; 4], to: u32, f: impl Fn(Vector, Vector) -> [bool; WIDTH]) {
-    for k in 0..VECTORS {
-        let mask = f(r[a as usize][k], r[b as usize][k]);
-        let value = Vector::select(mask, r[c as usize][k], r[d as usize][k]);
-        r[to as usize][k] = value;
-    }
+/// Sample by sample.
+macro_rules! lanes {
+    (|$k:ident| $value:expr) => {{
+        let mut result = [0.0; WIDTH];
+        for $k in 0..WIDTH {
+            result[$k] = $value;
+        }
+        Lanes(result)
+    }};
 }
 
 #[inline(always)]
@@ -225,54 +221,52 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
     let Instruction { code, to, a, b, c, d } = *instruction;
     let core = program.core();
     match code {
-        Code::Binary(BinaryOp::Add) => zip(r, a, b, to, |x, y| x + y),
-        Code::Binary(BinaryOp::Sub) => zip(r, a, b, to, |x, y| x - y),
-        Code::Binary(BinaryOp::Mul) => zip(r, a, b, to, |x, y| x * y),
-        Code::Binary(BinaryOp::Div) => zip(r, a, b, to, |x, y| x / y),
-        Code::Unary(UnaryOp::Neg) => map(r, a, to, |x| -x),
-        Code::Unary(UnaryOp::Abs) => map(r, a, to, Scalar::abs),
-        Code::Unary(UnaryOp::Sqrt) => map(r, a, to, Scalar::sqrt),
-        Code::CompareSelect(Comparison::Lt) => choose(r, [a, b, c, d], to, Scalar::lt),
-        Code::CompareSelect(Comparison::Le) => choose(r, [a, b, c, d], to, Scalar::le),
-        Code::CompareSelect(Comparison::Eq) => choose(r, [a, b, c, d], to, Scalar::same),
-        Code::If => {
-            for k in 0..VECTORS {
-                let [selector, negative, zero, positive] = [a, b, c, d].map(|x| r[x as usize][k]);
-                let nothing = Vector::constant(f64::NAN);
-                let origin = Vector::constant(0.0);
-                let value = Vector::select(selector.same(origin), zero, nothing);
-                let value = Vector::select(origin.lt(selector), positive, value);
-                r[to as usize][k] = Vector::select(selector.lt(origin), negative, value);
-            }
-        }
+        Code::Binary(BinaryOp::Add) => each!(r, to = |x = a, y = b| x + y),
+        Code::Binary(BinaryOp::Sub) => each!(r, to = |x = a, y = b| x - y),
+        Code::Binary(BinaryOp::Mul) => each!(r, to = |x = a, y = b| x * y),
+        Code::Binary(BinaryOp::Div) => each!(r, to = |x = a, y = b| x / y),
+        Code::Unary(UnaryOp::Neg) => each!(r, to = |x = a| -x),
+        Code::Unary(UnaryOp::Abs) => each!(r, to = |x = a| Scalar::abs(x)),
+        Code::Unary(UnaryOp::Sqrt) => each!(r, to = |x = a| Scalar::sqrt(x)),
+        Code::Unary(UnaryOp::Sin) => each!(r, to = |x = a| Scalar::sin(x)),
+        Code::Unary(UnaryOp::Cos) => each!(r, to = |x = a| Scalar::cos(x)),
+        Code::CompareSelect(Comparison::Lt) => each!(r, to = |x = a, y = b, yes = c, no = d| {
+            lanes!(|k| if x.0[k] < y.0[k] { yes.0[k] } else { no.0[k] })
+        }),
+        Code::CompareSelect(Comparison::Le) => each!(r, to = |x = a, y = b, yes = c, no = d| {
+            lanes!(|k| if x.0[k] <= y.0[k] { yes.0[k] } else { no.0[k] })
+        }),
+        Code::CompareSelect(Comparison::Eq) => each!(r, to = |x = a, y = b, yes = c, no = d| {
+            lanes!(|k| if x.0[k] == y.0[k] { yes.0[k] } else { no.0[k] })
+        }),
+        Code::Select => each!(r, to = |condition = a, yes = b, no = c| {
+            lanes!(|k| if 0.0 < condition.0[k] { yes.0[k] } else { no.0[k] })
+        }),
+        Code::If => each!(r, to = |selector = a, negative = b, zero = c, positive = d| {
+            lanes!(|k| {
+                let other = if selector.0[k] == 0.0 { zero.0[k] } else { f64::NAN };
+                let other = if selector.0[k] > 0.0 { positive.0[k] } else { other };
+                if selector.0[k] < 0.0 { negative.0[k] } else { other }
+            })
+        }),
+        Code::Whole(3) => each!(r, to = |x = a| x * (x * x)),
+        Code::Whole(n) => each!(r, to = |x = a| x.powi(n)),
         Code::Call(function @ (Function::Max | Function::Min), 2) => {
             let (a, b) = (core.lists[a as usize], core.lists[a as usize + 1]);
-            zip(r, a, b, to, |x, y| function.eval(&[x, y]));
+            each!(r, to = |x = a, y = b| function.eval(&[x, y]));
         }
-        Code::Unary(op) => map(r, a, to, |x| op.apply(x)),
-        Code::Binary(op) => zip(r, a, b, to, |x, y| op.apply(x, y)),
-        Code::Whole(n) => map(r, a, to, |x| x.powi(n)),
-        Code::Compare(op) => zip(r, a, b, to, |x, y| from_mask(op.apply(x, y))),
-        Code::Select => {
-            for k in 0..VECTORS {
-                let mask = truth(r[a as usize][k]);
-                let value = Vector::select(mask, r[b as usize][k], r[c as usize][k]);
-                r[to as usize][k] = value;
-            }
-        }
-        Code::Lookup { table, order } => map(r, a, to, |x| x.lookup(&core.tables[table as usize], order)),
+        Code::Unary(op) => each!(r, to = |x = a| op.apply(x)),
+        Code::Binary(op) => each!(r, to = |x = a, y = b| op.apply(x, y)),
+        Code::Compare(op) => each!(r, to = |x = a, y = b| from_mask(op.apply(x, y))),
+        Code::Lookup { table, order } => each!(r, to = |x = a| x.lookup(&core.tables[table as usize], order)),
         Code::Call(_, count) | Code::Partial(_, count, _) => {
             let arguments = &core.lists[a as usize..(a + count) as usize];
             for k in 0..VECTORS {
-                let value = super::gathered(
-                    arguments,
-                    |x| r[x as usize][k],
-                    |args| match code {
-                        Code::Partial(function, _, which) => super::partial(function, args, which as usize),
-                        Code::Call(function, _) => function.eval(args),
-                        _ => unreachable!("only functions have lists of arguments"),
-                    },
-                );
+                let value = super::gathered(arguments, |x| r[x as usize][k], |args| match code {
+                    Code::Partial(function, _, which) => super::partial(function, args, which as usize),
+                    Code::Call(function, _) => function.eval(args),
+                    _ => unreachable!("only functions have lists of arguments"),
+                });
                 r[to as usize][k] = value;
             }
         }
@@ -283,23 +277,23 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
 fn prepared(what: Prepared, p: &[f64], [a, b, to]: [u32; 3], r: &mut [Block]) {
     match (what, p) {
         (Prepared::Step, &[x0, x1, h0, h1, l, h]) => {
-            map(r, a, to, |x| prepared::step3(x, &[x0, x1, h0, h1, l, h]));
+            each!(r, to = |x = a| prepared::step_everywhere(x, &[x0, x1, h0, h1, l, h], cubic));
         }
         (Prepared::Step5, &[x0, x1, h0, h1, l, h]) => {
-            map(r, a, to, |x| prepared::step5(x, &[x0, x1, h0, h1, l, h]));
+            each!(r, to = |x = a| prepared::step_everywhere(x, &[x0, x1, h0, h1, l, h], quintic));
         }
         (Prepared::Havsin, &[x0, x1, h0, h1, l, h]) => {
-            map(r, a, to, |x| prepared::havsin(x, &[x0, x1, h0, h1, l, h]));
+            each!(r, to = |x = a| prepared::havsin(x, &[x0, x1, h0, h1, l, h]));
         }
-        (Prepared::Poly, _) => map(r, a, to, |x| prepared::poly(x, p)),
-        (Prepared::Cheby, _) => map(r, a, to, |x| prepared::cheby(x, p)),
-        (Prepared::Forcos, _) => map(r, a, to, |x| prepared::forcos(x, p)),
-        (Prepared::Forsin, _) => map(r, a, to, |x| prepared::forsin(x, p)),
+        (Prepared::Poly, _) => each!(r, to = |x = a| prepared::poly(x, p)),
+        (Prepared::Cheby, _) => each!(r, to = |x = a| prepared::cheby(x, p)),
+        (Prepared::Forcos, _) => each!(r, to = |x = a| prepared::forcos(x, p)),
+        (Prepared::Forsin, _) => each!(r, to = |x = a| prepared::forsin(x, p)),
         (Prepared::Impact(e), &[x1, k, c, d, w, n]) => {
-            zip(r, a, b, to, |x, v| prepared::impact(x, v, &[x1, k, c, d, w, n], e));
+            each!(r, to = |x = a, v = b| prepared::impact(x, v, &[x1, k, c, d, w, n], e));
         }
         (Prepared::Bistop(e), &[x1, x2, k, c, d, w, n]) => {
-            zip(r, a, b, to, |x, v| prepared::bistop(x, v, &[x1, x2, k, c, d, w, n], e));
+            each!(r, to = |x = a, v = b| prepared::bistop(x, v, &[x1, x2, k, c, d, w, n], e));
         }
         _ => unreachable!("a prepared function comes with as many parameters as it says"),
     }

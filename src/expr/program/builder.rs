@@ -32,6 +32,8 @@ pub struct Builder {
     input_nodes: HashMap<Input, Value>,
     /// open addressing; `EMPTY` or the index of a node
     slots: Vec<u32>,
+    /// how often a slot was looked at: tests see that recording is linear
+    pub(super) probes: u64,
 }
 
 const EMPTY: u32 = u32::MAX;
@@ -47,6 +49,7 @@ impl Builder {
             tables: Vec::new(),
             input_nodes: HashMap::new(),
             slots: vec![EMPTY; 64],
+            probes: 0,
         }
     }
 
@@ -382,6 +385,7 @@ impl Builder {
         let mut slot = self.hash(&node) as usize & mask;
         loop {
             let found = self.slots[slot];
+            self.probes += 1;
             if found == EMPTY {
                 let v = self.push(node);
                 self.slots[slot] = v.0;

@@ -247,8 +247,8 @@ impl<'b> Adjoint<'b> {
     /// `b aᵇ⁻¹`, from the power itself where the base is not zero.
     fn power_slope(&mut self, a: Value, b: Value, v: Value) -> Value {
         let [zero, one] = [0.0, 1.0].map(|c| self.builder.constant(c));
-        let scaled = self.op(Mul, b, v);
-        let quotient = self.op(Div, scaled, a);
+        let quotient = self.op(Div, v, a);
+        let quotient = self.op(Mul, b, quotient);
         let less = self.op(Sub, b, one);
         let power = self.builder.binary(BinaryOp::Pow, a, less);
         let at_zero = self.op(Mul, b, power);

@@ -240,16 +240,25 @@ impl Program {
     /// When there are fewer inputs than the program has, or no output.
     #[inline]
     pub fn value(&self, inputs: &[f64], work: &mut Work) -> f64 {
-        let last = self.start(inputs, work);
-        match &self.outputs[..] {
-            [_] => last,
-            several => work.registers[several[0] as usize],
+        self.enter(inputs, work);
+        if self.machine.yields_the_value_at_once() {
+            // SAFETY: `enter` has seen to there being enough inputs, and to the registers being those of this program
+            unsafe { self.machine.value(work.registers.as_mut_ptr(), inputs.as_ptr()) }
+        } else {
+            self.first_of_several(inputs, work)
         }
     }
 
-    /// Runs the machine; the last result, which is the output if there is but one.
+    /// The first output of a program with several, or of a long one.
+    #[inline(never)]
+    fn first_of_several(&self, inputs: &[f64], work: &mut Work) -> f64 {
+        self.start(inputs, work);
+        work.registers[self.outputs[0] as usize]
+    }
+
+    /// Runs the machine.
     #[inline(always)]
-    fn start(&self, inputs: &[f64], work: &mut Work) -> f64 {
+    fn start(&self, inputs: &[f64], work: &mut Work) {
         self.enter(inputs, work);
         // SAFETY: `enter` has seen to there being enough inputs, and to the registers being those of this program
         unsafe { self.machine.run(work.registers.as_mut_ptr(), inputs.as_ptr()) }

@@ -460,20 +460,16 @@ fn long_programs_need_no_stack() {
 }
 
 #[test]
-fn recording_is_linear_in_time() {
-    let record = |n: u32| {
-        let start = std::time::Instant::now();
-        let mut b = Builder::new(Folding::Structural);
-        let mut v = b.input(Input::Time);
-        for k in 0..n {
-            let c = b.constant(f64::from(k) + 0.5);
-            let w = b.binary(BinaryOp::Mul, v, c);
-            v = b.binary(BinaryOp::Add, w, c);
-        }
-        assert_eq!(b.finish(&[v]).n_operations(), 2 * n as usize);
-        start.elapsed().as_secs_f64()
-    };
-    record(1000);
-    let (small, large) = (record(20_000), record(200_000));
-    assert!(large < 40.0 * small.max(1e-3), "{small} s for 20 000, {large} s for 200 000");
+fn recording_looks_at_few_places_per_node() {
+    let mut b = Builder::new(Folding::Structural);
+    let mut v = b.input(Input::Time);
+    let n = 100_000;
+    for k in 0..n {
+        // numbers with many zeros in their last bits are the hard case for a hash
+        let c = b.constant(f64::from(k) + 0.5);
+        let w = b.binary(BinaryOp::Mul, v, c);
+        v = b.binary(BinaryOp::Add, w, c);
+    }
+    assert_eq!(b.finish(&[v]).n_operations(), 2 * n as usize);
+    assert!(b.probes < 3 * 3 * n as u64, "{} probes", b.probes);
 }

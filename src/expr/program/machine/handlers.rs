@@ -102,12 +102,21 @@ handlers! {
         let d = if SOURCE == LAST { acc } else { r!(o[3]) };
         (o[4], arithmetic::<Q>(arithmetic::<P>(a, r!(o[1])), arithmetic::<R>(r!(o[2]), d)))
     }
+    /// ((a·b) op e) op (c·d) → to
+    fn dot<const P: u8, const Q: u8, const SOURCE: u8>(o, r, frame, inputs, acc) {
+        let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
+        let e = if SOURCE == LAST { acc } else { r!(o[4]) };
+        (o[5], arithmetic::<Q>(arithmetic::<P>(a * r!(o[1]), e), r!(o[2]) * r!(o[3])))
+    }
     /// inputs o[1] … → o[0] …
     fn load<const N: usize>(o, r, frame, inputs, acc) {
-        for k in 0..N - 1 {
-            r!(o[0] as usize + k) = *inputs.add(o[1 + k] as usize);
+        // all are read before any is written: nobody knows that the registers are not the operands
+        let (first, numbers): (usize, [usize; N]) = (o[0] as usize, std::array::from_fn(|k| o[1 + k] as usize));
+        let values: [f64; N] = numbers.map(|k| *inputs.add(k));
+        for (k, &value) in values[..N - 1].iter().enumerate() {
+            r!(first + k) = value;
         }
-        (o[0] + N as u32 - 1, *inputs.add(o[N] as usize))
+        (o[0] + N as u32 - 1, values[N - 1])
     }
     /// a → to
     fn copy(o, r, frame, inputs, acc) {
@@ -443,6 +452,8 @@ pub(super) static CHAINS: [[[[Handler; 3]; 6]; 6]; 6] =
 /// By three operations (sums, differences, products) and source.
 pub(super) static BALANCED: [[[[Handler; 3]; 4]; 4]; 4] =
     table!(balanced [REGISTERS FIRST LAST]; 0 1 2 3; [0 1 2 3]; [0 1 2 3]);
+/// By the two sums and source.
+pub(super) static DOTS: [[[Handler; 3]; 3]; 3] = table!(dot [REGISTERS FIRST LAST]; 0 1 2; [0 1 2]);
 /// By operation of the selector (the last: none) and source.
 pub(super) static BRANCHES: [[Handler; 2]; 7] = table!(branch [REGISTERS FIRST]; 0 1 2 3 4 5 8);
 /// By number of inputs less one.

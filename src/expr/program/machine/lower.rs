@@ -39,7 +39,7 @@ struct Pending {
     shape: Shape,
     codes: [u8; 3],
     /// registers of the operands
-    operands: [Operand; 4],
+    operands: [Operand; 5],
 }
 
 /// A register, and the node whose value it holds (to see whether that is still in `acc`).
@@ -59,6 +59,8 @@ enum Shape {
     Chain,
     /// (a p b) q (c r d)
     Balanced,
+    /// ((a·b) q e) r (c·d), where e is the fifth operand
+    Dot,
 }
 
 /// A selection whose sides are being emitted.
@@ -108,6 +110,7 @@ struct Lowering<'a> {
     closed: Option<Closed>,
     /// operations since the last pause
     chain: usize,
+    has_paused: bool,
     /// registers of constants by their bits
     constants: HashMap<u64, u32>,
 }
@@ -129,6 +132,7 @@ impl<'a> Lowering<'a> {
             sides: Vec::new(),
             closed: None,
             chain: 0,
+            has_paused: false,
             constants,
         }
     }
@@ -162,7 +166,8 @@ impl<'a> Lowering<'a> {
         let n_registers = first_parameter as usize + self.parameters.len();
         let n_inputs = used.iter().map(|&k| k as usize + 1).max().unwrap_or(0);
         let (ops, parameters, core) = (self.ops.into(), self.parameters, self.core.clone());
-        let machine = Machine { ops, parameters, n_registers, n_inputs, core };
+        let yields_the_value_at_once = outputs.len() == 1 && !self.has_paused;
+        let machine = Machine { ops, parameters, n_registers, n_inputs, core, yields_the_value_at_once };
         machine.check(&self.kinds);
         machine
     }
@@ -203,7 +208,7 @@ impl<'a> Lowering<'a> {
                 let x = self.operand(x);
                 self.flush_if_full();
                 let shape = if n == 3 { Shape::Two } else { Shape::Balanced };
-                self.pending.push(Pending { node: v, shape, codes: [MUL; 3], operands: [x; 4] });
+                self.pending.push(Pending { node: v, shape, codes: [MUL; 3], operands: [x; 5] });
                 return 1;
             }
             _ => {}
@@ -418,7 +423,33 @@ impl<'a> Lowering<'a> {
                     node: v,
                     shape: Shape::Balanced,
                     codes: [p.codes[0], op, q.codes[0]],
-                    operands: [p.operands[0], p.operands[1], q.operands[0], q.operands[1]],
+                    operands: [p.operands[0], p.operands[1], q.operands[0], q.operands[1], p.operands[0]],
+                });
+                return;
+            }
+        }
+        // ((a·b) q e) ± (c·d)
+        if let (Some(p), Some(m)) = (before, last)
+            && (p.shape, m.shape) == (Shape::Two, Shape::One)
+            && (p.codes[0], m.codes[0]) == (MUL, MUL)
+            && p.codes[1] < MUL
+            && op < MUL
+        {
+            let code = if is(before, a) && is(last, b) {
+                Some(op)
+            } else if is(last, a) && is(before, b) {
+                Some(reversed(op))
+            } else {
+                None
+            };
+            if let Some(code) = code {
+                self.pending.truncate(self.pending.len() - 2);
+                let [x, y, e, ..] = p.operands;
+                self.pending.push(Pending {
+                    node: v,
+                    shape: Shape::Dot,
+                    codes: [MUL, p.codes[1], code],
+                    operands: [x, y, m.operands[0], m.operands[1], e],
                 });
                 return;
             }
@@ -481,7 +512,7 @@ impl<'a> Lowering<'a> {
 
     fn push_one(&mut self, node: Value, op: u8, a: Operand, b: Operand) {
         self.flush_if_full();
-        self.pending.push(Pending { node, shape: Shape::One, codes: [op, 0, 0], operands: [a, b, a, a] });
+        self.pending.push(Pending { node, shape: Shape::One, codes: [op, 0, 0], operands: [a, b, a, a, a] });
     }
 
     fn flush_if_full(&mut self) {
@@ -498,7 +529,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn emit_arithmetic(&mut self, pending: Pending) {
-        let Pending { node, shape, codes: [mut p, mut q, mut r], operands: [mut a, mut b, mut c, mut d] } = pending;
+        let Pending { node, shape, codes: [mut p, mut q, mut r], operands: [mut a, mut b, mut c, mut d, e] } = pending;
         let in_acc = |x: Operand| x.node.is_some() && x.node == self.last;
         // bring the last result to the first place, or else to the last
         if in_acc(b) && !in_acc(a) {
@@ -520,8 +551,7 @@ impl<'a> Lowering<'a> {
             (false, true) => LAST as usize,
             _ => REGISTERS as usize,
         };
-        let registers = [a, b, c, d].map(|x| x.register);
-        let [ra, rb, rc, rd] = registers;
+        let [ra, rb, rc, rd, re] = [a, b, c, d, e].map(|x| x.register);
         let (handler, operands): (Handler, &[u32]) = match shape {
             Shape::One => (handlers::ONES[p][usize::from(first)], &[ra, rb, to]),
             Shape::Two => (handlers::TWOS[p][q][source(c)], &[ra, rb, rc, to]),
@@ -530,6 +560,7 @@ impl<'a> Lowering<'a> {
                 (handlers::CHAINS[p][q][r][source(d)], &[ra, rb, rc, rd, to])
             }
             Shape::Balanced => (handlers::BALANCED[p][q][r][source(d)], &[ra, rb, rc, rd, to]),
+            Shape::Dot => (handlers::DOTS[q][r][source(e)], &[ra, rb, rc, rd, re, to]),
         };
         let op = self.emit(handler, operands, Kind::Registers(operands.len() as u8));
         self.produced(node, op, operands.len() - 1);
@@ -700,6 +731,7 @@ impl<'a> Lowering<'a> {
             self.ops.push(Op { run: handlers::pause, operands: [0; 6] });
             self.kinds.push(Kind::Registers(0));
             self.chain = 0;
+            self.has_paused = true;
         }
         self.chain += 1;
         self.addable = None;

@@ -81,6 +81,8 @@ pub(super) struct Machine {
     n_inputs: usize,
     /// what `instruction` operations point to
     core: Arc<Core>,
+    /// there is one output, which is the last result, and no pause
+    yields_the_value_at_once: bool,
 }
 
 impl std::fmt::Debug for Machine {
@@ -105,30 +107,38 @@ impl Machine {
         std::iter::repeat_n(f64::NAN, scratch).chain(self.parameters.iter().copied())
     }
 
-    /// Runs over a frame whose constants and parameters are in place; the last result.
+    /// Runs over a frame whose constants and parameters are in place.
     ///
     /// # Safety
     ///
     /// There are at least `n_registers` registers, and as many inputs as the program says.
     #[inline(always)]
-    pub(super) unsafe fn run(&self, registers: *mut f64, inputs: *const f64) -> f64 {
+    pub(super) unsafe fn run(&self, registers: *mut f64, inputs: *const f64) {
         let op: *const Op = self.ops.as_ptr();
         // SAFETY: see the head of this file
-        let stop = unsafe { ((*op).run)(op, registers, inputs, 0.0) };
-        if stop.next.is_null() {
-            return stop.acc;
-        }
-        // SAFETY: as before
-        unsafe { Self::go_on(stop, registers, inputs) }
-    }
-
-    #[inline(never)]
-    unsafe fn go_on(mut stop: Stop, registers: *mut f64, inputs: *const f64) -> f64 {
+        let mut stop = unsafe { ((*op).run)(op, registers, inputs, 0.0) };
         while !stop.next.is_null() {
             // SAFETY: `next` is an operation that `pause` named
             stop = unsafe { ((*stop.next).run)(stop.next, registers, inputs, stop.acc) };
         }
-        stop.acc
+    }
+
+    /// Whether [`Machine::value`] can be asked: there is one output and no pause.
+    #[inline(always)]
+    pub(super) fn yields_the_value_at_once(&self) -> bool {
+        self.yields_the_value_at_once
+    }
+
+    /// The only output.
+    ///
+    /// # Safety
+    ///
+    /// As [`Machine::run`].
+    #[inline(always)]
+    pub(super) unsafe fn value(&self, registers: *mut f64, inputs: *const f64) -> f64 {
+        let op: *const Op = self.ops.as_ptr();
+        // SAFETY: see the head of this file
+        unsafe { ((*op).run)(op, registers, inputs, 0.0) }.acc
     }
 
     /// That no operation reaches outside the frame or the code.
