@@ -23,11 +23,21 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
 
     #[inline(always)]
-    fn map2(self, other: Self, re: S, f: impl Fn(S, S) -> S) -> Self {
-        Self {
-            re,
-            eps: std::array::from_fn(|k| f(self.eps[k], other.eps[k])),
+    fn map(self, re: S, f: impl Fn(S) -> S) -> Self {
+        let mut eps = self.eps;
+        for x in &mut eps {
+            *x = f(*x);
         }
+        Self { re, eps }
+    }
+    #[inline(always)]
+    fn map2(self, other: Self, re: S, f: impl Fn(S, S) -> S) -> Self {
+        // loops, not functions of arrays: those are not always compiled in place
+        let mut eps = self.eps;
+        for (x, y) in eps.iter_mut().zip(other.eps) {
+            *x = f(*x, y);
+        }
+        Self { re, eps }
     }
     #[inline(always)]
     fn sum(self, b: Self) -> Self {
@@ -44,21 +54,16 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     #[inline(always)]
     fn quotient(self, b: Self) -> Self {
         let q = self.re / b.re;
-        self.map2(b, q, |x, y| (x - q * y) / b.re)
+        let per_b = b.re.recip();
+        self.map2(b, q, |x, y| (x - q * y) * per_b)
     }
     #[inline(always)]
     fn negative(self) -> Self {
-        Self {
-            re: -self.re,
-            eps: self.eps.map(|x| -x),
-        }
+        self.map(-self.re, |x| -x)
     }
     #[inline(always)]
     fn chain(self, f: S, d1: S, _d2: impl FnOnce() -> S) -> Self {
-        Self {
-            re: f,
-            eps: self.eps.map(|x| if x.is_known_zero() { x } else { d1 * x }),
-        }
+        self.map(f, |x| if x.is_known_zero() { x } else { d1 * x })
     }
     #[inline(always)]
     fn value_part(&self) -> S {
@@ -118,10 +123,7 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
     }
     #[inline(always)]
     fn scale(self, factor: f64) -> Self {
-        Self {
-            re: self.re.scale(factor),
-            eps: self.eps.map(|x| x.scale(factor)),
-        }
+        self.map(self.re.scale(factor), |x| x.scale(factor))
     }
     elementary_functions!(S);
 }

@@ -14,7 +14,11 @@ use crate::scalar::{Mask, Scalar};
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
 pub fn impact<S: Scalar>(x: S, x_dot: S, x1: S, k: S, cmax: S, d: S, per_depth: S, power: impl FnOnce(S) -> S) -> S {
-    S::choose(x1.le(x), S::zero, || contact(x1 - x, -x_dot, k, cmax, d, per_depth, power))
+    let free = x1.le(x);
+    if free.known() == Some(true) {
+        return S::zero();
+    }
+    S::select(free, S::zero(), contact(x1 - x, -x_dot, k, cmax, d, per_depth, power))
 }
 
 /// `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
@@ -31,14 +35,16 @@ pub fn bistop<S: Scalar>(
     per_depth: S,
     power: impl FnOnce(S) -> S,
 ) -> S {
-    S::choose(x1.le(x).and(x.le(x2)), S::zero, || {
-        // one law for both stops; the upper one pushes back
-        let low = x.lt(x1);
-        let p = S::select(low, x1 - x, x - x2);
-        let p_dot = S::select(low, -x_dot, x_dot);
-        let force = contact(p, p_dot, k, cmax, d, per_depth, power);
-        S::select(low, force, S::zero() - force)
-    })
+    let free = x1.le(x).and(x.le(x2));
+    if free.known() == Some(true) {
+        return S::zero();
+    }
+    // one law for both stops; the upper one pushes back
+    let low = x.lt(x1);
+    let p = S::select(low, x1 - x, x - x2);
+    let p_dot = S::select(low, -x_dot, x_dot);
+    let force = contact(p, p_dot, k, cmax, d, per_depth, power);
+    S::select(free, S::zero(), S::select(low, force, S::zero() - force))
 }
 
 /// Force at penetration `p > 0` and penetration rate `p_dot`; never attractive. `power` is `pᵉ`.
@@ -47,5 +53,5 @@ fn contact<S: Scalar>(p: S, p_dot: S, k: S, cmax: S, d: S, per_depth: S, power: 
     let elastic = k * power(p);
     let c = S::choose(d.le(p), || cmax, || cmax * cubic(p * per_depth));
     let force = elastic + c * p_dot;
-    S::choose(force.le(S::zero()), S::zero, || force)
+    S::select(force.le(S::zero()), S::zero(), force)
 }

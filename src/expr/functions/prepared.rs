@@ -78,7 +78,10 @@ impl Prepared {
 #[inline(always)]
 pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
     let [x0, x1, h0, h1, per_length, rise] = *p;
-    let [x0, x1, h0, h1] = [x0, x1, h0, h1].map(S::constant);
+    let x0 = S::constant(x0);
+    let x1 = S::constant(x1);
+    let h0 = S::constant(h0);
+    let h1 = S::constant(h1);
     S::choose(x.le(x0), || h0, || S::choose(x1.le(x), || h1, || h0 + shape((x - x0).scale(per_length)).scale(rise)))
 }
 
@@ -86,7 +89,10 @@ pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) ->
 #[inline(always)]
 pub(crate) fn step_everywhere<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
     let [x0, x1, h0, h1, per_length, rise] = *p;
-    let [x0, x1, h0, h1] = [x0, x1, h0, h1].map(S::constant);
+    let x0 = S::constant(x0);
+    let x1 = S::constant(x1);
+    let h0 = S::constant(h0);
+    let h1 = S::constant(h1);
     let between = h0 + shape((x - x0).scale(per_length)).scale(rise);
     S::select(x.le(x0), h0, S::select(x1.le(x), h1, between))
 }
@@ -132,7 +138,11 @@ pub(crate) fn forsin<S: Scalar>(x: S, p: &[f64]) -> S {
 #[inline(always)]
 pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent) -> S {
     let [x1, k, cmax, d, per_depth, e] = *p;
-    let [x1, k, cmax, d, per_depth] = [x1, k, cmax, d, per_depth].map(S::constant);
+    let x1 = S::constant(x1);
+    let k = S::constant(k);
+    let cmax = S::constant(cmax);
+    let d = S::constant(d);
+    let per_depth = S::constant(per_depth);
     contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| p.power(exponent, e))
 }
 
@@ -140,7 +150,12 @@ pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent)
 #[inline(always)]
 pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent) -> S {
     let [x1, x2, k, cmax, d, per_depth, e] = *p;
-    let [x1, x2, k, cmax, d, per_depth] = [x1, x2, k, cmax, d, per_depth].map(S::constant);
+    let x1 = S::constant(x1);
+    let x2 = S::constant(x2);
+    let k = S::constant(k);
+    let cmax = S::constant(cmax);
+    let d = S::constant(d);
+    let per_depth = S::constant(per_depth);
     contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| p.power(exponent, e))
 }
 
@@ -190,6 +205,10 @@ impl<const N: usize> Power for Dual<N> {
             Exponent::Half(_) => e * f64::powf(self.re, e - 1.0),
             Exponent::Other => e * (value / self.re),
         };
-        Self { re: value, eps: self.eps.map(|x| slope * x) }
+        let mut eps = self.eps;
+        for x in &mut eps {
+            *x *= slope;
+        }
+        Self { re: value, eps }
     }
 }

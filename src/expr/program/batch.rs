@@ -21,8 +21,10 @@ const BLOCK: usize = WIDTH * VECTORS;
 
 type Vector = Lanes<WIDTH>;
 
-/// One register for some points.
-type Block = [Vector; VECTORS];
+/// One register for some points. Aligned, so that no vector lies across two lines of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Block([Vector; VECTORS]);
 
 /// A program that runs over columns of points.
 ///
@@ -65,10 +67,10 @@ impl Program {
     /// For running over many points at once.
     pub fn batch(&self) -> Batch {
         let core = self.core();
-        let nothing = [Vector::constant(f64::NAN); VECTORS];
+        let nothing = Block([Vector::constant(f64::NAN); VECTORS]);
         let mut registers = vec![nothing; core.size as usize];
         for (register, &c) in registers.iter_mut().zip(&core.constants) {
-            *register = [Vector::constant(c); VECTORS];
+            *register = Block([Vector::constant(c); VECTORS]);
         }
         let steps = core.code.iter().map(|i| self.batch_step(i)).collect();
         Batch { program: self.clone(), registers, steps, instructions: Instructions::of_this_machine() }
@@ -142,10 +144,10 @@ impl Batch {
         for (register, &k) in self.registers[first..].iter_mut().zip(&self.program.used) {
             let column = &inputs[k as usize][start..end];
             let (vectors, rest) = column.as_chunks::<WIDTH>();
-            for (to, from) in register.iter_mut().zip(vectors) {
+            for (to, from) in register.0.iter_mut().zip(vectors) {
                 to.0 = *from;
             }
-            if let (Some(to), false) = (register.get_mut(vectors.len()), rest.is_empty()) {
+            if let (Some(to), false) = (register.0.get_mut(vectors.len()), rest.is_empty()) {
                 to.0[..rest.len()].copy_from_slice(rest);
             }
         }
@@ -159,10 +161,10 @@ impl Batch {
             let register = &self.registers[r as usize];
             let (vectors, rest) = column.as_chunks_mut::<WIDTH>();
             let n = vectors.len();
-            for (to, from) in vectors.iter_mut().zip(register) {
+            for (to, from) in vectors.iter_mut().zip(&register.0) {
                 *to = from.0;
             }
-            if let (Some(from), false) = (register.get(n), rest.is_empty()) {
+            if let (Some(from), false) = (register.0.get(n), rest.is_empty()) {
                 rest.copy_from_slice(&from.0[..rest.len()]);
             }
         }
@@ -199,8 +201,8 @@ macro_rules! each {
     ($r:ident, $to:ident = |$($x:ident = $register:ident),+| $value:expr) => {{
         let to = $to as usize;
         for k in 0..VECTORS {
-            $(let $x = $r[$register as usize][k];)+
-            $r[to][k] = $value;
+            $(let $x = $r[$register as usize].0[k];)+
+            $r[to].0[k] = $value;
         }
     }};
 }
@@ -262,12 +264,12 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
         Code::Call(_, count) | Code::Partial(_, count, _) => {
             let arguments = &core.lists[a as usize..(a + count) as usize];
             for k in 0..VECTORS {
-                let value = super::gathered(arguments, |x| r[x as usize][k], |args| match code {
+                let value = super::gathered(arguments, |x| r[x as usize].0[k], |args| match code {
                     Code::Partial(function, _, which) => super::partial(function, args, which as usize),
                     Code::Call(function, _) => function.eval(args),
                     _ => unreachable!("only functions have lists of arguments"),
                 });
-                r[to as usize][k] = value;
+                r[to as usize].0[k] = value;
             }
         }
     }
