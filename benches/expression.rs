@@ -264,15 +264,28 @@ fn cases() -> Vec<Case> {
 fn layout() -> [Input; SLOTS] {
     use Measure::{Dx, Dy, Dz, Vr, Vx, Vy, Vz};
     let of = |m: Measure| Input::Measure(m, [1, 2, 0, 0]);
-    [Input::Time, of(Dx), of(Dy), of(Dz), of(Vx), of(Vy), of(Vz), of(Vr)]
+    [
+        Input::Time,
+        of(Dx),
+        of(Dy),
+        of(Dz),
+        of(Vx),
+        of(Vy),
+        of(Vz),
+        of(Vr),
+    ]
 }
 
 fn compiled(text: &str) -> Program {
-    let ast = parse(text, Dialect::Function, Profile::Adams).unwrap_or_else(|e| panic!("{text}: {e}"));
+    let ast =
+        parse(text, Dialect::Function, Profile::Adams).unwrap_or_else(|e| panic!("{text}: {e}"));
     let bindings = Bindings::default();
     let mut compiler = Compiler::new(&bindings);
     let value = compiler.add(&ast).unwrap_or_else(|e| panic!("{text}: {e}"));
-    compiler.builder().borrow().finish_with_inputs(&[value], &layout())
+    compiler
+        .builder()
+        .borrow()
+        .finish_with_inputs(&[value], &layout())
 }
 
 /// Random points: TIME from 0 to 5, lengths so that contacts are met, speeds of either sign.
@@ -287,7 +300,16 @@ fn points(n: usize) -> Vec<[f64; SLOTS]> {
     (0..n)
         .map(|_| {
             let [t, dx, dy, dz, vx, vy, vz, vr] = std::array::from_fn(|_| uniform());
-            [5.0 * t, 2.0 * dx - 1.0, 2.0 * dy - 1.0, 0.5 + 0.8 * dz, vx - 0.5, vy - 0.5, vz - 0.5, vr - 0.5]
+            [
+                5.0 * t,
+                2.0 * dx - 1.0,
+                2.0 * dy - 1.0,
+                0.5 + 0.8 * dz,
+                vx - 0.5,
+                vy - 0.5,
+                vz - 0.5,
+                vr - 0.5,
+            ]
         })
         .collect()
 }
@@ -318,7 +340,10 @@ fn medians(contestants: &mut [Contestant], per_round: usize, rounds: usize) -> V
         }
         counts.push(n);
     }
-    let mut times: Vec<Vec<f64>> = contestants.iter().map(|_| Vec::with_capacity(rounds)).collect();
+    let mut times: Vec<Vec<f64>> = contestants
+        .iter()
+        .map(|_| Vec::with_capacity(rounds))
+        .collect();
     for _ in 0..rounds {
         for ((contestant, &n), times) in contestants.iter_mut().zip(&counts).zip(&mut times) {
             go_round(contestant, per_round);
@@ -348,7 +373,10 @@ fn geometric_mean(x: &[f64]) -> f64 {
 }
 
 fn agree(what: &str, got: f64, want: f64) {
-    assert!((got - want).abs() <= 1e-9 * want.abs().max(1.0), "{what}: {got}, native {want}");
+    assert!(
+        (got - want).abs() <= 1e-9 * want.abs().max(1.0),
+        "{what}: {got}, native {want}"
+    );
 }
 
 /// Counts allocations.
@@ -398,7 +426,11 @@ impl Table {
         for (name, times) in &self.rows {
             print!("{name:<12}");
             for t in times {
-                if t.is_nan() { print!("{:>14}", "–") } else { print!("{t:>14.2}") }
+                if t.is_nan() {
+                    print!("{:>14}", "–")
+                } else {
+                    print!("{t:>14.2}")
+                }
             }
             for k in 1..n {
                 let ratio = times[k] / times[0];
@@ -417,20 +449,37 @@ impl Table {
             print!("{:>14.2}", geometric_mean(r));
         }
         let ours = &ratios[1];
-        let (mean, worst) = (geometric_mean(ours), ours.iter().fold(0.0f64, |m, &r| m.max(r)));
+        let (mean, worst) = (
+            geometric_mean(ours),
+            ours.iter().fold(0.0f64, |m, &r| m.max(r)),
+        );
         let (goal_mean, goal_worst) = self.goal;
-        let verdict = if mean <= goal_mean && worst <= goal_worst { "met" } else { "MISSED" };
-        println!("\ncognate: mean {mean:.2} (goal {goal_mean}), worst {worst:.2} (goal {goal_worst}): {verdict}");
+        let verdict = if mean <= goal_mean && worst <= goal_worst {
+            "met"
+        } else {
+            "MISSED"
+        };
+        println!(
+            "\ncognate: mean {mean:.2} (goal {goal_mean}), worst {worst:.2} (goal {goal_worst}): {verdict}"
+        );
     }
 }
 
 fn main() {
-    let rounds: usize = std::env::var("COGNATE_BENCH_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(201);
+    let rounds: usize = std::env::var("COGNATE_BENCH_ROUNDS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(201);
     let only = std::env::args().skip(1).find(|a| !a.starts_with('-'));
-    let cases: Vec<Case> =
-        cases().into_iter().filter(|c| only.as_ref().is_none_or(|o| c.name.contains(o.as_str()))).collect();
+    let cases: Vec<Case> = cases()
+        .into_iter()
+        .filter(|c| only.as_ref().is_none_or(|o| c.name.contains(o.as_str())))
+        .collect();
     let points = points(POINTS);
-    println!("{} rounds, interleaved; medians in ns per evaluation; × is the ratio to the first column", rounds);
+    println!(
+        "{} rounds, interleaved; medians in ns per evaluation; × is the ratio to the first column",
+        rounds
+    );
     values(&cases, &points, rounds).print();
     gradients(&cases, &points, rounds).print();
     batches(&cases, rounds).print();
@@ -451,10 +500,17 @@ fn values(cases: &[Case], points: &[[f64; SLOTS]], rounds: usize) -> Table {
             Box::new(|k| program.value(&points[k], &mut work)),
         ];
         let mut times = vec![0, 1];
-        for (column, peer) in [(2, peers::fasteval(case, points)), (3, peers::exmex(case, points))] {
+        for (column, peer) in [
+            (2, peers::fasteval(case, points)),
+            (3, peers::exmex(case, points)),
+        ] {
             if let Some(mut peer) = peer {
                 for (k, x) in points.iter().enumerate() {
-                    agree(&format!("{} by a peer", case.name), peer(k), (case.native)(x));
+                    agree(
+                        &format!("{} by a peer", case.name),
+                        peer(k),
+                        (case.native)(x),
+                    );
                 }
                 contestants.push(peer);
                 times.push(column);
@@ -467,7 +523,12 @@ fn values(cases: &[Case], points: &[[f64; SLOTS]], rounds: usize) -> Table {
         }
         rows.push((case.name, row));
     }
-    Table { title: "Value", columns: vec!["native", "cognate", "fasteval", "exmex"], rows, goal: (2.0, 5.0) }
+    Table {
+        title: "Value",
+        columns: vec!["native", "cognate", "fasteval", "exmex"],
+        rows,
+        goal: (2.0, 5.0),
+    }
 }
 
 fn gradients(cases: &[Case], points: &[[f64; SLOTS]], rounds: usize) -> Table {
@@ -496,12 +557,19 @@ fn gradients(cases: &[Case], points: &[[f64; SLOTS]], rounds: usize) -> Table {
         ];
         rows.push((case.name, medians(&mut contestants, POINTS, rounds)));
     }
-    Table { title: "Value and gradient", columns: vec!["native dual", "cognate"], rows, goal: (1.8, f64::INFINITY) }
+    Table {
+        title: "Value and gradient",
+        columns: vec!["native dual", "cognate"],
+        rows,
+        goal: (1.8, f64::INFINITY),
+    }
 }
 
 fn batches(cases: &[Case], rounds: usize) -> Table {
     let points = points(BATCH);
-    let columns: Vec<Vec<f64>> = (0..SLOTS).map(|k| points.iter().map(|p| p[k]).collect()).collect();
+    let columns: Vec<Vec<f64>> = (0..SLOTS)
+        .map(|k| points.iter().map(|p| p[k]).collect())
+        .collect();
     let views: Vec<&[f64]> = columns.iter().map(|c| &c[..]).collect();
     let mut rows = Vec::new();
     for case in cases {
@@ -523,18 +591,34 @@ fn batches(cases: &[Case], rounds: usize) -> Table {
                 out[BATCH - 1]
             }),
         ];
-        let times = medians(&mut contestants, 1, rounds).into_iter().map(|t| t / BATCH as f64).collect();
+        let times = medians(&mut contestants, 1, rounds)
+            .into_iter()
+            .map(|t| t / BATCH as f64)
+            .collect();
         rows.push((case.name, times));
     }
-    Table { title: "Batch of 1024 points, per point", columns: vec!["native loop", "cognate"], rows, goal: (1.1, f64::INFINITY) }
+    Table {
+        title: "Batch of 1024 points, per point",
+        columns: vec!["native loop", "cognate"],
+        rows,
+        goal: (1.1, f64::INFINITY),
+    }
 }
 
 /// How long parsing and compiling takes, per operator, and that it is linear.
 fn compiling(cases: &[Case]) {
     println!("\nParse and compile, µs");
-    println!("{:<12}{:>14}{:>14}{:>14}{:>14}", "", "parse", "compile", "operators", "per operator");
+    println!(
+        "{:<12}{:>14}{:>14}{:>14}{:>14}",
+        "", "parse", "compile", "operators", "per operator"
+    );
     let operators = |text: &str| text.matches(['+', '-', '*', '/', '(', ',']).count().max(1);
-    let long = |n: usize| (0..n).map(|k| format!("{}*TIME**2+SIN({k}.5*DX(1,2))", k + 1)).collect::<Vec<_>>().join("-");
+    let long = |n: usize| {
+        (0..n)
+            .map(|k| format!("{}*TIME**2+SIN({k}.5*DX(1,2))", k + 1))
+            .collect::<Vec<_>>()
+            .join("-")
+    };
     let mut texts: Vec<(&str, String)> = cases.iter().map(|c| (c.name, c.text.clone())).collect();
     texts.push(("100 terms", long(100)));
     texts.push(("1000 terms", long(1000)));
@@ -555,7 +639,10 @@ fn compiling(cases: &[Case]) {
         }
         let (p, c) = (median(&mut parsing), median(&mut compiling));
         let n = operators(text);
-        println!("{name:<12}{p:>14.2}{c:>14.2}{n:>14}{:>14.2}", (p + c) / n as f64);
+        println!(
+            "{name:<12}{p:>14.2}{c:>14.2}{n:>14}{:>14.2}",
+            (p + c) / n as f64
+        );
     }
 }
 
@@ -572,5 +659,8 @@ fn allocations(cases: &[Case], points: &[[f64; SLOTS]]) {
         }
         most = most.max(ALLOCATIONS.load(Ordering::Relaxed) - before);
     }
-    println!("\nAllocations while evaluating {} points, at most: {most}", points.len());
+    println!(
+        "\nAllocations while evaluating {} points, at most: {most}",
+        points.len()
+    );
 }

@@ -18,7 +18,10 @@ impl<const N: usize> Forward<N> {
     }
     #[inline(always)]
     fn chain(self, re: f64, slope: f64) -> Self {
-        Self { re, eps: self.eps.map(|e| slope * e) }
+        Self {
+            re,
+            eps: self.eps.map(|e| slope * e),
+        }
     }
 }
 
@@ -66,7 +69,10 @@ impl Real for f64 {
 impl<const N: usize> Real for Forward<N> {
     #[inline(always)]
     fn constant(x: f64) -> Self {
-        Self { re: x, eps: [0.0; N] }
+        Self {
+            re: x,
+            eps: [0.0; N],
+        }
     }
     #[inline(always)]
     fn re(self) -> f64 {
@@ -141,28 +147,40 @@ impl<const N: usize> Div for Forward<N> {
     fn div(self, other: Self) -> Self {
         let w = 1.0 / other.re;
         let q = self.re * w;
-        Self { re: q, eps: std::array::from_fn(|k| (self.eps[k] - q * other.eps[k]) * w) }
+        Self {
+            re: q,
+            eps: std::array::from_fn(|k| (self.eps[k] - q * other.eps[k]) * w),
+        }
     }
 }
 impl<const N: usize> Neg for Forward<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { re: -self.re, eps: self.eps.map(|e| -e) }
+        Self {
+            re: -self.re,
+            eps: self.eps.map(|e| -e),
+        }
     }
 }
 impl<const N: usize> Add<f64> for Forward<N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, c: f64) -> Self {
-        Self { re: self.re + c, ..self }
+        Self {
+            re: self.re + c,
+            ..self
+        }
     }
 }
 impl<const N: usize> Sub<f64> for Forward<N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, c: f64) -> Self {
-        Self { re: self.re - c, ..self }
+        Self {
+            re: self.re - c,
+            ..self
+        }
     }
 }
 impl<const N: usize> Mul<f64> for Forward<N> {
@@ -219,7 +237,11 @@ pub fn impact<R: Real>(x: R, v: R, x1: f64, k: f64, e: f64, cmax: f64, d: f64) -
         return R::constant(0.0);
     }
     let force = (-x + x1).power(e) * k - step(x, x1 - d, cmax, x1, 0.0) * v;
-    if force.re() > 0.0 { force } else { R::constant(0.0) }
+    if force.re() > 0.0 {
+        force
+    } else {
+        R::constant(0.0)
+    }
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -227,10 +249,18 @@ pub fn impact<R: Real>(x: R, v: R, x1: f64, k: f64, e: f64, cmax: f64, d: f64) -
 pub fn bistop<R: Real>(x: R, v: R, x1: f64, x2: f64, k: f64, e: f64, cmax: f64, d: f64) -> R {
     if x.re() < x1 {
         let force = (-x + x1).power(e) * k - step(x, x1 - d, cmax, x1, 0.0) * v;
-        if force.re() > 0.0 { force } else { R::constant(0.0) }
+        if force.re() > 0.0 {
+            force
+        } else {
+            R::constant(0.0)
+        }
     } else if x.re() > x2 {
         let force = (x - x2).power(e) * -k - step(x, x2, 0.0, x2 + d, cmax) * v;
-        if force.re() < 0.0 { force } else { R::constant(0.0) }
+        if force.re() < 0.0 {
+            force
+        } else {
+            R::constant(0.0)
+        }
     } else {
         R::constant(0.0)
     }
@@ -259,7 +289,12 @@ pub fn forcos<R: Real, const M: usize>(x: R, x0: f64, w: f64, a: &[f64; M]) -> R
 }
 
 #[inline(always)]
-pub fn if3<R: Real>(s: R, negative: impl FnOnce() -> R, zero: impl FnOnce() -> R, positive: impl FnOnce() -> R) -> R {
+pub fn if3<R: Real>(
+    s: R,
+    negative: impl FnOnce() -> R,
+    zero: impl FnOnce() -> R,
+    positive: impl FnOnce() -> R,
+) -> R {
     if s.re() < 0.0 {
         negative()
     } else if s.re() == 0.0 {

@@ -21,7 +21,10 @@ pub fn fasteval<'a>(case: &Case, points: &'a [[f64; SLOTS]]) -> Option<Contestan
     let variables = Box::into_raw(variables);
     for (k, name) in NAMES.iter().enumerate() {
         // SAFETY: the variables live as long as the process
-        unsafe { slab.ps.add_unsafe_var((*name).to_string(), &(*variables)[k]) };
+        unsafe {
+            slab.ps
+                .add_unsafe_var((*name).to_string(), &(*variables)[k])
+        };
     }
     let parsed = fasteval::Parser::new().parse(text, &mut slab.ps);
     let parsed = parsed.unwrap_or_else(|e| panic!("fasteval: {text}: {e}"));
@@ -76,9 +79,13 @@ pub fn exmex<'a>(case: &Case, points: &'a [[f64; SLOTS]]) -> Option<Contestant<'
     if text.is_empty() {
         return None;
     }
-    let flat = exmex::FlatEx::<f64, Operators>::parse(text).unwrap_or_else(|e| panic!("exmex: {text}: {e}"));
-    let slots: Vec<usize> =
-        flat.var_names().iter().filter_map(|name| NAMES.iter().position(|n| n == name)).collect();
+    let flat = exmex::FlatEx::<f64, Operators>::parse(text)
+        .unwrap_or_else(|e| panic!("exmex: {text}: {e}"));
+    let slots: Vec<usize> = flat
+        .var_names()
+        .iter()
+        .filter_map(|name| NAMES.iter().position(|n| n == name))
+        .collect();
     let mut values = vec![0.0; slots.len()];
     Some(Box::new(move |k| {
         for (value, &slot) in values.iter_mut().zip(&slots) {

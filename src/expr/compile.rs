@@ -46,13 +46,20 @@ pub struct Compiler<'a> {
 /// As [`Compiler::add`].
 pub fn compile(asts: &[&Ast], bindings: &Bindings) -> Result<Program, Diagnostic> {
     let mut compiler = Compiler::new(bindings);
-    let outputs = asts.iter().map(|ast| compiler.add(ast)).collect::<Result<Vec<_>, _>>()?;
+    let outputs = asts
+        .iter()
+        .map(|ast| compiler.add(ast))
+        .collect::<Result<Vec<_>, _>>()?;
     Ok(compiler.finish(&outputs))
 }
 
 /// The value of a literal; the suffix D makes it degrees.
 pub fn literal_value(literal: f64, degrees: bool) -> f64 {
-    if degrees { literal * PI / 180.0 } else { literal }
+    if degrees {
+        literal * PI / 180.0
+    } else {
+        literal
+    }
 }
 
 /// The value of a named number, unless the host knows it.
@@ -68,7 +75,11 @@ pub fn constant_value(constant: Constant) -> Option<f64> {
 impl<'a> Compiler<'a> {
     /// A compiler that finds splines and curves in `bindings`.
     pub fn new(bindings: &'a Bindings) -> Self {
-        Self { bindings, builder: RefCell::new(Builder::new(Folding::Strict)), delays: Vec::new() }
+        Self {
+            bindings,
+            builder: RefCell::new(Builder::new(Folding::Strict)),
+            delays: Vec::new(),
+        }
     }
 
     /// What has been recorded; for adding derivatives or own operations.
@@ -99,25 +110,41 @@ impl<'a> Compiler<'a> {
                 Reach::Never => None,
                 reach => {
                     let always = reach == Reach::Always;
-                    Some(self.node(node, &values, always).map_err(|d| place(d, span))?)
+                    Some(
+                        self.node(node, &values, always)
+                            .map_err(|d| place(d, span))?,
+                    )
                 }
             };
             values.push(value);
         }
         match values.get(ast.root as usize) {
             Some(&Some(value)) => Ok(value),
-            _ => Err(Diagnostic::error("unexpected_end", "the expression is empty")),
+            _ => Err(Diagnostic::error(
+                "unexpected_end",
+                "the expression is empty",
+            )),
         }
     }
 
     /// The value of a node whose operands have theirs. `always`: it is evaluated whatever the inputs are.
-    fn node(&mut self, node: &Node, values: &[Option<Value>], always: bool) -> Result<Value, Diagnostic> {
+    fn node(
+        &mut self,
+        node: &Node,
+        values: &[Option<Value>],
+        always: bool,
+    ) -> Result<Value, Diagnostic> {
         let of = |ix: NodeIx| {
             let value = values.get(ix as usize).copied().flatten();
-            value.ok_or_else(|| Diagnostic::error("unexpected_token", "an operand stands after its operator"))
+            value.ok_or_else(|| {
+                Diagnostic::error("unexpected_token", "an operand stands after its operator")
+            })
         };
         let value = match *node {
-            Node::Number { literal, degrees } => self.builder.get_mut().constant(literal_value(literal, degrees)),
+            Node::Number { literal, degrees } => self
+                .builder
+                .get_mut()
+                .constant(literal_value(literal, degrees)),
             Node::Constant(constant) => match (constant_value(constant), constant) {
                 (Some(c), _) => self.builder.get_mut().constant(c),
                 (None, Constant::Mode) => self.builder.get_mut().input(Input::Mode),
@@ -133,9 +160,17 @@ impl<'a> Compiler<'a> {
                 }
                 builder.binary(operation(op), a, b)
             }
-            Node::If { selector, negative, zero, positive } => {
-                let [selector, negative, zero, positive] = [of(selector)?, of(negative)?, of(zero)?, of(positive)?];
-                self.builder.get_mut().arithmetic_if(selector, negative, zero, positive)
+            Node::If {
+                selector,
+                negative,
+                zero,
+                positive,
+            } => {
+                let [selector, negative, zero, positive] =
+                    [of(selector)?, of(negative)?, of(zero)?, of(positive)?];
+                self.builder
+                    .get_mut()
+                    .arithmetic_if(selector, negative, zero, positive)
             }
             Node::Call { callee, ref args } => {
                 let args = args.iter().map(|&a| of(a)).collect::<Result<Vec<_>, _>>()?;
@@ -150,7 +185,10 @@ impl<'a> Compiler<'a> {
 
     fn call(&mut self, callee: Callee, args: &[Value], always: bool) -> Result<Value, Diagnostic> {
         let builder = self.builder.get_mut();
-        let known: Vec<f64> = args.iter().map(|&a| builder.constant_of(a).unwrap_or(f64::NAN)).collect();
+        let known: Vec<f64> = args
+            .iter()
+            .map(|&a| builder.constant_of(a).unwrap_or(f64::NAN))
+            .collect();
         match callee {
             Callee::Function(Function::Delay) => Ok(self.delay(args, &known)),
             Callee::Function(function) => {
@@ -181,7 +219,9 @@ impl<'a> Compiler<'a> {
             // MAX(a, b, c) is MAX(MAX(a, b), c)
             Function::Max | Function::Min if args.len() > 2 => {
                 let first = builder.call(function, &args[..2]);
-                args[2..].iter().fold(first, |m, &x| builder.call(function, &[m, x]))
+                args[2..]
+                    .iter()
+                    .fold(first, |m, &x| builder.call(function, &[m, x]))
             }
             Function::Max | Function::Min | Function::Atan2 | Function::Dim | Function::Sign => {
                 builder.call(function, args)
@@ -209,11 +249,20 @@ impl<'a> Compiler<'a> {
             return self.builder.get_mut().constant(f64::NAN);
         };
         let options = known.get(3).map_or(0, |&x| x as u32);
-        let wanted = Delay { expression, delay, history, options };
-        let k = self.delays.iter().position(|d| *d == wanted).unwrap_or_else(|| {
-            self.delays.push(wanted);
-            self.delays.len() - 1
-        });
+        let wanted = Delay {
+            expression,
+            delay,
+            history,
+            options,
+        };
+        let k = self
+            .delays
+            .iter()
+            .position(|d| *d == wanted)
+            .unwrap_or_else(|| {
+                self.delays.push(wanted);
+                self.delays.len() - 1
+            });
         self.builder.get_mut().input(Input::Delayed(k as u32))
     }
 }
@@ -251,7 +300,12 @@ fn conditional(ast: &Ast) -> Vec<Reach> {
                 mark(*a, here);
                 mark(*b, here);
             }
-            Node::If { selector, negative, zero, positive } => {
+            Node::If {
+                selector,
+                negative,
+                zero,
+                positive,
+            } => {
                 mark(*selector, here);
                 for branch in [negative, zero, positive] {
                     mark(*branch, Reach::Sometimes);
@@ -279,17 +333,27 @@ fn domain(reason: &str) -> Diagnostic {
 
 fn not_finite(node: &Node, c: f64) -> Diagnostic {
     let what = match node {
-        Node::Call { callee: Callee::Function(f), .. } => f.name(),
+        Node::Call {
+            callee: Callee::Function(f),
+            ..
+        } => f.name(),
         Node::Binary(Written::Pow, ..) => "this power",
         Node::Binary(Written::Div, ..) => "this quotient",
         Node::Number { .. } => "this number",
         _ => "this",
     };
-    domain(&if c.is_nan() { format!("{what} has no value") } else { format!("{what} is not finite") })
+    domain(&if c.is_nan() {
+        format!("{what} has no value")
+    } else {
+        format!("{what} is not finite")
+    })
 }
 
 fn place(diagnostic: Diagnostic, span: Span) -> Diagnostic {
-    Diagnostic { span: diagnostic.span.or(Some(span)), ..diagnostic }
+    Diagnostic {
+        span: diagnostic.span.or(Some(span)),
+        ..diagnostic
+    }
 }
 
 #[cfg(test)]
@@ -309,18 +373,29 @@ mod tests {
             self.0.len() as u32 - 1
         }
         fn number(&mut self, literal: f64) -> NodeIx {
-            self.push(Node::Number { literal, degrees: false })
+            self.push(Node::Number {
+                literal,
+                degrees: false,
+            })
         }
         fn time(&mut self) -> NodeIx {
             self.push(Node::Constant(Constant::Time))
         }
         fn call(&mut self, callee: Callee, args: &[NodeIx]) -> NodeIx {
-            self.push(Node::Call { callee, args: args.to_vec() })
+            self.push(Node::Call {
+                callee,
+                args: args.to_vec(),
+            })
         }
         fn ast(self) -> Ast {
             let spans = (0..self.0.len()).map(|k| Span::new(k, k + 1)).collect();
             let root = self.0.len() as u32 - 1;
-            Ast { dialect: Dialect::Function, nodes: self.0, spans, root }
+            Ast {
+                dialect: Dialect::Function,
+                nodes: self.0,
+                spans,
+                root,
+            }
         }
     }
 
@@ -344,7 +419,10 @@ mod tests {
         };
         let (sum, product) = (make(Written::Add), make(Written::Mul));
         let program = compile(&[&sum, &product], &Bindings::default()).unwrap();
-        assert_eq!(program.inputs(), [Input::Measure(Measure::Dx, [1, 2, 0, 0]), Input::Time]);
+        assert_eq!(
+            program.inputs(),
+            [Input::Measure(Measure::Dx, [1, 2, 0, 0]), Input::Time]
+        );
         assert_eq!(program.n_operations(), 3);
         let mut out = [0.0; 2];
         program.run(&[3.0, 0.5], &mut Work::default(), &mut out);
@@ -365,7 +443,12 @@ mod tests {
         let mut t = Tree(Vec::new());
         let negative = root_of_minus_one(&mut t);
         let (selector, zero) = (t.time(), t.number(7.0));
-        t.push(Node::If { selector, negative, zero, positive: selector });
+        t.push(Node::If {
+            selector,
+            negative,
+            zero,
+            positive: selector,
+        });
         let program = compile(&[&t.ast()], &Bindings::default()).unwrap();
         assert!(at(&program, -1.0).is_nan());
         assert_eq!((at(&program, 0.0), at(&program, 2.5)), (7.0, 2.5));
@@ -374,13 +457,21 @@ mod tests {
         let mut t = Tree(Vec::new());
         let (time, zero) = (t.time(), t.number(0.0));
         t.push(Node::Binary(Written::Div, time, zero));
-        assert_eq!(compile(&[&t.ast()], &Bindings::default()).unwrap_err().message, "division by zero");
+        assert_eq!(
+            compile(&[&t.ast()], &Bindings::default())
+                .unwrap_err()
+                .message,
+            "division by zero"
+        );
 
         // STEP with its ends exchanged has no value, whatever x is
         let mut t = Tree(Vec::new());
         let (x, one, two) = (t.time(), t.number(1.0), t.number(2.0));
         t.call(Callee::Function(Function::Step), &[x, two, one, one, two]);
-        assert_eq!(compile(&[&t.ast()], &Bindings::default()).unwrap_err().code, "domain");
+        assert_eq!(
+            compile(&[&t.ast()], &Bindings::default()).unwrap_err().code,
+            "domain"
+        );
     }
 
     #[test]
@@ -409,7 +500,15 @@ mod tests {
     #[test]
     fn many_arguments_of_max_are_pairs() {
         let mut t = Tree(Vec::new());
-        let args: Vec<NodeIx> = (0..100).map(|k| if k == 50 { t.time() } else { t.number(f64::from(k % 7)) }).collect();
+        let args: Vec<NodeIx> = (0..100)
+            .map(|k| {
+                if k == 50 {
+                    t.time()
+                } else {
+                    t.number(f64::from(k % 7))
+                }
+            })
+            .collect();
         t.call(Callee::Function(Function::Max), &args);
         let program = compile(&[&t.ast()], &Bindings::default()).unwrap();
         assert_eq!((at(&program, 3.0), at(&program, 9.0)), (6.0, 9.0));

@@ -106,7 +106,10 @@ impl Interpolation {
         if name.eq_ignore_ascii_case("AKIMA") {
             return Some(Interpolation::Akispl);
         }
-        Self::ALL.iter().copied().find(|f| f.name().eq_ignore_ascii_case(name))
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|f| f.name().eq_ignore_ascii_case(name))
     }
     /// Name as users write it.
     pub fn name(self) -> &'static str {
@@ -174,7 +177,11 @@ impl Spline {
         extrapolation: Extrapolation,
     ) -> Result<Self, UnfitData> {
         if y.len() != z.len().max(1) {
-            return Err(UnfitData(format!("{} curves for {} values of z", y.len(), z.len())));
+            return Err(UnfitData(format!(
+                "{} curves for {} values of z",
+                y.len(),
+                z.len()
+            )));
         }
         if z.iter().any(|z| !z.is_finite()) || z.windows(2).any(|w| w[0] >= w[1]) {
             return Err(UnfitData("z must increase".to_string()));
@@ -184,7 +191,16 @@ impl Spline {
             Piecewise::cubic(&x, curve, ends, extrapolation)?;
         }
         let (akima, cubic, linear) = Default::default();
-        Ok(Self { x, z, y, ends, extrapolation, akima, cubic, linear })
+        Ok(Self {
+            x,
+            z,
+            y,
+            ends,
+            extrapolation,
+            akima,
+            cubic,
+            linear,
+        })
     }
 
     /// Whether it is one curve.
@@ -193,20 +209,32 @@ impl Spline {
     }
     /// Local cubics with Akima's slopes.
     pub fn akima(&self) -> &Arc<Surface> {
-        self.akima.get_or_init(|| self.fit(|y| Piecewise::akima(&self.x, y, self.extrapolation)))
+        self.akima
+            .get_or_init(|| self.fit(|y| Piecewise::akima(&self.x, y, self.extrapolation)))
     }
     /// The cubic spline.
     pub fn cubic(&self) -> &Arc<Surface> {
-        self.cubic.get_or_init(|| self.fit(|y| Piecewise::cubic(&self.x, y, self.ends, self.extrapolation)))
+        self.cubic.get_or_init(|| {
+            self.fit(|y| Piecewise::cubic(&self.x, y, self.ends, self.extrapolation))
+        })
     }
     /// Straight lines.
     pub fn linear(&self) -> &Arc<Surface> {
-        self.linear.get_or_init(|| self.fit(|y| Piecewise::linear(&self.x, y)))
+        self.linear
+            .get_or_init(|| self.fit(|y| Piecewise::linear(&self.x, y)))
     }
 
     fn fit(&self, curve: impl Fn(&[f64]) -> Result<Piecewise, UnfitData>) -> Arc<Surface> {
-        let curves = self.y.iter().filter_map(|y| curve(y).ok()).map(|c| Arc::new(c) as Arc<dyn Table>).collect();
-        Arc::new(Surface { z: self.z.clone(), curves })
+        let curves = self
+            .y
+            .iter()
+            .filter_map(|y| curve(y).ok())
+            .map(|c| Arc::new(c) as Arc<dyn Table>)
+            .collect();
+        Arc::new(Surface {
+            z: self.z.clone(),
+            curves,
+        })
     }
 }
 
@@ -235,7 +263,10 @@ impl Surface {
                 || self.between(x, z, order, middle, last),
             );
         }
-        let (low, high) = (x.lookup(&self.curves[first], order), x.lookup(&self.curves[last], order));
+        let (low, high) = (
+            x.lookup(&self.curves[first], order),
+            x.lookup(&self.curves[last], order),
+        );
         let w = (z - S::constant(self.z[first])).scale(1.0 / (self.z[last] - self.z[first]));
         low + (high - low) * w
     }
@@ -266,19 +297,32 @@ impl Curve {
     ///
     /// When there are too few points, neighbouring points coincide, a closed curve is not closed, or the order is unknown
     /// (through points: 2 or 4).
-    pub fn new(points: &[[f64; 3]], closed: bool, order: usize, kind: CurvePoints) -> Result<Self, UnfitData> {
+    pub fn new(
+        points: &[[f64; 3]],
+        closed: bool,
+        order: usize,
+        kind: CurvePoints,
+    ) -> Result<Self, UnfitData> {
         let (Some(first), Some(last)) = (points.first(), points.last()) else {
             return Err(UnfitData("a curve without points".to_string()));
         };
         if points.len() < 4 {
-            return Err(UnfitData(format!("{} points, but at least 4 are needed", points.len())));
+            return Err(UnfitData(format!(
+                "{} points, but at least 4 are needed",
+                points.len()
+            )));
         }
         if closed && first != last {
-            return Err(UnfitData("the last point of a closed curve must repeat the first".to_string()));
+            return Err(UnfitData(
+                "the last point of a closed curve must repeat the first".to_string(),
+            ));
         }
         let mut lengths = vec![0.0];
         for pair in points.windows(2) {
-            let chord = (0..3).map(|k| (pair[1][k] - pair[0][k]).powi(2)).sum::<f64>().sqrt();
+            let chord = (0..3)
+                .map(|k| (pair[1][k] - pair[0][k]).powi(2))
+                .sum::<f64>()
+                .sqrt();
             lengths.push(lengths[lengths.len() - 1] + chord);
         }
         let total = lengths[lengths.len() - 1];
@@ -288,17 +332,28 @@ impl Curve {
         }
         let component = |k: usize| -> Result<Arc<dyn Table>, UnfitData> {
             let y: Vec<f64> = points.iter().map(|p| p[k]).collect();
-            let ends = if closed { Ends::Periodic } else { Ends::Natural };
+            let ends = if closed {
+                Ends::Periodic
+            } else {
+                Ends::Natural
+            };
             Ok(Arc::new(match (kind, order) {
                 (CurvePoints::Control, _) => Piecewise::b_spline(&y, order, closed, -1.0, 1.0)?,
-                (CurvePoints::OnCurve, 4) => Piecewise::cubic(&alpha, &y, ends, Extrapolation::None)?,
+                (CurvePoints::OnCurve, 4) => {
+                    Piecewise::cubic(&alpha, &y, ends, Extrapolation::None)?
+                }
                 (CurvePoints::OnCurve, 2) => Piecewise::linear(&alpha, &y)?.without_extrapolation(),
                 _ => {
-                    return Err(UnfitData(format!("a curve of order {order} through points; use 2 or 4")));
+                    return Err(UnfitData(format!(
+                        "a curve of order {order} through points; use 2 or 4"
+                    )));
                 }
             }))
         };
-        Ok(Self { components: [component(0)?, component(1)?, component(2)?], closed })
+        Ok(Self {
+            components: [component(0)?, component(1)?, component(2)?],
+            closed,
+        })
     }
 
     /// The x, y and z over the parameter.
@@ -326,7 +381,11 @@ impl Signal {
         let waves = (0..n)
             .map(|k| {
                 let f = f0 + (k as f64 + 0.5) * width;
-                (TAU * f, (2.0 * density(f) * width).sqrt(), TAU * uniform(&mut state))
+                (
+                    TAU * f,
+                    (2.0 * density(f) * width).sqrt(),
+                    TAU * uniform(&mut state),
+                )
             })
             .collect();
         Self { waves }
@@ -339,7 +398,11 @@ impl Table for Signal {
         self.waves
             .iter()
             .map(|&(w, a, phase)| {
-                let a = if order == 0 { a } else { a * Scalar::powi(w, order as i32) };
+                let a = if order == 0 {
+                    a
+                } else {
+                    a * Scalar::powi(w, order as i32)
+                };
                 a * (w * x + phase + quarter_turns).sin()
             })
             .sum()
@@ -380,7 +443,9 @@ impl Bound {
             return S::constant(f64::NAN);
         };
         match self {
-            Bound::Surface(surface, order) => surface.at(x, args.get(1).copied().unwrap_or(x), *order),
+            Bound::Surface(surface, order) => {
+                surface.at(x, args.get(1).copied().unwrap_or(x), *order)
+            }
             Bound::Table(table, order) => x.lookup(table, *order),
         }
     }
@@ -398,12 +463,16 @@ impl Bindings {
         let whole = |k: usize| args.get(k).map_or(0, |&x| x as u32);
         let order = |spline: &Spline, k: usize| match whole(k) {
             0 => Ok(0),
-            _ if !spline.is_single() => {
-                Err(Diagnostic::error("out_of_range", "the derivative of a family of curves is not defined")
-                    .help("an order needs a spline with a single curve"))
-            }
+            _ if !spline.is_single() => Err(Diagnostic::error(
+                "out_of_range",
+                "the derivative of a family of curves is not defined",
+            )
+            .help("an order needs a spline with a single curve")),
             n @ 1..=2 => Ok(n),
-            n => Err(Diagnostic::error("out_of_range", format!("the order is 0, 1 or 2, not {n}"))),
+            n => Err(Diagnostic::error(
+                "out_of_range",
+                format!("the order is 0, 1 or 2, not {n}"),
+            )),
         };
         match function {
             Interpolation::Akispl => {
@@ -417,17 +486,30 @@ impl Bindings {
             Interpolation::Interp => {
                 let spline = self.spline(whole(2))?;
                 if !spline.is_single() {
-                    return Err(Diagnostic::error("out_of_range", "INTERP needs a spline with a single curve"));
+                    return Err(Diagnostic::error(
+                        "out_of_range",
+                        "INTERP needs a spline with a single curve",
+                    ));
                 }
-                let surface = if whole(1) == 1 { spline.linear() } else { spline.cubic() };
+                let surface = if whole(1) == 1 {
+                    spline.linear()
+                } else {
+                    spline.cubic()
+                };
                 Ok(Bound::Table(surface.curves[0].clone(), order(spline, 3)?))
             }
             Interpolation::Curve => {
                 let id = whole(3);
-                let curve = self.curves.get(&id).ok_or_else(|| unknown("curve", id, self.curves.keys()))?;
+                let curve = self
+                    .curves
+                    .get(&id)
+                    .ok_or_else(|| unknown("curve", id, self.curves.keys()))?;
                 match curve.components.get((whole(2) as usize).wrapping_sub(1)) {
                     Some(component) => Ok(Bound::Table(component.clone(), whole(1).min(2))),
-                    None => Err(Diagnostic::error("out_of_range", "the component is 1 (x), 2 (y) or 3 (z)")),
+                    None => Err(Diagnostic::error(
+                        "out_of_range",
+                        "the component is 1 (x), 2 (y) or 3 (z)",
+                    )),
                 }
             }
             Interpolation::Invpsd => self.signal(args),
@@ -435,7 +517,9 @@ impl Bindings {
     }
 
     fn spline(&self, id: u32) -> Result<&Arc<Spline>, Diagnostic> {
-        self.splines.get(&id).ok_or_else(|| unknown("spline", id, self.splines.keys()))
+        self.splines
+            .get(&id)
+            .ok_or_else(|| unknown("spline", id, self.splines.keys()))
     }
 
     /// INVPSD(x, id, f0, f1, nf, linlog, seed)
@@ -460,9 +544,15 @@ impl Bindings {
         let (x, y) = (&spline.x, &spline.y[0]);
         let logarithmic = linlog == 1.0;
         if y.iter().any(|&y| y < 0.0) || logarithmic && x.iter().chain(y).any(|&v| v <= 0.0) {
-            return refuse("a spectrum is not negative, and positive for logarithmic interpolation");
+            return refuse(
+                "a spectrum is not negative, and positive for logarithmic interpolation",
+            );
         }
-        let scale = |v: &Vec<f64>| v.iter().map(|v| if logarithmic { v.ln() } else { *v }).collect::<Vec<f64>>();
+        let scale = |v: &Vec<f64>| {
+            v.iter()
+                .map(|v| if logarithmic { v.ln() } else { *v })
+                .collect::<Vec<f64>>()
+        };
         let density = match Piecewise::linear(&scale(x), &scale(y)) {
             Ok(density) => density,
             Err(reason) => return refuse(&reason.0),
@@ -470,9 +560,22 @@ impl Bindings {
         let at = |f: f64| {
             // outside the data the end value holds
             let f = f.clamp(x[0], x[x.len() - 1]);
-            if logarithmic { density.at(f.ln(), 0).exp() } else { density.at(f, 0).max(0.0) }
+            if logarithmic {
+                density.at(f.ln(), 0).exp()
+            } else {
+                density.at(f, 0).max(0.0)
+            }
         };
-        Ok(Bound::Table(Arc::new(Signal::new(at, f0, f1, nf.round() as usize, seed.round() as i64)), 0))
+        Ok(Bound::Table(
+            Arc::new(Signal::new(
+                at,
+                f0,
+                f1,
+                nf.round() as usize,
+                seed.round() as i64,
+            )),
+            0,
+        ))
     }
 }
 
@@ -496,7 +599,11 @@ mod tests {
 
     fn family() -> Bindings {
         let x = vec![0.0, 1.0, 2.0, 3.0];
-        let y = vec![vec![0.0, 1.0, 2.0, 3.0], vec![5.0, 7.0, 6.0, 5.0], vec![-1.0, 0.0, 4.0, 9.0]];
+        let y = vec![
+            vec![0.0, 1.0, 2.0, 3.0],
+            vec![5.0, 7.0, 6.0, 5.0],
+            vec![-1.0, 0.0, 4.0, 9.0],
+        ];
         let z = vec![0.0, 10.0, 40.0];
         let (ends, outside) = (Ends::Natural, Extrapolation::Parabolic);
         let single = Spline::new(x.clone(), vec![], vec![y[1].clone()], ends, outside).unwrap();
@@ -516,17 +623,28 @@ mod tests {
 
     #[test]
     fn rows_say_how_they_are_written() {
-        assert_eq!(Interpolation::Akispl.signature(), "AKISPL(x, z, id[, iord])");
+        assert_eq!(
+            Interpolation::Akispl.signature(),
+            "AKISPL(x, z, id[, iord])"
+        );
         assert_eq!(Interpolation::Akispl.arity(), 3..=4);
         assert_eq!(Interpolation::Curve.arity(), 4..=4);
         assert_eq!(Interpolation::Curve.parameter_kind(2), Integer(1, 3));
-        assert_eq!(Interpolation::from_name("akima", Dialect::Function), Some(Interpolation::Akispl));
-        assert_eq!(Interpolation::from_name("akispl", Dialect::Expression), None);
+        assert_eq!(
+            Interpolation::from_name("akima", Dialect::Function),
+            Some(Interpolation::Akispl)
+        );
+        assert_eq!(
+            Interpolation::from_name("akispl", Dialect::Expression),
+            None
+        );
     }
 
     #[test]
     fn families_run_linearly_between_their_curves() {
-        let bound = family().bind(Interpolation::Akispl, &[f64::NAN, f64::NAN, 1.0]).unwrap();
+        let bound = family()
+            .bind(Interpolation::Akispl, &[f64::NAN, f64::NAN, 1.0])
+            .unwrap();
         for (x, z, want) in [(1.5, 10.0, 6.5), (1.5, 5.0, 4.0), (2.0, -5.0, 0.0)] {
             assert_relative_eq!(bound.eval(&[x, z]), want, epsilon = 1e-12);
         }
@@ -538,24 +656,43 @@ mod tests {
     #[test]
     fn orders_and_jets_agree() {
         let data = family();
-        let at = |order: f64| data.bind(Interpolation::Cubspl, &[f64::NAN, 0.0, 2.0, order]).unwrap();
+        let at = |order: f64| {
+            data.bind(Interpolation::Cubspl, &[f64::NAN, 0.0, 2.0, order])
+                .unwrap()
+        };
         let jet = at(0.0).eval(&[Jet::variable(1.3), Jet::constant(0.0)]);
         assert_eq!(jet.value, at(0.0).eval(&[1.3, 0.0]));
         assert_eq!(jet.first, at(1.0).eval(&[1.3, 0.0]));
         assert_eq!(jet.second, at(2.0).eval(&[1.3, 0.0]));
-        assert_eq!(data.bind(Interpolation::Cubspl, &[f64::NAN, 0.0, 1.0, 1.0]).unwrap_err().code, "out_of_range");
-        assert_eq!(data.bind(Interpolation::Cubspl, &[f64::NAN, 0.0, 3.0]).unwrap_err().code, "unknown_element");
+        assert_eq!(
+            data.bind(Interpolation::Cubspl, &[f64::NAN, 0.0, 1.0, 1.0])
+                .unwrap_err()
+                .code,
+            "out_of_range"
+        );
+        assert_eq!(
+            data.bind(Interpolation::Cubspl, &[f64::NAN, 0.0, 3.0])
+                .unwrap_err()
+                .code,
+            "unknown_element"
+        );
     }
 
     #[test]
     fn a_closed_curve_through_a_circle_is_nearly_one() {
         let data = family();
         let at = |order: f64, component: f64, alpha: f64| {
-            data.bind(Interpolation::Curve, &[f64::NAN, order, component, 8.0]).unwrap().eval(&[alpha])
+            data.bind(Interpolation::Curve, &[f64::NAN, order, component, 8.0])
+                .unwrap()
+                .eval(&[alpha])
         };
         for k in 0..50 {
             let alpha = -1.0 + f64::from(k) / 25.0;
-            let (x, y, z) = (at(0.0, 1.0, alpha), at(0.0, 2.0, alpha), at(0.0, 3.0, alpha));
+            let (x, y, z) = (
+                at(0.0, 1.0, alpha),
+                at(0.0, 2.0, alpha),
+                at(0.0, 3.0, alpha),
+            );
             assert_relative_eq!(x.hypot(y), 1.0, epsilon = 1e-4);
             assert_relative_eq!(z, 1.0);
             let speed = at(1.0, 1.0, alpha).hypot(at(1.0, 2.0, alpha));
@@ -570,21 +707,51 @@ mod tests {
         let x = vec![1.0, 5.0, 10.0, 20.0];
         let y = vec![vec![0.5; 4]];
         let spline = Spline::new(x, vec![], y, Ends::Natural, Extrapolation::Parabolic).unwrap();
-        let data = Bindings { splines: [(3, Arc::new(spline))].into(), curves: BTreeMap::new() };
-        let bind = |seed: f64| data.bind(Interpolation::Invpsd, &[f64::NAN, 3.0, 2.0, 12.0, 50.0, 0.0, seed]).unwrap();
+        let data = Bindings {
+            splines: [(3, Arc::new(spline))].into(),
+            curves: BTreeMap::new(),
+        };
+        let bind = |seed: f64| {
+            data.bind(
+                Interpolation::Invpsd,
+                &[f64::NAN, 3.0, 2.0, 12.0, 50.0, 0.0, seed],
+            )
+            .unwrap()
+        };
         let (a, again, other) = (bind(7.0), bind(7.2), bind(8.0));
         assert_eq!(a.eval(&[0.3]), again.eval(&[0.3]));
         assert_ne!(a.eval(&[0.3]), other.eval(&[0.3]));
         // mean square over one common period (5 s: bands of 0.2 cycles per unit, centred on odd multiples of 0.1)
         let n = 20_000;
-        let mean: f64 =
-            (0..n).map(|k| a.eval(&[10.0 * f64::from(k) / f64::from(n)]).powi(2)).sum::<f64>() / f64::from(n);
+        let mean: f64 = (0..n)
+            .map(|k| a.eval(&[10.0 * f64::from(k) / f64::from(n)]).powi(2))
+            .sum::<f64>()
+            / f64::from(n);
         assert_relative_eq!(mean, 0.5 * 10.0, max_relative = 1e-9);
         let jet = a.eval(&[Jet::variable(0.4)]);
         let h = 1e-5;
-        assert_relative_eq!(jet.first, (a.eval(&[0.4 + h]) - a.eval(&[0.4 - h])) / (2.0 * h), max_relative = 1e-5);
-        assert!(data.bind(Interpolation::Invpsd, &[0.0, 3.0, 2.0, 1.0, 50.0, 0.0, 1.0]).is_err());
-        assert!(data.bind(Interpolation::Invpsd, &[0.0, 3.0, 2.0, 12.0, f64::NAN, 0.0, 1.0]).is_err());
-        assert!(data.bind(Interpolation::Invpsd, &[0.0, 3.0, 2.0, 12.0, 1e12, 0.0, 1.0]).is_err());
+        assert_relative_eq!(
+            jet.first,
+            (a.eval(&[0.4 + h]) - a.eval(&[0.4 - h])) / (2.0 * h),
+            max_relative = 1e-5
+        );
+        assert!(
+            data.bind(Interpolation::Invpsd, &[0.0, 3.0, 2.0, 1.0, 50.0, 0.0, 1.0])
+                .is_err()
+        );
+        assert!(
+            data.bind(
+                Interpolation::Invpsd,
+                &[0.0, 3.0, 2.0, 12.0, f64::NAN, 0.0, 1.0]
+            )
+            .is_err()
+        );
+        assert!(
+            data.bind(
+                Interpolation::Invpsd,
+                &[0.0, 3.0, 2.0, 12.0, 1e12, 0.0, 1.0]
+            )
+            .is_err()
+        );
     }
 }

@@ -58,16 +58,31 @@ impl std::error::Error for UnfitData {}
 /// That there are enough finite points with increasing x.
 pub(super) fn check(x: &[f64], y: &[f64], least: usize) -> Result<(), UnfitData> {
     if x.len() != y.len() {
-        return Err(UnfitData(format!("{} values of x but {} of y", x.len(), y.len())));
+        return Err(UnfitData(format!(
+            "{} values of x but {} of y",
+            x.len(),
+            y.len()
+        )));
     }
     if x.len() < least {
-        return Err(UnfitData(format!("{} points, but at least {least} are needed", x.len())));
+        return Err(UnfitData(format!(
+            "{} points, but at least {least} are needed",
+            x.len()
+        )));
     }
-    if let Some(k) = x.iter().zip(y).position(|(x, y)| !(x.is_finite() && y.is_finite())) {
+    if let Some(k) = x
+        .iter()
+        .zip(y)
+        .position(|(x, y)| !(x.is_finite() && y.is_finite()))
+    {
         return Err(UnfitData(format!("point {} is not a number", k + 1)));
     }
     if let Some(k) = x.windows(2).position(|w| w[0] >= w[1]) {
-        return Err(UnfitData(format!("x must increase, but {} is followed by {}", x[k], x[k + 1])));
+        return Err(UnfitData(format!(
+            "x must increase, but {} is followed by {}",
+            x[k],
+            x[k + 1]
+        )));
     }
     Ok(())
 }
@@ -111,13 +126,23 @@ impl Piecewise {
         let pieces = (0..n - 1).map(|i| {
             let h = x[i + 1] - x[i];
             let (m, t0, t1) = (m[i + 2], slopes[i], slopes[i + 1]);
-            vec![y[i], t0, (3.0 * m - 2.0 * t0 - t1) / h, (t0 + t1 - 2.0 * m) / (h * h)]
+            vec![
+                y[i],
+                t0,
+                (3.0 * m - 2.0 * t0 - t1) / h,
+                (t0 + t1 - 2.0 * m) / (h * h),
+            ]
         });
         Ok(Self::assemble(x, y, 3, pieces, extrapolation))
     }
 
     /// The cubic spline with continuous curvature.
-    pub fn cubic(x: &[f64], y: &[f64], ends: Ends, extrapolation: Extrapolation) -> Result<Self, UnfitData> {
+    pub fn cubic(
+        x: &[f64],
+        y: &[f64],
+        ends: Ends,
+        extrapolation: Extrapolation,
+    ) -> Result<Self, UnfitData> {
         check(x, y, 2)?;
         let m = curvatures(x, y, ends)?;
         let pieces = (0..x.len() - 1).map(|i| {
@@ -130,10 +155,18 @@ impl Piecewise {
 
     /// The B-spline of an order (degree + 1) with equally spaced knots over `[from, to]`: clamped to the first and last
     /// control point, or closed.
-    pub fn b_spline(control: &[f64], order: usize, closed: bool, from: f64, to: f64) -> Result<Self, UnfitData> {
+    pub fn b_spline(
+        control: &[f64],
+        order: usize,
+        closed: bool,
+        from: f64,
+        to: f64,
+    ) -> Result<Self, UnfitData> {
         let degree = order.saturating_sub(1);
         if !(1..=9).contains(&degree) {
-            return Err(UnfitData(format!("a B-spline of order {order}, but orders 2 to 10 are known")));
+            return Err(UnfitData(format!(
+                "a B-spline of order {order}, but orders 2 to 10 are known"
+            )));
         }
         let mut control = control.to_vec();
         if closed {
@@ -141,32 +174,52 @@ impl Piecewise {
             control.pop();
         }
         if control.len() < order.max(2) {
-            return Err(UnfitData(format!("{} control points, but order {order} needs more", control.len())));
+            return Err(UnfitData(format!(
+                "{} control points, but order {order} needs more",
+                control.len()
+            )));
         }
-        let n_spans = if closed { control.len() } else { control.len() - degree };
+        let n_spans = if closed {
+            control.len()
+        } else {
+            control.len() - degree
+        };
         let width = (to - from) / n_spans as f64;
         if control.iter().any(|c| !c.is_finite()) || !(width > 0.0 && width.is_finite()) {
-            return Err(UnfitData("control points and the range of the parameter must be numbers".to_string()));
+            return Err(UnfitData(
+                "control points and the range of the parameter must be numbers".to_string(),
+            ));
         }
         // knots in units of spans: knot(i) for i in 0..control.len() + order
         let knot = |i: usize| {
             let k = i as f64 - degree as f64;
-            if closed { k } else { k.clamp(0.0, n_spans as f64) }
+            if closed {
+                k
+            } else {
+                k.clamp(0.0, n_spans as f64)
+            }
         };
         let pieces = (0..n_spans).map(|span| {
-            let mut points: Vec<f64> = (0..=degree).map(|j| control[(span + j) % control.len()]).collect();
+            let mut points: Vec<f64> = (0..=degree)
+                .map(|j| control[(span + j) % control.len()])
+                .collect();
             // derivatives at the start of the span: difference the control points, then evaluate by de Boor
             let mut coefficients = Vec::with_capacity(order);
             let (mut scale, mut lost) = (1.0, 0);
             loop {
                 let remaining = degree - lost;
-                coefficients.push(scale * de_boor(&points, remaining, span as f64, |i| knot(span + i + lost)));
+                coefficients.push(
+                    scale * de_boor(&points, remaining, span as f64, |i| knot(span + i + lost)),
+                );
                 if remaining == 0 {
                     break;
                 }
                 points = (0..remaining)
                     .map(|j| {
-                        let (a, b) = (knot(span + j + 1 + lost), knot(span + j + 1 + lost + remaining));
+                        let (a, b) = (
+                            knot(span + j + 1 + lost),
+                            knot(span + j + 1 + lost + remaining),
+                        );
                         remaining as f64 * (points[j + 1] - points[j]) / (b - a)
                     })
                     .collect();
@@ -175,7 +228,15 @@ impl Piecewise {
             }
             coefficients
         });
-        let x: Vec<f64> = (0..=n_spans).map(|k| if k == n_spans { to } else { from + width * k as f64 }).collect();
+        let x: Vec<f64> = (0..=n_spans)
+            .map(|k| {
+                if k == n_spans {
+                    to
+                } else {
+                    from + width * k as f64
+                }
+            })
+            .collect();
         let y = vec![0.0; x.len()];
         Ok(Self::assemble(&x, &y, degree, pieces, Extrapolation::None))
     }
@@ -210,7 +271,12 @@ impl Piecewise {
         }
         coefficients.extend(outside(n - 1, n - 2, n.saturating_sub(3)));
         let density = (n - 1) as f64 / (x[n - 1] - x[0]);
-        Self { knots: x.to_vec(), coefficients, degree, density }
+        Self {
+            knots: x.to_vec(),
+            coefficients,
+            degree,
+            density,
+        }
     }
 
     /// The same, without values outside the data.
@@ -270,7 +336,11 @@ impl Table for Piecewise {
             };
         }
         // j!/(j − order)! cⱼ u^(j − order), highest first; NaN where the place itself is none
-        let mut sum = if x.is_nan() || c[0].is_nan() { f64::NAN } else { 0.0 };
+        let mut sum = if x.is_nan() || c[0].is_nan() {
+            f64::NAN
+        } else {
+            0.0
+        };
         for j in (order..width).rev() {
             let factor: f64 = (0..order).map(|k| (j - k) as f64).product();
             sum = sum * u + factor * c[j];
@@ -303,7 +373,12 @@ fn curvatures(x: &[f64], y: &[f64], ends: Ends) -> Result<Vec<f64>, UnfitData> {
     let m: Vec<f64> = (0..n - 1).map(|i| (y[i + 1] - y[i]) / h[i]).collect();
     let mut rows = vec![[0.0, 1.0, 0.0, 0.0]; n]; // below, diagonal, above, right-hand side
     for i in 1..n - 1 {
-        rows[i] = [h[i - 1], 2.0 * (h[i - 1] + h[i]), h[i], 6.0 * (m[i] - m[i - 1])];
+        rows[i] = [
+            h[i - 1],
+            2.0 * (h[i - 1] + h[i]),
+            h[i],
+            6.0 * (m[i] - m[i - 1]),
+        ];
     }
     match ends {
         Ends::Natural => Ok(tridiagonal(rows)),
@@ -314,7 +389,9 @@ fn curvatures(x: &[f64], y: &[f64], ends: Ends) -> Result<Vec<f64>, UnfitData> {
         }
         Ends::NotAKnot => {
             if n < 4 {
-                return Err(UnfitData(format!("{n} points, but not-a-knot ends need at least 4")));
+                return Err(UnfitData(format!(
+                    "{n} points, but not-a-knot ends need at least 4"
+                )));
             }
             // M₀ = (1 + r) M₁ − r M₂ with r = h₀/h₁ makes the third derivative continuous at x₁; likewise at the end
             let (r, s) = (h[0] / h[1], h[n - 2] / h[n - 3]);
@@ -329,10 +406,14 @@ fn curvatures(x: &[f64], y: &[f64], ends: Ends) -> Result<Vec<f64>, UnfitData> {
         }
         Ends::Periodic => {
             if y[0] != y[n - 1] {
-                return Err(UnfitData("periodic ends need equal first and last values".to_string()));
+                return Err(UnfitData(
+                    "periodic ends need equal first and last values".to_string(),
+                ));
             }
             if n < 3 {
-                return Err(UnfitData("periodic ends need at least 3 points".to_string()));
+                return Err(UnfitData(
+                    "periodic ends need at least 3 points".to_string(),
+                ));
             }
             Ok(periodic(&h, &m))
         }
@@ -349,7 +430,11 @@ fn tridiagonal(mut rows: Vec<[f64; 4]>) -> Vec<f64> {
     }
     let mut x = vec![0.0; n];
     for i in (0..n).rev() {
-        let next = if i + 1 < n { rows[i][2] * x[i + 1] } else { 0.0 };
+        let next = if i + 1 < n {
+            rows[i][2] * x[i + 1]
+        } else {
+            0.0
+        };
         x[i] = (rows[i][3] - next) / rows[i][1];
     }
     x
@@ -359,8 +444,16 @@ fn tridiagonal(mut rows: Vec<[f64; 4]>) -> Vec<f64> {
 fn periodic(h: &[f64], m: &[f64]) -> Vec<f64> {
     let n = h.len(); // unknowns; the last point is the first
     let before = |i: usize| if i == 0 { n - 1 } else { i - 1 };
-    let mut rows: Vec<[f64; 4]> =
-        (0..n).map(|i| [h[before(i)], 2.0 * (h[before(i)] + h[i]), h[i], 6.0 * (m[i] - m[before(i)])]).collect();
+    let mut rows: Vec<[f64; 4]> = (0..n)
+        .map(|i| {
+            [
+                h[before(i)],
+                2.0 * (h[before(i)] + h[i]),
+                h[i],
+                6.0 * (m[i] - m[before(i)]),
+            ]
+        })
+        .collect();
     let solution = if n == 2 {
         // both neighbours are the other point
         let off = h[0] + h[1];
@@ -380,8 +473,13 @@ fn periodic(h: &[f64], m: &[f64]) -> Vec<f64> {
         rows[0][3] = gamma;
         rows[n - 1][3] = corner;
         let edge = tridiagonal(rows);
-        let factor = (plain[0] + corner * plain[n - 1] / gamma) / (1.0 + edge[0] + corner * edge[n - 1] / gamma);
-        plain.iter().zip(&edge).map(|(p, e)| p - factor * e).collect()
+        let factor = (plain[0] + corner * plain[n - 1] / gamma)
+            / (1.0 + edge[0] + corner * edge[n - 1] / gamma);
+        plain
+            .iter()
+            .zip(&edge)
+            .map(|(p, e)| p - factor * e)
+            .collect()
     };
     let first = solution[0];
     [solution, vec![first]].concat()
@@ -424,7 +522,12 @@ mod tests {
                 for order in 0..4 {
                     let h = 1e-5;
                     let difference = (curve.at(x + h, order) - curve.at(x - h, order)) / (2.0 * h);
-                    assert_relative_eq!(curve.at(x, order + 1), difference, epsilon = 1e-5, max_relative = 1e-7);
+                    assert_relative_eq!(
+                        curve.at(x, order + 1),
+                        difference,
+                        epsilon = 1e-5,
+                        max_relative = 1e-7
+                    );
                 }
             }
         }
@@ -439,7 +542,9 @@ mod tests {
                 assert_relative_eq!(jump(curve, *x, 2), 0.0, epsilon = 1e-8);
             }
         }
-        let [.., natural, not_a_knot, clamped, periodic] = &kinds()[..] else { unreachable!() };
+        let [.., natural, not_a_knot, clamped, periodic] = &kinds()[..] else {
+            unreachable!()
+        };
         assert_relative_eq!(natural.at(0.0, 2), 0.0);
         assert_relative_eq!(natural.at(3.0, 2), 0.0, epsilon = 1e-12);
         assert_relative_eq!(jump(not_a_knot, X[1], 3), 0.0, epsilon = 1e-9);
@@ -447,23 +552,55 @@ mod tests {
         assert_relative_eq!(clamped.at(0.0, 1), 0.5, epsilon = 1e-12);
         assert_relative_eq!(clamped.at(3.0, 1), -2.0, epsilon = 1e-12);
         for order in 0..3 {
-            assert_relative_eq!(periodic.at(0.0, order), periodic.at(3.0, order), epsilon = 1e-9);
+            assert_relative_eq!(
+                periodic.at(0.0, order),
+                periodic.at(3.0, order),
+                epsilon = 1e-9
+            );
         }
     }
 
     #[test]
     fn few_points_still_make_a_curve_or_say_why_not() {
-        let line = Piecewise::cubic(&[0.0, 2.0], &[1.0, 5.0], Ends::Natural, Extrapolation::Parabolic).unwrap();
+        let line = Piecewise::cubic(
+            &[0.0, 2.0],
+            &[1.0, 5.0],
+            Ends::Natural,
+            Extrapolation::Parabolic,
+        )
+        .unwrap();
         assert_relative_eq!(line.at(3.0, 0), 7.0);
-        let periodic =
-            Piecewise::cubic(&[0.0, 1.0, 3.0], &[1.0, 2.0, 1.0], Ends::Periodic, Extrapolation::None).unwrap();
+        let periodic = Piecewise::cubic(
+            &[0.0, 1.0, 3.0],
+            &[1.0, 2.0, 1.0],
+            Ends::Periodic,
+            Extrapolation::None,
+        )
+        .unwrap();
         assert_relative_eq!(periodic.at(0.0, 1), periodic.at(3.0, 1), epsilon = 1e-14);
-        assert_relative_eq!(periodic.at(1.0, 2), periodic.at(1.0 - 1e-13, 2), epsilon = 1e-9);
+        assert_relative_eq!(
+            periodic.at(1.0, 2),
+            periodic.at(1.0 - 1e-13, 2),
+            epsilon = 1e-9
+        );
         assert!(periodic.at(3.1, 0).is_nan());
-        let refuse = |x: &[f64], y: &[f64], ends| Piecewise::cubic(x, y, ends, Extrapolation::None).unwrap_err().0;
-        assert_eq!(refuse(&[0.0], &[1.0], Ends::Natural), "1 points, but at least 2 are needed");
-        assert_eq!(refuse(&[0.0, 0.0], &[1.0, 2.0], Ends::Natural), "x must increase, but 0 is followed by 0");
-        assert_eq!(refuse(&[0.0, f64::NAN], &[1.0, 2.0], Ends::Natural), "point 2 is not a number");
+        let refuse = |x: &[f64], y: &[f64], ends| {
+            Piecewise::cubic(x, y, ends, Extrapolation::None)
+                .unwrap_err()
+                .0
+        };
+        assert_eq!(
+            refuse(&[0.0], &[1.0], Ends::Natural),
+            "1 points, but at least 2 are needed"
+        );
+        assert_eq!(
+            refuse(&[0.0, 0.0], &[1.0, 2.0], Ends::Natural),
+            "x must increase, but 0 is followed by 0"
+        );
+        assert_eq!(
+            refuse(&[0.0, f64::NAN], &[1.0, 2.0], Ends::Natural),
+            "point 2 is not a number"
+        );
         assert!(refuse(&[0.0, 1.0, 2.0], &[1.0, 2.0, 3.0], Ends::Periodic).contains("equal"));
         assert!(refuse(&[0.0, 1.0, 2.0], &[1.0, 2.0, 3.0], Ends::NotAKnot).contains("at least 4"));
     }
@@ -477,8 +614,12 @@ mod tests {
         let open = Piecewise::b_spline(&Y, 4, false, -1.0, 1.0).unwrap();
         assert_relative_eq!(open.at(-1.0, 0), Y[0], epsilon = 1e-14);
         assert_relative_eq!(open.at(1.0, 0), Y[5], epsilon = 1e-14);
-        let closed = Piecewise::b_spline(&[0.0, 1.0, 5.0, 2.0, -1.0, 0.0], 4, true, -1.0, 1.0).unwrap();
-        for (curve, joints) in [(&open, &open.knots[1..open.knots.len() - 1]), (&closed, &closed.knots[1..5])] {
+        let closed =
+            Piecewise::b_spline(&[0.0, 1.0, 5.0, 2.0, -1.0, 0.0], 4, true, -1.0, 1.0).unwrap();
+        for (curve, joints) in [
+            (&open, &open.knots[1..open.knots.len() - 1]),
+            (&closed, &closed.knots[1..5]),
+        ] {
             for x in joints {
                 for order in 0..3 {
                     let before = curve.at(x - 1e-11, order);
@@ -487,12 +628,23 @@ mod tests {
             }
         }
         for order in 0..3 {
-            assert_relative_eq!(closed.at(-1.0, order), closed.at(1.0, order), epsilon = 1e-9);
+            assert_relative_eq!(
+                closed.at(-1.0, order),
+                closed.at(1.0, order),
+                epsilon = 1e-9
+            );
         }
         // the uniform cubic blends 1:4:1 at a knot
         let knot = closed.knots[1];
-        let want = [1.0, 5.0, 2.0, -1.0].windows(3).map(|w| (w[0] + 4.0 * w[1] + w[2]) / 6.0).collect::<Vec<_>>();
-        assert!(want.iter().any(|w| (closed.at(knot, 0) - w).abs() < 1e-12), "{} {want:?}", closed.at(knot, 0));
+        let want = [1.0, 5.0, 2.0, -1.0]
+            .windows(3)
+            .map(|w| (w[0] + 4.0 * w[1] + w[2]) / 6.0)
+            .collect::<Vec<_>>();
+        assert!(
+            want.iter().any(|w| (closed.at(knot, 0) - w).abs() < 1e-12),
+            "{} {want:?}",
+            closed.at(knot, 0)
+        );
         assert!(Piecewise::b_spline(&[1.0, 2.0], 4, false, -1.0, 1.0).is_err());
         assert!(Piecewise::b_spline(&Y, 1, false, -1.0, 1.0).is_err());
         assert!(Piecewise::b_spline(&[], 4, true, -1.0, 1.0).is_err());

@@ -128,7 +128,11 @@ impl<const N: usize> Scalar for Lanes<N> {
             }
             square = square * square;
         }
-        if n < 0 { Self::constant(1.0) / product } else { product }
+        if n < 0 {
+            Self::constant(1.0) / product
+        } else {
+            product
+        }
     }
     #[inline(always)]
     fn powf(self, exponent: Self) -> Self {

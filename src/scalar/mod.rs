@@ -514,10 +514,9 @@ macro_rules! elementary_functions {
                 let zero = <$S>::zero();
                 let one = <$S>::one();
                 let value = a.powf(b);
-                if b
-                    .known()
-                    .is_some_and(|b| $crate::scalar::Exponent::of(b) == $crate::scalar::Exponent::Other)
-                {
+                if b.known().is_some_and(|b| {
+                    $crate::scalar::Exponent::of(b) == $crate::scalar::Exponent::Other
+                }) {
                     // a power that costs is not computed again: aᵇ⁻¹ = aᵇ/a, except at a = 0
                     let at_zero = a.same(zero);
                     let d1 = <$S>::choose(at_zero, || b * a.powf(b - one), || b * (value / a));

@@ -13,12 +13,25 @@ use crate::scalar::{Mask, Scalar};
 /// `IMPACT(x, x_dot, x1, k, e, cmax, d)`; `per_depth` is 1/d.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
-pub fn impact<S: Scalar>(x: S, x_dot: S, x1: S, k: S, cmax: S, d: S, per_depth: S, power: impl FnOnce(S) -> S) -> S {
+pub fn impact<S: Scalar>(
+    x: S,
+    x_dot: S,
+    x1: S,
+    k: S,
+    cmax: S,
+    d: S,
+    per_depth: S,
+    power: impl FnOnce(S) -> S,
+) -> S {
     let free = x1.le(x);
     if free.known() == Some(true) {
         return S::zero();
     }
-    S::select(free, S::zero(), contact(x1 - x, -x_dot, k, cmax, d, per_depth, power))
+    S::select(
+        free,
+        S::zero(),
+        contact(x1 - x, -x_dot, k, cmax, d, per_depth, power),
+    )
 }
 
 /// `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
@@ -49,7 +62,15 @@ pub fn bistop<S: Scalar>(
 
 /// Force at penetration `p > 0` and penetration rate `p_dot`; never attractive. `power` is `pᵉ`.
 #[inline(always)]
-fn contact<S: Scalar>(p: S, p_dot: S, k: S, cmax: S, d: S, per_depth: S, power: impl FnOnce(S) -> S) -> S {
+fn contact<S: Scalar>(
+    p: S,
+    p_dot: S,
+    k: S,
+    cmax: S,
+    d: S,
+    per_depth: S,
+    power: impl FnOnce(S) -> S,
+) -> S {
     let elastic = k * power(p);
     let c = S::choose(d.le(p), || cmax, || cmax * cubic(p * per_depth));
     let force = elastic + c * p_dot;

@@ -111,7 +111,9 @@ impl Row {
     /// How many arguments may be written.
     pub fn arity(&self) -> RangeInclusive<usize> {
         let required = self.parameters.iter().filter(|p| !p.optional).count();
-        let (least, most) = self.further.map_or((0, 0), |(_, least, most)| (least, most));
+        let (least, most) = self
+            .further
+            .map_or((0, 0), |(_, least, most)| (least, most));
         required + least..=self.parameters.len() + most
     }
 
@@ -128,7 +130,9 @@ impl Row {
         }
         match self.further {
             Some((_, 0, _)) => text += "[, …]",
-            Some((name, _, most)) => text += &format!(", {name}0[, {name}1, …, {name}{}]", most - 1),
+            Some((name, _, most)) => {
+                text += &format!(", {name}0[, {name}1, …, {name}{}]", most - 1)
+            }
             None => {}
         }
         text + ")"
@@ -138,7 +142,10 @@ impl Row {
 impl Function {
     /// The function of this name in this language; upper and lower case are the same.
     pub fn from_name(name: &str, dialect: Dialect) -> Option<Function> {
-        Self::ALL.iter().copied().find(|f| f.row().dialect == dialect && f.name().eq_ignore_ascii_case(name))
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|f| f.row().dialect == dialect && f.name().eq_ignore_ascii_case(name))
     }
     /// Name as users write it.
     pub fn name(self) -> &'static str {
@@ -154,7 +161,10 @@ impl Function {
     }
     /// What the `k`-th argument may be (`k` from 0).
     pub fn parameter_kind(self, k: usize) -> ParameterKind {
-        self.row().parameters.get(k).map_or(ParameterKind::Number, |p| p.kind)
+        self.row()
+            .parameters
+            .get(k)
+            .map_or(ParameterKind::Number, |p| p.kind)
     }
 }
 
@@ -165,8 +175,16 @@ mod tests {
     #[test]
     fn names_are_unique_within_a_dialect() {
         for &f in Function::ALL {
-            assert_eq!(Function::from_name(f.name(), f.row().dialect), Some(f), "{}", f.name());
-            assert_eq!(Function::from_name(&f.name().to_lowercase(), f.row().dialect), Some(f));
+            assert_eq!(
+                Function::from_name(f.name(), f.row().dialect),
+                Some(f),
+                "{}",
+                f.name()
+            );
+            assert_eq!(
+                Function::from_name(&f.name().to_lowercase(), f.row().dialect),
+                Some(f)
+            );
         }
         assert_eq!(Function::from_name("LN", Dialect::Function), None);
         assert_eq!(Function::from_name("STEP", Dialect::Expression), None);
@@ -194,9 +212,19 @@ mod tests {
     #[test]
     fn forbidden_arguments_give_no_number() {
         assert!(Function::Step.eval(&[0.0, 1.0, 0.0, 1.0, 1.0]).is_nan());
-        assert_eq!(Function::Step.violation(&[f64::NAN, 1.0, 0.0, 1.0, 1.0]), Some("x0 must be less than x1"));
-        assert_eq!(Function::Step.violation(&[0.0, f64::NAN, 0.0, 1.0, 1.0]), None);
-        assert!(Function::Impact.eval(&[0.5, 0.0, 1.0, -100.0, 1.5, 25.0, 0.1]).is_nan());
+        assert_eq!(
+            Function::Step.violation(&[f64::NAN, 1.0, 0.0, 1.0, 1.0]),
+            Some("x0 must be less than x1")
+        );
+        assert_eq!(
+            Function::Step.violation(&[0.0, f64::NAN, 0.0, 1.0, 1.0]),
+            None
+        );
+        assert!(
+            Function::Impact
+                .eval(&[0.5, 0.0, 1.0, -100.0, 1.5, 25.0, 0.1])
+                .is_nan()
+        );
         assert!(Function::Atan2.eval(&[0.0, -0.0]).is_nan());
         assert_eq!(Function::Atan2.eval(&[-0.0, -1.0]), std::f64::consts::PI);
     }

@@ -35,7 +35,11 @@ impl Prepared {
             Function::Impact | Function::Bistop => 2,
             _ => 1,
         };
-        let constants = args.get(variable..)?.iter().copied().collect::<Option<Vec<f64>>>()?;
+        let constants = args
+            .get(variable..)?
+            .iter()
+            .copied()
+            .collect::<Option<Vec<f64>>>()?;
         let mut known = vec![f64::NAN; variable];
         known.extend(&constants);
         if function.violation(&known).is_some() {
@@ -54,12 +58,14 @@ impl Prepared {
             (Function::Cheby, _) => (Prepared::Cheby, constants),
             (Function::Forcos, _) => (Prepared::Forcos, constants),
             (Function::Forsin, _) => (Prepared::Forsin, constants),
-            (Function::Impact, &[x1, k, e, cmax, d]) => {
-                (Prepared::Impact(Exponent::of(e)), vec![x1, k, cmax, d, d.recip(), e])
-            }
-            (Function::Bistop, &[x1, x2, k, e, cmax, d]) => {
-                (Prepared::Bistop(Exponent::of(e)), vec![x1, x2, k, cmax, d, d.recip(), e])
-            }
+            (Function::Impact, &[x1, k, e, cmax, d]) => (
+                Prepared::Impact(Exponent::of(e)),
+                vec![x1, k, cmax, d, d.recip(), e],
+            ),
+            (Function::Bistop, &[x1, x2, k, e, cmax, d]) => (
+                Prepared::Bistop(Exponent::of(e)),
+                vec![x1, x2, k, cmax, d, d.recip(), e],
+            ),
             _ => return None,
         };
         Some(prepared)
@@ -82,7 +88,17 @@ pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) ->
     let x1 = S::constant(x1);
     let h0 = S::constant(h0);
     let h1 = S::constant(h1);
-    S::choose(x.le(x0), || h0, || S::choose(x1.le(x), || h1, || h0 + shape((x - x0).scale(per_length)).scale(rise)))
+    S::choose(
+        x.le(x0),
+        || h0,
+        || {
+            S::choose(
+                x1.le(x),
+                || h1,
+                || h0 + shape((x - x0).scale(per_length)).scale(rise),
+            )
+        },
+    )
 }
 
 /// A step whose three pieces are all computed: the better way for many samples at once.
@@ -143,7 +159,9 @@ pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent)
     let cmax = S::constant(cmax);
     let d = S::constant(d);
     let per_depth = S::constant(per_depth);
-    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| p.power(exponent, e))
+    contact::impact(x, x_dot, x1, k, cmax, d, per_depth, |p| {
+        p.power(exponent, e)
+    })
 }
 
 /// BISTOP
@@ -156,7 +174,9 @@ pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent)
     let cmax = S::constant(cmax);
     let d = S::constant(d);
     let per_depth = S::constant(per_depth);
-    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| p.power(exponent, e))
+    contact::bistop(x, x_dot, x1, x2, k, cmax, d, per_depth, |p| {
+        p.power(exponent, e)
+    })
 }
 
 /// A number that can be raised to a power whose kind is known.

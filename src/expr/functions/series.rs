@@ -51,7 +51,12 @@ pub fn sines<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S) -> S {
 }
 
 #[inline(always)]
-fn harmonics<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S, part: impl Fn((S, S)) -> S) -> S {
+fn harmonics<S: Scalar, A: Copy>(
+    theta: S,
+    a: &[A],
+    of: impl Fn(A) -> S,
+    part: impl Fn((S, S)) -> S,
+) -> S {
     let Some((&a0, rest)) = a.split_first() else {
         return S::zero();
     };

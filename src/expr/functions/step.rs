@@ -14,12 +14,29 @@ use crate::scalar::Scalar;
 /// From `h0` at `x0` to `h1` at `x1` along a shape.
 #[inline(always)]
 pub fn step<S: Scalar>(x: S, x0: S, h0: S, x1: S, h1: S, shape: impl FnOnce(S) -> S) -> S {
-    S::choose(x.le(x0), || h0, || S::choose(x1.le(x), || h1, || between(x, x0, h0, (x1 - x0).recip(), h1 - h0, shape)))
+    S::choose(
+        x.le(x0),
+        || h0,
+        || {
+            S::choose(
+                x1.le(x),
+                || h1,
+                || between(x, x0, h0, (x1 - x0).recip(), h1 - h0, shape),
+            )
+        },
+    )
 }
 
 /// The rising part: `h0 + rise·s((x − x0)·per_length)`.
 #[inline(always)]
-pub fn between<S: Scalar>(x: S, x0: S, h0: S, per_length: S, rise: S, shape: impl FnOnce(S) -> S) -> S {
+pub fn between<S: Scalar>(
+    x: S,
+    x0: S,
+    h0: S,
+    per_length: S,
+    rise: S,
+    shape: impl FnOnce(S) -> S,
+) -> S {
     h0 + rise * shape((x - x0) * per_length)
 }
 

@@ -19,10 +19,18 @@ const ENDLESS: usize = usize::MAX - 2;
 /// A parameter that is an expression, or what the row says in parentheses.
 macro_rules! parameter {
     ($name:ident) => {
-        Parameter { name: stringify!($name), kind: ParameterKind::Number, optional: false }
+        Parameter {
+            name: stringify!($name),
+            kind: ParameterKind::Number,
+            optional: false,
+        }
     };
     ($name:ident id) => {
-        Parameter { name: stringify!($name), kind: ParameterKind::Integer(1, u32::MAX), optional: true }
+        Parameter {
+            name: stringify!($name),
+            kind: ParameterKind::Integer(1, u32::MAX),
+            optional: true,
+        }
     };
 }
 

@@ -60,7 +60,13 @@ enum Instructions {
 #[derive(Clone, Debug)]
 enum Step {
     Plain(Instruction),
-    Prepared { what: Prepared, parameters: Vec<f64>, a: u32, b: u32, to: u32 },
+    Prepared {
+        what: Prepared,
+        parameters: Vec<f64>,
+        a: u32,
+        b: u32,
+        to: u32,
+    },
 }
 
 impl Program {
@@ -73,17 +79,35 @@ impl Program {
             *register = Block([Vector::constant(c); VECTORS]);
         }
         let steps = core.code.iter().map(|i| self.batch_step(i)).collect();
-        Batch { program: self.clone(), registers, steps, instructions: Instructions::of_this_machine() }
+        Batch {
+            program: self.clone(),
+            registers,
+            steps,
+            instructions: Instructions::of_this_machine(),
+        }
     }
 
     fn batch_step(&self, instruction: &Instruction) -> Step {
         let core = self.core();
         if let Code::Call(function, count) = instruction.code {
             let list = &core.lists[instruction.a as usize..(instruction.a + count) as usize];
-            let known: Vec<Option<f64>> = list.iter().map(|&r| core.constants.get(r as usize).copied()).collect();
+            let known: Vec<Option<f64>> = list
+                .iter()
+                .map(|&r| core.constants.get(r as usize).copied())
+                .collect();
             if let Some((what, parameters)) = Prepared::of(function, &known) {
-                let b = if what.n_variables() == 2 { list[1] } else { list[0] };
-                return Step::Prepared { what, parameters, a: list[0], b, to: instruction.to };
+                let b = if what.n_variables() == 2 {
+                    list[1]
+                } else {
+                    list[0]
+                };
+                return Step::Prepared {
+                    what,
+                    parameters,
+                    a: list[0],
+                    b,
+                    to: instruction.to,
+                };
             }
         }
         Step::Plain(*instruction)
@@ -119,9 +143,23 @@ impl Batch {
     /// the longest output column.
     pub fn run(&mut self, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) {
         let n = outputs.iter().map(|out| out.len()).max().unwrap_or(0);
-        assert!(inputs.len() >= self.program.inputs.len(), "the program reads {} inputs", self.program.inputs.len());
-        assert!(outputs.len() <= self.program.outputs.len(), "the program has {} outputs", self.program.outputs.len());
-        assert!(self.program.used.iter().all(|&k| inputs[k as usize].len() >= n), "an input column is too short");
+        assert!(
+            inputs.len() >= self.program.inputs.len(),
+            "the program reads {} inputs",
+            self.program.inputs.len()
+        );
+        assert!(
+            outputs.len() <= self.program.outputs.len(),
+            "the program has {} outputs",
+            self.program.outputs.len()
+        );
+        assert!(
+            self.program
+                .used
+                .iter()
+                .all(|&k| inputs[k as usize].len() >= n),
+            "an input column is too short"
+        );
         for start in (0..n).step_by(BLOCK) {
             self.enter(inputs, start, n);
             match self.instructions {
@@ -157,7 +195,9 @@ impl Batch {
     fn leave(&self, outputs: &mut [&mut [f64]], start: usize) {
         for (out, &r) in outputs.iter_mut().zip(&self.program.outputs) {
             let end = out.len().min(start + BLOCK);
-            let Some(column) = out.get_mut(start..end) else { continue };
+            let Some(column) = out.get_mut(start..end) else {
+                continue;
+            };
             let register = &self.registers[r as usize];
             let (vectors, rest) = column.as_chunks_mut::<WIDTH>();
             let n = vectors.len();
@@ -189,7 +229,13 @@ impl Batch {
         for step in &self.steps {
             match step {
                 Step::Plain(instruction) => plain(&self.program, instruction, r),
-                Step::Prepared { what, parameters, a, b, to } => prepared(*what, parameters, [*a, *b, *to], r),
+                Step::Prepared {
+                    what,
+                    parameters,
+                    a,
+                    b,
+                    to,
+                } => prepared(*what, parameters, [*a, *b, *to], r),
             }
         }
     }
@@ -220,7 +266,14 @@ macro_rules! lanes {
 
 #[inline(always)]
 fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
-    let Instruction { code, to, a, b, c, d } = *instruction;
+    let Instruction {
+        code,
+        to,
+        a,
+        b,
+        c,
+        d,
+    } = *instruction;
     let core = program.core();
     match code {
         Code::Binary(BinaryOp::Add) => each!(r, to = |x = a, y = b| x + y),
@@ -260,15 +313,23 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
         Code::Unary(op) => each!(r, to = |x = a| op.apply(x)),
         Code::Binary(op) => each!(r, to = |x = a, y = b| op.apply(x, y)),
         Code::Compare(op) => each!(r, to = |x = a, y = b| from_mask(op.apply(x, y))),
-        Code::Lookup { table, order } => each!(r, to = |x = a| x.lookup(&core.tables[table as usize], order)),
+        Code::Lookup { table, order } => {
+            each!(r, to = |x = a| x.lookup(&core.tables[table as usize], order))
+        }
         Code::Call(_, count) | Code::Partial(_, count, _) => {
             let arguments = &core.lists[a as usize..(a + count) as usize];
             for k in 0..VECTORS {
-                let value = super::gathered(arguments, |x| r[x as usize].0[k], |args| match code {
-                    Code::Partial(function, _, which) => super::partial(function, args, which as usize),
-                    Code::Call(function, _) => function.eval(args),
-                    _ => unreachable!("only functions have lists of arguments"),
-                });
+                let value = super::gathered(
+                    arguments,
+                    |x| r[x as usize].0[k],
+                    |args| match code {
+                        Code::Partial(function, _, which) => {
+                            super::partial(function, args, which as usize)
+                        }
+                        Code::Call(function, _) => function.eval(args),
+                        _ => unreachable!("only functions have lists of arguments"),
+                    },
+                );
                 r[to as usize].0[k] = value;
             }
         }
@@ -322,8 +383,13 @@ mod tests {
         let program = b.finish(&[branch, larger, harmonic, slope]);
         let mut batch = program.batch();
         for n in [0, 1, 7, 8, 127, 128, 129, 300] {
-            let columns: Vec<Vec<f64>> =
-                (0..2).map(|c| (0..n).map(|k| ((k * 37 + c * 11) % 101) as f64 / 50.0 - 1.0).collect()).collect();
+            let columns: Vec<Vec<f64>> = (0..2)
+                .map(|c| {
+                    (0..n)
+                        .map(|k| ((k * 37 + c * 11) % 101) as f64 / 50.0 - 1.0)
+                        .collect()
+                })
+                .collect();
             let mut out = vec![vec![0.0; n]; 4];
             let mut outputs: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
             batch.run(&[&columns[0], &columns[1]], &mut outputs);

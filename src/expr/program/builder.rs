@@ -141,7 +141,10 @@ impl Builder {
         match self.simpler(op, a, b, ca, cb) {
             Some(v) => v,
             None => {
-                let swap = matches!(op, BinaryOp::Add | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or) && b < a;
+                let swap = matches!(
+                    op,
+                    BinaryOp::Add | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or
+                ) && b < a;
                 let (a, b) = if swap { (b, a) } else { (a, b) };
                 self.intern(Node::Binary(op, a, b))
             }
@@ -149,7 +152,14 @@ impl Builder {
     }
 
     /// The same value by less, if the folding allows it. Not both operands are constant.
-    fn simpler(&mut self, op: BinaryOp, a: Value, b: Value, ca: Option<f64>, cb: Option<f64>) -> Option<Value> {
+    fn simpler(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        ca: Option<f64>,
+        cb: Option<f64>,
+    ) -> Option<Value> {
         use BinaryOp::{Add, Div, Mul, Pow, Sub};
         let structural = self.folding == Folding::Structural;
         let minus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_negative);
@@ -242,7 +252,8 @@ impl Builder {
             return self.constant(1.0);
         }
         // "0 < condition" is the condition
-        if comparison == Comparison::Lt && self.constant_of(a) == Some(0.0) && self.is_condition(b) {
+        if comparison == Comparison::Lt && self.constant_of(a) == Some(0.0) && self.is_condition(b)
+        {
             return b;
         }
         let swap = comparison == Comparison::Eq && b < a;
@@ -305,7 +316,13 @@ impl Builder {
     }
 
     /// `IF(selector: negative, zero, positive)`; NaN where the selector is NaN.
-    pub fn arithmetic_if(&mut self, selector: Value, negative: Value, zero: Value, positive: Value) -> Value {
+    pub fn arithmetic_if(
+        &mut self,
+        selector: Value,
+        negative: Value,
+        zero: Value,
+        positive: Value,
+    ) -> Value {
         if let Some(s) = self.constant_of(selector) {
             // which of the three, by the same rule that runs later
             let pick = arithmetic_if(s, 1.0, 2.0, 3.0);
@@ -329,31 +346,46 @@ impl Builder {
         if let Some(c) = self.constant_of(x) {
             return self.constant(table.at(c, order));
         }
-        let k = self.tables.iter().position(|t| Arc::ptr_eq(t, table)).unwrap_or_else(|| {
-            self.tables.push(table.clone());
-            self.tables.len() - 1
-        });
-        self.intern(Node::Lookup { table: k as u32, order, x })
+        let k = self
+            .tables
+            .iter()
+            .position(|t| Arc::ptr_eq(t, table))
+            .unwrap_or_else(|| {
+                self.tables.push(table.clone());
+                self.tables.len() - 1
+            });
+        self.intern(Node::Lookup {
+            table: k as u32,
+            order,
+            x,
+        })
     }
 
     /// A function of the table as one operation.
     pub fn call(&mut self, function: Function, args: &[Value]) -> Value {
         let mut numbers = [0.0; 40];
         if args.len() <= numbers.len() {
-            let constants = args.iter().zip(&mut numbers).all(|(&v, slot)| match self.constant_of(v) {
-                Some(c) => {
-                    *slot = c;
-                    true
-                }
-                None => false,
-            });
+            let constants =
+                args.iter()
+                    .zip(&mut numbers)
+                    .all(|(&v, slot)| match self.constant_of(v) {
+                        Some(c) => {
+                            *slot = c;
+                            true
+                        }
+                        None => false,
+                    });
             if constants {
                 return self.constant(function.eval(&numbers[..args.len()]));
             }
         }
         let first = self.arguments.len() as u32;
         self.arguments.extend_from_slice(args);
-        self.intern(Node::Call { function, first, count: args.len() as u32 })
+        self.intern(Node::Call {
+            function,
+            first,
+            count: args.len() as u32,
+        })
     }
 
     /// The program that computes these values, and nothing else.
@@ -453,7 +485,9 @@ impl Builder {
     fn equal(&self, a: &Node, b: &Node) -> bool {
         match (a, b) {
             (Node::If(_), Node::If(_)) => self.same_lists(a, b),
-            (Node::Call { function: f, .. }, Node::Call { function: g, .. }) => f == g && self.same_lists(a, b),
+            (Node::Call { function: f, .. }, Node::Call { function: g, .. }) => {
+                f == g && self.same_lists(a, b)
+            }
             _ => a == b,
         }
     }
@@ -468,7 +502,8 @@ impl Builder {
     fn hash(&self, node: &Node) -> u64 {
         // all bits of a product reach all bits of the hash: numbers such as 2.5 have zeros in all low bits
         let mix = |h: u64, word: u64| {
-            let product = u128::from(h ^ word ^ 0x9E37_79B9_7F4A_7C15) * u128::from(0xD6E8_FEB8_6659_FD93u64);
+            let product =
+                u128::from(h ^ word ^ 0x9E37_79B9_7F4A_7C15) * u128::from(0xD6E8_FEB8_6659_FD93u64);
             (product >> 64) as u64 ^ product as u64
         };
         let pair = |a: Value, b: Value| u64::from(a.0) << 32 | u64::from(b.0);
@@ -480,7 +515,10 @@ impl Builder {
             Node::Binary(op, a, b) => mix(mix(5, op as u64), pair(a, b)),
             Node::Compare(op, a, b) => mix(mix(6, op as u64), pair(a, b)),
             Node::Select(c, yes, no) => mix(mix(7, u64::from(c.0)), pair(yes, no)),
-            Node::Lookup { table, order, x } => mix(mix(8, u64::from(table) << 8 | u64::from(order)), u64::from(x.0)),
+            Node::Lookup { table, order, x } => mix(
+                mix(8, u64::from(table) << 8 | u64::from(order)),
+                u64::from(x.0),
+            ),
             Node::Partial { call, k } => mix(mix(11, u64::from(call.0)), u64::from(k)),
             Node::If(_) => self.hash_list(9, node, mix),
             Node::Call { function, .. } => self.hash_list(mix(10, function as u64), node, mix),
@@ -489,7 +527,9 @@ impl Builder {
     }
 
     fn hash_list(&self, seed: u64, node: &Node, mix: impl Fn(u64, u64) -> u64) -> u64 {
-        self.arguments[self.list(node).unwrap_or(0..0)].iter().fold(seed, |h, v| mix(h, u64::from(v.0)))
+        self.arguments[self.list(node).unwrap_or(0..0)]
+            .iter()
+            .fold(seed, |h, v| mix(h, u64::from(v.0)))
     }
 }
 

@@ -18,10 +18,19 @@ impl fmt::Display for Program {
                 Code::Compare(op) => write!(f, "{op:?} {}, {}", name(a), name(b))?,
                 Code::Select => write!(f, "{} ? {} : {}", name(a), name(b), name(c))?,
                 Code::CompareSelect(op) => {
-                    write!(f, "{op:?} {}, {} ? {} : {}", name(a), name(b), name(c), name(d))?;
+                    write!(
+                        f,
+                        "{op:?} {}, {} ? {} : {}",
+                        name(a),
+                        name(b),
+                        name(c),
+                        name(d)
+                    )?;
                 }
                 Code::If => write!(f, "IF({}: {}, {}, {})", name(a), name(b), name(c), name(d))?,
-                Code::Lookup { table, order } => write!(f, "table {table} order {order} at {}", name(a))?,
+                Code::Lookup { table, order } => {
+                    write!(f, "table {table} order {order} at {}", name(a))?
+                }
                 Code::Call(function, count) => {
                     write!(f, "{}({})", function.name(), self.names(a, count))?;
                 }
@@ -41,7 +50,10 @@ impl fmt::Display for Program {
 impl Program {
     fn names(&self, first: u32, count: u32) -> String {
         let list = &self.core().lists[first as usize..(first + count) as usize];
-        list.iter().map(|&r| self.name(r)).collect::<Vec<_>>().join(", ")
+        list.iter()
+            .map(|&r| self.name(r))
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     /// A register as a reader would call it.
@@ -51,7 +63,11 @@ impl Program {
         if let Some(c) = constants.get(register) {
             return format!("{c}");
         }
-        match self.used.get(register - constants.len()).map(|&k| &self.inputs[k as usize]) {
+        match self
+            .used
+            .get(register - constants.len())
+            .map(|&k| &self.inputs[k as usize])
+        {
             Some(Input::Slot(k)) => format!("slot{k}"),
             Some(input) => format!("{input}"),
             None => format!("r{}", register - constants.len() - self.used.len()),

@@ -67,12 +67,16 @@ fn image(cell: &RefCell<Builder>, v: Value, images: &[Value], what: Expand) -> V
         Node::Binary(op, a, b) => builder.binary(op, of(a), of(b)),
         Node::Compare(op, a, b) => builder.compare(op, of(a), of(b)),
         Node::Select(c, yes, no) => builder.select(of(c), of(yes), of(no)),
-        Node::If(_) => builder.arithmetic_if(arguments[0], arguments[1], arguments[2], arguments[3]),
+        Node::If(_) => {
+            builder.arithmetic_if(arguments[0], arguments[1], arguments[2], arguments[3])
+        }
         Node::Lookup { table, order, x } => {
             let table = builder.tables[table as usize].clone();
             builder.lookup(&table, order, of(x))
         }
-        Node::Call { function, .. } if what == Expand::Partials => builder.call(function, &arguments),
+        Node::Call { function, .. } if what == Expand::Partials => {
+            builder.call(function, &arguments)
+        }
         Node::Call { function, .. } => {
             drop(builder);
             record(cell, &arguments, |args| function.eval(args))
@@ -88,7 +92,11 @@ fn image(cell: &RefCell<Builder>, v: Value, images: &[Value], what: Expand) -> V
 }
 
 /// Records what a formula does with these values.
-fn record(cell: &RefCell<Builder>, args: &[Value], formula: impl for<'b> Fn(&[Sym<'b>]) -> Sym<'b>) -> Value {
+fn record(
+    cell: &RefCell<Builder>,
+    args: &[Value],
+    formula: impl for<'b> Fn(&[Sym<'b>]) -> Sym<'b>,
+) -> Value {
     let args: Vec<Sym> = args.iter().map(|&a| Sym::of(a, cell)).collect();
     let result = formula(&args);
     result.value(&mut cell.borrow_mut())

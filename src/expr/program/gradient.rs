@@ -37,7 +37,10 @@ impl Builder {
             Node::Call { .. } => self.partial(call, k),
             // all arguments are constant
             _ => {
-                let numbers: Vec<f64> = args.iter().map(|&a| self.constant_of(a).unwrap_or(f64::NAN)).collect();
+                let numbers: Vec<f64> = args
+                    .iter()
+                    .map(|&a| self.constant_of(a).unwrap_or(f64::NAN))
+                    .collect();
                 self.constant(partial(function, &numbers, k as usize))
             }
         }
@@ -68,7 +71,12 @@ impl<'b> Adjoint<'b> {
             builder.operands(&builder.nodes[k], |v| depends |= active[v.index()]);
             active[k] = depends;
         }
-        Self { builder, guards, active, bars: vec![None; n] }
+        Self {
+            builder,
+            guards,
+            active,
+            bars: vec![None; n],
+        }
     }
 
     fn sweep(mut self, output: Value, with_respect_to: &[Value]) -> Vec<Value> {
@@ -82,7 +90,10 @@ impl<'b> Adjoint<'b> {
             }
         }
         let zero = self.builder.constant(0.0);
-        with_respect_to.iter().map(|v| self.bars.get(v.index()).copied().flatten().unwrap_or(zero)).collect()
+        with_respect_to
+            .iter()
+            .map(|v| self.bars.get(v.index()).copied().flatten().unwrap_or(zero))
+            .collect()
     }
 
     /// Passes the bar of a node on to its operands.
@@ -112,7 +123,11 @@ impl<'b> Adjoint<'b> {
             }
             node @ Node::If(_) => {
                 let list = self.builder.list(&node).unwrap_or(0..0);
-                let sides: Vec<Value> = self.builder.arguments[list].iter().skip(1).copied().collect();
+                let sides: Vec<Value> = self.builder.arguments[list]
+                    .iter()
+                    .skip(1)
+                    .copied()
+                    .collect();
                 for (side, x) in (0u8..).zip(sides) {
                     self.add(x, self.guards.side(v, side), bar);
                 }
@@ -166,7 +181,11 @@ impl<'b> Adjoint<'b> {
                 let rest = self.op(Sub, one, square);
                 let root = self.builder.unary(UnaryOp::Sqrt, rest);
                 let part = self.op(Div, bar, root);
-                return if op == UnaryOp::Asin { part } else { self.negative(part) };
+                return if op == UnaryOp::Asin {
+                    part
+                } else {
+                    self.negative(part)
+                };
             }
             UnaryOp::Atan => {
                 let square = self.op(Mul, x, x);
@@ -278,7 +297,10 @@ impl<'b> Adjoint<'b> {
                     Function::Max => self.builder.compare(Comparison::Lt, a, b),
                     _ => self.builder.compare(Comparison::Lt, b, a),
                 };
-                let (to_a, to_b) = (self.builder.select(second, zero, bar), self.builder.select(second, bar, zero));
+                let (to_a, to_b) = (
+                    self.builder.select(second, zero, bar),
+                    self.builder.select(second, bar, zero),
+                );
                 self.add(a, here, to_a);
                 self.add(b, here, to_b);
             }
@@ -323,7 +345,11 @@ impl<'b> Adjoint<'b> {
             let at = |k: u8| if side.side == k { contribution } else { zero };
             contribution = match node {
                 Node::Select(condition, ..) => self.builder.select(condition, at(0), at(1)),
-                node => match self.builder.list(&node).map(|list| self.builder.arguments[list.start]) {
+                node => match self
+                    .builder
+                    .list(&node)
+                    .map(|list| self.builder.arguments[list.start])
+                {
                     Some(selector) => self.builder.arithmetic_if(selector, at(0), at(1), at(2)),
                     None => contribution,
                 },
@@ -373,7 +399,11 @@ fn sum(builder: &mut Builder, a: Value, b: Value) -> Value {
 
 fn if_list(builder: &Builder, node: &Node) -> Option<[Value; 4]> {
     match node {
-        Node::If(first) => builder.arguments.get(*first as usize..)?.first_chunk().copied(),
+        Node::If(first) => builder
+            .arguments
+            .get(*first as usize..)?
+            .first_chunk()
+            .copied(),
         _ => None,
     }
 }

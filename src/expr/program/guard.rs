@@ -43,7 +43,12 @@ impl Guards {
     /// For the needed nodes of a builder; nothing that is not needed gets a guard.
     pub(super) fn new(builder: &Builder, outputs: &[Value]) -> Self {
         let n = outputs.iter().map(|v| v.index() + 1).max().unwrap_or(0);
-        let root = Guard { parent: ALWAYS, depth: 0, selection: Value(0), side: 0 };
+        let root = Guard {
+            parent: ALWAYS,
+            depth: 0,
+            selection: Value(0),
+            side: 0,
+        };
         let mut guards = Guards {
             tree: vec![root],
             of: vec![NEVER; builder.nodes.len()],
@@ -83,11 +88,20 @@ impl Guards {
 
     fn open(&mut self, selection: Value, condition: Value, parent: GuardIx, operands: &[Value]) {
         let next = self.tree.len() as u32;
-        let first = *self.by_condition.entry((parent, condition, operands.len())).or_insert(next);
+        let first = *self
+            .by_condition
+            .entry((parent, condition, operands.len()))
+            .or_insert(next);
         self.sides[selection.index()] = first;
         if first == next {
             let depth = self.tree[parent as usize].depth + 1;
-            self.tree.extend((0u8..).zip(operands).map(|(side, _)| Guard { parent, depth, selection, side }));
+            self.tree
+                .extend((0u8..).zip(operands).map(|(side, _)| Guard {
+                    parent,
+                    depth,
+                    selection,
+                    side,
+                }));
         }
         for (side, &v) in (0u8..).zip(operands) {
             self.need(v, self.side(selection, side));
@@ -107,7 +121,11 @@ impl Guards {
 
     fn need(&mut self, v: Value, guard: GuardIx) {
         let before = self.of[v.index()];
-        self.of[v.index()] = if before == NEVER { guard } else { self.common(before, guard) };
+        self.of[v.index()] = if before == NEVER {
+            guard
+        } else {
+            self.common(before, guard)
+        };
     }
 
     /// The nearest common ancestor.

@@ -130,15 +130,31 @@ pub struct Work<S = f64> {
 
 impl<S> Default for Work<S> {
     fn default() -> Self {
-        Self { owner: 0, registers: Vec::new() }
+        Self {
+            owner: 0,
+            registers: Vec::new(),
+        }
     }
 }
 
 impl Program {
-    fn new(inputs: Vec<Input>, used: Vec<u32>, outputs: Vec<u32>, core: Arc<Core>, machine: machine::Machine) -> Self {
+    fn new(
+        inputs: Vec<Input>,
+        used: Vec<u32>,
+        outputs: Vec<u32>,
+        core: Arc<Core>,
+        machine: machine::Machine,
+    ) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Self { id, inputs, used, outputs, core, machine }
+        Self {
+            id,
+            inputs,
+            used,
+            outputs,
+            core,
+            machine,
+        }
     }
 
     fn core(&self) -> &Core {
@@ -167,23 +183,48 @@ impl Program {
     }
     /// The numbers that come out, if they depend on no input.
     pub fn constant_outputs(&self) -> Option<Vec<f64>> {
-        self.outputs.iter().map(|&r| self.core().constants.get(r as usize).copied()).collect()
+        self.outputs
+            .iter()
+            .map(|&r| self.core().constants.get(r as usize).copied())
+            .collect()
     }
 
     /// Records this program into a builder: the values of its outputs there.
     pub fn record(&self, builder: &mut Builder) -> Vec<Value> {
         let core = self.core();
-        let mut values: Vec<Value> = core.constants.iter().map(|&c| builder.constant(c)).collect();
-        values.extend(self.used.iter().map(|&k| builder.input(self.inputs[k as usize])));
-        let none = values.first().copied().unwrap_or_else(|| builder.constant(f64::NAN));
+        let mut values: Vec<Value> = core
+            .constants
+            .iter()
+            .map(|&c| builder.constant(c))
+            .collect();
+        values.extend(
+            self.used
+                .iter()
+                .map(|&k| builder.input(self.inputs[k as usize])),
+        );
+        let none = values
+            .first()
+            .copied()
+            .unwrap_or_else(|| builder.constant(f64::NAN));
         values.resize(core.size as usize, none);
         let mut arguments = Vec::new();
         for instruction in &core.code {
-            let Instruction { code, to, a, b, c, d } = *instruction;
+            let Instruction {
+                code,
+                to,
+                a,
+                b,
+                c,
+                d,
+            } = *instruction;
             let r = |k: u32| values[k as usize];
             arguments.clear();
             if let Code::Call(_, count) | Code::Partial(_, count, _) = code {
-                arguments.extend(core.lists[a as usize..(a + count) as usize].iter().map(|&k| r(k)));
+                arguments.extend(
+                    core.lists[a as usize..(a + count) as usize]
+                        .iter()
+                        .map(|&k| r(k)),
+                );
             }
             values[to as usize] = match code {
                 Code::Unary(op) => builder.unary(op, r(a)),
@@ -196,7 +237,9 @@ impl Program {
                     builder.select(condition, r(c), r(d))
                 }
                 Code::If => builder.arithmetic_if(r(a), r(b), r(c), r(d)),
-                Code::Lookup { table, order } => builder.lookup(&core.tables[table as usize], order, r(a)),
+                Code::Lookup { table, order } => {
+                    builder.lookup(&core.tables[table as usize], order, r(a))
+                }
                 Code::Call(function, _) => builder.call(function, &arguments),
                 Code::Partial(function, _, k) => builder.partial_of(function, &arguments, k),
             };
@@ -226,7 +269,11 @@ impl Program {
     /// When there are fewer inputs or more places for outputs than the program has.
     #[inline]
     pub fn run(&self, inputs: &[f64], work: &mut Work, out: &mut [f64]) {
-        assert!(out.len() <= self.outputs.len(), "the program has {} outputs", self.outputs.len());
+        assert!(
+            out.len() <= self.outputs.len(),
+            "the program has {} outputs",
+            self.outputs.len()
+        );
         self.start(inputs, work);
         for (out, &r) in out.iter_mut().zip(&self.outputs) {
             *out = work.registers[r as usize];
@@ -243,7 +290,10 @@ impl Program {
         self.enter(inputs, work);
         if self.machine.yields_the_value_at_once() {
             // SAFETY: `enter` has seen to there being enough inputs, and to the registers being those of this program
-            unsafe { self.machine.value(work.registers.as_mut_ptr(), inputs.as_ptr()) }
+            unsafe {
+                self.machine
+                    .value(work.registers.as_mut_ptr(), inputs.as_ptr())
+            }
         } else {
             self.first_of_several(inputs, work)
         }
@@ -261,7 +311,10 @@ impl Program {
     fn start(&self, inputs: &[f64], work: &mut Work) {
         self.enter(inputs, work);
         // SAFETY: `enter` has seen to there being enough inputs, and to the registers being those of this program
-        unsafe { self.machine.run(work.registers.as_mut_ptr(), inputs.as_ptr()) }
+        unsafe {
+            self.machine
+                .run(work.registers.as_mut_ptr(), inputs.as_ptr())
+        }
     }
 
     /// Runs over any number.
@@ -270,7 +323,11 @@ impl Program {
     ///
     /// When there are fewer inputs or more places for outputs than the program has.
     pub fn eval<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>, out: &mut [S]) {
-        assert!(out.len() <= self.outputs.len(), "the program has {} outputs", self.outputs.len());
+        assert!(
+            out.len() <= self.outputs.len(),
+            "the program has {} outputs",
+            self.outputs.len()
+        );
         self.enter(inputs, work);
         let core = self.core();
         let registers = &mut work.registers[..];
@@ -309,8 +366,10 @@ impl Program {
         // whatever happens here, these registers belong to nobody until they are complete
         work.owner = 0;
         work.registers.clear();
-        work.registers.extend(core.constants.iter().map(|&c| S::constant(c)));
-        work.registers.resize(core.size as usize, S::constant(f64::NAN));
+        work.registers
+            .extend(core.constants.iter().map(|&c| S::constant(c)));
+        work.registers
+            .resize(core.size as usize, S::constant(f64::NAN));
         work.registers.extend(self.machine.tail().map(S::constant));
         assert!(work.registers.len() >= self.machine.n_registers());
         work.owner = self.id;
@@ -320,7 +379,14 @@ impl Program {
 impl Core {
     #[inline(always)]
     fn step<S: Scalar>(&self, instruction: &Instruction, registers: &mut [S]) {
-        let Instruction { code, to, a, b, c, d } = *instruction;
+        let Instruction {
+            code,
+            to,
+            a,
+            b,
+            c,
+            d,
+        } = *instruction;
         let r = |k: u32| registers[k as usize];
         registers[to as usize] = match code {
             Code::Unary(op) => op.apply(r(a)),
@@ -345,7 +411,11 @@ impl Core {
 
 /// A function of arguments that are gathered from the registers.
 #[inline(always)]
-fn gathered<S: Scalar>(arguments: &[u32], register: impl Fn(u32) -> S, function: impl FnOnce(&[S]) -> S) -> S {
+fn gathered<S: Scalar>(
+    arguments: &[u32],
+    register: impl Fn(u32) -> S,
+    function: impl FnOnce(&[S]) -> S,
+) -> S {
     #[inline(always)]
     fn few<S: Scalar, const N: usize>(
         arguments: &[u32],

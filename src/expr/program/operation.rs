@@ -153,14 +153,21 @@ pub(crate) fn partial<S: Scalar>(function: Function, args: &[S], k: usize) -> S 
     fn over_duals<S: Scalar, const N: usize>(function: Function, args: &[S], k: usize) -> S {
         let mut duals = [Dual::<1, S>::constant(0.0); N];
         for (dual, &x) in duals.iter_mut().zip(args) {
-            *dual = Dual { re: x, eps: [S::zero()] };
+            *dual = Dual {
+                re: x,
+                eps: [S::zero()],
+            };
         }
         if let Some(dual) = duals.get_mut(k) {
             dual.eps = [S::one()];
         }
         function.eval(&duals[..args.len().min(N)]).eps[0]
     }
-    if args.len() <= 8 { over_duals::<S, 8>(function, args, k) } else { over_duals::<S, 40>(function, args, k) }
+    if args.len() <= 8 {
+        over_duals::<S, 8>(function, args, k)
+    } else {
+        over_duals::<S, 40>(function, args, k)
+    }
 }
 
 /// One node of a builder. Operands stand before it.

@@ -39,8 +39,11 @@ const WORTH_A_JUMP_IN_IF: u32 = 2;
 impl Order {
     pub(super) fn new(builder: &Builder, outputs: &[Value]) -> Self {
         let guards = Guards::new(builder, outputs);
-        let mut order =
-            Order { items: Vec::new(), uses: vec![0; builder.nodes.len()], inlined: vec![false; builder.nodes.len()] };
+        let mut order = Order {
+            items: Vec::new(),
+            uses: vec![0; builder.nodes.len()],
+            inlined: vec![false; builder.nodes.len()],
+        };
         order.count(builder, outputs, &guards);
         let items = Walk::new(builder, &guards, &order).run(outputs);
         order.items = items;
@@ -63,7 +66,8 @@ impl Order {
             }
         }
         for (k, node) in builder.nodes.iter().enumerate() {
-            self.inlined[k] = matches!(node, Node::Compare(..)) && self.uses[k] > 0 && decides[k] == self.uses[k];
+            self.inlined[k] =
+                matches!(node, Node::Compare(..)) && self.uses[k] > 0 && decides[k] == self.uses[k];
         }
         // a comparison that is repeated in every selection uses its operands there
         for (k, node) in builder.nodes.iter().enumerate() {
@@ -78,7 +82,10 @@ impl Order {
     /// Calls `f` with the operands of a node; those of an inlined comparison in place of it.
     pub(super) fn operands(&self, builder: &Builder, node: &Node, mut f: impl FnMut(Value)) {
         if let Node::Select(condition, yes, no) = *node
-            && let (true, Node::Compare(_, a, b)) = (self.inlined[condition.index()], builder.nodes[condition.index()])
+            && let (true, Node::Compare(_, a, b)) = (
+                self.inlined[condition.index()],
+                builder.nodes[condition.index()],
+            )
         {
             [a, b, yes, no].into_iter().for_each(f);
             return;
@@ -164,7 +171,8 @@ impl<'a> Walk<'a> {
         if self.is_worth_a_jump(v, node) {
             self.tasks.push(Task::Sides(v));
             // what decides is placed last, next to the jump
-            self.tasks.extend(self.deciders(node).iter().rev().map(|&x| Task::Visit(x)));
+            self.tasks
+                .extend(self.deciders(node).iter().rev().map(|&x| Task::Visit(x)));
             let sides = side_operands(self.builder, node);
             self.visit_shared(v, &sides);
             return;
@@ -188,7 +196,8 @@ impl<'a> Walk<'a> {
     /// The operands that decide a selection.
     fn deciders(&self, node: &Node) -> Vec<Value> {
         let mut operands = Vec::new();
-        self.order.operands(self.builder, node, |x| operands.push(x));
+        self.order
+            .operands(self.builder, node, |x| operands.push(x));
         let n_sides = side_operands(self.builder, node).len();
         operands.truncate(operands.len() - n_sides);
         operands
@@ -197,13 +206,23 @@ impl<'a> Walk<'a> {
     /// Visits what the sides need but others need as well.
     fn visit_shared(&mut self, v: Value, sides: &[Value]) {
         let mut seen = std::collections::HashSet::new();
-        let mut below: Vec<(Value, u8)> = sides.iter().zip(0u8..).map(|(&x, side)| (x, side)).collect();
+        let mut below: Vec<(Value, u8)> = sides
+            .iter()
+            .zip(0u8..)
+            .map(|(&x, side)| (x, side))
+            .collect();
         while let Some((x, side)) = below.pop() {
             if self.placed[x.index()] || !seen.insert(x) {
                 continue;
             }
-            if self.guards.is_within(self.guards.of[x.index()], self.guards.side(v, side)) {
-                self.order.operands(self.builder, &self.builder.nodes[x.index()], |o| below.push((o, side)));
+            if self
+                .guards
+                .is_within(self.guards.of[x.index()], self.guards.side(v, side))
+            {
+                self.order
+                    .operands(self.builder, &self.builder.nodes[x.index()], |o| {
+                        below.push((o, side))
+                    });
             } else {
                 self.tasks.push(Task::Visit(x));
             }
@@ -214,7 +233,8 @@ impl<'a> Walk<'a> {
         let sides = side_operands(self.builder, &self.builder.nodes[v.index()]);
         self.tasks.push(Task::Place(v));
         for (side, &x) in [0u8, 1, 2].iter().zip(&sides).rev() {
-            self.tasks.extend([Task::End(v, *side), Task::Visit(x), Task::Begin(v, *side)]);
+            self.tasks
+                .extend([Task::End(v, *side), Task::Visit(x), Task::Begin(v, *side)]);
         }
     }
 
@@ -226,7 +246,10 @@ impl<'a> Walk<'a> {
         if let Some(partners) = self.partners.get(&key) {
             for &partner in partners.iter().rev() {
                 let guard = self.guards.of[partner.index()];
-                if partner != v && !self.placed[partner.index()] && self.guards.is_within(guard, here) {
+                if partner != v
+                    && !self.placed[partner.index()]
+                    && self.guards.is_within(guard, here)
+                {
                     self.tasks.push(Task::Place(partner));
                 }
             }
@@ -247,7 +270,9 @@ impl<'a> Walk<'a> {
 pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
     match *node {
         Node::Select(_, yes, no) => vec![yes, no],
-        Node::If(_) => builder.list(node).map_or(Vec::new(), |list| builder.arguments[list][1..].to_vec()),
+        Node::If(_) => builder
+            .list(node)
+            .map_or(Vec::new(), |list| builder.arguments[list][1..].to_vec()),
         _ => Vec::new(),
     }
 }
@@ -298,8 +323,12 @@ fn demand(builder: &Builder) -> Vec<u16> {
         below.clear();
         builder.operands(node, |v| below.push(demand[v.index()]));
         below.sort_unstable_by(|a, b| b.cmp(a));
-        demand[k] =
-            below.iter().zip(0u16..).map(|(d, held)| d.saturating_add(held)).max().map_or(0, |most| most.max(1));
+        demand[k] = below
+            .iter()
+            .zip(0u16..)
+            .map(|(d, held)| d.saturating_add(held))
+            .max()
+            .map_or(0, |most| most.max(1));
     }
     demand
 }
@@ -329,7 +358,10 @@ fn cost(node: &Node) -> u32 {
         Node::Unary(UnaryOp::Sqrt, _) => 5,
         Node::Unary(UnaryOp::Trunc | UnaryOp::Floor | UnaryOp::Round, _) => 2,
         Node::Unary(..) => 20,
-        Node::Binary(BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or, ..) => 1,
+        Node::Binary(
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or,
+            ..,
+        ) => 1,
         Node::Binary(BinaryOp::Div, ..) => 4,
         Node::Binary(..) => 30,
         Node::Whole(..) => 4,

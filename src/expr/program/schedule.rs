@@ -41,7 +41,8 @@ pub(super) fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Inp
     // inputs in the order in which the builder was asked for them
     needed.sort_unstable();
     let mut inputs: Vec<Input> = layout.map(<[Input]>::to_vec).unwrap_or_default();
-    let places: std::collections::HashMap<Input, usize> = inputs.iter().enumerate().map(|(k, &i)| (i, k)).collect();
+    let places: std::collections::HashMap<Input, usize> =
+        inputs.iter().enumerate().map(|(k, &i)| (i, k)).collect();
     let mut used = Vec::with_capacity(needed.len());
     for &(input, v) in &needed {
         let input = builder.inputs[input as usize];
@@ -54,17 +55,35 @@ pub(super) fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Inp
     }
     let first_temporary = (constants.len() + used.len()) as u32;
     let instructions = vec![NONE; builder.nodes.len()];
-    let mut schedule = Schedule { builder, order, registers, instructions };
+    let mut schedule = Schedule {
+        builder,
+        order,
+        registers,
+        instructions,
+    };
     let (code, lists, size) = schedule.allocate(outputs, first_temporary);
-    let registers: Vec<u32> = outputs.iter().map(|v| schedule.registers[v.index()]).collect();
-    let core = Arc::new(Core { constants, code, lists, tables: builder.tables.clone(), size });
+    let registers: Vec<u32> = outputs
+        .iter()
+        .map(|v| schedule.registers[v.index()])
+        .collect();
+    let core = Arc::new(Core {
+        constants,
+        code,
+        lists,
+        tables: builder.tables.clone(),
+        size,
+    });
     let machine = machine::lower(&schedule, &core, outputs, &used);
     Program::new(inputs, used, registers, core, machine)
 }
 
 impl Schedule<'_> {
     /// Gives every node a register and an instruction: the code, the argument lists, the number of registers.
-    fn allocate(&mut self, outputs: &[Value], first_temporary: u32) -> (Vec<Instruction>, Vec<u32>, u32) {
+    fn allocate(
+        &mut self,
+        outputs: &[Value],
+        first_temporary: u32,
+    ) -> (Vec<Instruction>, Vec<u32>, u32) {
         let builder = self.builder;
         let mut allocation = Allocation::new(&self.order, builder, outputs, first_temporary);
         let mut code = Vec::with_capacity(self.order.items.len());
@@ -92,12 +111,21 @@ impl Schedule<'_> {
                 operands[0] = first_in_list;
             }
             // operands that end here free their registers before the result takes one
-            self.order.operands(builder, &node, |x| allocation.release(x, time as u32, &self.registers));
+            self.order.operands(builder, &node, |x| {
+                allocation.release(x, time as u32, &self.registers)
+            });
             let to = allocation.take();
             self.registers[v.index()] = to;
             self.instructions[v.index()] = code.len() as u32;
             let [a, b, c, d] = operands;
-            code.push(Instruction { code: self.code_of(&node), to, a, b, c, d });
+            code.push(Instruction {
+                code: self.code_of(&node),
+                to,
+                a,
+                b,
+                c,
+                d,
+            });
         }
         (code, lists, allocation.size)
     }
@@ -109,14 +137,20 @@ impl Schedule<'_> {
             Node::Binary(op, ..) => Code::Binary(op),
             Node::Compare(op, ..) => Code::Compare(op),
             Node::Select(condition, ..) => match self.builder.nodes[condition.index()] {
-                Node::Compare(op, ..) if self.order.inlined[condition.index()] => Code::CompareSelect(op),
+                Node::Compare(op, ..) if self.order.inlined[condition.index()] => {
+                    Code::CompareSelect(op)
+                }
                 _ => Code::Select,
             },
             Node::If(_) => Code::If,
             Node::Lookup { table, order, .. } => Code::Lookup { table, order },
-            Node::Call { function, count, .. } => Code::Call(function, count),
+            Node::Call {
+                function, count, ..
+            } => Code::Call(function, count),
             Node::Partial { call, k } => match self.builder.nodes[call.index()] {
-                Node::Call { function, count, .. } => Code::Partial(function, count, k),
+                Node::Call {
+                    function, count, ..
+                } => Code::Partial(function, count, k),
                 _ => unreachable!("only calls have partial derivatives as nodes"),
             },
             Node::Constant(_) | Node::Input(_) => {
@@ -140,13 +174,20 @@ impl Allocation {
         let mut last_use = vec![0; builder.nodes.len()];
         for (time, item) in order.items.iter().enumerate() {
             if let Item::Node(v) = item {
-                order.operands(builder, &builder.nodes[v.index()], |x| last_use[x.index()] = time as u32);
+                order.operands(builder, &builder.nodes[v.index()], |x| {
+                    last_use[x.index()] = time as u32
+                });
             }
         }
         for v in outputs {
             last_use[v.index()] = NONE;
         }
-        Self { last_use, free: Vec::new(), first_temporary, size: first_temporary }
+        Self {
+            last_use,
+            free: Vec::new(),
+            first_temporary,
+            size: first_temporary,
+        }
     }
 
     fn take(&mut self) -> u32 {
@@ -159,7 +200,8 @@ impl Allocation {
     /// Frees the register of `v` if this is its last use. An operand that stands twice is freed once.
     fn release(&mut self, v: Value, time: u32, registers: &[u32]) {
         let register = registers[v.index()];
-        if self.last_use[v.index()] == time && register >= self.first_temporary && register != NONE {
+        if self.last_use[v.index()] == time && register >= self.first_temporary && register != NONE
+        {
             self.free.push(register);
             self.last_use[v.index()] = NONE - 1;
         }

@@ -32,20 +32,37 @@ impl Formula {
             Formula::Binary(op, a, b) => op.apply(a.eval(inputs), b.eval(inputs)),
             Formula::Select(op, x) => {
                 let [a, b, yes, no] = &**x;
-                S::select(op.apply(a.eval(inputs), b.eval(inputs)), yes.eval(inputs), no.eval(inputs))
+                S::select(
+                    op.apply(a.eval(inputs), b.eval(inputs)),
+                    yes.eval(inputs),
+                    no.eval(inputs),
+                )
             }
             Formula::If(x) => {
                 let [selector, negative, zero, positive] = &**x;
-                arithmetic_if(selector.eval(inputs), negative.eval(inputs), zero.eval(inputs), positive.eval(inputs))
+                arithmetic_if(
+                    selector.eval(inputs),
+                    negative.eval(inputs),
+                    zero.eval(inputs),
+                    positive.eval(inputs),
+                )
             }
-            Formula::Call(f, args) => f.eval(&args.iter().map(|a| a.eval(inputs)).collect::<Vec<_>>()),
+            Formula::Call(f, args) => {
+                f.eval(&args.iter().map(|a| a.eval(inputs)).collect::<Vec<_>>())
+            }
         }
     }
 }
 
 fn formula() -> impl Strategy<Value = Formula> {
-    let number = prop_oneof![prop::sample::select(vec![0.0, -0.0, 1.0, -1.0, 2.0, 0.5, 1.5, -2.0, 3.0]), -3.0..3.0f64];
-    let leaf = prop_oneof![number.prop_map(Formula::Constant), (0..N).prop_map(Formula::Input)];
+    let number = prop_oneof![
+        prop::sample::select(vec![0.0, -0.0, 1.0, -1.0, 2.0, 0.5, 1.5, -2.0, 3.0]),
+        -3.0..3.0f64
+    ];
+    let leaf = prop_oneof![
+        number.prop_map(Formula::Constant),
+        (0..N).prop_map(Formula::Input)
+    ];
     leaf.prop_recursive(6, 60, 5, |inner| {
         let unary = prop::sample::select(vec![
             UnaryOp::Neg,
@@ -88,7 +105,8 @@ fn formula() -> impl Strategy<Value = Formula> {
 /// Formulas of what the machine treats specially: arithmetic that fuses, branches that are jumped over, sums of steps.
 fn dense_formula() -> impl Strategy<Value = Formula> {
     let number = prop::sample::select(vec![0.5, 1.0, 2.0, -0.25, 3.0]);
-    let leaf = prop_oneof![1 => number.prop_map(Formula::Constant), 3 => (0..N).prop_map(Formula::Input)];
+    let leaf =
+        prop_oneof![1 => number.prop_map(Formula::Constant), 3 => (0..N).prop_map(Formula::Input)];
     leaf.prop_recursive(12, 400, 4, |inner| {
         let binary = prop::sample::select(vec![BinaryOp::Add, BinaryOp::Sub, BinaryOp::Mul, BinaryOp::Div]);
         let unary = prop::sample::select(vec![UnaryOp::Neg, UnaryOp::Abs, UnaryOp::Sqrt, UnaryOp::Sin, UnaryOp::Cos]);
@@ -154,7 +172,8 @@ fn layout() -> [Input; N] {
 }
 
 fn point() -> impl Strategy<Value = [f64; N]> {
-    let number = prop_oneof![3 => -2.0..2.0f64, 1 => prop::sample::select(vec![0.0, -0.0, 1.0, -1.0, 2.0])];
+    let number =
+        prop_oneof![3 => -2.0..2.0f64, 1 => prop::sample::select(vec![0.0, -0.0, 1.0, -1.0, 2.0])];
     [number.clone(), number.clone(), number.clone(), number]
 }
 
@@ -269,12 +288,15 @@ fn two_gradients(f: &Formula, x: &[f64; N]) -> Option<([f64; N], [f64; N])> {
     let want = f.eval(&duals);
     let mut builder = Builder::new(Folding::Strict);
     let output = record(f, &mut builder);
-    let program = builder.finish_with_inputs(&[output], &layout()).with_gradient(&layout());
+    let program = builder
+        .finish_with_inputs(&[output], &layout())
+        .with_gradient(&layout());
     let mut out = [0.0; N + 1];
     program.run(x, &mut Work::default(), &mut out);
     assert!(same_bits(out[0], want.re), "{} {}", out[0], want.re);
     let got: [f64; N] = std::array::from_fn(|k| out[k + 1]);
-    (want.re.is_finite() && want.eps.iter().chain(&got).all(|x| x.is_finite())).then_some((got, want.eps))
+    (want.re.is_finite() && want.eps.iter().chain(&got).all(|x| x.is_finite()))
+        .then_some((got, want.eps))
 }
 
 #[test]
@@ -291,7 +313,10 @@ fn adjoints_agree_with_duals() {
         varying += usize::from(want.iter().any(|&d| d != 0.0));
         let scale = want.iter().chain(&got).fold(1.0f64, |m, d| m.max(d.abs()));
         for k in 0..N {
-            assert!((got[k] - want[k]).abs() <= 1e-9 * scale, "{f:?} at {x:?}: {got:?} {want:?}");
+            assert!(
+                (got[k] - want[k]).abs() <= 1e-9 * scale,
+                "{f:?} at {x:?}: {got:?} {want:?}"
+            );
         }
     }
     assert!(compared > 2000 && varying > 700, "{compared} {varying}");
@@ -303,11 +328,16 @@ fn a_branch_without_a_value_does_not_spoil_derivatives() {
     let mut b = Builder::new(Folding::Strict);
     let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
     let [zero, one] = [0.0, 1.0].map(|c| b.constant(c));
-    let (below, above) = (b.binary(BinaryOp::Sub, one, x), b.binary(BinaryOp::Sub, x, one));
+    let (below, above) = (
+        b.binary(BinaryOp::Sub, one, x),
+        b.binary(BinaryOp::Sub, x, one),
+    );
     let (low, high) = (b.unary(UnaryOp::Sqrt, below), b.unary(UnaryOp::Sqrt, above));
     let high = b.binary(BinaryOp::Mul, high, y);
     let f = b.arithmetic_if(above, low, zero, high);
-    let program = b.finish(&[f]).with_gradient(&[Input::Slot(0), Input::Slot(1), Input::Time]);
+    let program = b
+        .finish(&[f])
+        .with_gradient(&[Input::Slot(0), Input::Slot(1), Input::Time]);
     let mut out = [0.0; 4];
     program.run(&[1.25, 3.0], &mut Work::default(), &mut out);
     assert_eq!(out, [1.5, 3.0, 0.5, 0.0]);
@@ -325,10 +355,22 @@ fn gradients_have_gradients() {
     let slope = b.gradient(step, &[x])[0];
     let second = b.gradient(slope, &[x, y]);
     let mut out = [0.0; 4];
-    b.finish(&[step, slope, second[0], second[1]]).run(&[0.25, 2.0], &mut Work::default(), &mut out);
+    b.finish(&[step, slope, second[0], second[1]]).run(
+        &[0.25, 2.0],
+        &mut Work::default(),
+        &mut out,
+    );
     let u = 0.25;
-    let want = [2.0 * u * u * (3.0 - 2.0 * u), 12.0 * u * (1.0 - u), 2.0 * (6.0 - 12.0 * u), 6.0 * u * (1.0 - u)];
-    assert!(out.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-14), "{out:?} {want:?}");
+    let want = [
+        2.0 * u * u * (3.0 - 2.0 * u),
+        12.0 * u * (1.0 - u),
+        2.0 * (6.0 - 12.0 * u),
+        6.0 * u * (1.0 - u),
+    ];
+    assert!(
+        out.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-14),
+        "{out:?} {want:?}"
+    );
 }
 
 /// Whether the value may depend on the sign of a zero or on an exact comparison with one.
@@ -338,8 +380,10 @@ fn has_sign_of_zero(f: &Formula) -> bool {
         Formula::Unary(op, x) => matches!(op, UnaryOp::Floor) || has_sign_of_zero(x),
         Formula::Whole(n, x) => *n < 0 || has_sign_of_zero(x),
         Formula::Binary(op, a, b) => {
-            matches!(op, BinaryOp::Atan2 | BinaryOp::Div | BinaryOp::Rem | BinaryOp::Pow)
-                || has_sign_of_zero(a)
+            matches!(
+                op,
+                BinaryOp::Atan2 | BinaryOp::Div | BinaryOp::Rem | BinaryOp::Pow
+            ) || has_sign_of_zero(a)
                 || has_sign_of_zero(b)
         }
         Formula::Select(..) | Formula::If(_) | Formula::Call(..) => true,
@@ -411,7 +455,10 @@ fn registers_are_used_again() {
             b.binary(BinaryOp::Mul, x, c)
         })
         .collect();
-    let sum = terms.into_iter().reduce(|s, t| b.binary(BinaryOp::Add, s, t)).unwrap();
+    let sum = terms
+        .into_iter()
+        .reduce(|s, t| b.binary(BinaryOp::Add, s, t))
+        .unwrap();
     let program = b.finish(&[sum]);
     let fixed = 5 + 999;
     assert!(program.work_size() <= fixed + 3, "{}", program.work_size());
@@ -429,7 +476,13 @@ fn long_programs_need_no_stack() {
             let (a, c) = (x[k % 3], (k % 17) as f64 * 0.125 - 1.0);
             v = (v * a - c) * 0.25;
             if k % 7 == 0 {
-                v = if v < 0.0 { v * v + a } else if v > 0.0 { v - a * a } else { 1.0 };
+                v = if v < 0.0 {
+                    v * v + a
+                } else if v > 0.0 {
+                    v - a * a
+                } else {
+                    1.0
+                };
             }
         }
         v
@@ -450,10 +503,12 @@ fn long_programs_need_no_stack() {
         }
     }
     let program = b.finish(&[v]);
-    let run = std::thread::Builder::new().stack_size(128 * 1024).spawn(move || {
-        let mut work = Work::default();
-        [[0.5, -1.5, 0.75], [-2.0, 0.3, 1.9]].map(|x| (program.value(&x, &mut work), want(&x)))
-    });
+    let run = std::thread::Builder::new()
+        .stack_size(128 * 1024)
+        .spawn(move || {
+            let mut work = Work::default();
+            [[0.5, -1.5, 0.75], [-2.0, 0.3, 1.9]].map(|x| (program.value(&x, &mut work), want(&x)))
+        });
     for (got, want) in run.unwrap().join().unwrap() {
         assert_eq!(got, want);
     }

@@ -351,13 +351,19 @@ jumps! {
 
 /// Ends the code.
 pub(super) unsafe extern "C" fn halt(_: *const Op, _: *mut f64, _: *const f64, acc: f64) -> Stop {
-    Stop { next: std::ptr::null(), acc }
+    Stop {
+        next: std::ptr::null(),
+        acc,
+    }
 }
 
 /// Returns to the loop, which goes on behind it.
 pub(super) unsafe extern "C" fn pause(op: *const Op, _: *mut f64, _: *const f64, acc: f64) -> Stop {
     // SAFETY: `halt` stands behind
-    Stop { next: unsafe { op.add(1) }, acc }
+    Stop {
+        next: unsafe { op.add(1) },
+        acc,
+    }
 }
 
 #[inline(always)]
@@ -445,7 +451,8 @@ macro_rules! table {
 /// By operation and source of the first operand.
 pub(super) static ONES: [[Handler; 2]; 8] = table!(one [REGISTERS FIRST]; 0 1 2 3 4 5 6 7);
 /// By both operations and source.
-pub(super) static TWOS: [[[Handler; 3]; 8]; 8] = table!(two [REGISTERS FIRST LAST]; 0 1 2 3 4 5 6 7; [0 1 2 3 4 5 6 7]);
+pub(super) static TWOS: [[[Handler; 3]; 8]; 8] =
+    table!(two [REGISTERS FIRST LAST]; 0 1 2 3 4 5 6 7; [0 1 2 3 4 5 6 7]);
 /// By three operations (the quotients left out) and source.
 pub(super) static CHAINS: [[[[Handler; 3]; 6]; 6]; 6] =
     table!(chain [REGISTERS FIRST LAST]; 0 1 2 3 6 7; [0 1 2 3 6 7]; [0 1 2 3 6 7]);
@@ -459,7 +466,8 @@ pub(super) static BRANCHES: [[Handler; 2]; 7] = table!(branch [REGISTERS FIRST];
 /// By number of inputs less one.
 pub(super) static LOADS: [Handler; 5] = [load::<1>, load::<2>, load::<3>, load::<4>, load::<5>];
 /// By operation and source.
-static UNARIES: [[Handler; 2]; 19] = table!(unary [REGISTERS FIRST]; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18);
+static UNARIES: [[Handler; 2]; 19] =
+    table!(unary [REGISTERS FIRST]; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18);
 
 /// The handler of an operation on one number.
 pub(super) fn unary_handler(op: UnaryOp, source: u8) -> Handler {

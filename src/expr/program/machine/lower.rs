@@ -1,6 +1,8 @@
 //! From a schedule to threaded code: arithmetic fused, functions prepared, costly sides jumped over.
 
-use super::handlers::{self, ABS, ADD, ADDED, BUS, DIV, FIRST, LAST, MUL, REGISTERS, SQRT, SUB, VID};
+use super::handlers::{
+    self, ABS, ADD, ADDED, BUS, DIV, FIRST, LAST, MUL, REGISTERS, SQRT, SUB, VID,
+};
 use super::{Handler, Kind, LONGEST_CHAIN, Machine, Op, halves};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::Prepared;
@@ -117,7 +119,12 @@ struct Lowering<'a> {
 
 impl<'a> Lowering<'a> {
     fn new(schedule: &'a Schedule<'a>, core: &'a Arc<Core>) -> Self {
-        let constants = core.constants.iter().zip(0u32..).map(|(c, k)| (c.to_bits(), k)).collect();
+        let constants = core
+            .constants
+            .iter()
+            .zip(0u32..)
+            .map(|(c, k)| (c.to_bits(), k))
+            .collect();
         Self {
             schedule,
             core,
@@ -142,7 +149,9 @@ impl<'a> Lowering<'a> {
         let first = self.core.constants.len() as u32;
         for (k, numbers) in used.chunks(handlers::LOADS.len()).enumerate() {
             let register = first + (k * handlers::LOADS.len()) as u32;
-            let operands: Vec<u32> = std::iter::once(register).chain(numbers.iter().copied()).collect();
+            let operands: Vec<u32> = std::iter::once(register)
+                .chain(numbers.iter().copied())
+                .collect();
             let n = numbers.len();
             self.emit(handlers::LOADS[n - 1], &operands, Kind::Inputs(n as u8));
         }
@@ -155,7 +164,11 @@ impl<'a> Lowering<'a> {
         {
             // the last result shall be the output
             let register = self.register(output);
-            self.emit(handlers::copy, &[register, self.core.size], Kind::Registers(2));
+            self.emit(
+                handlers::copy,
+                &[register, self.core.size],
+                Kind::Registers(2),
+            );
         }
         self.emit(handlers::halt, &[], Kind::Halt);
         // behind the registers of the core: one scratch register, then parameters
@@ -167,7 +180,14 @@ impl<'a> Lowering<'a> {
         let n_inputs = used.iter().map(|&k| k as usize + 1).max().unwrap_or(0);
         let (ops, parameters, core) = (self.ops.into(), self.parameters, self.core.clone());
         let yields_the_value_at_once = outputs.len() == 1 && !self.has_paused;
-        let machine = Machine { ops, parameters, n_registers, n_inputs, core, yields_the_value_at_once };
+        let machine = Machine {
+            ops,
+            parameters,
+            n_registers,
+            n_inputs,
+            core,
+            yields_the_value_at_once,
+        };
         machine.check(&self.kinds);
         machine
     }
@@ -208,7 +228,12 @@ impl<'a> Lowering<'a> {
                 let x = self.operand(x);
                 self.flush_if_full();
                 let shape = if n == 3 { Shape::Two } else { Shape::Balanced };
-                self.pending.push(Pending { node: v, shape, codes: [MUL; 3], operands: [x; 5] });
+                self.pending.push(Pending {
+                    node: v,
+                    shape,
+                    codes: [MUL; 3],
+                    operands: [x; 5],
+                });
                 return 1;
             }
             _ => {}
@@ -221,7 +246,11 @@ impl<'a> Lowering<'a> {
         match node {
             Node::Unary(op, x) => {
                 let source = self.source(x);
-                let op = self.emit(handlers::unary_handler(op, source), &[self.register(x), to], Kind::Registers(2));
+                let op = self.emit(
+                    handlers::unary_handler(op, source),
+                    &[self.register(x), to],
+                    Kind::Registers(2),
+                );
                 self.produced(v, op, 1);
                 return 1;
             }
@@ -242,7 +271,11 @@ impl<'a> Lowering<'a> {
                     _ => {
                         let zero = self.constant(0.0).register;
                         let [condition, yes, no] = [condition, yes, no].map(|x| self.register(x));
-                        self.emit(handlers::select::<0>, &[zero, condition, yes, no, to], Kind::Registers(5));
+                        self.emit(
+                            handlers::select::<0>,
+                            &[zero, condition, yes, no, to],
+                            Kind::Registers(5),
+                        );
                     }
                 }
             }
@@ -251,15 +284,27 @@ impl<'a> Lowering<'a> {
                     return 1;
                 }
                 let mut operands: Vec<u32> = Vec::new();
-                self.schedule.builder.operands(&node, |x| operands.push(self.register(x)));
+                self.schedule
+                    .builder
+                    .operands(&node, |x| operands.push(self.register(x)));
                 operands.push(to);
                 self.emit(handlers::arithmetic_if, &operands, Kind::Registers(5));
             }
-            Node::Call { function: function @ (Function::Max | Function::Min), count: 2, .. } => {
+            Node::Call {
+                function: function @ (Function::Max | Function::Min),
+                count: 2,
+                ..
+            } => {
                 let mut operands: Vec<u32> = Vec::new();
-                self.schedule.builder.operands(&node, |x| operands.push(self.register(x)));
+                self.schedule
+                    .builder
+                    .operands(&node, |x| operands.push(self.register(x)));
                 operands.push(to);
-                let handler = if function == Function::Max { handlers::larger } else { handlers::smaller };
+                let handler = if function == Function::Max {
+                    handlers::larger
+                } else {
+                    handlers::smaller
+                };
                 self.emit(handler, &operands, Kind::Registers(3));
             }
             _ => self.instruction(v),
@@ -277,7 +322,8 @@ impl<'a> Lowering<'a> {
                     return None;
                 };
                 match (op, builder.nodes[w.index()]) {
-                    (UnaryOp::Sin, Node::Unary(UnaryOp::Cos, y)) | (UnaryOp::Cos, Node::Unary(UnaryOp::Sin, y))
+                    (UnaryOp::Sin, Node::Unary(UnaryOp::Cos, y))
+                    | (UnaryOp::Cos, Node::Unary(UnaryOp::Sin, y))
                         if x == y =>
                     {
                         let (sine, cosine) = if op == UnaryOp::Sin { (v, w) } else { (w, v) };
@@ -347,12 +393,23 @@ impl<'a> Lowering<'a> {
         if slopes == [None; 2] {
             let v = value?;
             if prepared.n_variables() == 2 {
-                let operands = [self.register(x), self.register(args[1]), self.register(v), place, length];
+                let operands = [
+                    self.register(x),
+                    self.register(args[1]),
+                    self.register(v),
+                    place,
+                    length,
+                ];
                 self.with_parameters(contact_handler(prepared, false), &operands, 3, n_parameters);
             } else {
                 let source = self.source(x);
                 let operands = [self.register(x), self.register(v), place, length];
-                let op = self.with_parameters(prepared_handler(prepared, source), &operands, 2, n_parameters);
+                let op = self.with_parameters(
+                    prepared_handler(prepared, source),
+                    &operands,
+                    2,
+                    n_parameters,
+                );
                 self.produced(v, op, 1);
                 if source == REGISTERS {
                     self.addable = Some((op, prepared));
@@ -361,11 +418,24 @@ impl<'a> Lowering<'a> {
             self.last = value;
         } else if prepared.n_variables() == 2 {
             let [p, q] = slopes.map(|v| to(self, v));
-            let operands = [self.register(x), self.register(args[1]), to(self, value), p, q, place];
+            let operands = [
+                self.register(x),
+                self.register(args[1]),
+                to(self, value),
+                p,
+                q,
+                place,
+            ];
             self.with_parameters(contact_handler(prepared, true), &operands, 5, n_parameters);
             self.last = slopes[1];
         } else {
-            let operands = [self.register(x), to(self, value), to(self, slopes[0]), place, length];
+            let operands = [
+                self.register(x),
+                to(self, value),
+                to(self, slopes[0]),
+                place,
+                length,
+            ];
             self.with_parameters(slope_handler(prepared), &operands, 3, n_parameters);
             self.last = slopes[0];
         }
@@ -373,7 +443,13 @@ impl<'a> Lowering<'a> {
     }
 
     /// Emits an operation whose parameters stand at `operands[at]`, counted from the first parameter.
-    fn with_parameters(&mut self, handler: Handler, operands: &[u32], at: u8, length: usize) -> usize {
+    fn with_parameters(
+        &mut self,
+        handler: Handler,
+        operands: &[u32],
+        at: u8,
+        length: usize,
+    ) -> usize {
         let kind = match operands.len() {
             n if n == at as usize + 2 => Kind::Parameters(at),
             _ => Kind::Fixed(at, length as u8),
@@ -387,7 +463,11 @@ impl<'a> Lowering<'a> {
     fn instruction(&mut self, v: Value) {
         let instruction = self.schedule.instructions[v.index()];
         let [low, high] = halves(Arc::as_ptr(self.core));
-        self.emit(handlers::instruction, &[instruction, low, high], Kind::Instruction);
+        self.emit(
+            handlers::instruction,
+            &[instruction, low, high],
+            Kind::Instruction,
+        );
     }
 
     // arithmetic
@@ -402,7 +482,9 @@ impl<'a> Lowering<'a> {
         if op == ADD && self.pending.is_empty() && self.add_to_function(v, a, b) {
             return;
         }
-        let is = |p: Option<Pending>, x: Operand| p.is_some_and(|p| x.node == Some(p.node) && self.is_single(p.node));
+        let is = |p: Option<Pending>, x: Operand| {
+            p.is_some_and(|p| x.node == Some(p.node) && self.is_single(p.node))
+        };
         let simple = |codes: &[u8]| codes.iter().all(|&c| c <= MUL);
         let short = |codes: &[u8]| codes.iter().all(|&c| c <= MUL || c >= SQRT);
         // (a p b) op (c r d)
@@ -423,7 +505,13 @@ impl<'a> Lowering<'a> {
                     node: v,
                     shape: Shape::Balanced,
                     codes: [p.codes[0], op, q.codes[0]],
-                    operands: [p.operands[0], p.operands[1], q.operands[0], q.operands[1], p.operands[0]],
+                    operands: [
+                        p.operands[0],
+                        p.operands[1],
+                        q.operands[0],
+                        q.operands[1],
+                        p.operands[0],
+                    ],
                 });
                 return;
             }
@@ -481,7 +569,10 @@ impl<'a> Lowering<'a> {
                     return self.push_one(
                         v,
                         op,
-                        Operand { register: self.register(p.node), node: Some(p.node) },
+                        Operand {
+                            register: self.register(p.node),
+                            node: Some(p.node),
+                        },
                         other,
                     );
                 }
@@ -495,24 +586,38 @@ impl<'a> Lowering<'a> {
 
     /// A function that was just emitted, and the result before it: one operation.
     fn add_to_function(&mut self, v: Value, a: Operand, b: Operand) -> bool {
-        let (Some((op, prepared)), Some(produced)) = (self.addable, self.produced) else { return false };
-        let Some(before) = produced.before else { return false };
+        let (Some((op, prepared)), Some(produced)) = (self.addable, self.produced) else {
+            return false;
+        };
+        let Some(before) = produced.before else {
+            return false;
+        };
         let these = [a.node, b.node];
-        let fits = these == [Some(before), Some(produced.node)] || these == [Some(produced.node), Some(before)];
+        let fits = these == [Some(before), Some(produced.node)]
+            || these == [Some(produced.node), Some(before)];
         if op != produced.op || !fits || before == produced.node || !self.is_single(produced.node) {
             return false;
         }
         self.ops[op].run = prepared_handler(prepared, ADDED);
         self.ops[op].operands[produced.operand] = self.register(v);
         self.addable = None;
-        self.produced = Some(Produced { node: v, before: None, ..produced });
+        self.produced = Some(Produced {
+            node: v,
+            before: None,
+            ..produced
+        });
         self.last = Some(v);
         true
     }
 
     fn push_one(&mut self, node: Value, op: u8, a: Operand, b: Operand) {
         self.flush_if_full();
-        self.pending.push(Pending { node, shape: Shape::One, codes: [op, 0, 0], operands: [a, b, a, a, a] });
+        self.pending.push(Pending {
+            node,
+            shape: Shape::One,
+            codes: [op, 0, 0],
+            operands: [a, b, a, a, a],
+        });
     }
 
     fn flush_if_full(&mut self) {
@@ -529,7 +634,12 @@ impl<'a> Lowering<'a> {
     }
 
     fn emit_arithmetic(&mut self, pending: Pending) {
-        let Pending { node, shape, codes: [mut p, mut q, mut r], operands: [mut a, mut b, mut c, mut d, e] } = pending;
+        let Pending {
+            node,
+            shape,
+            codes: [mut p, mut q, mut r],
+            operands: [mut a, mut b, mut c, mut d, e],
+        } = pending;
         let in_acc = |x: Operand| x.node.is_some() && x.node == self.last;
         // bring the last result to the first place, or else to the last
         if in_acc(b) && !in_acc(a) {
@@ -543,7 +653,13 @@ impl<'a> Lowering<'a> {
             }
         }
         let to = self.register(node);
-        let short = [p, q, r].map(|code| usize::from(if code >= SQRT { code - SQRT + MUL + 1 } else { code }));
+        let short = [p, q, r].map(|code| {
+            usize::from(if code >= SQRT {
+                code - SQRT + MUL + 1
+            } else {
+                code
+            })
+        });
         let [p, q, r] = [p, q, r].map(usize::from);
         let first = in_acc(a);
         let source = |last: Operand| match (first, in_acc(last)) {
@@ -559,7 +675,10 @@ impl<'a> Lowering<'a> {
                 let [p, q, r] = short;
                 (handlers::CHAINS[p][q][r][source(d)], &[ra, rb, rc, rd, to])
             }
-            Shape::Balanced => (handlers::BALANCED[p][q][r][source(d)], &[ra, rb, rc, rd, to]),
+            Shape::Balanced => (
+                handlers::BALANCED[p][q][r][source(d)],
+                &[ra, rb, rc, rd, to],
+            ),
             Shape::Dot => (handlers::DOTS[q][r][source(e)], &[ra, rb, rc, rd, re, to]),
         };
         let op = self.emit(handler, operands, Kind::Registers(operands.len() as u8));
@@ -571,7 +690,11 @@ impl<'a> Lowering<'a> {
     fn begin(&mut self, v: Value, side: u8) {
         if side == 0 {
             let branch = self.branch(v);
-            self.sides.push(Sides { selection: v, branch, exits: Vec::new() });
+            self.sides.push(Sides {
+                selection: v,
+                branch,
+                exits: Vec::new(),
+            });
             if self.is_if(v) {
                 // where the selector is no number
                 let nothing = self.constant(f64::NAN).register;
@@ -591,7 +714,9 @@ impl<'a> Lowering<'a> {
 
     /// Lets the branch of the open selection lead here for a side.
     fn set_jump(&mut self, v: Value, side: u8) {
-        let Some(branch) = self.sides.last().map(|open| open.branch) else { return };
+        let Some(branch) = self.sides.last().map(|open| open.branch) else {
+            return;
+        };
         let operand = if self.is_if(v) { 2 + side as usize } else { 2 };
         self.ops[branch].operands[operand] = (self.ops.len() - branch) as u32;
     }
@@ -618,11 +743,19 @@ impl<'a> Lowering<'a> {
                             1 => handlers::unless::<1>,
                             _ => handlers::unless::<2>,
                         };
-                        self.emit(handler, &[self.register(a), self.register(b), 1], Kind::Jumps(2, 1))
+                        self.emit(
+                            handler,
+                            &[self.register(a), self.register(b), 1],
+                            Kind::Jumps(2, 1),
+                        )
                     }
                     _ => {
                         let zero = self.constant(0.0).register;
-                        self.emit(handlers::unless::<0>, &[zero, self.register(condition), 1], Kind::Jumps(2, 1))
+                        self.emit(
+                            handlers::unless::<0>,
+                            &[zero, self.register(condition), 1],
+                            Kind::Jumps(2, 1),
+                        )
                     }
                 }
             }
@@ -644,12 +777,21 @@ impl<'a> Lowering<'a> {
                     if self.last.is_some() && b.node == self.last {
                         (a, b, code) = (b, a, reversed(code));
                     }
-                    let source = if self.last.is_some() && a.node == self.last { FIRST } else { REGISTERS };
+                    let source = if self.last.is_some() && a.node == self.last {
+                        FIRST
+                    } else {
+                        REGISTERS
+                    };
                     let handler = handlers::BRANCHES[code as usize][source as usize];
-                    return self.emit(handler, &[a.register, b.register, 1, 1, 1], Kind::Jumps(2, 3));
+                    return self.emit(
+                        handler,
+                        &[a.register, b.register, 1, 1, 1],
+                        Kind::Jumps(2, 3),
+                    );
                 }
                 self.flush();
-                let handler = handlers::BRANCHES[handlers::BRANCHES.len() - 1][self.source(selector) as usize];
+                let handler = handlers::BRANCHES[handlers::BRANCHES.len() - 1]
+                    [self.source(selector) as usize];
                 let register = self.register(selector);
                 self.emit(handler, &[register, register, 1, 1, 1], Kind::Jumps(2, 3))
             }
@@ -660,7 +802,9 @@ impl<'a> Lowering<'a> {
         self.flush();
         let node = self.schedule.builder.nodes[v.index()];
         let sides = side_operands(self.schedule.builder, &node);
-        let Some(&x) = sides.get(side as usize) else { return };
+        let Some(&x) = sides.get(side as usize) else {
+            return;
+        };
         let (from, to) = (self.register(x), self.register(v));
         let is_here = self.last == Some(x);
         // the value of an inner selection goes from its sides straight to where it is wanted
@@ -677,17 +821,31 @@ impl<'a> Lowering<'a> {
         }
         let is_last = usize::from(side) + 1 == sides.len();
         match self.produced {
-            Some(p) if is_last && p.node == x && p.op + 1 == self.ops.len() && self.is_single(x) => {
+            Some(p)
+                if is_last && p.node == x && p.op + 1 == self.ops.len() && self.is_single(x) =>
+            {
                 self.ops[p.op].operands[p.operand] = to;
                 self.produced = Some(Produced { node: v, ..p });
             }
             _ if is_last => {
-                let handler = if is_here { handlers::keep } else { handlers::copy };
+                let handler = if is_here {
+                    handlers::keep
+                } else {
+                    handlers::copy
+                };
                 let op = self.emit(handler, &[from, to], Kind::Registers(2));
                 self.produced(v, op, 1);
             }
             _ => {
-                self.exit(if is_here { handlers::leave } else { handlers::fetch }, from, v);
+                self.exit(
+                    if is_here {
+                        handlers::leave
+                    } else {
+                        handlers::fetch
+                    },
+                    from,
+                    v,
+                );
                 self.forget();
             }
         }
@@ -703,7 +861,11 @@ impl<'a> Lowering<'a> {
             for &exit in &sides.exits {
                 self.ops[exit].operands[2] = (end - exit) as u32;
             }
-            self.closed = Some(Closed { selection: v, exits: sides.exits, end });
+            self.closed = Some(Closed {
+                selection: v,
+                exits: sides.exits,
+                end,
+            });
         }
         self.last = Some(v);
         self.addable = None;
@@ -719,7 +881,12 @@ impl<'a> Lowering<'a> {
 
     /// The operation `op` yields the value of a node and stores it where an operand says.
     fn produced(&mut self, node: Value, op: usize, operand: usize) {
-        self.produced = Some(Produced { node, op, operand, before: self.last });
+        self.produced = Some(Produced {
+            node,
+            op,
+            operand,
+            before: self.last,
+        });
         self.last = Some(node);
     }
 
@@ -728,7 +895,10 @@ impl<'a> Lowering<'a> {
     /// Appends an operation; its place.
     fn emit(&mut self, run: Handler, operands: &[u32], kind: Kind) -> usize {
         if self.chain >= LONGEST_CHAIN {
-            self.ops.push(Op { run: handlers::pause, operands: [0; 6] });
+            self.ops.push(Op {
+                run: handlers::pause,
+                operands: [0; 6],
+            });
             self.kinds.push(Kind::Registers(0));
             self.chain = 0;
             self.has_paused = true;
@@ -746,24 +916,37 @@ impl<'a> Lowering<'a> {
         self.schedule.registers[v.index()]
     }
     fn operand(&self, v: Value) -> Operand {
-        Operand { register: self.register(v), node: Some(v) }
+        Operand {
+            register: self.register(v),
+            node: Some(v),
+        }
     }
     /// The register of a constant of our own.
     fn constant(&mut self, c: f64) -> Operand {
         if let Some(&register) = self.constants.get(&c.to_bits()) {
-            return Operand { register, node: None };
+            return Operand {
+                register,
+                node: None,
+            };
         }
         let place = self.parameters.len() as u32;
         self.parameters.push(c);
         let register = self.core.size + 1 + place;
         self.constants.insert(c.to_bits(), register);
-        Operand { register, node: None }
+        Operand {
+            register,
+            node: None,
+        }
     }
     fn is_single(&self, v: Value) -> bool {
         self.schedule.order.uses[v.index()] == 1
     }
     fn source(&self, x: Value) -> u8 {
-        if self.last == Some(x) { FIRST } else { REGISTERS }
+        if self.last == Some(x) {
+            FIRST
+        } else {
+            REGISTERS
+        }
     }
 }
 

@@ -39,7 +39,8 @@ struct Op {
 }
 
 /// Performs an operation and all that follow it.
-type Handler = unsafe extern "C" fn(op: *const Op, registers: *mut f64, inputs: *const f64, acc: f64) -> Stop;
+type Handler =
+    unsafe extern "C" fn(op: *const Op, registers: *mut f64, inputs: *const f64, acc: f64) -> Stop;
 
 /// Where a chain of operations stopped.
 #[repr(C)]
@@ -87,7 +88,10 @@ pub(super) struct Machine {
 
 impl std::fmt::Debug for Machine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Machine").field("n_ops", &self.ops.len()).field("n_registers", &self.n_registers).finish()
+        f.debug_struct("Machine")
+            .field("n_ops", &self.ops.len())
+            .field("n_registers", &self.n_registers)
+            .finish()
     }
 }
 
@@ -146,7 +150,11 @@ impl Machine {
         let (n, end) = (self.n_registers, self.ops.len());
         assert_eq!((kinds.len(), kinds.last()), (end, Some(&Kind::Halt)));
         for (k, (op, kind)) in self.ops.iter().zip(kinds).enumerate() {
-            let registers_are_inside = |count: u8| op.operands[..count as usize].iter().all(|&r| (r as usize) < n);
+            let registers_are_inside = |count: u8| {
+                op.operands[..count as usize]
+                    .iter()
+                    .all(|&r| (r as usize) < n)
+            };
             let sound = match *kind {
                 Kind::Registers(count) => registers_are_inside(count),
                 Kind::Parameters(count) => {
@@ -154,11 +162,13 @@ impl Machine {
                     registers_are_inside(count) && place + length <= n
                 }
                 Kind::Fixed(count, length) => {
-                    registers_are_inside(count) && op.operands[count as usize] as usize + length as usize <= n
+                    registers_are_inside(count)
+                        && op.operands[count as usize] as usize + length as usize <= n
                 }
                 Kind::Jumps(count, jumps) => {
                     let jumps = &op.operands[count as usize..(count + jumps) as usize];
-                    registers_are_inside(count) && jumps.iter().all(|&j| j >= 1 && k + (j as usize) < end)
+                    registers_are_inside(count)
+                        && jumps.iter().all(|&j| j >= 1 && k + (j as usize) < end)
                 }
                 Kind::Instruction => {
                     (op.operands[0] as usize) < self.core.code.len()
@@ -172,7 +182,11 @@ impl Machine {
                 }
                 Kind::Halt => k + 1 == end,
             };
-            assert!(sound, "operation {k} reaches outside: {kind:?} {:?}", op.operands);
+            assert!(
+                sound,
+                "operation {k} reaches outside: {kind:?} {:?}",
+                op.operands
+            );
         }
     }
 }
