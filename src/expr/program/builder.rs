@@ -507,7 +507,7 @@ impl Builder {
             (product >> 64) as u64 ^ product as u64
         };
         let pair = |a: Value, b: Value| u64::from(a.0) << 32 | u64::from(b.0);
-        let h = match *node {
+        match *node {
             Node::Constant(bits) => mix(1, bits),
             Node::Input(k) => mix(2, u64::from(k)),
             Node::Unary(op, x) => mix(mix(3, op as u64), u64::from(x.0)),
@@ -522,8 +522,7 @@ impl Builder {
             Node::Partial { call, k } => mix(mix(11, u64::from(call.0)), u64::from(k)),
             Node::If(_) => self.hash_list(9, node, mix),
             Node::Call { function, .. } => self.hash_list(mix(10, function as u64), node, mix),
-        };
-        h
+        }
     }
 
     fn hash_list(&self, seed: u64, node: &Node, mix: impl Fn(u64, u64) -> u64) -> u64 {

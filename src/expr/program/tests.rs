@@ -470,7 +470,7 @@ fn long_programs_need_no_stack() {
     let mut b = Builder::new(Folding::Strict);
     let inputs = [0, 1, 2].map(|k| b.input(Input::Slot(k)));
     let mut v = inputs[0];
-    let mut want = |x: &[f64; 3]| {
+    let want = |x: &[f64; 3]| {
         let mut v = x[0];
         for k in 0..50_000usize {
             let (a, c) = (x[k % 3], (k % 17) as f64 * 0.125 - 1.0);
