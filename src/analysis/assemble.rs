@@ -1,11 +1,12 @@
 //! Putting the mechanism together: positions that satisfy all rows, which rows depend on others, velocities that fit.
 //!
 //! Positions move from those of the dataset by the least change that closes the loops. Rank is found there by
-//! orthogonalizing the rows in order, translations first; a row that depends on earlier ones is left out, and is no
+//! reflections (`numeric/rank.rs`), translations first; a row that depends on earlier ones is left out, and is no
 //! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
 
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
+use crate::numeric::rank::Rank;
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::programs::weights;
 use crate::scene::{RowKind, Scene, Source};
@@ -13,6 +14,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Rows whose part orthogonal to earlier rows is smaller than this, relative to themselves, depend on them.
 pub const DEPENDENT: f64 = 1e-8;
+/// Rows shorter than this, compared with what they are where they move something, move nothing.
+const EMPTY: f64 = 1e-9;
 /// A row holds when it is smaller than this (lengths relative to the size of the mechanism).
 pub const CLOSED: f64 = 1e-10;
 
@@ -38,6 +41,8 @@ pub struct Assembly {
     pub iterations: usize,
     /// largest change of a coordinate
     pub moved: f64,
+    /// what the user should know
+    pub warnings: Vec<String>,
 }
 
 fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<f64> {
@@ -46,8 +51,40 @@ fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<f64> {
     n.extend_from_slice(q);
     n.extend_from_slice(v);
     n.extend_from_slice(x);
+    n.extend_from_slice(&scene.turns);
     n.resize(scene.layout.len(), 0.0);
     n
+}
+
+/// Constants of sums of displacements that hold what the configuration shows; what is worth telling about them.
+fn hold(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) -> Vec<String> {
+    let (shown, _, _) = rows_at(scene, t, q, x);
+    let mut told = Vec::new();
+    for (row, &shown) in scene.rows.iter_mut().zip(&shown) {
+        let RowKind::Displacements(sum) = &mut row.kind else {
+            continue;
+        };
+        if !sum.held {
+            continue;
+        }
+        sum.constant += shown;
+        // rounding of what should be zero
+        if sum.constant.abs() < 1e-13 * sum.scale(scene.length) {
+            sum.constant = 0.0;
+        }
+        if sum.constant != 0.0 && sum.contact.is_none() {
+            told.push(format!(
+                "{}: its displacements sum up to {:.6e} where they are assembled; that sum is held, not zero",
+                row.element, sum.constant
+            ));
+        }
+    }
+    told
+}
+
+/// Whether a row takes what the configuration shows rather than asking anything of it.
+fn is_held(scene: &Scene, r: usize) -> bool {
+    matches!(&scene.rows[r].kind, RowKind::Displacements(sum) if sum.held)
 }
 
 /// Values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
@@ -78,31 +115,35 @@ pub fn rows_at(
 
 /// Size of a row's residual as compared with [`CLOSED`].
 fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
-    let length = match &scene.rows[r].kind {
-        RowKind::Markers { law, .. } => law.is_length(),
-        RowKind::Linear { .. } => false,
-    };
-    (if length { value / scene.length } else { value }).abs()
+    (value / natural(scene, r)).abs()
 }
 
-/// Least-norm solution of `A x = b` in the metric W, with small singular values left out.
+/// What counts as one for a row.
+fn natural(scene: &Scene, r: usize) -> f64 {
+    match &scene.rows[r].kind {
+        RowKind::Markers { law, .. } if law.is_length() => scene.length,
+        RowKind::Markers { .. } => 1.0,
+        RowKind::Displacements(sum) => sum.scale(scene.length),
+    }
+}
+
+/// The rows of a matrix, columns scaled by √w.
+fn scaled_rows(a: &DMatrix<f64>, w: &[f64]) -> Vec<Vec<f64>> {
+    let row = |r: usize| (0..w.len()).map(|v| a[(r, v)] * w[v].sqrt()).collect();
+    (0..a.nrows()).map(row).collect()
+}
+
+/// The decision which rows depend on others, columns scaled by √w.
+fn rank_of(a: &DMatrix<f64>, w: &[f64]) -> Rank {
+    let rows = scaled_rows(a, w);
+    Rank::of(rows.iter().map(Vec::as_slice), w.len(), 1e-9)
+}
+
+/// Shortest solution of `A x = b` in the metric W, rows counting by their direction; where they contradict, the best.
 fn least_change(a: &DMatrix<f64>, w: &[f64], b: &DVector<f64>) -> DVector<f64> {
-    let mut scaled = a.clone();
-    for (v, weight) in w.iter().enumerate() {
-        scaled.column_mut(v).scale_mut(weight.sqrt());
-    }
-    if scaled.nrows() == 0 || scaled.ncols() == 0 {
-        return DVector::zeros(w.len());
-    }
-    let svd = scaled.svd(true, true);
-    let largest = svd.singular_values.max();
-    let mut x = svd
-        .solve(b, largest * 1e-9)
-        .unwrap_or_else(|_| DVector::zeros(w.len()));
-    for (v, weight) in w.iter().enumerate() {
-        x[v] *= weight.sqrt();
-    }
-    x
+    let mut x = vec![0.0; w.len()];
+    rank_of(a, w).least_norm(b.as_slice(), &mut x);
+    DVector::from_iterator(w.len(), x.iter().zip(w).map(|(x, w)| x * w.sqrt()))
 }
 
 /// Positions that satisfy all rows at time `t`, starting from `q`; finds which rows depend on others.
@@ -123,6 +164,15 @@ pub fn positions(
         (0..g.len())
             .map(|r| relative(scene, r, g[r]))
             .fold(0.0, f64::max)
+    };
+    // all but the rows that will hold what the others leave
+    let rows_at = |scene: &Scene, t: f64, q: &[f64], x: &[f64]| {
+        let (mut g, mut gradient, drift) = rows_at(scene, t, q, x);
+        for r in (0..g.len()).filter(|&r| is_held(scene, r)) {
+            g[r] = 0.0;
+            gradient.row_mut(r).fill(0.0);
+        }
+        (g, gradient, drift)
     };
     let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
     let mut size = worst(scene, &g);
@@ -160,6 +210,8 @@ pub fn positions(
         .zip(&start)
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
+    found.warnings = hold(scene, t, q, x);
+    let (_, gradient, _) = self::rows_at(scene, t, q, x);
     let (independent, redundant) = rank(scene, &gradient, &w);
     scene.active = (0..scene.rows.len())
         .map(|r| independent.contains(&r))
@@ -186,71 +238,53 @@ fn contradictions(scene: &Scene, g: &DVector<f64>) -> Vec<Diagnostic> {
         .collect()
 }
 
-/// Independent rows, and for each other row what it is a combination of.
-///
-/// Modified Gram–Schmidt in order, lengths before angles, with the orthogonalization done twice.
+/// Independent rows, and for each other row what it is a combination of: translations before rotations before sums.
 pub fn rank(scene: &Scene, gradient: &DMatrix<f64>, w: &[f64]) -> (Vec<usize>, Vec<Redundant>) {
     let mut order: Vec<usize> = (0..scene.rows.len()).collect();
-    let rotational =
-        |r: usize| !matches!(&scene.rows[r].kind, RowKind::Markers { law, .. } if law.is_length());
-    order.sort_by_key(|&r| (rotational(r), r));
-    let mut basis: Vec<DVector<f64>> = Vec::new();
-    let mut independent: Vec<usize> = Vec::new();
-    let mut redundant = Vec::new();
-    let scaled = |r: usize| {
-        DVector::from_iterator(
-            w.len(),
-            (0..w.len()).map(|v| gradient[(r, v)] * w[v].sqrt()),
-        )
+    let kind = |r: usize| match &scene.rows[r].kind {
+        RowKind::Markers { law, .. } => u8::from(!law.is_length()),
+        RowKind::Displacements(_) => 2,
     };
-    for r in order {
-        let row = scaled(r);
-        let size = row.norm();
-        let mut rest = row.clone();
-        for _ in 0..2 {
-            for b in &basis {
-                let along = b.dot(&rest);
-                rest.axpy(-along, b, 1.0);
+    order.sort_by_key(|&r| (kind(r), r));
+    let all = scaled_rows(gradient, w);
+    let longest = w.iter().map(|w| w.sqrt()).fold(0.0, f64::max);
+    let rows: Vec<Vec<f64>> = order
+        .iter()
+        .map(|&r| {
+            // a row that moves nothing there says nothing about what its direction is
+            let size = all[r].iter().map(|x| x * x).sum::<f64>().sqrt();
+            let empty = size <= EMPTY * natural(scene, r).min(longest);
+            if empty {
+                vec![0.0; w.len()]
+            } else {
+                all[r].clone()
             }
-        }
-        // a row that moves nothing (a mechanism without freedoms there) depends on none
-        let scale = size.max(1e-6 * w.iter().map(|w| w.sqrt()).fold(0.0, f64::max));
-        if rest.norm() > DEPENDENT * scale {
-            basis.push(&rest / rest.norm());
-            independent.push(r);
-        } else {
-            let combination = combination(
-                &independent.iter().map(|&k| scaled(k)).collect::<Vec<_>>(),
-                &row,
-            );
-            let mut combination: Vec<(usize, f64)> = combination
+        })
+        .collect();
+    let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), DEPENDENT);
+    let mut independent: Vec<usize> = rank.independent().into_iter().map(|k| order[k]).collect();
+    independent.sort_unstable();
+    let redundant = rank
+        .dependent()
+        .into_iter()
+        .map(|d| {
+            let mut combination: Vec<(usize, f64)> = d
+                .combination
                 .into_iter()
-                .enumerate()
-                .map(|(k, f)| (independent[k], f))
+                .map(|(k, f)| (order[k], f))
                 .filter(|c| c.1.abs() > 1e-6)
                 .collect();
             combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
-            redundant.push(Redundant {
-                row: r,
-                name: row_name(&scene.rows[r]),
+            let row = order[d.row];
+            let name = row_name(&scene.rows[row]);
+            Redundant {
+                row,
+                name,
                 combination,
-            });
-        }
-    }
-    independent.sort_unstable();
+            }
+        })
+        .collect();
     (independent, redundant)
-}
-
-/// Factors that make `row` of `rows`, in the least-squares sense.
-fn combination(rows: &[DVector<f64>], row: &DVector<f64>) -> Vec<f64> {
-    if rows.is_empty() || row.is_empty() {
-        return Vec::new();
-    }
-    let a = DMatrix::from_columns(rows);
-    a.svd(true, true)
-        .solve(row, 1e-10)
-        .map(|x| x.iter().copied().collect())
-        .unwrap_or_default()
 }
 
 /// Velocities nearest to those the dataset gives that satisfy the rows: given ones first, then the rest as small as may be.
@@ -282,16 +316,22 @@ pub fn velocities(
         ]);
     }
     let mut v = v0;
+    let wishes = [&wishes.given, &wishes.rest];
+    if wishes.iter().all(|(a, b)| (b - a * &v).amax() == 0.0) {
+        return Ok(v.iter().copied().collect());
+    }
     let mut space = null_space(&gradient, n);
     // each level of wishes as well as may be within what the levels before leave free
-    for (a, b) in [&wishes.given, &wishes.rest] {
+    for (a, b) in wishes {
         if space.ncols() == 0 || a.nrows() == 0 {
             continue;
         }
         let reduced = a * &space;
-        let z = least_change(&reduced, &vec![1.0; space.ncols()], &(b - a * &v));
-        v += &space * z;
-        space = &space * null_space(&reduced, space.ncols());
+        let rank = rank_of(&reduced, &vec![1.0; space.ncols()]);
+        let mut z = vec![0.0; space.ncols()];
+        rank.least_squares((b - a * &v).as_slice(), &mut z);
+        v += &space * DVector::from_vec(z);
+        space = &space * directions(&rank, space.ncols());
     }
     // without rounding dust where the dataset says zero
     let size = v.amax();
@@ -302,21 +342,12 @@ pub fn velocities(
 
 /// An orthonormal basis of what a matrix maps to zero, by columns.
 pub fn null_space(a: &DMatrix<f64>, n: usize) -> DMatrix<f64> {
-    if a.nrows() == 0 || n == 0 {
-        return DMatrix::identity(n, n);
-    }
-    // the eigenvectors of AᵀA to its small eigenvalues, from the SVD of a square extension
-    let mut square = DMatrix::zeros(a.nrows().max(n), n);
-    square.view_mut((0, 0), (a.nrows(), n)).copy_from(a);
-    let svd = square.svd(false, true);
-    let Some(v_t) = svd.v_t else {
-        return DMatrix::zeros(n, 0);
-    };
-    let largest = svd.singular_values.max();
-    let free: Vec<usize> = (0..n)
-        .filter(|&k| svd.singular_values[k] <= 1e-9 * largest)
-        .collect();
-    DMatrix::from_fn(n, free.len(), |i, j| v_t[(free[j], i)])
+    directions(&rank_of(a, &vec![1.0; n]), n)
+}
+
+fn directions(rank: &Rank, n: usize) -> DMatrix<f64> {
+    let free = rank.free_directions();
+    DMatrix::from_fn(n, free.len(), |i, j| free[j][i])
 }
 
 /// Linear equations that velocities should satisfy: (matrix, right side).

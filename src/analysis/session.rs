@@ -153,6 +153,7 @@ impl Session {
                 self.initial_motion(&scene, m, motion.state, &q, &mut x);
             }
         }
+        scene.turns.clone_from(&turns);
         let assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
         let v = match v {
             _ if mode == STATIC => vec![0.0; l.n_v],
@@ -267,6 +268,9 @@ impl Session {
             (system, _) = self.prepare(KINEMATIC)?;
         }
         self.first_facts(&system, &assembly);
+        for warning in &assembly.warnings {
+            self.warn(warning);
+        }
         let (program, complaints) = self.columns.program(&system.scene);
         for complaint in complaints {
             if self

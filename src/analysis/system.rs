@@ -135,10 +135,7 @@ impl System {
         } else {
             let counted = &scene.counted;
             let program = record(&scene, |at| {
-                counted
-                    .iter()
-                    .map(|&(m, ids)| at.measure(m, ids, m.name()))
-                    .collect()
+                counted.iter().map(|&angle| at.counted(angle)).collect()
             });
             Some(program.map_err(complaints)?)
         };

@@ -218,12 +218,25 @@ impl Rank {
     /// The shortest `x` that satisfies `A x = b` best (4), each row counting by its direction. Gives the row with the largest distance left, and that
     /// distance `|aᵢ x − bᵢ|`: zero up to rounding when the rows do not contradict each other.
     pub fn least_norm(&self, b: &[f64], x: &mut [f64]) -> (usize, f64) {
+        self.solve(|_| 1.0, b, x)
+    }
+
+    /// The shortest `x` with the least `|A x − b|`, each row counting as it is; gives as [`Rank::least_norm`] does.
+    pub fn least_squares(&self, b: &[f64], x: &mut [f64]) -> (usize, f64) {
+        self.solve(|i| self.length[i], b, x)
+    }
+
+    /// Least `Σ weight² (âᵢ x − b̂ᵢ)²`.
+    fn solve(&self, weight: impl Fn(usize) -> f64, b: &[f64], x: &mut [f64]) -> (usize, f64) {
         let (m, r) = (self.order.len(), self.rank);
         // argmin |L z − b̂| by reflections on the columns of L, rows in the order of choice
-        let mut columns: Vec<Vec<f64>> = (0..r)
-            .map(|j| self.order.iter().map(|i| self.l[*i][j]).collect())
-            .collect();
-        let mut rest: Vec<f64> = self.order.iter().map(|i| b[*i] / self.length[*i]).collect();
+        let column = |j: usize| {
+            let entry = |i: &usize| weight(*i) * self.l[*i][j];
+            self.order.iter().map(entry).collect()
+        };
+        let mut columns: Vec<Vec<f64>> = (0..r).map(column).collect();
+        let right = |i: &usize| weight(*i) * b[*i] / self.length[*i];
+        let mut rest: Vec<f64> = self.order.iter().map(right).collect();
         for k in 0..r {
             let v = reflection(&columns[k], k);
             for column in &mut columns[k..] {
@@ -391,6 +404,14 @@ mod tests {
             let mut x = vec![0.0; n];
             let (_, distance) = rank.least_norm(&b, &mut x);
             prop_assert!(distance < 1e-9, "{}", distance);
+            // least squares: what is left of any right side is square to the columns
+            let odd: Vec<f64> = (0..m).map(|i| numbers[i] - numbers[i + 7]).collect();
+            rank.least_squares(&odd, &mut x);
+            let left: Vec<f64> = rows.iter().zip(&odd).map(|(row, b)| row.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>() - b).collect();
+            for j in 0..n {
+                prop_assert!(rows.iter().zip(&left).map(|(row, d)| row[j] * d).sum::<f64>().abs() < 1e-9);
+            }
+            rank.least_norm(&b, &mut x);
             for free in rank.free_directions() {
                 prop_assert!(free.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>().abs() < 1e-9);
             }

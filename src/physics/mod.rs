@@ -3,6 +3,7 @@
 
 pub mod action;
 pub mod bushing;
+pub mod coupler;
 pub mod joint;
 pub mod row;
 pub mod spring_damper;

@@ -6,8 +6,8 @@ use super::layout::Layout;
 use super::loops::{self, Key};
 use super::sweep::Freedom;
 use super::{
-    ConstraintElement, Formula, LinkIx, LinkMotion, Row, RowKind, Scene, SceneDifferential,
-    SceneMotion, Source,
+    ConstraintElement, Counted, Formula, LinkIx, LinkMotion, Row, RowKind, Scene,
+    SceneDifferential, SceneMotion, Source,
 };
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::interpolation::Bindings;
@@ -17,6 +17,7 @@ use crate::model::{
     ArrayKind, Driven, Formula as ModelFormula, JointKind, Level, MarkerOwner, Model, VectorForce,
 };
 use crate::physics::bushing::Bushing;
+use crate::physics::coupler::Gauge;
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
 use crate::physics::spring_damper::SpringDamper;
@@ -30,6 +31,8 @@ pub struct Options {
     pub cut_all: bool,
     /// value of MODE: 1 kinematic, 3 initial conditions, 4 dynamic, 5 static
     pub mode: u32,
+    /// COUPLER, SCREW, RACKPIN: the sum of displacements is zero, as in the manuals, rather than what the assembled configuration shows
+    pub strict: bool,
     /// expressions to be evaluated beside those of the model: (name, text)
     pub extra: Vec<(String, String)>,
     /// keywords of statements that are left out where they are not solved
@@ -37,7 +40,7 @@ pub struct Options {
 }
 
 /// Keeps an element of a model unless it has been switched off.
-fn active<'m, T>(
+pub(super) fn active<'m, T>(
     model: &'m Model,
     keyword: &'m str,
     all: &'m BTreeMap<u32, T>,
@@ -81,6 +84,7 @@ impl Scene {
         c.forest(&ties, |_| options.cut_all, &preferred);
         b.driven_rows(&mut c, &drives);
         b.links(&mut c);
+        b.couplers(&mut c, options.strict);
         b.forces(&mut c);
         b.systems(&mut c);
         for (name, text) in &options.extra {
@@ -138,9 +142,9 @@ struct Drive {
     name: String,
 }
 
-struct Builder<'m> {
-    scene: Scene,
-    model: &'m Model,
+pub(super) struct Builder<'m> {
+    pub(super) scene: Scene,
+    pub(super) model: &'m Model,
     bindings: Bindings,
     /// splines that cannot be used: told when something asks for one
     unusable: Vec<Diagnostic>,
@@ -306,6 +310,8 @@ impl<'m> Builder<'m> {
                 keyword: "MOTION",
                 id,
                 markers,
+                acts_on: markers.iter().map(|m| m.0).collect(),
+                about: markers.map(|m| m.0),
                 carries: None,
                 rows,
                 coordinate,
@@ -592,13 +598,13 @@ impl<'m> Builder<'m> {
 
     /// Angles whose turns are counted, wherever they are asked for.
     fn counted(&mut self) {
-        let mut found: BTreeSet<(Measure, [u32; 4])> = BTreeSet::new();
+        let mut found: BTreeSet<Counted> = BTreeSet::new();
         for f in &self.scene.formulas {
             for input in f.program.inputs() {
                 if let Input::Measure(m, ids) = input
                     && m.needs_history()
                 {
-                    found.insert((*m, *ids));
+                    found.insert(Counted::Measure(*m, *ids));
                 }
             }
         }
@@ -609,12 +615,24 @@ impl<'m> Builder<'m> {
                 ForceLaw::SpringDamper(SpringDamper {
                     rotational: true, ..
                 }) => {
-                    found.insert((Measure::Az, ids));
+                    found.insert(Counted::Measure(Measure::Az, ids));
                 }
                 ForceLaw::Bushing(_) => {
-                    found.extend([Measure::Ax, Measure::Ay, Measure::Az].map(|m| (m, ids)));
+                    let angles = [Measure::Ax, Measure::Ay, Measure::Az];
+                    found.extend(angles.map(|m| Counted::Measure(m, ids)));
                 }
                 _ => {}
+            }
+        }
+        for row in &self.scene.rows {
+            let RowKind::Displacements(sum) = &row.kind else {
+                continue;
+            };
+            for (_, d) in &sum.terms {
+                if let (Gauge::Angle(about), None) = (d.gauge, &d.coordinates) {
+                    let (i, j) = (d.i, d.j);
+                    found.insert(Counted::Angle { about, i, j });
+                }
             }
         }
         self.scene.counted = found.into_iter().collect();

@@ -261,6 +261,8 @@ impl<'m> Compiler<'m> {
                 },
                 id: tie.id,
                 markers,
+                acts_on: markers.iter().map(|m| m.0).collect(),
+                about: markers.map(|m| m.0),
                 carries: carrying[t],
                 rows: first..self.rows.len(),
                 coordinate: None,

@@ -12,11 +12,12 @@ use super::layout::Layout;
 use super::loops::Key;
 use super::solve::{Factor, MassFactor, Solution, accelerations, solve_symmetric};
 use super::sweep::{self, Coordinates, LinkState, Wrench};
-use super::{Row, RowKind, Scene, Source};
+use super::{Counted, Displacement, Row, RowKind, Scene, Source, Sum};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::{Input, Work};
 use crate::model::Level;
 use crate::physics::action::Action;
+use crate::physics::coupler::Gauge;
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::space::{Frame, MarkerState, Mat3, Vec3, kinematic};
 use std::cell::{Cell, OnceCell, RefCell};
@@ -80,8 +81,8 @@ pub struct RowValue<S> {
     pub drift: S,
     /// g̈ = gradient · v̇ − gamma
     pub gamma: S,
-    /// force and torque of a unit multiplier on I and on J about their origins, ground axes
-    pub actions: [Action<S>; 2],
+    /// force and torque of a unit multiplier on markers about their origins, ground axes
+    pub actions: Vec<(usize, Action<S>)>,
 }
 
 impl<'s, S: Scalar> Equations<'s, S> {
@@ -390,7 +391,9 @@ impl<'s, S: Scalar> Equations<'s, S> {
             Family::Displacement | Family::Velocity => {
                 let state = |id: u32| self.scene.marker_of.get(&id).map(|&m| self.marker(m));
                 match kinematic::kinematic_of(measure, ids, state) {
-                    Some(value) if measure.needs_history() => self.counted(measure, ids, value),
+                    Some(value) if measure.needs_history() => {
+                        self.turned(Counted::Measure(measure, ids), value)
+                    }
                     Some(value) => value,
                     None => self.complain(format!(
                         "{asked_by}: {} has no value for these arguments",
@@ -430,13 +433,24 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     /// An angle with its turns: the value nearest to the one last accepted.
-    fn counted(&self, measure: Measure, ids: [u32; 4], principal: S) -> S {
-        let Some(k) = self.scene.counted.iter().position(|c| *c == (measure, ids)) else {
+    fn turned(&self, angle: Counted, principal: S) -> S {
+        let Some(k) = self.scene.counted.iter().position(|c| *c == angle) else {
             return principal;
         };
         let turn = std::f64::consts::TAU;
         let turns = (self.turns[k] - principal).scale(1.0 / turn).round();
         principal + turns.scale(turn)
+    }
+
+    /// Value of an angle whose turns are counted.
+    pub fn counted(&self, angle: Counted) -> S {
+        match angle {
+            Counted::Measure(measure, ids) => self.measure(measure, ids, measure.name()),
+            Counted::Angle { about, i, j } => {
+                let frame = |m: usize| sweep::marker_frame(&self.scene.markers[m], &self.links);
+                self.turned(angle, Gauge::Angle(about).value(&frame(i), &frame(j)))
+            }
+        }
     }
 
     /// AX, AY or AZ of one marker against another, with its turns.
@@ -582,19 +596,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let mut lambda = vec![S::zero(); scene.rows.len()];
         for ((r, row), &l) in rows.iter().zip(&multipliers.x) {
             lambda[*r] = l;
-            if let RowKind::Markers { i, j, .. } = scene.rows[*r].kind {
-                for (m, action) in [(i, &row.actions[0]), (j, &row.actions[1])] {
-                    let point = self.marker(m).p_GM;
-                    let link = scene.markers[m].link;
-                    sweep::apply(
-                        &mut wrenches,
-                        &self.links,
-                        link,
-                        point,
-                        action.force.times(l),
-                        action.torque.times(l),
-                    );
-                }
+            for (m, action) in &row.actions {
+                let point = self.marker(*m).p_GM;
+                let link = scene.markers[*m].link;
+                sweep::apply(
+                    &mut wrenches,
+                    &self.links,
+                    link,
+                    point,
+                    action.force.times(l),
+                    action.torque.times(l),
+                );
             }
         }
         let links = sweep::outward(scene, &self.coordinates(&f));
@@ -818,51 +830,172 @@ impl<'s, S: Scalar> Equations<'s, S> {
                         eps: [S::zero(); 12],
                     }),
                 );
-                let action = |k: usize| Action {
-                    torque: Vec3([seeded.eps[k], seeded.eps[k + 1], seeded.eps[k + 2]]),
-                    force: Vec3([seeded.eps[k + 3], seeded.eps[k + 4], seeded.eps[k + 5]]),
-                };
-                let actions = [action(0), action(6)];
+                let actions = vec![(*i, twist(&seeded, 0)), (*j, twist(&seeded, 6))];
                 // rates: jets in time along the motion with v̇ = 0
                 let rates = law.value(&moving(&I), &moving(&J), drive);
-                let mut gradient: Vec<(usize, S)> = Vec::new();
-                for (m, a) in [(*i, &actions[0]), (*j, &actions[1])] {
-                    self.gradient(m, a, &mut gradient);
-                }
-                let along: S = gradient
-                    .iter()
-                    .fold(S::zero(), |s, &(v, g)| s + g * self.v[v]);
-                gradient.sort_by_key(|g| g.0);
+                let gradient = self.gradient_of(&actions);
                 RowValue {
                     value: seeded.re,
+                    drift: rates.first - self.along(&gradient),
                     gradient,
-                    drift: rates.first - along,
                     gamma: -rates.second,
                     actions,
                 }
             }
-            RowKind::Linear { terms, constant } => {
-                let mut sum = Jet::<S>::constant(-*constant);
-                let mut gradient = Vec::new();
-                let mut drift = S::zero();
-                for &(c, factor) in terms {
-                    let x = self.coordinate(c);
-                    sum += x.scale(factor);
-                    match self.scene.coordinates[c].source {
-                        Source::Free { v, .. } => gradient.push((v, S::constant(factor))),
-                        Source::Driven(_) => drift += x.first.scale(factor),
-                    }
-                }
-                gradient.sort_by_key(|g| g.0);
-                RowValue {
-                    value: sum.value,
-                    gradient,
-                    drift,
-                    gamma: -sum.second,
-                    actions: [Action::zero(); 2],
-                }
+            RowKind::Displacements(sum) => self.sum_row(sum),
+        }
+    }
+
+    /// The gradient of what acts with a unit multiplier, by places.
+    fn gradient_of(&self, actions: &[(usize, Action<S>)]) -> Vec<(usize, S)> {
+        let mut gradient: Vec<(usize, S)> = Vec::new();
+        for (m, action) in actions {
+            self.gradient(*m, action, &mut gradient);
+        }
+        gradient.sort_by_key(|g| g.0);
+        gradient
+    }
+
+    /// `gradient · v`
+    fn along(&self, gradient: &[(usize, S)]) -> S {
+        gradient
+            .iter()
+            .fold(S::zero(), |s, &(v, g)| s + g * self.v[v])
+    }
+
+    /// A sum of displacements: each a sum of coordinates where it can be, else by duals along twists and jets in time.
+    fn sum_row(&self, sum: &Sum) -> RowValue<S> {
+        let mut value = S::constant(-sum.constant);
+        let (mut drift, mut second) = (S::zero(), S::zero());
+        let mut gradient: Vec<(usize, S)> = Vec::new();
+        let mut actions = Vec::with_capacity(2 * sum.terms.len());
+        let add = |gradient: &mut Vec<(usize, S)>, v: usize, g: S| match gradient
+            .iter_mut()
+            .find(|e| e.0 == v)
+        {
+            Some(entry) => entry.1 += g,
+            None => gradient.push((v, g)),
+        };
+        let mut linear = true;
+        for (factor, d) in &sum.terms {
+            let own = self.displacement(d);
+            value += own.value.scale(*factor);
+            for (m, a) in &own.actions {
+                let factor = S::constant(*factor);
+                actions.push((
+                    *m,
+                    Action {
+                        force: a.force.times(factor),
+                        torque: a.torque.times(factor),
+                    },
+                ));
+            }
+            linear &= d.coordinates.is_some();
+            drift += own.drift.scale(*factor);
+            second -= own.gamma.scale(*factor);
+            for &(v, g) in &own.gradient {
+                add(&mut gradient, v, g.scale(*factor));
             }
         }
+        if let Some(contact) = sum.contact {
+            actions = self.contact(contact);
+            if !linear {
+                // the same rate on all motions that the joints permit, by forces that act where the bodies touch
+                let rate = self.contact_rate(contact);
+                gradient = self.gradient_of(&actions);
+                drift = rate.value - self.along(&gradient);
+                second = rate.first;
+            }
+        }
+        gradient.sort_by_key(|g| g.0);
+        gradient.retain(|g| !g.1.is_known_zero());
+        RowValue {
+            value,
+            gradient,
+            drift,
+            gamma: -second,
+            actions,
+        }
+    }
+
+    /// A distance or an angle with its gradient and rates.
+    fn displacement(&self, d: &Displacement) -> RowValue<S> {
+        let (I, J) = (self.marker(d.i), self.marker(d.j));
+        let seeded = d.gauge.value(&seed::<S>(&I, 0), &seed::<S>(&J, 6));
+        let actions = vec![(d.i, twist(&seeded, 0)), (d.j, twist(&seeded, 6))];
+        if let Some((terms, constant)) = &d.coordinates {
+            let mut value = S::constant(*constant);
+            let (mut drift, mut second) = (S::zero(), S::zero());
+            let mut gradient = Vec::new();
+            for &(c, factor) in terms {
+                let x = self.coordinate(c);
+                value += x.value.scale(factor);
+                match self.scene.coordinates[c].source {
+                    Source::Free { v, .. } => gradient.push((v, S::constant(factor))),
+                    Source::Driven(_) => {
+                        drift += x.first.scale(factor);
+                        second += x.second.scale(factor);
+                    }
+                }
+            }
+            return RowValue {
+                value,
+                gradient,
+                drift,
+                gamma: -second,
+                actions,
+            };
+        }
+        let rates = d.gauge.value(&moving(&I), &moving(&J));
+        let gradient = self.gradient_of(&actions);
+        let value = match d.gauge {
+            Gauge::Distance => seeded.re,
+            Gauge::Angle(about) => {
+                let angle = Counted::Angle {
+                    about,
+                    i: d.i,
+                    j: d.j,
+                };
+                self.turned(angle, seeded.re)
+            }
+        };
+        RowValue {
+            value,
+            drift: rates.first - self.along(&gradient),
+            gradient,
+            gamma: -rates.second,
+            actions,
+        }
+    }
+
+    /// A unit force along z of CV on the first body at the origin of CV, and its opposite on the second.
+    fn contact(&self, (cv, bodies): (usize, [usize; 2])) -> Vec<(usize, Action<S>)> {
+        let cv = self.marker(cv);
+        let line = cv.R_GM.column(2);
+        bodies
+            .iter()
+            .zip([line, -line])
+            .map(|(&m, force)| {
+                let torque = (cv.p_GM - self.marker(m).p_GM).cross(force);
+                (m, Action { force, torque })
+            })
+            .collect()
+    }
+
+    /// How fast the second body recedes from the first at CV along its z axis, and the rate of that with v̇ = 0.
+    fn contact_rate(&self, (cv, bodies): (usize, [usize; 2])) -> Jet<S> {
+        let rate = |x: S, first: S| Jet::new(x, first, S::zero());
+        let pair =
+            |x: Vec3<S>, first: Vec3<S>| Vec3(std::array::from_fn(|k| rate(x.0[k], first.0[k])));
+        let cv = self.marker(cv);
+        let (point, line) = (pair(cv.p_GM, cv.v_GM), cv.R_GM.column(2));
+        let line = pair(line, cv.w_GM.cross(line));
+        let [first, second] = bodies.map(|m| {
+            let m = self.marker(m);
+            let arm = point - pair(m.p_GM, m.v_GM);
+            pair(m.v_GM, m.a_GM) + pair(m.w_GM, m.alpha_GM).cross(arm)
+        });
+        (first - second).dot(line)
     }
 
     /// Adds the components of an action on a marker along all free coordinates that move it.
@@ -920,13 +1053,15 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .constraints
             .iter()
             .position(|c| c.keyword == keyword && c.id == id)?;
-        let (i, j) = scene.constraints[c].markers?;
+        let about = scene.constraints[c].about?;
+        let j = scene.constraints[c].markers.map_or(about, |(_, j)| j);
         let action = if self.discovering {
             Action::zero()
         } else {
             self.reaction(c)
         };
-        Some((action, self.marker(i).p_GM, self.marker(j).p_GM))
+        let point = |m: usize| self.marker(m).p_GM;
+        Some((action, point(about), point(j)))
     }
 
     /// The reaction of a constraint on its I marker.
@@ -935,20 +1070,25 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let element = &scene.constraints[c];
         let solved = self.solved();
         let mut sum = Action::zero();
-        for r in element.rows.clone() {
-            if self.is_active(r) && matches!(scene.rows[r].kind, RowKind::Markers { .. }) {
-                let a = self.row(r).actions[0];
-                let l = solved.lambda[r];
-                sum = sum.plus(&Action {
-                    force: a.force.times(l),
-                    torque: a.torque.times(l),
-                });
-            }
-        }
-        let Some((i, _)) = element.markers else {
+        let Some(about) = element.about else {
             return sum;
         };
-        let p_I = self.marker(i).p_GM;
+        let p_I = self.marker(about).p_GM;
+        for r in element.rows.clone().filter(|&r| self.is_active(r)) {
+            let l = solved.lambda[r];
+            for (m, a) in self.row(r).actions {
+                if element.acts_on.contains(&m) {
+                    let force = a.force.times(l);
+                    let arm = self.marker(m).p_GM - p_I;
+                    let torque = if m == about {
+                        a.torque.times(l)
+                    } else {
+                        a.torque.times(l) + arm.cross(force)
+                    };
+                    sum = sum.plus(&Action { force, torque });
+                }
+            }
+        }
         // on the carried link about p_I, ground axes
         let at_i = |link: usize, w: &Wrench<S>| {
             let X = &self.links[link].X_GL;
@@ -1183,6 +1323,14 @@ fn keyword_of(measure: Measure) -> Option<&'static str> {
         M::Contact => "CONTACT",
         _ => return None,
     })
+}
+
+/// What a dual along twists says about the one whose directions begin at `k`: the action of a unit multiplier.
+fn twist<S: Scalar>(x: &Dual<12, S>, k: usize) -> Action<S> {
+    Action {
+        torque: Vec3([x.eps[k], x.eps[k + 1], x.eps[k + 2]]),
+        force: Vec3([x.eps[k + 3], x.eps[k + 4], x.eps[k + 5]]),
+    }
 }
 
 /// A marker's frame as it turns and moves along six directions, the first of which is direction `first`.

@@ -6,6 +6,7 @@
 pub mod articulated;
 pub mod build;
 pub mod compile;
+mod couplers;
 pub mod equations;
 pub mod forces;
 pub mod forest;
@@ -20,6 +21,7 @@ mod unsupported;
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
 use crate::model::Level;
+use crate::physics::coupler::Gauge;
 use crate::physics::row::Law;
 use crate::space::{Frame, Mat3, Vec3};
 use forces::ForceElement;
@@ -164,12 +166,57 @@ pub enum RowKind {
         /// index in [`Scene::motions`]
         motion: Option<usize>,
     },
-    /// Σ factor · coordinate = constant
-    Linear {
-        /// (coordinate, factor)
-        terms: Vec<(usize, f64)>,
-        /// the sum in the assembled configuration
-        constant: f64,
+    /// Σ factor · displacement = constant
+    Displacements(Sum),
+}
+
+/// A weighted sum of displacements that keeps its value.
+#[derive(Clone, Debug)]
+pub struct Sum {
+    /// factors and displacements
+    pub terms: Vec<(f64, Displacement)>,
+    /// what the sum is
+    pub constant: f64,
+    /// the constant is what the assembled configuration shows
+    pub held: bool,
+    /// GEAR: the CV marker, and the I markers of the two geared bodies, on which the force of the row acts there along its z axis
+    pub contact: Option<(usize, [usize; 2])>,
+}
+
+impl Sum {
+    /// What counts as one, in a mechanism of the given size.
+    pub fn scale(&self, length: f64) -> f64 {
+        let one = |d: &Displacement| if d.gauge.is_angle() { 1.0 } else { length };
+        self.terms.iter().map(|(f, d)| f.abs() * one(d)).sum()
+    }
+}
+
+/// A distance or an angle between two markers.
+#[derive(Clone, Debug)]
+pub struct Displacement {
+    /// what it measures
+    pub gauge: Gauge,
+    /// I marker
+    pub i: usize,
+    /// J marker
+    pub j: usize,
+    /// the same as a sum over coordinates of the forest plus a constant, where it is one in every configuration
+    pub coordinates: Option<(Vec<(usize, f64)>, f64)>,
+}
+
+/// An angle whose turns are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Counted {
+    /// a measure with its arguments
+    Measure(Measure, [u32; 4]),
+    /// of marker `i` about an axis of marker `j` (indices in [`Scene::markers`])
+    Angle {
+        /// 0 x, 1 y, 2 z
+        about: usize,
+        /// I marker
+        i: usize,
+        /// J marker
+        j: usize,
     },
 }
 
@@ -225,6 +272,10 @@ pub struct ConstraintElement {
     pub id: u32,
     /// I and J markers, where it has them
     pub markers: Option<(usize, usize)>,
+    /// the markers at which its rows act on what I stands for
+    pub acts_on: Vec<usize>,
+    /// the marker about whose origin its reaction is given
+    pub about: Option<usize>,
     /// it carries a link: the last link of its chain, and whether it is passed from I to J
     pub carries: Option<(usize, bool)>,
     /// its rows, indices in [`Scene::rows`]
@@ -273,7 +324,9 @@ pub struct Scene {
     /// of these, the ones asked for beside those of the model
     pub extra: Vec<usize>,
     /// angles whose turns are counted, in the order of their places in the layout
-    pub counted: Vec<(Measure, [u32; 4])>,
+    pub counted: Vec<Counted>,
+    /// the values these angles have before the first step; empty: within half a turn   (n_turns)
+    pub turns: Vec<f64>,
     /// what functions read too early: unknowns of their own
     pub loops: Vec<loops::Unknown>,
     /// their equations are linear, so that programs eliminate them

@@ -1,0 +1,144 @@
+//! Equations between displacements: COUPLER, GEAR, SCREW, RACKPIN.
+//!
+//! Each says that a weighted sum of displacements keeps its value. A displacement is a distance or an angle of a marker I
+//! against a marker J, with `d = p_I − p_J`:
+//!
+//! ```text
+//! Distance    d · z_J                                            (1)
+//! Angle(a)    angle of x_I about axis a of J, turns counted      (2)
+//!
+//! COUPLER     Σ rₖ qₖ = c                                        (3)
+//! SCREW       d·z_J − PITCH/(2π) θ = c      θ = Angle(z)         (4)
+//! RACKPIN     d·z_J − PD/2 θ = c            θ = Angle(x)         (5)
+//! GEAR        a₁ θ₁ + b₁ s₁ − a₂ θ₂ − b₂ s₂ = c                  (6)
+//!             aₖ = (z_Jk × (p_c − p_Jk)) · z_c,   bₖ = z_Jk · z_c
+//! ```
+//!
+//! *Signs*: a positive PITCH is a right-hand thread. A positive PD puts the pinion's centre on the +y_J side of the pitch
+//! line: turning by +θ about x_J it rolls by +PD/2 θ along z_J. In (6) the two geared bodies have, seen from their carrier, the same velocity at
+//! the origin of CV along its z axis; CV between the axes makes them turn oppositely, CV outside makes an internal gear.
+//!
+//! *Constant*: the manuals write zero; a marker set anywhere along an axis is only usable with a constant. c is therefore what the
+//! assembled configuration shows, and a SCREW, RACKPIN or COUPLER whose c is not zero is reported. [`Options::strict`] takes zero.
+//!
+//! *Reactions*: a coupler turns or pushes I of each joint along its axis and J oppositely. Of a gear pair (pressure angle zero) the
+//! force acts at CV along z_c on the first body and oppositely on the second; it loads the bearings as the teeth would.
+//!
+//! [`Options::strict`]: crate::scene::build::Options::strict
+
+use crate::scalar::Scalar;
+use crate::space::{Frame, Vec3};
+
+/// What a displacement measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Gauge {
+    /// along z of J (1)
+    Distance,
+    /// of x of I about an axis of J, 0 x, 1 y, 2 z (2)
+    Angle(usize),
+}
+
+impl Gauge {
+    /// The displacement; an angle as its principal value.
+    pub fn value<S: Scalar>(self, i: &Frame<S>, j: &Frame<S>) -> S {
+        match self {
+            Gauge::Distance => (i.position - j.position).dot(j.rotation.column(2)),
+            Gauge::Angle(about) => {
+                let x_i = i.rotation.column(0);
+                let across = x_i.dot(j.rotation.column((about + 2) % 3));
+                let along = x_i.dot(j.rotation.column((about + 1) % 3));
+                across.atan2(along)
+            }
+        }
+    }
+
+    /// Whether it is an angle.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Gauge::Angle(_))
+    }
+}
+
+/// A joint of a gear: the axis of J and whether it turns, slides or does both.
+#[derive(Clone, Copy, Debug)]
+pub struct GearedJoint {
+    /// frame of J in the carrier
+    pub j: Frame<f64>,
+    /// turns about z_J
+    pub turns: bool,
+    /// slides along z_J
+    pub slides: bool,
+}
+
+/// Factors a (of the angle) and b (of the distance) of (6) for one joint; `None`: CV does not take part in its motion,
+/// because its z axis is square to what the body can do there.
+pub fn gear_factors(joint: &GearedJoint, cv: &Frame<f64>) -> Option<[f64; 2]> {
+    let (axis, line) = (joint.j.rotation.column(2), cv.rotation.column(2));
+    let arm: Vec3<f64> = cv.position - joint.j.position;
+    let a = if joint.turns {
+        axis.cross(arm).dot(line)
+    } else {
+        0.0
+    };
+    let b = if joint.slides { axis.dot(line) } else { 0.0 };
+    let clean = |x: f64, scale: f64| if x.abs() <= 1e-9 * scale { 0.0 } else { x };
+    let (a, b) = (clean(a, arm.norm()), clean(b, 1.0));
+    (a != 0.0 || b != 0.0).then_some([a, b])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Mat3, rotation};
+
+    fn at(x: f64, y: f64, rotation: Mat3<f64>) -> Frame<f64> {
+        Frame {
+            rotation,
+            position: Vec3([x, y, 0.0]),
+        }
+    }
+    const TURNS: fn(Frame<f64>) -> GearedJoint = |j| GearedJoint {
+        j,
+        turns: true,
+        slides: false,
+    };
+
+    /// Two wheels of radius 1 and 3 touching at (1, 0), line of action along y.
+    #[test]
+    fn between_the_axes_gears_turn_oppositely_and_outside_alike() {
+        let straight = rotation::about_axis(0, 0.0);
+        let line = rotation::about_axis(0, -std::f64::consts::FRAC_PI_2); // z → y
+        let first = TURNS(at(0.0, 0.0, straight));
+        let cv = at(1.0, 0.0, line);
+        let a1 = gear_factors(&first, &cv).unwrap()[0];
+        let external = gear_factors(&TURNS(at(4.0, 0.0, straight)), &cv).unwrap()[0];
+        let internal = gear_factors(&TURNS(at(-2.0, 0.0, straight)), &cv).unwrap()[0];
+        approx::assert_relative_eq!(a1 / external, -1.0 / 3.0, max_relative = 1e-14);
+        approx::assert_relative_eq!(a1 / internal, 1.0 / 3.0, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn a_line_of_action_along_the_axis_or_through_it_is_no_gear() {
+        let straight = rotation::about_axis(0, 0.0);
+        let joint = TURNS(at(0.0, 0.0, straight));
+        assert_eq!(gear_factors(&joint, &at(1.0, 0.0, straight)), None);
+        let outward = rotation::about_axis(1, std::f64::consts::FRAC_PI_2); // z → x
+        assert_eq!(gear_factors(&joint, &at(1.0, 0.0, outward)), None);
+    }
+
+    #[test]
+    fn angles_are_about_the_axis_they_name() {
+        for about in 0..3 {
+            // x of I must not lie along the axis
+            let start = if about == 0 {
+                rotation::about_axis(1, std::f64::consts::FRAC_PI_2)
+            } else {
+                rotation::about_axis(0, 0.0)
+            };
+            let angle = |turn: f64| {
+                let i = at(0.3, 0.2, rotation::about_axis(about, turn) * start);
+                Gauge::Angle(about).value(&i, &Frame::identity())
+            };
+            approx::assert_relative_eq!(angle(0.4) - angle(0.1), 0.3, max_relative = 1e-13);
+        }
+    }
+}
