@@ -1,7 +1,7 @@
 //! What a model may hold that is read and written, but not solved. A kind that becomes solved loses its line here.
 
 use crate::diagnostic::Diagnostic;
-use crate::model::{JointKind, Model};
+use crate::model::Model;
 use std::collections::BTreeSet;
 
 /// Elements of a model that are not solved, by keyword and number; inactive ones do not count.
@@ -13,7 +13,7 @@ fn unsolved(model: &Model) -> Vec<(&'static str, u32)> {
         )* };
     }
     kinds!(
-        "COUPLER" couplers, "GEAR" gears, "GCON" general_constraints, "PTCV" points_on_curves, "CVCV" curves_on_curves,
+        "GCON" general_constraints, "PTCV" points_on_curves, "CVCV" curves_on_curves,
         "FIELD" fields, "BEAM" beams, "NFORCE" nodal_forces, "CONTACT" contacts, "FRICTION" frictions,
         "LSE" linear_systems, "GSE" general_systems, "TFSISO" transfer_functions, "SENSOR" sensors,
     );
@@ -31,14 +31,6 @@ fn unsolved(model: &Model) -> Vec<(&'static str, u32)> {
     for (keyword, id) in model.others.keys() {
         found.extend(FLEXIBLE.iter().filter(|k| *k == keyword).map(|k| (*k, *id)));
     }
-    let unsolved_joint = |kind| matches!(kind, JointKind::Screw | JointKind::Rackpin);
-    found.extend(
-        model
-            .joints
-            .iter()
-            .filter(|(_, j)| unsolved_joint(j.kind))
-            .map(|(&id, _)| ("JOINT", id)),
-    );
     found.retain(|(keyword, id)| !model.inactive.contains(&((*keyword).to_string(), *id)));
     found
 }
