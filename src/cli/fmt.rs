@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, Outcome, remark, say};
 use crate::dataset::{self, Reading};
-use crate::diagnostic::{Diagnostic, Severity, Span};
+use crate::diagnostic::{Diagnostic, Severity};
 use std::path::PathBuf;
 
 /// Write a dataset in the style of Adams View
@@ -63,16 +63,10 @@ pub fn run(args: &Args) -> Outcome {
 
 /// A statement that was not understood cannot be written; what does not fit together otherwise is no hindrance.
 fn refuse_mistakes(reading: &Reading) -> Result<(), Failure> {
-    if reading.dataset.mistaken.is_empty() {
+    let spans = reading.dataset.mistaken();
+    if spans.is_empty() {
         return Ok(());
     }
-    let items = &reading.dataset.syntax.items;
-    let spans: Vec<Span> = reading
-        .dataset
-        .mistaken
-        .iter()
-        .map(|&k| items[k].span())
-        .collect();
     let inside = |d: &Diagnostic| {
         d.span
             .is_some_and(|s| spans.iter().any(|i| i.start <= s.start && s.start <= i.end))

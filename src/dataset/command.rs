@@ -344,10 +344,8 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
         let Item::Statement(tokens) = item else {
             continue;
         };
-        let before = out.len();
         let record = read::record(source, tokens, table(), out);
-        let failed = out[before..].iter().any(|d| d.severity == Severity::Error);
-        let Some(record) = record.filter(|_| !failed) else {
+        let Some(record) = record.filter(|r| !r.mistaken) else {
             continue;
         };
         let (line, span) = (record.place.line, record.head);

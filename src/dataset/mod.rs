@@ -40,8 +40,18 @@ pub struct Dataset {
     pub syntax: Syntax,
     /// one for each item: the statement as read, where its head could be understood
     pub records: Vec<Option<Record>>,
-    /// items in which the reader found a mistake
-    pub mistaken: BTreeSet<usize>,
+}
+
+impl Dataset {
+    /// The statements that could not be understood, or not all of them.
+    pub fn mistaken(&self) -> Vec<Span> {
+        let all = self.syntax.items.iter().zip(&self.records);
+        let wrong = all.filter(|(item, record)| match (item, record) {
+            (Item::Comment(_), _) => false,
+            (Item::Statement(_), record) => record.as_ref().is_none_or(|r| r.mistaken),
+        });
+        wrong.map(|(item, _)| item.span()).collect()
+    }
 }
 
 /// What reading a dataset gave: always everything that could be understood, with all that was found wrong.
@@ -116,16 +126,15 @@ pub fn read_source(source: Source) -> Reading {
     let mut records = Vec::with_capacity(syntax.items.len());
     let mut last_part = None;
     let mut mistaken = BTreeSet::new();
-    for (k, item) in syntax.items.iter().enumerate() {
-        let before = out.len();
+    for item in &syntax.items {
         let record = match item {
             Item::Comment(_) => None,
             Item::Statement(tokens) => read::record(&source, tokens, TABLE, out),
         };
-        if out[before..].iter().any(|d| d.severity == Severity::Error) {
-            mistaken.insert(k);
-        }
         if let Some(record) = &record {
+            if record.mistaken {
+                mistaken.insert(record.element());
+            }
             enter(&source, &mut reading.model, record, false, out);
             if record.row.keyword() == "PART" {
                 last_part = record.id;
@@ -140,6 +149,11 @@ pub fn read_source(source: Source) -> Reading {
         out.push(source.locate(d, Span::new(at, at)));
     }
     for d in reading.model.check() {
+        // What seems to be missing may be what was not understood.
+        let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));
+        if excused && d.code != "unknown_element" {
+            continue;
+        }
         out.push(Diagnostic {
             file: source.file.clone(),
             span: source.word_at(d.line, d.column),
@@ -151,7 +165,6 @@ pub fn read_source(source: Source) -> Reading {
         source,
         syntax,
         records,
-        mistaken,
     };
     reading
 }

@@ -6,7 +6,7 @@
 use super::row::{Argument, Given, Meaning, Record, Statement, canonical, meaning};
 use super::syntax::{Source, Token, TokenKind, Tokens};
 use super::value::{Kind, Number, Value};
-use crate::diagnostic::{Diagnostic, Span, near_names};
+use crate::diagnostic::{Diagnostic, Severity, Span, near_names};
 use crate::model::{Break, Formula, Place};
 
 /// A table of statements to read with.
@@ -25,6 +25,7 @@ pub fn record(
     table: Table,
     out: &mut Vec<Diagnostic>,
 ) -> Option<Record> {
+    let before = out.len();
     let silent = |t: &&Token| !matches!(t.kind, TokenKind::Comment | TokenKind::Carry);
     let mut reader = Reader {
         source,
@@ -34,7 +35,9 @@ pub fn record(
         arguments: Vec::new(),
         out,
     };
-    reader.statement(tokens, table)
+    let mut record = reader.statement(tokens, table)?;
+    record.mistaken = out[before..].iter().any(|d| d.severity == Severity::Error);
+    Some(record)
 }
 
 struct Reader<'a> {
@@ -93,6 +96,7 @@ impl<'a> Reader<'a> {
                 extra: Vec::new(),
             },
             head,
+            mistaken: false,
         };
         while self.next_argument() {
             if self.argument(&mut record).is_err() {
@@ -296,13 +300,13 @@ impl<'a> Reader<'a> {
             Kind::Flag => Value::Flag,
             Kind::Id => Value::Id(self.whole()?),
             Kind::Ids { min, max } => {
-                let all = self.list(Self::whole)?;
+                let all = self.list(min, Self::whole)?;
                 self.count(name, all.len(), min, max, kind)?;
                 Value::Ids(all)
             }
             Kind::Real { angle } => Value::Real(self.number(angle)?),
             Kind::Reals { min, max, angle } => {
-                let all = self.list(|r| r.number(angle))?;
+                let all = self.list(min, |r| r.number(angle))?;
                 self.count(name, all.len(), min, max, kind)?;
                 Value::Reals(all)
             }
@@ -331,24 +335,23 @@ impl<'a> Reader<'a> {
         Err(Reported)
     }
 
-    /// Values with commas between them, as long as what follows a comma begins like a number.
+    /// Values with commas between them, as long as what follows a comma begins like a number; and in any case `min`,
+    /// unless another argument begins.
     fn list<T>(
         &mut self,
+        min: usize,
         mut one: impl FnMut(&mut Self) -> Result<T, Reported>,
     ) -> Result<Vec<T>, Reported> {
         let mut all = vec![one(self)?];
         loop {
             let next = self.after_separators(self.at);
-            let more = next > self.at
-                && self
-                    .tokens
-                    .get(next)
-                    .is_some_and(|t| t.kind == TokenKind::Atom && self.numeric(*t))
-                && self
-                    .tokens
-                    .get(next + 1)
-                    .is_none_or(|t| t.kind != TokenKind::Equals);
-            if !more {
+            let atom = self
+                .tokens
+                .get(next)
+                .filter(|t| next > self.at && t.kind == TokenKind::Atom);
+            let expected = all.len() < min && !self.begins_argument(next);
+            let more = atom.is_some_and(|t| self.numeric(*t) || expected);
+            if !more || self.is_assignment(next) {
                 return Ok(all);
             }
             self.at = next;
@@ -831,11 +834,21 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Goes to the next place where an argument begins.
+    /// Goes to the next place where an argument may begin: a word after a comma, outside parentheses.
     fn recover(&mut self) {
-        while self.at < self.tokens.len() {
+        let mut depth = 0usize;
+        while let Some(t) = self.tokens.get(self.at) {
+            match t.kind {
+                TokenKind::Open => depth += 1,
+                TokenKind::Close => depth = depth.saturating_sub(1),
+                _ => {}
+            }
             let next = self.after_separators(self.at);
-            if next > self.at && (next >= self.tokens.len() || self.begins_argument(next)) {
+            let word = self
+                .tokens
+                .get(next)
+                .is_none_or(|t| t.kind == TokenKind::Atom && !self.numeric(*t));
+            if next > self.at && (depth == 0 && word || self.is_assignment(next)) {
                 self.at = next;
                 return;
             }

@@ -99,6 +99,8 @@ pub struct Record {
     pub place: Place,
     /// of the head, `JOINT/3`
     pub head: Span,
+    /// some of it could not be understood, and is missing here
+    pub mistaken: bool,
 }
 
 impl Record {
@@ -284,7 +286,9 @@ impl<T: Element> Statement for Numbered<T> {
         };
         let mut problems = apply(self.bindings, &mut element, record);
         if !change {
-            problems.extend(incomplete(self.bindings, record, &name));
+            if !record.mistaken {
+                problems.extend(incomplete(self.bindings, record, &name));
+            }
             if let Some(place) = element.place_mut() {
                 let extra = std::mem::take(&mut place.extra);
                 *place = Place {
@@ -294,6 +298,7 @@ impl<T: Element> Statement for Numbered<T> {
             }
         }
         if problems.is_empty()
+            && !record.mistaken
             && let Err(message) = (self.finish)(&mut element)
         {
             problems.push(Problem::new("contradiction", message));
@@ -313,6 +318,7 @@ impl<T: Element> Statement for Numbered<T> {
             kept: e.kept(),
             place: e.place().cloned().unwrap_or_default(),
             head: Span::default(),
+            mistaken: false,
         };
         (self.list)(model).iter().map(to_record).collect()
     }
@@ -361,6 +367,7 @@ impl<T: Element> Statement for Single<T> {
         let mut value = target.clone();
         let mut problems = apply(self.bindings, &mut value, record);
         if problems.is_empty()
+            && !record.mistaken
             && let Err(message) = (self.finish)(&mut value)
         {
             problems.push(Problem::new("contradiction", message));
@@ -386,6 +393,7 @@ impl<T: Element> Statement for Single<T> {
             kept,
             place: Place::default(),
             head: Span::default(),
+            mistaken: false,
         }]
     }
 
@@ -435,6 +443,7 @@ impl Statement for Opaque {
                 kept: e.kept(),
                 place: e.place.clone(),
                 head: Span::default(),
+                mistaken: false,
             })
         };
         model.others.iter().filter_map(mine).collect()

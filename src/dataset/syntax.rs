@@ -61,7 +61,7 @@ impl Source {
     /// 1-based line and column (in characters) of a byte.
     pub fn place(&self, offset: usize) -> (usize, usize) {
         let line = self.line_starts.partition_point(|&s| s <= offset).max(1);
-        let start = self.line_starts[line - 1];
+        let start = self.line_starts.get(line - 1).copied().unwrap_or(0);
         let before = self.text.get(start..offset.min(self.text.len()));
         (line, before.map_or(0, |s| s.chars().count()) + 1)
     }

@@ -29,8 +29,8 @@ impl Dataset {
         let mut out = Lines::default();
         out.push(source.slice(self.syntax.title));
         let mut last = self.syntax.title.end;
-        for (k, (item, record)) in self.syntax.items.iter().zip(&self.records).enumerate() {
-            let record = record.as_ref().filter(|_| !self.mistaken.contains(&k));
+        for (item, record) in self.syntax.items.iter().zip(&self.records) {
+            let record = record.as_ref().filter(|r| !r.mistaken);
             let span = item.span();
             let gap = source.slice(Span::new(last, span.start));
             let new_lines = gap.matches('\n').count().max(gap.matches('\r').count());
