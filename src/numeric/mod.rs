@@ -21,6 +21,7 @@ pub mod corrector;
 pub mod dense;
 pub mod event;
 pub mod hht;
+pub mod newton;
 pub mod radau;
 pub mod rank;
 pub mod runge_kutta;
