@@ -269,7 +269,7 @@ fn gradients_and_rates_are_those_of_the_value() {
             let samples = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at_time(k * h));
             let n = all_numbers(&scene, t, &q, &v);
             let at = Equations::<f64>::new(&scene, &n);
-            for r in 0..scene.rows.len() {
+            for (r, scene_row) in scene.rows.iter().enumerate() {
                 let row = at.row(r);
                 let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|k: usize| samples[k][r]);
                 if [a, b, c, d, e].iter().any(|x: &f64| (x - c).abs() > 0.5) {
@@ -290,7 +290,7 @@ fn gradients_and_rates_are_those_of_the_value() {
                 let force = on_i.force + on_j.force;
                 let torque = on_i.torque + on_j.torque + arm.cross(on_i.force);
                 // offsets along ground axes act at either origin: only where these coincide is that the same
-                let ground = scene.rows[r].equation.ends_with('g');
+                let ground = scene_row.equation.ends_with('g');
                 let torque = if ground { Vec3::zero() } else { torque };
                 assert!(force.norm() < 1e-12, "{tie}: action is not reaction");
                 assert!(

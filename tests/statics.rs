@@ -67,8 +67,7 @@ fn a_sphere_rests_as_deep_as_its_weight_presses_it() {
 
 #[test]
 fn a_sphere_falls_onto_the_plane_it_did_not_touch() {
-    let text =
-        data("static_sphere.adm").replace("QP=0.0,0.0,0.05\nMARKER/3", "QP=0.0,0.0,0.05\nMARKER/3");
+    let text = data("static_sphere.adm");
     let text = text.replace(
         "MARKER/4, PART=1, QP=0.0,0.0,0.05",
         "MARKER/4, PART=1, QP=0.0,0.0,-3",
@@ -86,7 +85,7 @@ fn a_sphere_falls_onto_the_plane_it_did_not_touch() {
         s.run.record.stop_reason
     );
     println!("{:?}", s.run.record.counts);
-    assert!((last(&s, "DZ(2,1)") - 4.997_872_941_970_744_5e-2).abs() < 1e-12);
+    assert!((last(&s, "DZ(2,1)") - 4.997_872_941_970_745e-2).abs() < 1e-12);
 }
 
 #[test]
@@ -136,7 +135,7 @@ fn arch(load: f64) -> String {
 
 #[test]
 fn an_arch_holds_a_light_load_and_snaps_through_under_a_heavy_one() {
-    let free = 1.044_030_650_891_055_1_f64;
+    let free = 1.044_030_650_891_055_f64;
     let balance = |y: f64| {
         let d = (1.0 + y * y).sqrt();
         2.0 * 100.0 * (free - d) * y / d

@@ -47,7 +47,7 @@ pub struct Settings {
     pub error: f64,
     /// TLIMIT: largest translation in one iteration
     pub translation: f64,
-    /// ALIMIT: largest rotation in one iteration   [rad]
+    /// ALIMIT: largest rotation in one iteration   (rad)
     pub angle: f64,
     /// MAXIT
     pub iterations: usize,

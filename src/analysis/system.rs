@@ -7,7 +7,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Ode};
-use crate::scalar::{Dual, Scalar};
+use crate::scalar::Dual;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, Switching, record};
@@ -64,12 +64,12 @@ pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
 fn shortest_rate(scene: &mut Scene) -> Result<Program, Vec<Diagnostic>> {
     let depth = scene.depth();
     scene.articulated = true;
-    let articulated = record(scene, |at| rates_and_weakness(at)).map_err(complaints)?;
+    let articulated = rate_program(scene)?;
     if depth > 40 {
         return Ok(articulated);
     }
     scene.articulated = false;
-    let matrix = record(scene, |at| rates_and_weakness(at)).map_err(complaints)?;
+    let matrix = rate_program(scene)?;
     if matrix.n_operations() <= articulated.n_operations() {
         return Ok(matrix);
     }
@@ -103,10 +103,13 @@ fn usual_pivots(scene: &mut Scene) {
 }
 
 /// The rates, and how many pivots of the rows were weak.
-fn rates_and_weakness<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
-    let mut out = at.rates();
-    out.push(at.solved().weak);
-    out
+fn rate_program(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
+    record(scene, |at| {
+        let mut out = at.rates();
+        out.push(at.solved().weak);
+        out
+    })
+    .map_err(complaints)
 }
 
 impl System {
@@ -369,7 +372,7 @@ impl Ode for System {
                 *v += d;
             }
             if size > 0.0 {
-                self.mover.displace(&mut y[..l.n_q], &dq);
+                self.mover.displace(&mut y[..l.n_q], dq);
             }
             // the velocities were corrected with the gradient before this displacement
             if size < 1e-11 {

@@ -308,7 +308,8 @@ fn as_coordinates(
             } else {
                 1.0
             };
-            if !((g - h).abs() <= SAME * scale) {
+            let differs = (g - h).abs();
+            if differs > SAME * scale || differs.is_nan() {
                 return None;
             }
             rest -= g * other.value(scene, k);
@@ -316,7 +317,7 @@ fn as_coordinates(
         if gauge.is_angle() {
             rest -= std::f64::consts::TAU * (rest / std::f64::consts::TAU).round();
         }
-        if !(rest.abs() <= 100.0 * SAME * (1.0 + scene.length)) {
+        if rest.is_nan() || rest.abs() > 100.0 * SAME * (1.0 + scene.length) {
             return None;
         }
     }

@@ -223,9 +223,9 @@ fn solve<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
                 continue;
             }
             let factor = a[i][k] / a[k][k];
-            for j in k + 1..n {
-                let pivot = a[k][j];
-                a[i][j] -= factor * pivot;
+            let (upper, lower) = a.split_at_mut(i);
+            for (x, &pivot) in lower[0][k + 1..].iter_mut().zip(&upper[k][k + 1..]) {
+                *x -= factor * pivot;
             }
             let pivot = b[k];
             b[i] -= factor * pivot;
