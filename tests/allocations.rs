@@ -1,4 +1,5 @@
 //! Steps, interpolation and root finding allocate nothing once a run has started.
+#![cfg(feature = "solver")]
 
 mod problems;
 

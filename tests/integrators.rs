@@ -349,29 +349,27 @@ fn error_follows_the_request_on_what_is_not_stiff() {
 #[test]
 fn error_follows_the_request_on_what_is_stiff() {
     let requests = [3, 4, 5, 6, 7, 8, 9, 10, 11];
-    for name in ["RADAU5"] {
-        proportional(name, "pendulum", pendulum, &requests, 10.0);
-        proportional(name, "Kepler", kepler, &requests, 40.0);
-        proportional(name, "van der Pol", van_der_pol, &requests, 20.0);
-        proportional(name, "Robertson", robertson, &requests, 10.0);
-        proportional(name, "HIRES", hires, &requests, 10.0);
-        // the first millisecond has rates 300 times those that are judged
-        proportional(name, "stiff bushing", stiff_bushing, &requests, 300.0);
-    }
+    let name = "RADAU5";
+    proportional(name, "pendulum", pendulum, &requests, 10.0);
+    proportional(name, "Kepler", kepler, &requests, 40.0);
+    proportional(name, "van der Pol", van_der_pol, &requests, 20.0);
+    proportional(name, "Robertson", robertson, &requests, 10.0);
+    proportional(name, "HIRES", hires, &requests, 10.0);
+    // the first millisecond has rates 300 times those that are judged
+    proportional(name, "stiff bushing", stiff_bushing, &requests, 300.0);
 }
 
 #[test]
 fn error_follows_the_request_of_dae_methods() {
     let requests = [3, 4, 5, 6, 7, 8, 9, 10];
-    for name in ["BDF"] {
-        proportional(name, "pendulum", dae_pendulum, &requests, 40.0);
-        proportional(name, "van der Pol", dae_van_der_pol, &requests, 10.0);
-        proportional(name, "Robertson", dae_robertson, &requests, 10.0);
-        proportional(name, "HIRES", dae_hires, &requests, 10.0);
-        proportional(name, "index 2 pendulum", index_2, &requests, 50.0);
-        // the position constraint comes from accelerations alone and drifts
-        proportional(name, "index 1 pendulum", index_1, &requests, 500.0);
-    }
+    let name = "BDF";
+    proportional(name, "pendulum", dae_pendulum, &requests, 40.0);
+    proportional(name, "van der Pol", dae_van_der_pol, &requests, 10.0);
+    proportional(name, "Robertson", dae_robertson, &requests, 10.0);
+    proportional(name, "HIRES", dae_hires, &requests, 10.0);
+    proportional(name, "index 2 pendulum", index_2, &requests, 50.0);
+    // the position constraint comes from accelerations alone and drifts
+    proportional(name, "index 1 pendulum", index_1, &requests, 500.0);
 }
 
 #[test]

@@ -1,4 +1,6 @@
 //! Hand-written forward duals, and the functions of the language as one would write them natively, over both.
+// the product rule is a sum
+#![allow(clippy::suspicious_arithmetic_impl)]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
