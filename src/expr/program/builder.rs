@@ -200,7 +200,8 @@ impl Builder {
             (Add, Some(y), None) => Some(self.binary(Sub, b, y)),
             (Sub, _, Some(y)) => Some(self.binary(Add, a, y)),
             (Mul | Div, Some(x), Some(y)) => Some(self.binary(op, x, y)),
-            (Sub, Some(x), None) => {
+            // −x − b is −(x + b) but for the sign of a zero sum
+            (Sub, Some(x), None) if structural => {
                 let sum = self.binary(Add, x, b);
                 Some(self.unary(UnaryOp::Neg, sum))
             }
