@@ -352,3 +352,109 @@ fn every_code_in_these_sources_is_in_the_table() {
     }
     assert!(checked > 15, "{checked}");
 }
+
+#[test]
+fn the_example_runs_from_its_files_to_table_record_log_and_picture() {
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("run");
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
+    let done = cognate(&[
+        "run",
+        example,
+        "--out",
+        path(&dir),
+        "--column",
+        "DX(41, 22) + 1",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(
+        done.out.lines().count() <= 14 && done.out.contains("slider.X"),
+        "{}",
+        done.out
+    );
+    let read = |ending: &str| {
+        let file = dir.join(format!("slider_crank.{ending}"));
+        assert!(
+            done.err.contains(path(&file)),
+            "{} is named",
+            file.display()
+        );
+        std::fs::read_to_string(file).unwrap()
+    };
+    let table = read("csv");
+    assert!(
+        table.starts_with("time,DX(41, 22) + 1,slider.X")
+            || table.starts_with("time,\"DX(41, 22) + 1\",slider.X"),
+        "{}",
+        &table[..60]
+    );
+    let run = cognate::results::csv::read(table.as_bytes()).unwrap();
+    assert_eq!((run.rows(), run.column("time").unwrap()[400]), (401, 2.0));
+    // at rest in line, the slider is as far from the crank pin as the rod is long
+    assert!((run.column("DX(41,22)+1").unwrap()[0] - 151.0).abs() < 1e-9);
+    let unit = |name: &str| run.columns[run.find(name).unwrap()].unit.as_str();
+    assert_eq!(
+        [unit("slider.ACCX"), unit("slider.FX"), unit("crank.TORQUE")],
+        ["mm/sec**2", "newton", "newton-mm"]
+    );
+    let record: serde_json::Value = serde_json::from_str(&read("json")).unwrap();
+    assert_eq!(
+        (
+            &record["status"],
+            &record["simulations"][0]["kind"],
+            &record["simulations"][1]["kind"]
+        ),
+        (&"completed".into(), &"kinematic".into(), &"dynamic".into())
+    );
+    assert!(read("svg").contains("slider.X [mm]"));
+    let log = read("msg");
+    assert!(
+        log.contains(" command: simulate/kinematic")
+            && log.contains("\nFinished -----\nElapsed time = "),
+        "{log}"
+    );
+    let res = cognate::results::read(&dir.join("slider_crank.res")).unwrap();
+    assert!(res.entities.iter().any(|e| e.kind == "Part") && res.column("slider.X").is_some());
+    let quiet = cognate(&["run", example, "--out", path(&dir), "--quiet"]);
+    assert_eq!(
+        (quiet.code, quiet.out.as_str(), quiet.err.as_str()),
+        (0, "", "")
+    );
+}
+
+#[test]
+fn what_cannot_be_run_says_so_with_its_code() {
+    let no_model = scratch("run_badly", "empty.acf", "\n! nothing\nstop\n");
+    let done = cognate(&["run", path(&no_model)]);
+    assert!(
+        done.code == 3 && done.err.contains("error[no_model]"),
+        "{}: {}",
+        done.code,
+        done.err
+    );
+    let adm = scratch(
+        "run_badly",
+        "m.adm",
+        "a title\nPART/1, GROUND\nPART/2, MASS=1, CM=2\nMARKER/2, PART=2\nSFORCE/1, TRANSLATIONAL, I=2, J=9\n, FUNCTION=STEPP(TIME,0,0,1,1)\nEND\n",
+    );
+    let done = cognate(&["run", path(&adm), "--end", "1"]);
+    assert!(
+        done.code == 3 && done.err.contains("m.adm:6") && done.err.contains("SFORCE/1"),
+        "{}: {}",
+        done.code,
+        done.err
+    );
+    let fine = scratch(
+        "run_badly",
+        "f.adm",
+        "a title\nPART/1, GROUND\nPART/2, MASS=1, CM=2\nMARKER/2, PART=2\nEND\n",
+    );
+    assert_eq!(
+        cognate(&["run", path(&fine)]).code,
+        2,
+        "a dataset alone needs an end"
+    );
+    assert_eq!(
+        cognate(&["run", path(&fine.with_file_name("no.adm")), "--end", "1"]).code,
+        3
+    );
+}

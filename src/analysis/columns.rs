@@ -57,10 +57,16 @@ fn unit_of(text: &str, units: &Units) -> String {
         "angle" => a.clone(),
         "length/time" => format!("{l}/{t}"),
         "angle/time" => format!("{a}/{t}"),
-        "length/time**2" => format!("{l}/{t}**2"),
-        "angle/time**2" => format!("{a}/{t}**2"),
+        "length/time²" => format!("{l}/{t}**2"),
+        "angle/time²" => format!("{a}/{t}**2"),
         "force" => f.clone(),
         "torque" => format!("{f}-{l}"),
+        // NAME(id, jflag, comp, rm): components 1 to 4 are of the force, 5 to 8 of the torque
+        "force or torque" => match rest.split(',').nth(2).and_then(|c| c.trim().parse().ok()) {
+            Some(1..=4u32) => f.clone(),
+            Some(5..=8) => format!("{f}-{l}"),
+            _ => String::new(),
+        },
         _ => String::new(),
     }
 }
