@@ -11,13 +11,17 @@ use super::kinematics;
 use super::statics;
 use super::system::System;
 use crate::diagnostic::Diagnostic;
-use crate::model::Model;
+use crate::expr::measures::Measure;
+use crate::model::{Model, Orientation};
 use crate::numeric::{Reason, Stop};
 use crate::results::{self, Counts, Event, Kind, Run, Status};
 use crate::scene::build::{self, unknown_names};
-use crate::scene::equations::row_name;
+use crate::scene::compile::orientation;
+use crate::scene::equations::{Equations, row_name};
 use crate::scene::{Scene, Source};
-use std::collections::BTreeMap;
+use crate::space::kinematic::kinematic;
+use crate::space::{MarkerState, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
 
 /// What SIMULATE asks for.
@@ -58,6 +62,10 @@ struct Carried {
     names: Vec<String>,
     /// it came to rest: velocities are those of the dataset again, not zero
     at_rest: bool,
+    /// place and motion of every part (point masses: true), for when the unknowns are others
+    parts: Vec<(bool, u32, MarkerState<f64>)>,
+    /// turns that angles have counted
+    turns: Vec<f64>,
 }
 
 /// A model and its clock.
@@ -110,6 +118,13 @@ impl Session {
             ..build::Options::default()
         };
         let mut scene = Scene::compile(&self.model, &options)?;
+        // Commands may have changed what carries a part: then its place is no unknown of before, and is told by the part.
+        let moved = (self.carried.as_ref())
+            .filter(|carried| has_new_unknowns(&scene, carried))
+            .map(|carried| moved(&self.model, carried));
+        if let Some(moved) = &moved {
+            scene = Scene::compile(moved, &options)?;
+        }
         let l = scene.layout;
         let t = self.time();
         let names = unknown_names(&scene);
@@ -142,8 +157,8 @@ impl Session {
             if complete && !carried.at_rest {
                 v = Some(speeds);
             }
-            if carried.numbers.len() == l.len() {
-                turns.copy_from_slice(&carried.numbers[l.turns()]);
+            if carried.turns.len() == l.n_turns {
+                turns.copy_from_slice(&carried.turns);
             }
         } else {
             if mode == DYNAMIC || mode == INITIAL_CONDITIONS {
@@ -158,7 +173,11 @@ impl Session {
         let v = match v {
             _ if mode == STATIC => vec![0.0; l.n_v],
             Some(v) => v,
-            None => assemble::velocities(&scene, &self.model, t, &q, &x)?,
+            None => {
+                let at_rest = self.carried.as_ref().is_some_and(|c| c.at_rest);
+                let given = moved.as_ref().filter(|_| !at_rest).unwrap_or(&self.model);
+                assemble::velocities(&scene, given, t, &q, &x)?
+            }
         };
         let mut system = System::new(scene)?;
         let mut y = q;
@@ -521,11 +540,18 @@ impl Session {
     }
 
     fn keep(&mut self, system: &System, numbers: Vec<f64>) {
+        let at = Equations::new(&system.scene, &numbers);
+        let parts = system.scene.parts.iter().enumerate();
+        let parts = parts
+            .map(|(k, p)| (p.point_mass, p.id, at.part(k, false)))
+            .collect();
         self.carried = Some(Carried {
             t: numbers[0],
-            numbers,
+            turns: numbers[system.scene.layout.turns()].to_vec(),
             names: unknown_names(&system.scene),
             at_rest: false,
+            parts,
+            numbers,
         });
     }
 
@@ -602,6 +628,49 @@ impl Session {
             record.constraint_drift = Some(record.constraint_drift.unwrap_or(0.0).max(worst));
         }
     }
+}
+
+/// Whether a scene has positions or velocities among its unknowns that the last state does not tell by name.
+fn has_new_unknowns(scene: &Scene, carried: &Carried) -> bool {
+    let known: BTreeSet<&str> = carried.names.iter().map(String::as_str).collect();
+    let l = scene.layout;
+    let names = unknown_names(scene);
+    names[..l.n_q + l.n_v]
+        .iter()
+        .any(|name| !known.contains(name.as_str()))
+}
+
+/// The model with its parts where they are, and moving as they do.
+fn moved(model: &Model, carried: &Carried) -> Model {
+    let mut model = model.clone();
+    for joint in model.joints.values_mut() {
+        (joint.ic_translation, joint.ic_rotation) = ([None; 2], [None; 2]);
+    }
+    let ground = MarkerState::ground();
+    for (point_mass, id, state) in &carried.parts {
+        let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);
+        let parts = if *point_mass {
+            &mut model.point_masses
+        } else {
+            &mut model.parts
+        };
+        let Some(part) = parts.get_mut(id) else {
+            continue;
+        };
+        part.qg = state.p_GM.0;
+        part.orientation =
+            Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle));
+        let cm = part.cm.and_then(|cm| model.markers.get(&cm));
+        let cm_place = cm.map_or(Vec3::zero(), |cm| Vec3(cm.qp));
+        let cm_axes = cm.and_then(|cm| orientation(&cm.orientation, cm.qp).ok());
+        // The dataset tells the velocity of CM along ground axes, the angular velocity along those of CM.
+        let v_cm = state.v_GM + state.w_GM.cross(state.R_GM.apply(cm_place));
+        let w_part = state.R_GM.apply_transposed(state.w_GM);
+        let w_cm = cm_axes.map_or(w_part, |axes| axes.apply_transposed(w_part));
+        (part.vm, part.wm) = (None, None);
+        (part.velocity, part.angular_velocity) = (v_cm.0.map(Some), w_cm.0.map(Some));
+    }
+    model
 }
 
 /// `steps` times at equal distances after `start`, the last of them `end`.
