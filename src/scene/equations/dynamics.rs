@@ -1,0 +1,355 @@
+//! Loads, mass and rows in, accelerations and multipliers out; rates of everything that moves.
+
+use super::{Equations, KINEMATIC, RowValue, STATIC};
+use crate::model::Level;
+use crate::physics::action::Action;
+use crate::scalar::{Jet, Scalar};
+use crate::scene::articulated::ArticulatedFactor;
+use crate::scene::solve::{Factor, MassFactor, Solution, accelerations, solve_symmetric};
+use crate::scene::sweep::{self, LinkState, Wrench};
+use crate::scene::{LinkMotion, Source, programs};
+use crate::space::{Mat3, Vec3};
+
+impl<S: Scalar> Equations<'_, S> {
+    /// Whether a row takes part (it does not where it depends on earlier ones).
+    pub fn is_active(&self, r: usize) -> bool {
+        self.scene.active.get(r).copied().unwrap_or(true)
+    }
+
+    /// Accelerations, multipliers and reactions.
+    pub fn solved(&self) -> &Solved<S> {
+        self.solved.get_or_init(|| {
+            self.solving.set(true);
+            let solved = self.solve();
+            self.solving.set(false);
+            solved
+        })
+    }
+
+    pub(super) fn loads(&self) -> (Vec<Wrench<S>>, Vec<Action<S>>) {
+        let mut wrenches = vec![Wrench::zero(); self.scene.links.len()];
+        let mut actions = Vec::with_capacity(self.scene.forces.len());
+        for force in &self.scene.forces {
+            let action = force.action(self);
+            let i = &self.scene.markers[force.i];
+            let point = self.marker(force.i).p_GM;
+            sweep::apply(
+                &mut wrenches,
+                &self.links,
+                i.link,
+                point,
+                action.force,
+                action.torque,
+            );
+            if let Some(link) = force.reaction {
+                sweep::apply(
+                    &mut wrenches,
+                    &self.links,
+                    link,
+                    point,
+                    -action.force,
+                    -action.torque,
+                );
+            }
+            actions.push(action);
+        }
+        (wrenches, actions)
+    }
+
+    pub(super) fn gravity(&self) -> Vec3<S> {
+        Vec3::constant(self.scene.gravity)
+    }
+
+    /// The mass matrix over free coordinates, as rows for [`MassFactor`].
+    pub fn mass_rows(&self) -> Vec<Vec<(usize, S)>> {
+        let place = |f: usize| self.scene.freedoms[f].v;
+        sweep::mass_matrix(self.scene, &self.links)
+            .into_iter()
+            .enumerate()
+            .filter(|(f, _)| place(*f).is_some())
+            .map(|(_, row)| {
+                row.into_iter()
+                    .filter_map(|(f, m)| place(f).map(|v| (v, m)))
+                    .collect()
+            })
+            .collect()
+    }
+
+    pub(super) fn solve(&self) -> Solved<S> {
+        let scene = self.scene;
+        let (mut wrenches, actions) = self.loads();
+        let bias = sweep::inward(scene, &self.links, self.gravity(), &wrenches);
+        let mut f: Vec<S> = scene
+            .freedoms
+            .iter()
+            .filter(|f| f.v.is_some())
+            .map(|f| -f.component(&bias[f.link]))
+            .collect();
+        let rows: Vec<(usize, RowValue<S>)> = (0..scene.rows.len())
+            .filter(|&r| self.is_active(r))
+            .map(|r| (r, self.row(r)))
+            .collect();
+        let g: Vec<Vec<(usize, S)>> = rows.iter().map(|(_, row)| row.gradient.clone()).collect();
+        let gamma: Vec<S> = rows.iter().map(|(_, row)| row.gamma).collect();
+        let multipliers = if scene.mode == STATIC {
+            self.supporting(&g, &mut f)
+        } else {
+            match self.mass_factor() {
+                Some(factor) => accelerations(&factor, &g, &gamma, &mut f, &scene.usual),
+                None => self.determined(&wrenches, &g, &gamma, &mut f),
+            }
+        };
+        let mut lambda = vec![S::zero(); scene.rows.len()];
+        for ((r, row), &l) in rows.iter().zip(&multipliers.x) {
+            lambda[*r] = l;
+            for (m, action) in &row.actions {
+                let point = self.marker(*m).p_GM;
+                let link = scene.markers[*m].link;
+                sweep::apply(
+                    &mut wrenches,
+                    &self.links,
+                    link,
+                    point,
+                    action.force.times(l),
+                    action.torque.times(l),
+                );
+            }
+        }
+        let links = sweep::outward(scene, &self.coordinates(&f));
+        let carried = sweep::inward(scene, &links, self.gravity(), &wrenches);
+        Solved {
+            vdot: f,
+            lambda,
+            weak: multipliers.weak,
+            diagonal: multipliers.diagonal,
+            links,
+            carried,
+            actions,
+        }
+    }
+
+    /// The factored mass matrix; `None` in kinematics, where masses may be zero and do not matter.
+    pub fn mass_factor(&self) -> Option<Factor<'_, S>> {
+        if self.scene.mode == KINEMATIC || self.scene.mode == STATIC {
+            return None;
+        }
+        Some(if self.scene.articulated {
+            Factor::Articulated(ArticulatedFactor::new(self.scene, &self.links))
+        } else {
+            Factor::Matrix(MassFactor::new(self.mass_rows()))
+        })
+    }
+
+    /// Accelerations (into `f`) and multipliers where the rows leave no freedom, so that masses may be zero.
+    ///
+    /// ```text
+    /// v̇ = Gᵀ (G Gᵀ)⁻¹ γ        λ = (G Gᵀ)⁻¹ G (M v̇ − f)
+    /// ```
+    pub(super) fn determined(
+        &self,
+        wrenches: &[Wrench<S>],
+        g: &[Vec<(usize, S)>],
+        gamma: &[S],
+        f: &mut [S],
+    ) -> Solution<S> {
+        let dot = |a: &[(usize, S)], b: &[(usize, S)]| {
+            let mut sum = S::zero();
+            for &(i, x) in a {
+                for &(j, y) in b {
+                    if i == j {
+                        sum += x * y;
+                    }
+                }
+            }
+            sum
+        };
+        let gram: Vec<Vec<S>> = (0..g.len())
+            .map(|r| (0..=r).map(|c| dot(&g[r], &g[c])).collect())
+            .collect();
+        let z = solve_symmetric(gram.clone(), gamma.to_vec(), &[]).x;
+        f.fill(S::zero());
+        for (row, &z) in g.iter().zip(&z) {
+            for &(v, x) in row {
+                f[v] += x * z;
+            }
+        }
+        let links = sweep::outward(self.scene, &self.coordinates(f));
+        let carried = sweep::inward(self.scene, &links, self.gravity(), wrenches);
+        let missing: Vec<S> = self
+            .scene
+            .freedoms
+            .iter()
+            .filter(|f| f.v.is_some())
+            .map(|f| f.component(&carried[f.link]))
+            .collect();
+        let rhs = g
+            .iter()
+            .map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v]))
+            .collect();
+        solve_symmetric(gram, rhs, &[])
+    }
+
+    /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are zero.
+    ///
+    /// ```text
+    /// λ = −(G W Gᵀ)⁻¹ G W f
+    /// ```
+    pub(super) fn supporting(&self, g: &[Vec<(usize, S)>], f: &mut [S]) -> Solution<S> {
+        let w = programs::weights(self.scene);
+        let gram: Vec<Vec<S>> = (0..g.len())
+            .map(|r| {
+                (0..=r)
+                    .map(|c| {
+                        let mut sum = S::zero();
+                        for &(i, x) in &g[r] {
+                            for &(j, y) in &g[c] {
+                                if i == j {
+                                    sum += (x * y).scale(w[i]);
+                                }
+                            }
+                        }
+                        sum
+                    })
+                    .collect()
+            })
+            .collect();
+        let rhs = g
+            .iter()
+            .map(|row| {
+                row.iter()
+                    .fold(S::zero(), |s, &(v, x)| s - (x * f[v]).scale(w[v]))
+            })
+            .collect();
+        f.fill(S::zero());
+        solve_symmetric(gram, rhs, &[])
+    }
+
+    /// Loads along the free coordinates, gravity included, with the forces of the active rows at the given multipliers: all
+    /// zero in equilibrium   (n_v)
+    pub fn balance(&self, multipliers: &[S]) -> Vec<S> {
+        self.solving.set(true);
+        let (wrenches, _) = self.loads();
+        self.solving.set(false);
+        let carried = sweep::inward(self.scene, &self.links, self.gravity(), &wrenches);
+        let free = self.scene.freedoms.iter().filter(|f| f.v.is_some());
+        let mut f: Vec<S> = free.map(|f| -f.component(&carried[f.link])).collect();
+        let active = (0..self.scene.rows.len()).filter(|&r| self.is_active(r));
+        for (r, &l) in active.zip(multipliers) {
+            for (v, g) in self.row(r).gradient {
+                f[v] += g * l;
+            }
+        }
+        f
+    }
+
+    /// The axis of a freedom, ground axes.
+    pub fn freedom_axis(&self, f: &sweep::Freedom) -> Vec3<S> {
+        let rotation = &self.links[f.link].X_GL.rotation;
+        rotation.column(f.axis).times(S::constant(f.sign))
+    }
+
+    /// How large the loads are, whatever cancels: Σ |force| + Σ |torque| / length + weight.
+    pub fn load_scale(&self) -> S {
+        self.solving.set(true);
+        let (_, actions) = self.loads();
+        self.solving.set(false);
+        let mass: f64 = self.scene.links.iter().map(|l| l.mass).sum();
+        let weight = S::constant(mass * self.scene.gravity.norm());
+        actions.iter().fold(weight, |sum, a| {
+            let torque = a.torque.norm2().sqrt().scale(1.0 / self.scene.length);
+            sum + a.force.norm2().sqrt() + torque
+        })
+    }
+
+    /// `q̇, v̇, ẋ`
+    pub fn rates(&self) -> Vec<S> {
+        let mut out = self.position_rates();
+        out.extend(&self.solved().vdot);
+        out.extend(self.state_rates());
+        out
+    }
+
+    /// `q̇`
+    pub fn position_rates(&self) -> Vec<S> {
+        let mut out = vec![S::zero(); self.q.len()];
+        for link in &self.scene.links {
+            if let LinkMotion::Ball {
+                coordinate,
+                quaternion,
+            } = link.motion
+            {
+                let w = Vec3([0, 1, 2].map(|k| self.coordinate(coordinate + k).first));
+                let q = [0, 1, 2, 3].map(|k| self.q[quaternion + k]);
+                out[quaternion..quaternion + 4]
+                    .copy_from_slice(&crate::space::rotation::quaternion_rate(q, w));
+            }
+        }
+        for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
+            if let (Source::Free { q, v }, false) = (c.source, f.in_ball) {
+                out[q] = self.v[v];
+            }
+        }
+        out
+    }
+
+    pub(super) fn coordinate(&self, c: usize) -> Jet<S> {
+        self.coordinates(&[]).of(self.scene.coordinates[c].source)
+    }
+
+    /// `ẋ`
+    pub fn state_rates(&self) -> Vec<S> {
+        let mut out = vec![S::zero(); self.x.len()];
+        for (m, motion) in self.scene.motions.iter().enumerate() {
+            if let Some(s) = motion.state {
+                out[s] = self.driven[m].first;
+                if motion.level == Level::Acceleration {
+                    out[s + 1] = self.driven[m].second;
+                }
+            }
+        }
+        for (k, d) in self.scene.differentials.iter().enumerate() {
+            let Some(state) = d.state else { continue };
+            // at rest the residual of an implicit equation stands for its rate
+            out[state] = if d.implicit && self.scene.mode == STATIC {
+                self.formula(d.formula)
+            } else {
+                self.rate_of(k)
+            };
+        }
+        out
+    }
+    /// Kinetic energy, and potential energy in gravity.
+    pub fn energy(&self) -> [S; 2] {
+        let (mut kinetic, mut potential) = (S::zero(), S::zero());
+        for (link, s) in self.scene.links.iter().zip(&self.links) {
+            if link.mass == 0.0 && link.inertia == Mat3::zero() {
+                continue;
+            }
+            let mc = Vec3::constant(link.moment);
+            let momentum = s.v.times(S::constant(link.mass)) + s.w.cross(mc);
+            let spin = Mat3::constant(link.inertia).apply(s.w) + mc.cross(s.v);
+            kinetic += (momentum.dot(s.v) + spin.dot(s.w)).scale(0.5);
+            let weight = s.X_GL.position.times(S::constant(link.mass)) + s.X_GL.rotation.apply(mc);
+            potential -= self.gravity().dot(weight);
+        }
+        [kinetic, potential]
+    }
+}
+
+/// Accelerations and multipliers, and what follows from them.
+pub struct Solved<S> {
+    /// accelerations   (n_v)
+    pub vdot: Vec<S>,
+    /// multipliers of the rows; 0 for rows that do not take part   (n_rows)
+    pub lambda: Vec<S>,
+    /// how many pivots of the rows were weak: near a position where rows become dependent
+    pub weak: S,
+    /// diagonal of `G M⁻¹ Gᵀ` over the rows that take part
+    pub diagonal: Vec<S>,
+    /// links with all accelerations
+    pub links: Vec<LinkState<S>>,
+    /// what the carrier exerts on each link, in the link's axes about its origin
+    pub carried: Vec<Wrench<S>>,
+    /// actions of the force elements on their I markers
+    pub actions: Vec<Action<S>>,
+}

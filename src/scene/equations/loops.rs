@@ -1,0 +1,81 @@
+//! What functions read too early: found out, and their equations.
+
+use super::Equations;
+use crate::scalar::Scalar;
+use crate::scene::loops::Key;
+
+impl<S: Scalar> Equations<'_, S> {
+    /// What was asked for too early.
+    pub(in crate::scene) fn discovered(self) -> Vec<Key> {
+        self.discovered.into_inner()
+    }
+
+    /// Value of an unknown of the loops; `None`: it is none.
+    pub(super) fn unknown(&self, key: Key) -> Option<S> {
+        if self.scene.loops.is_empty() {
+            return None;
+        }
+        let k = self.scene.loops.iter().position(|u| u.key == key)?;
+        match self.loops.get(k) {
+            Some(&value) => Some(value),
+            None => Some(self.complain(format!(
+                "{} is known only where its loop is solved",
+                self.scene.loops[k].name
+            ))),
+        }
+    }
+
+    /// The first `count` unknowns of the loops.
+    pub(in crate::scene) fn unknowns(&self, count: usize) -> Vec<S> {
+        self.loops[..count].to_vec()
+    }
+
+    /// Something is asked for that depends on who asks.
+    pub(super) fn too_early(&self, key: Key, why: impl FnOnce() -> String) -> S {
+        if !self.discovering {
+            return self.complain(why());
+        }
+        let mut found = self.discovered.borrow_mut();
+        if !found.contains(&key) {
+            found.push(key);
+        }
+        S::zero()
+    }
+
+    /// Asks for all that loads, rates and functions ask for, without solving anything.
+    pub(in crate::scene) fn discover(&self) {
+        self.solving.set(true);
+        self.loads();
+        self.solving.set(false);
+        self.state_rates();
+        for f in 0..self.scene.formulas.len() {
+            self.formula(f);
+        }
+        for unknown in &self.scene.loops {
+            if let Key::Formula(f) = unknown.key {
+                self.evaluate(f);
+            }
+        }
+    }
+
+    /// ρ of the loops: zero at their solution.
+    pub(in crate::scene) fn loop_residuals(&self) -> Vec<S> {
+        let keys = self.scene.loops.iter().zip(&self.loops);
+        keys.map(|(unknown, &z)| match unknown.key {
+            Key::Formula(f) => self.evaluate(f) - z,
+            Key::Measure(m, ids) => self.measure_itself(m, ids, &unknown.name) - z,
+            Key::Rate(d) | Key::Value(d) => self.formula(self.scene.differentials[d].formula),
+        })
+        .collect()
+    }
+
+    /// Values of the formulas that close loops, where they change branch.
+    pub(in crate::scene) fn loop_formulas(&self) -> Vec<S> {
+        let formulas = self.scene.loops.iter().filter_map(|u| match u.key {
+            Key::Formula(f) => Some(self.evaluate(f)),
+            Key::Rate(d) | Key::Value(d) => Some(self.formula(self.scene.differentials[d].formula)),
+            Key::Measure(..) => None,
+        });
+        formulas.collect()
+    }
+}

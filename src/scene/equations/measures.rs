@@ -1,0 +1,136 @@
+//! What the functions of the model read: displacements, velocities, accelerations, angles with their turns, values of system elements.
+
+use super::Equations;
+use crate::expr::measures::{Family, Measure};
+use crate::physics::coupler::Gauge;
+use crate::scalar::Scalar;
+use crate::scene::loops::Key;
+use crate::scene::{Counted, sweep};
+use crate::space::kinematic;
+
+impl<S: Scalar> Equations<'_, S> {
+    /// Value of a measure.
+    pub fn measure(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+        self.unknown(Key::Measure(measure, ids))
+            .unwrap_or_else(|| self.measure_itself(measure, ids, asked_by))
+    }
+
+    /// What a measure turns out to be, also where a load reads it.
+    pub(super) fn measure_itself(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+        let row = measure.row();
+        match row.family {
+            Family::Displacement | Family::Velocity => {
+                let state = |id: u32| self.scene.marker_of.get(&id).map(|&m| self.marker(m));
+                match kinematic::kinematic_of(measure, ids, state) {
+                    Some(value) if measure.needs_history() => {
+                        self.turned(Counted::Measure(measure, ids), value)
+                    }
+                    Some(value) => value,
+                    None => self.complain(format!(
+                        "{asked_by}: {} has no value for these arguments",
+                        row.name
+                    )),
+                }
+            }
+            Family::Acceleration => {
+                if self.solving.get() {
+                    return self.too_early(Key::Measure(measure, ids), || {
+                        format!(
+                            "{asked_by}: {} reads an acceleration that depends on this very function",
+                            row.name
+                        )
+                    });
+                }
+                if self.discovering {
+                    return S::zero();
+                }
+                let state = |id: u32| {
+                    self.scene
+                        .marker_of
+                        .get(&id)
+                        .map(|&m| self.accelerated_marker(m))
+                };
+                kinematic::kinematic_of(measure, ids, state).unwrap_or_else(|| {
+                    self.complain(format!(
+                        "{asked_by}: {} names a marker that does not exist",
+                        row.name
+                    ))
+                })
+            }
+            Family::GenericForce => self.generic_force(measure, ids, asked_by),
+            Family::ElementForce => self.element_force(measure, ids, asked_by),
+            Family::System => self.system(measure, ids, asked_by),
+        }
+    }
+
+    /// An angle with its turns: the value nearest to the one last accepted.
+    pub(super) fn turned(&self, angle: Counted, principal: S) -> S {
+        let Some(k) = self.scene.counted.iter().position(|c| *c == angle) else {
+            return principal;
+        };
+        let turn = std::f64::consts::TAU;
+        let turns = (self.turns[k] - principal).scale(1.0 / turn).round();
+        principal + turns.scale(turn)
+    }
+
+    /// Value of an angle whose turns are counted.
+    pub fn counted(&self, angle: Counted) -> S {
+        match angle {
+            Counted::Measure(measure, ids) => self.measure(measure, ids, measure.name()),
+            Counted::Angle { about, i, j } => {
+                let frame = |m: usize| sweep::marker_frame(&self.scene.markers[m], &self.links);
+                self.turned(angle, Gauge::Angle(about).value(&frame(i), &frame(j)))
+            }
+        }
+    }
+
+    /// AX, AY or AZ of one marker against another, with its turns.
+    pub fn angle_between(&self, measure: Measure, i: usize, j: Option<usize>) -> S {
+        let id = |m: usize| self.scene.markers[m].id;
+        self.measure(measure, [id(i), j.map_or(0, id), 0, 0], measure.name())
+    }
+
+    pub(super) fn system(&self, measure: Measure, [id, k, ..]: [u32; 4], asked_by: &str) -> S {
+        let scene = self.scene;
+        match measure {
+            Measure::Varval => match scene.variables.get(&id) {
+                Some(&f) => self.formula(f),
+                None => self.complain(format!("{asked_by}: VARIABLE/{id} does not exist")),
+            },
+            Measure::Aryval => match self.array(id, k) {
+                Some(x) => S::constant(x),
+                None => self.complain(format!("{asked_by}: ARRAY/{id} has no entry {k}")),
+            },
+            Measure::Dif | Measure::Dif1 => {
+                match scene.differentials.iter().position(|d| d.id == id) {
+                    Some(d) if measure == Measure::Dif => self.state_of(d),
+                    Some(d) => self.rate_of(d),
+                    None => self.complain(format!("{asked_by}: DIFF/{id} does not exist")),
+                }
+            }
+            _ => self.complain(format!("{asked_by}: {} is not solved yet", measure.name())),
+        }
+    }
+
+    /// Value of a differential equation.
+    pub(super) fn state_of(&self, d: usize) -> S {
+        let unknown = || self.unknown(Key::Value(d)).unwrap_or_else(S::zero);
+        self.scene.differentials[d]
+            .state
+            .map_or_else(unknown, |s| self.x[s])
+    }
+
+    /// Rate of a differential equation.
+    pub(super) fn rate_of(&self, d: usize) -> S {
+        let equation = &self.scene.differentials[d];
+        match (equation.implicit, equation.state) {
+            (false, _) => self.formula(equation.formula),
+            (true, None) => self.complain(format!(
+                "DIF1({0}): DIFF/{0} is an equation without a rate",
+                equation.id
+            )),
+            // at rest there is no rate
+            (true, Some(_)) => self.unknown(Key::Rate(d)).unwrap_or_else(S::zero),
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! All that can be computed at one instant, generic over the number, each thing when it is first asked for.
+//!
+//! ```text
+//! t, q, v, x → links, markers → formulas → loads ┐
+//!                              mass matrix, rows ┴→ v̇, λ → accelerations, reactions → measures
+//! ```
+//!
+//! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
+
+mod dynamics;
+mod loops;
+mod measures;
+mod reactions;
+mod rows;
+
+pub use dynamics::Solved;
+pub use rows::{RowValue, row_name};
+
+use super::Scene;
+use super::layout::Layout;
+use super::loops::Key;
+use super::sweep::{self, Coordinates, LinkState};
+use crate::expr::measures::Measure;
+use crate::expr::program::{Input, Work};
+use crate::model::Level;
+use crate::physics::action::Action;
+use crate::scalar::{Jet, Scalar};
+use crate::space::MarkerState;
+use std::cell::{Cell, OnceCell, RefCell};
+
+/// Value of MODE in a kinematic analysis.
+const KINEMATIC: f64 = 1.0;
+/// Value of MODE in a static analysis: nothing moves, motions stand still where they are.
+pub const STATIC: f64 = 5.0;
+
+/// One instant of a scene.
+pub struct Equations<'s, S: Scalar> {
+    scene: &'s Scene,
+    t: S,
+    q: Vec<S>,
+    v: Vec<S>,
+    x: Vec<S>,
+    turns: Vec<S>,
+    driven: Vec<Jet<S>>,
+    /// with the accelerations of driven coordinates only
+    links: Vec<LinkState<S>>,
+    markers: RefCell<Vec<Option<MarkerState<S>>>>,
+    formulas: RefCell<Vec<Option<S>>>,
+    /// formulas being evaluated: a formula that asks for itself is a loop
+    open: RefCell<Vec<usize>>,
+    solved: OnceCell<Solved<S>>,
+    solving: Cell<bool>,
+    /// values of the unknowns of algebraic loops
+    loops: Vec<S>,
+    /// notes what is asked for too early instead of complaining
+    discovering: bool,
+    discovered: RefCell<Vec<Key>>,
+    /// what went wrong, for the compiler to report
+    complaints: RefCell<Vec<String>>,
+}
+
+impl<'s, S: Scalar> Equations<'s, S> {
+    /// From the flat row of numbers that [`Layout`] describes.
+    pub fn new(scene: &'s Scene, numbers: &[S]) -> Self {
+        let loops = numbers[scene.layout.loops()].to_vec();
+        Self::with_unknowns(scene, numbers, loops, false)
+    }
+
+    /// As [`Equations::new`], with values for the unknowns of algebraic loops; or to find out which these are.
+    pub(in crate::scene) fn with_unknowns(
+        scene: &'s Scene,
+        numbers: &[S],
+        loops: Vec<S>,
+        discovering: bool,
+    ) -> Self {
+        let l = &scene.layout;
+        let mut this = Self {
+            scene,
+            t: numbers[Layout::TIME],
+            q: numbers[l.q()].to_vec(),
+            v: numbers[l.v()].to_vec(),
+            x: numbers[l.x()].to_vec(),
+            turns: numbers[l.turns()].to_vec(),
+            driven: Vec::new(),
+            links: Vec::new(),
+            markers: RefCell::new(vec![None; scene.markers.len()]),
+            formulas: RefCell::new(vec![None; scene.formulas.len()]),
+            open: RefCell::new(Vec::new()),
+            solved: OnceCell::new(),
+            solving: Cell::new(false),
+            loops,
+            discovering,
+            discovered: RefCell::new(Vec::new()),
+            complaints: RefCell::new(Vec::new()),
+        };
+        this.driven = (0..scene.motions.len()).map(|m| this.drive(m)).collect();
+        this.links = sweep::outward(scene, &this.coordinates(&[]));
+        this
+    }
+
+    /// What could not be computed, in words; empty when all is well.
+    pub fn complaints(&self) -> Vec<String> {
+        self.complaints.borrow().clone()
+    }
+
+    fn complain(&self, what: String) -> S {
+        let mut complaints = self.complaints.borrow_mut();
+        if !complaints.contains(&what) {
+            complaints.push(what);
+        }
+        S::constant(f64::NAN)
+    }
+
+    fn coordinates<'a>(&'a self, vdot: &'a [S]) -> Coordinates<'a, S> {
+        Coordinates {
+            q: &self.q,
+            v: &self.v,
+            vdot,
+            driven: &self.driven,
+        }
+    }
+
+    /// Time.
+    pub fn time(&self) -> S {
+        self.t
+    }
+
+    /// Velocities of the free coordinates   (n_v)
+    pub fn velocities(&self) -> &[S] {
+        &self.v
+    }
+
+    /// Value, rate and acceleration that a motion prescribes.
+    fn drive(&self, m: usize) -> Jet<S> {
+        let moving = self.drive_in_time(m);
+        if self.scene.mode == STATIC {
+            Jet::new(moving.value, S::zero(), S::zero())
+        } else {
+            moving
+        }
+    }
+
+    fn drive_in_time(&self, m: usize) -> Jet<S> {
+        let motion = &self.scene.motions[m];
+        let f = self.in_time(motion.formula, &mut Vec::new());
+        let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
+        match motion.level {
+            Level::Displacement => f,
+            Level::Velocity => Jet::new(state(0), f.value, f.first),
+            Level::Acceleration => Jet::new(state(0), state(1), f.value),
+        }
+    }
+
+    /// A formula of time alone, with its rates.
+    fn in_time(&self, formula: usize, open: &mut Vec<usize>) -> Jet<S> {
+        let f = &self.scene.formulas[formula];
+        if open.contains(&formula) {
+            return Jet::constant(f64::NAN);
+        }
+        open.push(formula);
+        let inputs: Vec<Jet<S>> = f
+            .program
+            .inputs()
+            .iter()
+            .map(|input| match input {
+                Input::Time => Jet::variable(self.t),
+                Input::Mode => Jet::constant(self.scene.mode),
+                Input::Measure(Measure::Varval, [id, ..]) => match self.scene.variables.get(id) {
+                    Some(&v) => self.in_time(v, open),
+                    None => Jet::constant(f64::NAN),
+                },
+                Input::Measure(Measure::Aryval, [id, k, ..]) => {
+                    Jet::constant(self.array(*id, *k).unwrap_or(f64::NAN))
+                }
+                _ => Jet::constant(f64::NAN),
+            })
+            .collect();
+        open.pop();
+        let mut out = [Jet::zero()];
+        f.program.eval(&inputs, &mut Work::default(), &mut out);
+        out[0]
+    }
+
+    fn array(&self, id: u32, k: u32) -> Option<f64> {
+        self.scene
+            .arrays
+            .get(&id)?
+            .get((k as usize).checked_sub(1)?)
+            .copied()
+    }
+
+    /// Pose and velocity of a marker; its accelerations are those of driven coordinates only.
+    pub fn marker(&self, m: usize) -> MarkerState<S> {
+        if let Some(state) = self.markers.borrow()[m] {
+            return state;
+        }
+        let state = sweep::marker_state(&self.scene.markers[m], &self.links);
+        self.markers.borrow_mut()[m] = Some(state);
+        state
+    }
+
+    /// A part's frame, with its accelerations when asked for.
+    pub fn part(&self, part: usize, accelerated: bool) -> MarkerState<S> {
+        let p = &self.scene.parts[part];
+        let marker = super::MarkerOnLink {
+            id: 0,
+            link: p.link,
+            frame: p.frame,
+            part: Some(part),
+        };
+        sweep::marker_state(
+            &marker,
+            if accelerated {
+                &self.solved().links
+            } else {
+                &self.links
+            },
+        )
+    }
+
+    /// Action of an element on its I marker; `None` when there is no such active element.
+    pub fn action_of(&self, keyword: &str, id: u32) -> Option<Action<S>> {
+        self.element(keyword, id).map(|found| found.0)
+    }
+
+    /// A marker with all its accelerations.
+    fn accelerated_marker(&self, m: usize) -> MarkerState<S> {
+        sweep::marker_state(&self.scene.markers[m], &self.solved().links)
+    }
+
+    /// Value of a formula.
+    pub fn formula(&self, f: usize) -> S {
+        if let Some(value) = self.unknown(Key::Formula(f)) {
+            return value;
+        }
+        if let Some(value) = self.formulas.borrow()[f] {
+            return value;
+        }
+        if self.open.borrow().contains(&f) {
+            let why = || format!("{} depends on itself", self.scene.formulas[f].name);
+            return self.too_early(Key::Formula(f), why);
+        }
+        let value = self.evaluate(f);
+        self.formulas.borrow_mut()[f] = Some(value);
+        value
+    }
+
+    /// What a formula turns out to be, also where it closes a loop.
+    fn evaluate(&self, f: usize) -> S {
+        let formula = &self.scene.formulas[f];
+        self.open.borrow_mut().push(f);
+        let inputs: Vec<S> = formula
+            .program
+            .inputs()
+            .iter()
+            .map(|&i| self.input(i, &formula.name))
+            .collect();
+        self.open.borrow_mut().pop();
+        let mut out = [S::zero()];
+        formula
+            .program
+            .eval(&inputs, &mut Work::default(), &mut out);
+        out[0]
+    }
+
+    /// What a formula asks for: the one door between the language and the scene.
+    pub fn input(&self, input: Input, asked_by: &str) -> S {
+        match input {
+            Input::Time => self.t,
+            Input::Mode => S::constant(self.scene.mode),
+            Input::Measure(measure, ids) => self.measure(measure, ids, asked_by),
+            Input::Delayed(_) => self.complain(format!("{asked_by}: DELAY is not solved yet")),
+            Input::Slot(_) => {
+                unreachable!("slots are inputs of recorded programs, not of formulas")
+            }
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! What elements exert, as measures: reactions of constraints, actions of forces, sums between two markers.
+
+use super::Equations;
+use crate::expr::measures::Measure;
+use crate::physics::action::Action;
+use crate::scalar::Scalar;
+use crate::scene::Source;
+use crate::scene::loops::Key;
+use crate::scene::sweep::Wrench;
+use crate::space::{Mat3, Vec3};
+
+impl<S: Scalar> Equations<'_, S> {
+    /// Action of a force element on its I marker.
+    pub(super) fn force_action(&self, f: usize) -> Action<S> {
+        if self.solving.get() || self.discovering {
+            self.scene.forces[f].action(self)
+        } else {
+            self.solved().actions[f]
+        }
+    }
+
+    /// Action of an element on its I marker, with the points of I and J; `None` when there is no such element.
+    pub(super) fn element(&self, keyword: &str, id: u32) -> Option<(Action<S>, Vec3<S>, Vec3<S>)> {
+        let scene = self.scene;
+        if let Some(f) = scene
+            .forces
+            .iter()
+            .position(|f| f.keyword == keyword && f.id == id)
+        {
+            let force = &scene.forces[f];
+            let action = self.force_action(f);
+            let p_I = self.marker(force.i).p_GM;
+            let p_J = force.j.map_or(p_I, |j| self.marker(j).p_GM);
+            return Some((action, p_I, p_J));
+        }
+        let c = scene
+            .constraints
+            .iter()
+            .position(|c| c.keyword == keyword && c.id == id)?;
+        let about = scene.constraints[c].about?;
+        let j = scene.constraints[c].markers.map_or(about, |(_, j)| j);
+        let action = if self.discovering {
+            Action::zero()
+        } else {
+            self.reaction(c)
+        };
+        let point = |m: usize| self.marker(m).p_GM;
+        Some((action, point(about), point(j)))
+    }
+
+    /// The reaction of a constraint on its I marker.
+    pub fn reaction(&self, c: usize) -> Action<S> {
+        let scene = self.scene;
+        let element = &scene.constraints[c];
+        let solved = self.solved();
+        let mut sum = Action::zero();
+        let Some(about) = element.about else {
+            return sum;
+        };
+        let p_I = self.marker(about).p_GM;
+        for r in element.rows.clone().filter(|&r| self.is_active(r)) {
+            let l = solved.lambda[r];
+            for (m, a) in self.row(r).actions {
+                if element.acts_on.contains(&m) {
+                    let force = a.force.times(l);
+                    let arm = self.marker(m).p_GM - p_I;
+                    let torque = if m == about {
+                        a.torque.times(l)
+                    } else {
+                        a.torque.times(l) + arm.cross(force)
+                    };
+                    sum = sum.plus(&Action { force, torque });
+                }
+            }
+        }
+        // on the carried link about p_I, ground axes
+        let at_i = |link: usize, w: &Wrench<S>| {
+            let X = &self.links[link].X_GL;
+            let force = X.rotation.apply(w.force);
+            Action {
+                force,
+                torque: X.rotation.apply(w.torque) + (X.position - p_I).cross(force),
+            }
+        };
+        let drive = |coordinate: usize| {
+            let f = &scene.freedoms[coordinate];
+            let magnitude = f.component(&solved.carried[f.link]);
+            let mut w = Wrench::zero();
+            let part = if f.turn { &mut w.torque } else { &mut w.force };
+            part.0[f.axis] = magnitude.scale(f.sign);
+            at_i(f.link, &w)
+        };
+        if let Some(coordinate) = element.coordinate {
+            let on_carried = drive(coordinate);
+            let backward = scene.freedoms[coordinate].sign < 0.0;
+            return if backward {
+                negative(&on_carried)
+            } else {
+                on_carried
+            };
+        }
+        if let Some((link, backward)) = element.carries {
+            let mut on_carried = at_i(link, &solved.carried[link]);
+            // the part along a driven coordinate belongs to its MOTION
+            for (k, coordinate) in scene.coordinates.iter().enumerate() {
+                if coordinate.joint == Some(element.id)
+                    && element.keyword == "JOINT"
+                    && matches!(coordinate.source, Source::Driven(_))
+                {
+                    on_carried = on_carried.plus(&negative(&drive(k)));
+                }
+            }
+            sum = sum.plus(&if backward {
+                negative(&on_carried)
+            } else {
+                on_carried
+            });
+        }
+        sum
+    }
+
+    pub(super) fn element_force(
+        &self,
+        measure: Measure,
+        [id, jflag, comp, rm]: [u32; 4],
+        asked_by: &str,
+    ) -> S {
+        let Some(keyword) = keyword_of(measure) else {
+            return self.complain(format!("{asked_by}: {} is not solved yet", measure.name()));
+        };
+        if self.solving.get()
+            && self
+                .scene
+                .constraints
+                .iter()
+                .any(|c| c.keyword == keyword && c.id == id)
+        {
+            return self.too_early(Key::Measure(measure, [id, jflag, comp, rm]), || {
+                format!(
+                    "{asked_by}: {} reads a reaction that depends on this very function",
+                    measure.name()
+                )
+            });
+        }
+        let Some((action, p_I, p_J)) = self.element(keyword, id) else {
+            return self.complain(format!(
+                "{asked_by}: {keyword}/{id} does not exist or is not active"
+            ));
+        };
+        let action = if jflag == 1 {
+            action.reaction(p_I, p_J)
+        } else {
+            action
+        };
+        self.component(&action, comp, rm, asked_by)
+    }
+
+    /// Component 1–8 of an action, resolved in marker `rm`.
+    pub(super) fn component(&self, action: &Action<S>, comp: u32, rm: u32, asked_by: &str) -> S {
+        let axes = if rm == 0 {
+            Mat3::identity()
+        } else {
+            match self.scene.marker_of.get(&rm) {
+                Some(&m) => self.marker(m).R_GM,
+                None => return self.complain(format!("{asked_by}: MARKER/{rm} does not exist")),
+            }
+        };
+        let length = |v: Vec3<S>| {
+            let n2 = v.norm2();
+            let zero = n2.le(S::zero());
+            S::select(zero, S::zero(), S::select(zero, S::one(), n2).sqrt())
+        };
+        match comp {
+            1 => length(action.force),
+            2..=4 => axes.column(comp as usize - 2).dot(action.force),
+            5 => length(action.torque),
+            6..=8 => axes.column(comp as usize - 6).dot(action.torque),
+            _ => self.complain(format!("{asked_by}: component {comp} does not exist")),
+        }
+    }
+
+    /// FM … TZ: all that acts between two markers.
+    pub(super) fn generic_force(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+        use Measure as M;
+        let [i, j, k, _] = ids;
+        if self.solving.get() && self.carries_reaction(i, j) {
+            return self.too_early(Key::Measure(measure, ids), || {
+                format!(
+                    "{asked_by}: {} reads a reaction that depends on this very function",
+                    measure.name()
+                )
+            });
+        }
+        let comp = match measure {
+            M::Fm => 1,
+            M::Fx => 2,
+            M::Fy => 3,
+            M::Fz => 4,
+            M::Tm => 5,
+            M::Tx => 6,
+            M::Ty => 7,
+            _ => 8,
+        };
+        let total = self.between(i, j);
+        self.component(&total, comp, k, asked_by)
+    }
+
+    /// Whether a constraint acts between two markers, given by their numbers.
+    pub(super) fn carries_reaction(&self, i: u32, j: u32) -> bool {
+        let id = |m: usize| self.scene.markers[m].id;
+        let mut markers = self.scene.constraints.iter().filter_map(|c| c.markers);
+        markers.any(|(a, b)| [(i, j), (j, i)].contains(&(id(a), id(b))))
+    }
+
+    /// Sum of what acts on marker `i` from elements between `i` and `j`; `j` = 0: from action-only forces.
+    pub(super) fn between(&self, i: u32, j: u32) -> Action<S> {
+        let scene = self.scene;
+        let mut sum = Action::zero();
+        let id = |m: usize| scene.markers[m].id;
+        let mut add = |markers: (u32, u32), action: Action<S>, p_I: Vec3<S>, p_J: Vec3<S>| {
+            if markers == (i, j) {
+                sum = sum.plus(&action);
+            } else if markers == (j, i) {
+                sum = sum.plus(&action.reaction(p_I, p_J));
+            }
+        };
+        for (f, force) in scene.forces.iter().enumerate() {
+            let other = match (force.reaction, force.j) {
+                (None, _) => 0,
+                (Some(_), Some(m)) => id(m),
+                (Some(_), None) => force.floating,
+            };
+            let markers = (id(force.i), other);
+            if markers != (i, j) && markers != (j, i) {
+                continue;
+            }
+            let action = self.force_action(f);
+            let p_I = self.marker(force.i).p_GM;
+            let p_J = force.j.map_or(p_I, |m| self.marker(m).p_GM);
+            add(markers, action, p_I, p_J);
+        }
+        for (c, element) in scene.constraints.iter().enumerate() {
+            let Some((a, b)) = element.markers else {
+                continue;
+            };
+            let markers = (id(a), id(b));
+            if markers != (i, j) && markers != (j, i) {
+                continue;
+            }
+            if self.discovering {
+                continue;
+            }
+            add(
+                markers,
+                self.reaction(c),
+                self.marker(a).p_GM,
+                self.marker(b).p_GM,
+            );
+        }
+        sum
+    }
+}
+
+fn negative<S: Scalar>(a: &Action<S>) -> Action<S> {
+    Action {
+        force: -a.force,
+        torque: -a.torque,
+    }
+}
+
+/// Keyword of the statement whose force a measure returns.
+fn keyword_of(measure: Measure) -> Option<&'static str> {
+    use Measure as M;
+    Some(match measure {
+        M::Joint => "JOINT",
+        M::Jprim => "JPRIM",
+        M::Motion => "MOTION",
+        M::Sforce => "SFORCE",
+        M::Vforce => "VFORCE",
+        M::Vtorq => "VTORQUE",
+        M::Gforce => "GFORCE",
+        M::Spdp => "SPRINGDAMPER",
+        M::Bush => "BUSHING",
+        M::Beam => "BEAM",
+        M::Field => "FIELD",
+        M::Ptcv => "PTCV",
+        M::Cvcv => "CVCV",
+        M::Contact => "CONTACT",
+        _ => return None,
+    })
+}

@@ -1,0 +1,286 @@
+//! The rows of G: values, gradients along the freedoms, rates, and what a unit multiplier exerts.
+
+use super::Equations;
+use crate::physics::action::Action;
+use crate::physics::coupler::Gauge;
+use crate::scalar::{Dual, Jet, Scalar};
+use crate::scene::{Counted, Displacement, Row, RowKind, Source, Sum};
+use crate::space::{Frame, MarkerState, Mat3, Vec3};
+
+impl<S: Scalar> Equations<'_, S> {
+    /// A row with its gradient and right sides.
+    pub fn row(&self, r: usize) -> RowValue<S> {
+        match &self.scene.rows[r].kind {
+            RowKind::Markers { law, i, j, motion } => {
+                let drive = motion.map(|m| self.driven[m]);
+                let (I, J) = (self.marker(*i), self.marker(*j));
+                // gradient: duals along the twists of I (0–5: rotation, translation) and J (6–11)
+                let seeded = law.value(
+                    &seed::<S>(&I, 0),
+                    &seed::<S>(&J, 6),
+                    drive.map(|d| Dual {
+                        re: d.value,
+                        eps: [S::zero(); 12],
+                    }),
+                );
+                let actions = vec![(*i, twist(&seeded, 0)), (*j, twist(&seeded, 6))];
+                // rates: jets in time along the motion with v̇ = 0
+                let rates = law.value(&moving(&I), &moving(&J), drive);
+                let gradient = self.gradient_of(&actions);
+                RowValue {
+                    value: seeded.re,
+                    drift: rates.first - self.along(&gradient),
+                    gradient,
+                    gamma: -rates.second,
+                    actions,
+                }
+            }
+            RowKind::Displacements(sum) => self.sum_row(sum),
+        }
+    }
+
+    /// The gradient of what acts with a unit multiplier, by places.
+    pub(super) fn gradient_of(&self, actions: &[(usize, Action<S>)]) -> Vec<(usize, S)> {
+        let mut gradient: Vec<(usize, S)> = Vec::new();
+        for (m, action) in actions {
+            self.gradient(*m, action, &mut gradient);
+        }
+        gradient.sort_by_key(|g| g.0);
+        gradient
+    }
+
+    /// `gradient · v`
+    pub(super) fn along(&self, gradient: &[(usize, S)]) -> S {
+        gradient
+            .iter()
+            .fold(S::zero(), |s, &(v, g)| s + g * self.v[v])
+    }
+
+    /// A sum of displacements: each a sum of coordinates where it can be, else by duals along twists and jets in time.
+    pub(super) fn sum_row(&self, sum: &Sum) -> RowValue<S> {
+        let mut value = S::constant(-sum.constant);
+        let (mut drift, mut second) = (S::zero(), S::zero());
+        let mut gradient: Vec<(usize, S)> = Vec::new();
+        let mut actions = Vec::with_capacity(2 * sum.terms.len());
+        let add = |gradient: &mut Vec<(usize, S)>, v: usize, g: S| match gradient
+            .iter_mut()
+            .find(|e| e.0 == v)
+        {
+            Some(entry) => entry.1 += g,
+            None => gradient.push((v, g)),
+        };
+        let mut linear = true;
+        for (factor, d) in &sum.terms {
+            let own = self.displacement(d);
+            value += own.value.scale(*factor);
+            for (m, a) in &own.actions {
+                let factor = S::constant(*factor);
+                actions.push((
+                    *m,
+                    Action {
+                        force: a.force.times(factor),
+                        torque: a.torque.times(factor),
+                    },
+                ));
+            }
+            linear &= d.coordinates.is_some();
+            drift += own.drift.scale(*factor);
+            second -= own.gamma.scale(*factor);
+            for &(v, g) in &own.gradient {
+                add(&mut gradient, v, g.scale(*factor));
+            }
+        }
+        if let Some(contact) = sum.contact {
+            actions = self.contact(contact);
+            if !linear {
+                // the same rate on all motions that the joints permit, by forces that act where the bodies touch
+                let rate = self.contact_rate(contact);
+                gradient = self.gradient_of(&actions);
+                drift = rate.value - self.along(&gradient);
+                second = rate.first;
+            }
+        }
+        gradient.sort_by_key(|g| g.0);
+        gradient.retain(|g| !g.1.is_known_zero());
+        RowValue {
+            value,
+            gradient,
+            drift,
+            gamma: -second,
+            actions,
+        }
+    }
+
+    /// A distance or an angle with its gradient and rates.
+    pub(super) fn displacement(&self, d: &Displacement) -> RowValue<S> {
+        let (I, J) = (self.marker(d.i), self.marker(d.j));
+        let seeded = d.gauge.value(&seed::<S>(&I, 0), &seed::<S>(&J, 6));
+        let actions = vec![(d.i, twist(&seeded, 0)), (d.j, twist(&seeded, 6))];
+        if let Some((terms, constant)) = &d.coordinates {
+            let mut value = S::constant(*constant);
+            let (mut drift, mut second) = (S::zero(), S::zero());
+            let mut gradient = Vec::new();
+            for &(c, factor) in terms {
+                let x = self.coordinate(c);
+                value += x.value.scale(factor);
+                match self.scene.coordinates[c].source {
+                    Source::Free { v, .. } => gradient.push((v, S::constant(factor))),
+                    Source::Driven(_) => {
+                        drift += x.first.scale(factor);
+                        second += x.second.scale(factor);
+                    }
+                }
+            }
+            return RowValue {
+                value,
+                gradient,
+                drift,
+                gamma: -second,
+                actions,
+            };
+        }
+        let rates = d.gauge.value(&moving(&I), &moving(&J));
+        let gradient = self.gradient_of(&actions);
+        let value = match d.gauge {
+            Gauge::Distance => seeded.re,
+            Gauge::Angle(about) => {
+                let angle = Counted::Angle {
+                    about,
+                    i: d.i,
+                    j: d.j,
+                };
+                self.turned(angle, seeded.re)
+            }
+        };
+        RowValue {
+            value,
+            drift: rates.first - self.along(&gradient),
+            gradient,
+            gamma: -rates.second,
+            actions,
+        }
+    }
+
+    /// A unit force along z of CV on the first body at the origin of CV, and its opposite on the second.
+    pub(super) fn contact(&self, (cv, bodies): (usize, [usize; 2])) -> Vec<(usize, Action<S>)> {
+        let cv = self.marker(cv);
+        let line = cv.R_GM.column(2);
+        bodies
+            .iter()
+            .zip([line, -line])
+            .map(|(&m, force)| {
+                let torque = (cv.p_GM - self.marker(m).p_GM).cross(force);
+                (m, Action { force, torque })
+            })
+            .collect()
+    }
+
+    /// How fast the second body recedes from the first at CV along its z axis, and the rate of that with v̇ = 0.
+    pub(super) fn contact_rate(&self, (cv, bodies): (usize, [usize; 2])) -> Jet<S> {
+        let rate = |x: S, first: S| Jet::new(x, first, S::zero());
+        let pair =
+            |x: Vec3<S>, first: Vec3<S>| Vec3(std::array::from_fn(|k| rate(x.0[k], first.0[k])));
+        let cv = self.marker(cv);
+        let (point, line) = (pair(cv.p_GM, cv.v_GM), cv.R_GM.column(2));
+        let line = pair(line, cv.w_GM.cross(line));
+        let [first, second] = bodies.map(|m| {
+            let m = self.marker(m);
+            let arm = point - pair(m.p_GM, m.v_GM);
+            pair(m.v_GM, m.a_GM) + pair(m.w_GM, m.alpha_GM).cross(arm)
+        });
+        (first - second).dot(line)
+    }
+
+    /// Adds the components of an action on a marker along all free coordinates that move it.
+    pub(super) fn gradient(&self, m: usize, action: &Action<S>, sum: &mut Vec<(usize, S)>) {
+        let scene = self.scene;
+        let point = self.marker(m).p_GM;
+        let mut next = scene.markers[m].link.and_then(|l| scene.last_freedom[l]);
+        while let Some(k) = next {
+            let f = &scene.freedoms[k];
+            next = scene.carrier[k];
+            let Some(v) = f.v else { continue };
+            let X = &self.links[f.link].X_GL;
+            let e = X.rotation.column(f.axis).times(S::constant(f.sign));
+            let component = if f.turn {
+                e.dot(action.torque + (point - X.position).cross(action.force))
+            } else {
+                e.dot(action.force)
+            };
+            if component.is_known_zero() {
+                continue;
+            }
+            match sum.iter_mut().find(|s| s.0 == v) {
+                Some(entry) => entry.1 += component,
+                None => sum.push((v, component)),
+            }
+        }
+    }
+}
+
+/// A row of G with its right sides.
+pub struct RowValue<S> {
+    /// g
+    pub value: S,
+    /// gradient along the velocities of free coordinates: (place in v, ∂ġ/∂v)
+    pub gradient: Vec<(usize, S)>,
+    /// ġ = gradient · v + this (driven coordinates and functions of time)
+    pub drift: S,
+    /// g̈ = gradient · v̇ − gamma
+    pub gamma: S,
+    /// force and torque of a unit multiplier on markers about their origins, ground axes
+    pub actions: Vec<(usize, Action<S>)>,
+}
+
+/// What a dual along twists says about the one whose directions begin at `k`: the action of a unit multiplier.
+fn twist<S: Scalar>(x: &Dual<12, S>, k: usize) -> Action<S> {
+    Action {
+        torque: Vec3([x.eps[k], x.eps[k + 1], x.eps[k + 2]]),
+        force: Vec3([x.eps[k + 3], x.eps[k + 4], x.eps[k + 5]]),
+    }
+}
+
+/// A marker's frame as it turns and moves along six directions, the first of which is direction `first`.
+fn seed<S: Scalar>(m: &MarkerState<S>, first: usize) -> Frame<Dual<12, S>> {
+    let lift = |x: S| Dual {
+        re: x,
+        eps: [S::zero(); 12],
+    };
+    let mut frame = Frame {
+        rotation: Mat3(m.R_GM.0.map(|r| r.map(lift))),
+        position: Vec3(m.p_GM.0.map(lift)),
+    };
+    for k in 0..3 {
+        let e = Vec3::axis(k);
+        for column in 0..3 {
+            let moved = e.cross(m.R_GM.column(column));
+            for row in 0..3 {
+                frame.rotation.0[row][column].eps[first + k] = moved.0[row];
+            }
+        }
+        frame.position.0[k].eps[first + 3 + k] = S::one();
+    }
+    frame
+}
+
+/// A marker's frame as it moves in time.
+fn moving<S: Scalar>(m: &MarkerState<S>) -> Frame<Jet<S>> {
+    let mut rotation = Mat3::<Jet<S>>::zero();
+    for column in 0..3 {
+        let axis = m.R_GM.column(column);
+        let first = m.w_GM.cross(axis);
+        let second = m.alpha_GM.cross(axis) + m.w_GM.cross(first);
+        for row in 0..3 {
+            rotation.0[row][column] = Jet::new(axis.0[row], first.0[row], second.0[row]);
+        }
+    }
+    let position = Vec3(std::array::from_fn(|k| {
+        Jet::new(m.p_GM.0[k], m.v_GM.0[k], m.a_GM.0[k])
+    }));
+    Frame { rotation, position }
+}
+
+/// The name of a row: "JOINT/7 Zi.Xj".
+pub fn row_name(row: &Row) -> String {
+    format!("{} {}", row.element, row.equation)
+}
