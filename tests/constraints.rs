@@ -238,6 +238,13 @@ fn all_rows() -> Vec<String> {
     all.push("JOINT/1, CONVEL, I=5, J=4\n".into());
     all.push("JOINT/1, SCREW, I=5, J=4, PITCH=0.7\n".into());
     all.push("JOINT/1, RACKPIN, I=5, J=4, PD=-0.6\n".into());
+    for function in [
+        "DM(5,4)-0.7",
+        "DX(5,4,4)+0.2*SIN(3*TIME)*DZ(5,4,4)",
+        "AY(5,4)**2-VARVAL(1)\\\nVARIABLE/1, FUNCTION=EXP(TIME)*DY(4,5,5)+PSI(5,4)",
+    ] {
+        all.push(format!("GCON/1, I=5, FUNCTION={function}\n"));
+    }
     for component in ["X", "Y", "Z", "B1", "B2", "B3"] {
         all.push(format!(
             "MOTION/1, I=5, J=4, {component}, FUNCTION=0.3*SIN(2*TIME)+0.1\n"

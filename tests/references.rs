@@ -138,6 +138,18 @@ fn driven_slider_crank_with_its_torque() {
     stays_in_proportion("slider_crank_kin", &[1e-11], 100.0);
 }
 #[test]
+fn a_nut_on_a_screw() {
+    stays_in_proportion("screw", &REQUESTS, 100.0);
+}
+#[test]
+fn a_pinion_and_its_rack() {
+    stays_in_proportion("rack_pinion", &REQUESTS, 100.0);
+}
+#[test]
+fn two_gears() {
+    stays_in_proportion("gear_pair", &REQUESTS, 100.0);
+}
+#[test]
 fn chains_of_rods() {
     stays_in_proportion("chain_10", &REQUESTS, 1000.0);
     stays_in_proportion("chain_40", &[1e-4], 1000.0);

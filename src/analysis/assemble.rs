@@ -124,6 +124,7 @@ fn natural(scene: &Scene, r: usize) -> f64 {
         RowKind::Markers { law, .. } if law.is_length() => scene.length,
         RowKind::Markers { .. } => 1.0,
         RowKind::Displacements(sum) => sum.scale(scene.length),
+        RowKind::Formula { scale, .. } => *scale,
     }
 }
 
@@ -243,7 +244,7 @@ pub fn rank(scene: &Scene, gradient: &DMatrix<f64>, w: &[f64]) -> (Vec<usize>, V
     let mut order: Vec<usize> = (0..scene.rows.len()).collect();
     let kind = |r: usize| match &scene.rows[r].kind {
         RowKind::Markers { law, .. } => u8::from(!law.is_length()),
-        RowKind::Displacements(_) => 2,
+        RowKind::Displacements(_) | RowKind::Formula { .. } => 2,
     };
     order.sort_by_key(|&r| (kind(r), r));
     let all = scaled_rows(gradient, w);

@@ -4,6 +4,7 @@ use super::compile::{Compiler, NamedTie, part_name};
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
 use super::loops::{self, Key};
+use super::reads::{Allowed, offence};
 use super::sweep::Freedom;
 use super::{
     ConstraintElement, Counted, Formula, LinkIx, LinkMotion, Row, RowKind, Scene,
@@ -87,6 +88,8 @@ impl Scene {
         b.couplers(&mut c, options.strict);
         b.forces(&mut c);
         b.systems(&mut c);
+        b.timed(&mut c);
+        b.general(&mut c);
         for (name, text) in &options.extra {
             let f = b.formula(&mut c, name, &ModelFormula::text(text.clone()));
             b.scene.extra.push(f);
@@ -94,6 +97,7 @@ impl Scene {
         b.counted();
         if c.errors.is_empty() {
             b.loops(&mut c);
+            b.natural_sizes();
         }
         if c.errors.is_empty() {
             Ok(b.scene)
@@ -162,7 +166,7 @@ impl<'m> Builder<'m> {
     }
 
     /// Compiles an expression; its index in the scene's formulas.
-    fn formula(&mut self, c: &mut Compiler, name: &str, formula: &ModelFormula) -> usize {
+    pub(super) fn formula(&mut self, c: &mut Compiler, name: &str, formula: &ModelFormula) -> usize {
         let text = match formula {
             ModelFormula::Expression { text, .. } => text.clone(),
             ModelFormula::User { .. } => {
@@ -316,6 +320,20 @@ impl<'m> Builder<'m> {
                 rows,
                 coordinate,
             });
+        }
+    }
+
+    /// Motions are prescribed by time alone.
+    fn timed(&mut self, c: &mut Compiler) {
+        for motion in &self.scene.motions {
+            if let Some(offence) = offence(&self.scene, motion.formula, Allowed::Time) {
+                let what = format!("its function reads {}: {}", offence.what, offence.why);
+                c.errors.push(
+                    Diagnostic::error("motion_reads", what)
+                        .element(format!("MOTION/{}", motion.id))
+                        .help("a MOTION is prescribed by TIME alone; relate places to each other by a COUPLER or GCON, react to what happens by a force"),
+                );
+            }
         }
     }
 

@@ -90,11 +90,7 @@ pub(super) fn find(scene: &mut Scene, guesses: &dyn Fn(&Key) -> f64) -> Result<(
 fn unknown(scene: &Scene, key: Key, guesses: &dyn Fn(&Key) -> f64) -> Unknown {
     let name = match key {
         Key::Formula(f) => scene.formulas[f].name.clone(),
-        Key::Measure(m, ids) => {
-            let last = ids.iter().rposition(|&i| i != 0).unwrap_or(0);
-            let ids: Vec<String> = ids[..=last].iter().map(u32::to_string).collect();
-            format!("{}({})", m.name(), ids.join(","))
-        }
+        Key::Measure(m, ids) => super::reads::input_name(Input::Measure(m, ids)),
         Key::Rate(d) | Key::Value(d) => format!("DIFF/{}", scene.differentials[d].id),
     };
     Unknown {

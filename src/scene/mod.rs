@@ -11,9 +11,11 @@ pub mod equations;
 pub mod forces;
 pub mod forest;
 mod formula;
+mod general;
 pub mod layout;
 pub mod loops;
 pub mod programs;
+mod reads;
 pub mod solve;
 pub mod sweep;
 mod unsupported;
@@ -168,6 +170,13 @@ pub enum RowKind {
     },
     /// Σ factor · displacement = constant
     Displacements(Sum),
+    /// an expression of places and time is zero
+    Formula {
+        /// index in [`Scene::formulas`]
+        formula: usize,
+        /// what counts as one
+        scale: f64,
+    },
 }
 
 /// A weighted sum of displacements that keeps its value.

@@ -8,6 +8,7 @@
 //! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
 
 mod dynamics;
+mod general;
 mod loops;
 mod measures;
 mod reactions;

@@ -16,8 +16,8 @@ impl<S: Scalar> Equations<'_, S> {
                 let (I, J) = (self.marker(*i), self.marker(*j));
                 // gradient: duals along the twists of I (0–5: rotation, translation) and J (6–11)
                 let seeded = law.value(
-                    &seed::<S>(&I, 0),
-                    &seed::<S>(&J, 6),
+                    &seed::<12, S>(&I, 0),
+                    &seed::<12, S>(&J, 6),
                     drive.map(|d| Dual {
                         re: d.value,
                         eps: [S::zero(); 12],
@@ -36,6 +36,7 @@ impl<S: Scalar> Equations<'_, S> {
                 }
             }
             RowKind::Displacements(sum) => self.sum_row(sum),
+            RowKind::Formula { formula, .. } => self.formula_row(*formula),
         }
     }
 
@@ -114,7 +115,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// A distance or an angle with its gradient and rates.
     pub(super) fn displacement(&self, d: &Displacement) -> RowValue<S> {
         let (I, J) = (self.marker(d.i), self.marker(d.j));
-        let seeded = d.gauge.value(&seed::<S>(&I, 0), &seed::<S>(&J, 6));
+        let seeded = d.gauge.value(&seed::<12, S>(&I, 0), &seed::<12, S>(&J, 6));
         let actions = vec![(d.i, twist(&seeded, 0)), (d.j, twist(&seeded, 6))];
         if let Some((terms, constant)) = &d.coordinates {
             let mut value = S::constant(*constant);
@@ -233,7 +234,7 @@ pub struct RowValue<S> {
 }
 
 /// What a dual along twists says about the one whose directions begin at `k`: the action of a unit multiplier.
-fn twist<S: Scalar>(x: &Dual<12, S>, k: usize) -> Action<S> {
+pub(super) fn twist<const N: usize, S: Scalar>(x: &Dual<N, S>, k: usize) -> Action<S> {
     Action {
         torque: Vec3([x.eps[k], x.eps[k + 1], x.eps[k + 2]]),
         force: Vec3([x.eps[k + 3], x.eps[k + 4], x.eps[k + 5]]),
@@ -241,10 +242,13 @@ fn twist<S: Scalar>(x: &Dual<12, S>, k: usize) -> Action<S> {
 }
 
 /// A marker's frame as it turns and moves along six directions, the first of which is direction `first`.
-fn seed<S: Scalar>(m: &MarkerState<S>, first: usize) -> Frame<Dual<12, S>> {
+pub(super) fn seed<const N: usize, S: Scalar>(
+    m: &MarkerState<S>,
+    first: usize,
+) -> Frame<Dual<N, S>> {
     let lift = |x: S| Dual {
         re: x,
-        eps: [S::zero(); 12],
+        eps: [S::zero(); N],
     };
     let mut frame = Frame {
         rotation: Mat3(m.R_GM.0.map(|r| r.map(lift))),
@@ -264,7 +268,7 @@ fn seed<S: Scalar>(m: &MarkerState<S>, first: usize) -> Frame<Dual<12, S>> {
 }
 
 /// A marker's frame as it moves in time.
-fn moving<S: Scalar>(m: &MarkerState<S>) -> Frame<Jet<S>> {
+pub(super) fn moving<S: Scalar>(m: &MarkerState<S>) -> Frame<Jet<S>> {
     let mut rotation = Mat3::<Jet<S>>::zero();
     for column in 0..3 {
         let axis = m.R_GM.column(column);

@@ -1,0 +1,161 @@
+//! Rows that are written as expressions: what a function of places does when its markers move.
+//!
+//! ```text
+//! e = e(m₁ … m_k)     δe = Σ ∂e/∂mᵢ δmᵢ      δmᵢ = wrenchᵢ · twists of its markers
+//! ```
+//!
+//! The partial derivatives come from the function over duals, the wrenches from each measure over duals along the twists of the markers it
+//! reads, the rates from both over jets.
+
+use super::rows::{moving, seed, twist};
+use super::{Equations, RowValue};
+use crate::expr::measures::Measure;
+use crate::expr::program::{Input, Work};
+use crate::physics::action::Action;
+use crate::scalar::{Dual, Jet, Scalar};
+use crate::scene::Counted;
+use crate::space::{Frame, MarkerState, kinematic};
+
+/// Directions that are followed at once through a function.
+const WIDTH: usize = 8;
+/// Most markers that one measure reads.
+const MARKERS: usize = 3;
+
+/// A function of places: its value with rates in time, and what a unit multiplier on it exerts.
+struct Traced<S> {
+    jet: Jet<S>,
+    actions: Vec<(usize, Action<S>)>,
+}
+
+impl<S: Scalar> Traced<S> {
+    fn of_time(jet: Jet<S>) -> Self {
+        Self {
+            jet,
+            actions: Vec::new(),
+        }
+    }
+}
+
+impl<S: Scalar> Equations<'_, S> {
+    /// A row that says that a formula of places is zero.
+    pub(super) fn formula_row(&self, formula: usize) -> RowValue<S> {
+        let Traced { jet, actions } = self.traced(formula, &mut Vec::new());
+        let gradient = self.gradient_of(&actions);
+        RowValue {
+            value: jet.value,
+            drift: jet.first - self.along(&gradient),
+            gradient,
+            gamma: -jet.second,
+            actions,
+        }
+    }
+
+    fn traced(&self, formula: usize, open: &mut Vec<usize>) -> Traced<S> {
+        let f = &self.scene.formulas[formula];
+        let nothing = || Traced::of_time(Jet::constant(f64::NAN));
+        if open.contains(&formula) {
+            return nothing();
+        }
+        open.push(formula);
+        let inputs: Vec<Traced<S>> = f
+            .program
+            .inputs()
+            .iter()
+            .map(|&input| match input {
+                Input::Time => Traced::of_time(Jet::variable(self.t)),
+                Input::Mode => Traced::of_time(Jet::constant(self.scene.mode)),
+                Input::Measure(Measure::Varval, [id, ..]) => {
+                    let variable = self.scene.variables.get(&id);
+                    variable.map_or_else(nothing, |&v| self.traced(v, open))
+                }
+                Input::Measure(Measure::Aryval, [id, k, ..]) => {
+                    let number = self.array(id, k).unwrap_or(f64::NAN);
+                    Traced::of_time(Jet::constant(number))
+                }
+                Input::Measure(measure, ids) => {
+                    self.traced_measure(measure, ids).unwrap_or_else(nothing)
+                }
+                _ => nothing(),
+            })
+            .collect();
+        open.pop();
+        let jets: Vec<Jet<S>> = inputs.iter().map(|i| i.jet).collect();
+        let mut out = [Jet::zero()];
+        f.program.eval(&jets, &mut Work::default(), &mut out);
+        Traced {
+            jet: out[0],
+            actions: self.chained(formula, &inputs),
+        }
+    }
+
+    /// `Σ ∂e/∂mᵢ wrenchᵢ`, by markers.
+    fn chained(&self, formula: usize, inputs: &[Traced<S>]) -> Vec<(usize, Action<S>)> {
+        let program = &self.scene.formulas[formula].program;
+        let mut sum: Vec<(usize, Action<S>)> = Vec::new();
+        let moving: Vec<usize> = (0..inputs.len())
+            .filter(|&k| !inputs[k].actions.is_empty())
+            .collect();
+        let mut work = Work::default();
+        for some in moving.chunks(WIDTH) {
+            let duals: Vec<Dual<WIDTH, S>> = (inputs.iter().enumerate())
+                .map(|(k, input)| match some.iter().position(|&s| s == k) {
+                    Some(direction) => Dual::variable(input.jet.value, direction),
+                    None => Dual {
+                        re: input.jet.value,
+                        eps: [S::zero(); WIDTH],
+                    },
+                })
+                .collect();
+            let mut out = [Dual::zero()];
+            program.eval(&duals, &mut work, &mut out);
+            for (&k, &partial) in some.iter().zip(&out[0].eps) {
+                for (m, action) in &inputs[k].actions {
+                    let part = Action {
+                        force: action.force.times(partial),
+                        torque: action.torque.times(partial),
+                    };
+                    match sum.iter_mut().find(|s| s.0 == *m) {
+                        Some(entry) => entry.1 = entry.1.plus(&part),
+                        None => sum.push((*m, part)),
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// A displacement or an angle; `None`: a marker is missing, or it is no function of places.
+    fn traced_measure(&self, measure: Measure, ids: [u32; 4]) -> Option<Traced<S>> {
+        let index = |id: u32| self.scene.marker_of.get(&id).copied();
+        let mut jet = kinematic::kinematic_of(measure, ids, |id| {
+            Some(placed(moving(&self.marker(index(id)?))))
+        })?;
+        if measure.needs_history() {
+            jet.value = self.turned(Counted::Measure(measure, ids), jet.value);
+        }
+        let mut read: Vec<usize> = Vec::new();
+        let seeded = kinematic::kinematic_of(measure, ids, |id| {
+            let m = index(id)?;
+            let k = read.iter().position(|&r| r == m).unwrap_or_else(|| {
+                read.push(m);
+                read.len() - 1
+            });
+            (k < MARKERS).then(|| placed(seed::<{ 6 * MARKERS }, S>(&self.marker(m), 6 * k)))
+        })?;
+        let actions = read
+            .iter()
+            .enumerate()
+            .map(|(k, &m)| (m, twist(&seeded, 6 * k)))
+            .collect();
+        Some(Traced { jet, actions })
+    }
+}
+
+/// A frame as the state of a marker whose motion nobody asks for.
+fn placed<T: Scalar>(frame: Frame<T>) -> MarkerState<T> {
+    MarkerState {
+        R_GM: frame.rotation,
+        p_GM: frame.position,
+        ..MarkerState::ground()
+    }
+}

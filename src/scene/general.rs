@@ -1,0 +1,148 @@
+//! GCON: a constraint that is written as an expression, zero where it holds.
+//!
+//! ```text
+//! e(places, t) = 0
+//! ```
+//!
+//! The expression may read displacements and angles of markers, TIME, MODE, numbers of ARRAYs and VARIABLEs of these: it is holonomic. Its
+//! gradient is the chain of ∂e/∂(what it reads) and what each of these does along the twists of its markers; its rates are jets in
+//! time. An expression of velocities (nonholonomic where it is no rate of a holonomic one) is refused: multiply out what it integrates
+//! to, or brake by a force.
+//!
+//! *Reaction*: λ ∂e/∂(twist), in the units of force where e is a length. The reaction of a GCON is what acts on the part of its I marker,
+//! about that marker, and is read as FX(I, J) … with J the other marker that e reads.
+
+use super::build::{Builder, active};
+use super::compile::Compiler;
+use super::equations::Equations;
+use super::reads::{Allowed, offence};
+use super::{ConstraintElement, Row, RowKind, Scene};
+use crate::diagnostic::Diagnostic;
+use crate::expr::measures::{Family, Measure};
+use crate::expr::program::Input;
+use std::collections::BTreeSet;
+
+impl Builder<'_> {
+    /// One row for each GCON.
+    pub(super) fn general(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, gcon) in active(model, "GCON", &model.general_constraints) {
+            let name = format!("GCON/{id}");
+            let formula = self.formula(c, &format!("{name} FUNCTION"), &gcon.function);
+            if formula >= self.scene.formulas.len() {
+                continue;
+            }
+            if let Some(offence) = offence(&self.scene, formula, Allowed::Places) {
+                c.errors.push(
+                    Diagnostic::error("gcon_reads", format!("its function reads {}: {}", offence.what, offence.why))
+                        .element(name)
+                        .help("a GCON relates places: displacements and angles of markers, TIME, and VARIABLEs of these"),
+                );
+                continue;
+            }
+            let read = markers_read(&self.scene, formula);
+            let about = match gcon.i {
+                Some(i) => c.marker(i, &name),
+                None => None,
+            };
+            let part = |m: usize| self.scene.markers[m].part;
+            let acts_on: Vec<usize> = match about {
+                Some(i) => read
+                    .iter()
+                    .copied()
+                    .filter(|&m| part(m) == part(i))
+                    .collect(),
+                None => Vec::new(),
+            };
+            let mut others = read.iter().copied().filter(|m| !acts_on.contains(m));
+            let markers = match (about, others.next(), others.next()) {
+                (Some(i), Some(j), None) => Some((i, j)),
+                _ => None,
+            };
+            let first = self.scene.rows.len();
+            self.scene.rows.push(Row {
+                element: name,
+                equation: "FUNCTION".into(),
+                kind: RowKind::Formula {
+                    formula,
+                    scale: 1.0,
+                },
+            });
+            self.scene.constraints.push(ConstraintElement {
+                keyword: "GCON",
+                id,
+                markers,
+                acts_on,
+                about,
+                carries: None,
+                rows: first..first + 1,
+                coordinate: None,
+            });
+        }
+    }
+
+    /// What counts as one for the expressions of GCON: how much they change as coordinates change by one (angles) or by the size of
+    /// the mechanism (lengths).
+    pub(super) fn natural_sizes(&mut self) {
+        let scene = &self.scene;
+        if !scene
+            .rows
+            .iter()
+            .any(|r| matches!(r.kind, RowKind::Formula { .. }))
+        {
+            return;
+        }
+        let mut numbers = vec![0.0; scene.layout.len()];
+        numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+        let at = Equations::<f64>::new(scene, &numbers);
+        let weights = super::programs::weights(scene);
+        let sizes: Vec<Option<f64>> = (scene.rows.iter().enumerate())
+            .map(|(r, row)| {
+                let RowKind::Formula { .. } = row.kind else {
+                    return None;
+                };
+                let gradient = at.row(r).gradient;
+                let size = gradient
+                    .iter()
+                    .map(|&(v, g)| g.abs() * weights[v].sqrt())
+                    .fold(0.0, f64::max);
+                Some(if size > 0.0 && size.is_finite() {
+                    size
+                } else {
+                    1.0
+                })
+            })
+            .collect();
+        for (row, size) in self.scene.rows.iter_mut().zip(sizes) {
+            if let (RowKind::Formula { scale, .. }, Some(size)) = (&mut row.kind, size) {
+                *scale = size;
+            }
+        }
+    }
+}
+
+/// The markers that a formula of places reads, itself or through VARIABLEs; ground as such (identifier 0) is none.
+fn markers_read(scene: &Scene, formula: usize) -> BTreeSet<usize> {
+    let (mut seen, mut next, mut found) = (BTreeSet::new(), vec![formula], BTreeSet::new());
+    while let Some(f) = next.pop() {
+        let Some(formula) = scene.formulas.get(f).filter(|_| seen.insert(f)) else {
+            continue;
+        };
+        for input in formula.program.inputs() {
+            match input {
+                Input::Measure(Measure::Varval, [v, ..]) => next.extend(scene.variables.get(v)),
+                Input::Measure(m, ids) if m.row().family == Family::Displacement => {
+                    // the first two arguments of ORIENT are no markers
+                    let ids = if *m == Measure::Orient {
+                        &ids[2..]
+                    } else {
+                        &ids[..]
+                    };
+                    found.extend(ids.iter().filter_map(|id| scene.marker_of.get(id)));
+                }
+                _ => {}
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,133 @@
+//! Constraints as elements: general constraints, motions between markers, joints against closed forms, cams.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::model::Model;
+use cognate::results::Status;
+
+const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+
+fn session(text: &str, columns: &[&str], error: f64) -> Session {
+    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        error: Some(error),
+        ..Options::default()
+    };
+    Session::new(model, "test", options)
+}
+
+fn run(text: &str, columns: &[&str], end: f64, steps: usize) -> Session {
+    let mut s = session(text, columns, 1e-10);
+    let status = s
+        .simulate(Analysis::Transient, end, steps, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    s
+}
+
+/// The first thing that is said about a model that cannot be run.
+fn refused(text: &str) -> (String, String) {
+    let mut s = session(text, &[], 1e-6);
+    let errors = s
+        .simulate(Analysis::Transient, 1.0, 4, &mut Unwatched)
+        .expect_err("a mistake");
+    let e = &errors[0];
+    let element = e.element.clone().unwrap_or_default();
+    (e.code.to_string(), format!("{element}: {}", e.message))
+}
+
+fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
+    s.run.column(column).unwrap()
+}
+
+/// Largest difference of two columns, or of a column and a function of time.
+fn off(s: &Session, column: &str, expected: impl Fn(f64) -> f64) -> f64 {
+    let t = values(s, "time");
+    (values(s, column).iter().zip(t))
+        .map(|(x, &t)| (x - expected(t)).abs())
+        .fold(0.0, f64::max)
+}
+
+/// A point mass body that swings about ground, held at a distance by different means.
+fn swing(tie: &str) -> String {
+    format!(
+        "PART/2, QG=1,0,0, MASS=2, CM=20, IP=0.1,0.1,0.1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=-1,0,0\n\
+         JPRIM/1, INPLANE, I=20, J=1\nJPRIM/2, PARALLEL_AXES, I=20, J=1\n{tie}ACCGRAV/JGRAV=-9.81\n"
+    )
+}
+
+/// A rod of length 1 as a distance, and as the point at its other end.
+#[test]
+fn a_distance_written_as_gcon_is_a_rod() {
+    let columns = ["DX(20,1)", "DY(20,1)", "FX(1,20)", "FY(1,20)", "FX(20,1)"];
+    let gcon = run(
+        &swing("GCON/1, I=1, FUNCTION=DM(20,1)-1\nMOTION/9, I=20, J=1, B3, FUNCTION=0\n"),
+        &columns,
+        2.0,
+        40,
+    );
+    // the same without friction at its ends: a pendulum of a point mass
+    let length = |k: usize| values(&gcon, "DX(20,1)")[k].hypot(values(&gcon, "DY(20,1)")[k]);
+    for k in 0..41 {
+        assert!((length(k) - 1.0).abs() < 1e-11);
+        let (x, y) = (values(&gcon, "DX(20,1)")[k], values(&gcon, "DY(20,1)")[k]);
+        // v² = −2 g y, the rod pulls by m (v² − g y) towards ground: on ground it pulls along (x, y)
+        let pull = 2.0 * 9.81 * -3.0 * y;
+        let (fx, fy) = (values(&gcon, "FX(1,20)")[k], values(&gcon, "FY(1,20)")[k]);
+        assert!((fx - pull * x).abs() < 1e-6 && (fy - pull * y).abs() < 1e-6);
+        assert!((values(&gcon, "FX(20,1)")[k] + fx).abs() < 1e-12);
+    }
+}
+
+/// A law of places and time: a bead on a line that is lifted.
+#[test]
+fn a_gcon_of_time_moves_what_it_holds() {
+    let text = "PART/2, QG=0.5,0.25,0, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\n\
+                JOINT/1, PLANAR, I=20, J=1\nMOTION/1, I=20, J=1, X, FUNCTION=0.5+TIME\n\
+                MOTION/2, I=20, J=1, B3, FUNCTION=0\n\
+                VARIABLE/1, FUNCTION=DX(20,1)**2\nGCON/1, I=20, FUNCTION=DY(20,1)-VARVAL(1)-SIN(TIME)\n";
+    let s = run(text, &["DY(20,1)", "VY(20,1)", "ACCY(20,1)", "FY(20,1)"], 1.0, 10);
+    let x = |t: f64| 0.5 + t;
+    assert!(off(&s, "DY(20,1)", |t| x(t).powi(2) + t.sin()) < 1e-11);
+    assert!(off(&s, "VY(20,1)", |t| 2.0 * x(t) + t.cos()) < 1e-9);
+    assert!(off(&s, "ACCY(20,1)", |t| 2.0 - t.sin()) < 1e-9);
+}
+
+#[test]
+fn a_gcon_of_velocities_or_forces_is_refused_by_name() {
+    let with = |function: &str| refused(&swing(&format!("GCON/1, I=20, FUNCTION={function}\n")));
+    let (code, what) = with("VX(20,1)-WZ(20,1)");
+    assert_eq!(code, "gcon_reads");
+    assert!(what.contains("GCON/1") && what.contains("VX(20,1)") && what.contains("how the parts move"), "{what}");
+    let (_, what) = with("DX(20,1)-FX(20,1)");
+    assert!(what.contains("FX(20,1)") && what.contains("forces"), "{what}");
+    let (_, what) = with("VARVAL(1)\nVARIABLE/1, FUNCTION=WZ(20)");
+    assert!(what.contains("WZ(20) (in VARIABLE/1)"), "{what}");
+}
+
+#[test]
+fn a_motion_reads_time_alone() {
+    let driven = |function: &str, more: &str| {
+        swing(&format!("MOTION/1, I=20, J=1, X, FUNCTION={function}\n{more}"))
+    };
+    let (code, what) = refused(&driven("1-DY(20,1)", ""));
+    assert_eq!(code, "motion_reads");
+    assert!(what.contains("MOTION/1") && what.contains("DY(20,1)") && what.contains("where the parts are"), "{what}");
+    let (_, what) = refused(&driven("VARVAL(1)", "VARIABLE/1, FUNCTION=TIME*VARVAL(2)\nVARIABLE/2, FUNCTION=VX(20)\n"));
+    assert!(what.contains("VX(20) (in VARIABLE/2)"), "{what}");
+    let (_, what) = refused(&driven("DIF(1)", "DIFF/1, IC=1, FUNCTION=-DIF(1)\n"));
+    assert!(what.contains("DIF(1)") && what.contains("state"), "{what}");
+    // VARIABLEs of time, numbers of arrays and splines are functions of time
+    let s = run(
+        &driven(
+            "VARVAL(1)+ARYVAL(1,2)*TIME+CUBSPL(TIME,0,1,0)",
+            "VARIABLE/1, FUNCTION=COS(TIME)\nARRAY/1, IC, SIZE=2, NUMBERS=4,0.25\nSPLINE/1, X=-1,0,1,2,3, Y=0,0,0,0,0\n",
+        ),
+        &["DX(20,1)"],
+        1.0,
+        5,
+    );
+    assert!(off(&s, "DX(20,1)", |t| t.cos() + 0.25 * t) < 1e-10);
+}
