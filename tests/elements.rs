@@ -88,7 +88,12 @@ fn a_gcon_of_time_moves_what_it_holds() {
                 JOINT/1, PLANAR, I=20, J=1\nMOTION/1, I=20, J=1, X, FUNCTION=0.5+TIME\n\
                 MOTION/2, I=20, J=1, B3, FUNCTION=0\n\
                 VARIABLE/1, FUNCTION=DX(20,1)**2\nGCON/1, I=20, FUNCTION=DY(20,1)-VARVAL(1)-SIN(TIME)\n";
-    let s = run(text, &["DY(20,1)", "VY(20,1)", "ACCY(20,1)", "FY(20,1)"], 1.0, 10);
+    let s = run(
+        text,
+        &["DY(20,1)", "VY(20,1)", "ACCY(20,1)", "FY(20,1)"],
+        1.0,
+        10,
+    );
     let x = |t: f64| 0.5 + t;
     assert!(off(&s, "DY(20,1)", |t| x(t).powi(2) + t.sin()) < 1e-11);
     assert!(off(&s, "VY(20,1)", |t| 2.0 * x(t) + t.cos()) < 1e-9);
@@ -100,9 +105,15 @@ fn a_gcon_of_velocities_or_forces_is_refused_by_name() {
     let with = |function: &str| refused(&swing(&format!("GCON/1, I=20, FUNCTION={function}\n")));
     let (code, what) = with("VX(20,1)-WZ(20,1)");
     assert_eq!(code, "gcon_reads");
-    assert!(what.contains("GCON/1") && what.contains("VX(20,1)") && what.contains("how the parts move"), "{what}");
+    assert!(
+        what.contains("GCON/1") && what.contains("VX(20,1)") && what.contains("how the parts move"),
+        "{what}"
+    );
     let (_, what) = with("DX(20,1)-FX(20,1)");
-    assert!(what.contains("FX(20,1)") && what.contains("forces"), "{what}");
+    assert!(
+        what.contains("FX(20,1)") && what.contains("forces"),
+        "{what}"
+    );
     let (_, what) = with("VARVAL(1)\nVARIABLE/1, FUNCTION=WZ(20)");
     assert!(what.contains("WZ(20) (in VARIABLE/1)"), "{what}");
 }
@@ -110,12 +121,22 @@ fn a_gcon_of_velocities_or_forces_is_refused_by_name() {
 #[test]
 fn a_motion_reads_time_alone() {
     let driven = |function: &str, more: &str| {
-        swing(&format!("MOTION/1, I=20, J=1, X, FUNCTION={function}\n{more}"))
+        swing(&format!(
+            "MOTION/1, I=20, J=1, X, FUNCTION={function}\n{more}"
+        ))
     };
     let (code, what) = refused(&driven("1-DY(20,1)", ""));
     assert_eq!(code, "motion_reads");
-    assert!(what.contains("MOTION/1") && what.contains("DY(20,1)") && what.contains("where the parts are"), "{what}");
-    let (_, what) = refused(&driven("VARVAL(1)", "VARIABLE/1, FUNCTION=TIME*VARVAL(2)\nVARIABLE/2, FUNCTION=VX(20)\n"));
+    assert!(
+        what.contains("MOTION/1")
+            && what.contains("DY(20,1)")
+            && what.contains("where the parts are"),
+        "{what}"
+    );
+    let (_, what) = refused(&driven(
+        "VARVAL(1)",
+        "VARIABLE/1, FUNCTION=TIME*VARVAL(2)\nVARIABLE/2, FUNCTION=VX(20)\n",
+    ));
     assert!(what.contains("VX(20) (in VARIABLE/2)"), "{what}");
     let (_, what) = refused(&driven("DIF(1)", "DIFF/1, IC=1, FUNCTION=-DIF(1)\n"));
     assert!(what.contains("DIF(1)") && what.contains("state"), "{what}");

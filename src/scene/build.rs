@@ -166,7 +166,12 @@ impl<'m> Builder<'m> {
     }
 
     /// Compiles an expression; its index in the scene's formulas.
-    pub(super) fn formula(&mut self, c: &mut Compiler, name: &str, formula: &ModelFormula) -> usize {
+    pub(super) fn formula(
+        &mut self,
+        c: &mut Compiler,
+        name: &str,
+        formula: &ModelFormula,
+    ) -> usize {
         let text = match formula {
             ModelFormula::Expression { text, .. } => text.clone(),
             ModelFormula::User { .. } => {
