@@ -152,3 +152,94 @@ fn a_motion_reads_time_alone() {
     );
     assert!(off(&s, "DX(20,1)", |t| t.cos() + 0.25 * t) < 1e-10);
 }
+
+/// A free body whose six places are driven one by one, and what they should be.
+const COMPONENTS: [(&str, &str); 6] = [
+    ("X", "DX(20,1,1)"),
+    ("Y", "DY(20,1,1)"),
+    ("Z", "DZ(20,1,1)"),
+    ("B1", "ORIENT(1,1,20,1)"),
+    ("B2", "ORIENT(1,2,20,1)"),
+    ("B3", "ORIENT(1,3,20,1)"),
+];
+
+fn place(k: usize, t: f64) -> f64 {
+    0.1 * (k as f64) + 0.3 * (t * (1.0 + 0.2 * k as f64)).sin()
+}
+
+#[test]
+fn motions_between_markers_at_all_levels_lead_to_the_same_places() {
+    let columns: Vec<&str> = COMPONENTS.iter().map(|c| c.1).collect();
+    // B1 = 0.3, B2 = 0.4, B3 = 0.5 of the start, as the 3-1-3 angles of the dataset
+    let r = {
+        use cognate::space::rotation::about_axis;
+        about_axis(0, 0.3) * about_axis(1, 0.4) * about_axis(2, 0.5)
+    };
+    let (z, x) = (r.column(2).0, r.column(0).0);
+    for level in ["DISPLACEMENT", "VELOCITY", "ACCELERATION"] {
+        for given in [false, true] {
+            let mut text = String::from("MARKER/2, PART=1, QP=1,-2,3, REULER=20D,40D,-70D\n");
+            // without ICDISP it begins where the dataset has it
+            let start = if given {
+                "QG=0.3,-0.2,0.1".to_string()
+            } else {
+                format!(
+                    "QG=0,0.1,0.2, ZG={},{},{}, XG={},{},{}",
+                    z[0],
+                    0.1 + z[1],
+                    0.2 + z[2],
+                    x[0],
+                    0.1 + x[1],
+                    0.2 + x[2]
+                )
+            };
+            text += &format!("PART/2, MASS=1, CM=20, IP=1,2,3, {start}\nMARKER/20, PART=2\n");
+            for (k, (component, _)) in COMPONENTS.iter().enumerate() {
+                let w = 1.0 + 0.2 * k as f64;
+                let (start, amplitude) = (0.1 * k as f64, 0.3);
+                let function = match level {
+                    "DISPLACEMENT" => format!("{start}+{amplitude}*SIN({w}*TIME)"),
+                    "VELOCITY" => format!("{amplitude}*{w}*COS({w}*TIME)"),
+                    _ => format!("-{amplitude}*{w}**2*SIN({w}*TIME)"),
+                };
+                let mut begin = String::new();
+                if given && level != "DISPLACEMENT" {
+                    begin += &format!(", ICDISP={start}");
+                }
+                if level == "ACCELERATION" {
+                    begin += &format!(", ICVEL={}", amplitude * w);
+                }
+                text += &format!("MOTION/{}, I=20, J=1, {component}, {level}{begin}\n, FUNCTION={function}\n", k + 1);
+            }
+            let s = run(&text, &columns, 2.0, 20);
+            for (k, column) in columns.iter().enumerate() {
+                let error = off(&s, column, |t| place(k, t));
+                assert!(error < 1e-8, "{level} {given} {column}: {error}");
+            }
+        }
+    }
+}
+
+/// What drives one coordinate does not depend on whether it is a joint of the forest or a pair of markers.
+#[test]
+fn a_driven_joint_is_a_driven_pair_of_markers() {
+    let body = "PART/2, MASS=2, CM=20, IP=1,1,1, QG=1,0,0\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=-1,0,0\n\
+                JOINT/1, REVOLUTE, I=21, J=1\nACCGRAV/JGRAV=-9.81\n";
+    let by = |motion: &str| {
+        let columns = ["AZ(21,1)", "WZ(21,1)", "WDTZ(21,1)", "MOTION(1,0,8,0)", "JOINT(1,0,2,0)"];
+        let s = run(&format!("{body}{motion}\n"), &columns, 1.0, 10);
+        columns.map(|c| values(&s, c).to_vec())
+    };
+    let joint = by("MOTION/1, JOINT=1, ROTATION, FUNCTION=0.2+TIME**2");
+    for other in [
+        "MOTION/1, I=21, J=1, B3, FUNCTION=0.2+TIME**2",
+        "MOTION/1, JOINT=1, ROTATION, VELOCITY, ICDISP=0.2, FUNCTION=2*TIME",
+        "MOTION/1, I=21, J=1, B3, VELOCITY, ICDISP=0.2, FUNCTION=2*TIME",
+        "MOTION/1, JOINT=1, ROTATION, ACCELERATION, ICDISP=0.2, ICVEL=0, FUNCTION=2",
+        "MOTION/1, I=21, J=1, B3, ACCELERATION, ICDISP=0.2, FUNCTION=2",
+    ] {
+        for (a, b) in joint.iter().flatten().zip(by(other).iter().flatten()) {
+            assert!((a - b).abs() < 1e-7 * (1.0 + a.abs()), "{other}: {a} {b}");
+        }
+    }
+}

@@ -10,6 +10,7 @@ use crate::numeric::rank::Rank;
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::programs::weights;
 use crate::scene::{RowKind, Scene, Source};
+use crate::space::Frame;
 use nalgebra::{DMatrix, DVector};
 
 /// Rows whose part orthogonal to earlier rows is smaller than this, relative to themselves, depend on them.
@@ -60,6 +61,7 @@ fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<f64> {
 fn hold(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) -> Vec<String> {
     let (shown, _, _) = rows_at(scene, t, q, x);
     let mut told = Vec::new();
+    begin_motions(scene, t, q, x);
     for (row, &shown) in scene.rows.iter_mut().zip(&shown) {
         let RowKind::Displacements(sum) = &mut row.kind else {
             continue;
@@ -82,9 +84,47 @@ fn hold(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) -> Vec<String> {
     told
 }
 
+/// Motions given by their rate, without ICDISP, begin where they are.
+fn begin_motions(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) {
+    let at = Equations::new(
+        scene,
+        &numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x),
+    );
+    let frame = |m: usize| {
+        let state = at.marker(m);
+        Frame {
+            rotation: state.R_GM,
+            position: state.p_GM,
+        }
+    };
+    let mut found = Vec::new();
+    for row in &scene.rows {
+        if let RowKind::Markers {
+            law,
+            i,
+            j,
+            motion: Some(m),
+        } = row.kind
+            && scene.motions[m].held
+        {
+            let begun = scene.motions[m].state.map_or(0.0, |s| x[s]);
+            found.push((m, law.shown(&frame(i), &frame(j)) - begun));
+        }
+    }
+    for (m, offset) in found {
+        scene.motions[m].offset = offset;
+    }
+}
+
 /// Whether a row takes what the configuration shows rather than asking anything of it.
 fn is_held(scene: &Scene, r: usize) -> bool {
-    matches!(&scene.rows[r].kind, RowKind::Displacements(sum) if sum.held)
+    match &scene.rows[r].kind {
+        RowKind::Displacements(sum) => sum.held,
+        RowKind::Markers {
+            motion: Some(m), ..
+        } => scene.motions[*m].held,
+        _ => false,
+    }
 }
 
 /// Values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).

@@ -218,7 +218,8 @@ impl Session {
         }
     }
 
-    /// Start of motions given by their rate: ICDISP and ICVEL, else what the dataset's configuration shows.
+    /// Start of motions given by their rate: ICDISP and ICVEL, else what the dataset's configuration and the joint's IC show; rows begin
+    /// where the assembled configuration is.
     fn initial_motion(
         &self,
         scene: &Scene,
@@ -232,12 +233,19 @@ impl Session {
         let Some(data) = self.model.motions.get(&motion.id) else {
             return;
         };
-        x[state] = data
-            .ic_displacement
-            .or_else(|| scene.initial_displacement(m))
-            .unwrap_or(0.0);
+        let begins_there = scene.initial_displacement(m);
+        x[state] = data.ic_displacement.or(begins_there).unwrap_or(0.0);
         if motion.level == crate::model::Level::Acceleration {
-            x[state + 1] = data.ic_velocity.unwrap_or(0.0);
+            let rate = scene.motions[m].coordinate.and_then(|c| {
+                let coordinate = &scene.coordinates[c];
+                let joint = self.model.joints.get(&coordinate.joint?)?;
+                if coordinate.angular {
+                    joint.ic_rotation[1]
+                } else {
+                    joint.ic_translation[1]
+                }
+            });
+            x[state + 1] = data.ic_velocity.or(rate).unwrap_or(0.0);
         }
     }
 
@@ -369,7 +377,8 @@ impl Session {
         for _ in 0..self.options.repeat.max(1) {
             system.numbers.copy_from_slice(&first);
             let clock = Instant::now();
-            trajectory = if kind == Kind::Kinematic {
+            // states go on by integration, which keeps positions on the rows as well
+            trajectory = if kind == Kind::Kinematic && system.scene.layout.n_x == 0 {
                 kinematics::trace(system, &outputs, settings.h_max, watch)
             } else {
                 dynamics::integrate(system, &outputs, &settings, watch)

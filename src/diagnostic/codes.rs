@@ -347,8 +347,8 @@ meaning. What is defined stands for its whole expression: after `:let w = 1+1`, 
         name: "motion_reads",
         summary: "the function of a MOTION reads something that is no function of time",
         explanation: "\
-A MOTION prescribes what a joint or a marker does, whatever force that takes. Its rate and acceleration are those of its function,
-so the function may read TIME, MODE, numbers of an ARRAY, splines of these, and VARIABLEs of these; nothing that moves.
+A MOTION prescribes what a joint or a marker does, whatever force that takes. Its rate and acceleration are those of its
+function, so the function may read TIME, MODE, numbers of an ARRAY, splines of these, and VARIABLEs of these; nothing that moves.
 
     MOTION/1, JOINT=1, FUNCTION=0.5*DX(4,5)      write a COUPLER, or GCON/1, FUNCTION=AZ(2,3)-0.5*DX(4,5)
     MOTION/1, JOINT=1, FUNCTION=DIF(3)           a controller exerts a force: write an SFORCE that follows DIF(3)",
@@ -357,8 +357,8 @@ so the function may read TIME, MODE, numbers of an ARRAY, splines of these, and 
         name: "gcon_reads",
         summary: "the function of a GCON reads something that is no place",
         explanation: "\
-A GCON says that an expression is zero in every position: it may read displacements and angles of markers, TIME, MODE, numbers
-of an ARRAY, splines of these, and VARIABLEs of these. Velocities, forces, and states with equations of their own
+A GCON says that an expression is zero in every position: it may read displacements and angles of markers, TIME, MODE,
+numbers of an ARRAY, splines of these, and VARIABLEs of these. Velocities, forces, and states with equations of their own
 are refused.
 
     GCON/1, FUNCTION=VX(2,1)-2*VX(3,1)      holds where DX(2,1)-2*DX(3,1) keeps its value: write that

@@ -73,6 +73,17 @@ impl Law {
         }
     }
 
+    /// The value of `drive` at which a driven law holds; an angle as its principal value.
+    pub fn shown(self, i: &Frame<f64>, j: &Frame<f64>) -> f64 {
+        let at = |drive: f64| self.value(i, j, Some(drive));
+        if self.is_length() {
+            at(0.0)
+        } else {
+            // sin(θ − f) at f = 0 and at f = −90°
+            at(0.0).atan2(at(-std::f64::consts::FRAC_PI_2))
+        }
+    }
+
     /// The name Adams gives such an equation, for example `Zi.Xj`.
     pub fn name(self) -> String {
         let axis = |k: usize| ["X", "Y", "Z"][k];

@@ -228,6 +228,8 @@ impl<'m> Builder<'m> {
                 formula,
                 state,
                 coordinate: None,
+                held: false,
+                offset: 0.0,
             });
             let (joint, turn) = match motion.driven {
                 Driven::JointTranslation(j) => (j, false),
@@ -295,6 +297,9 @@ impl<'m> Builder<'m> {
         for drive in drives {
             let id = self.scene.motions[drive.motion].id;
             let coordinate = self.scene.motions[drive.motion].coordinate;
+            let begins = self.model.motions.get(&id).and_then(|m| m.ic_displacement);
+            let motion = &mut self.scene.motions[drive.motion];
+            motion.held = coordinate.is_none() && motion.state.is_some() && begins.is_none();
             let first = c.rows.len();
             let (i, j) = (
                 c.marker(drive.markers.0, &drive.name),

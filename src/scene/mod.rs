@@ -253,6 +253,10 @@ pub struct SceneMotion {
     pub state: Option<usize>,
     /// the coordinate it drives; `None`: it is a row
     pub coordinate: Option<usize>,
+    /// a row given by its rate, without ICDISP: it begins where the assembled configuration is
+    pub held: bool,
+    /// displacement where its state is zero
+    pub offset: f64,
 }
 
 /// A DIFF: `ẋ = function`.

@@ -145,10 +145,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let motion = &self.scene.motions[m];
         let f = self.in_time(motion.formula, &mut Vec::new());
         let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
+        let offset = S::constant(motion.offset);
         match motion.level {
             Level::Displacement => f,
-            Level::Velocity => Jet::new(state(0), f.value, f.first),
-            Level::Acceleration => Jet::new(state(0), state(1), f.value),
+            Level::Velocity => Jet::new(state(0) + offset, f.value, f.first),
+            Level::Acceleration => Jet::new(state(0) + offset, state(1), f.value),
         }
     }
 
