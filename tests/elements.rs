@@ -209,7 +209,10 @@ fn motions_between_markers_at_all_levels_lead_to_the_same_places() {
                 if level == "ACCELERATION" {
                     begin += &format!(", ICVEL={}", amplitude * w);
                 }
-                text += &format!("MOTION/{}, I=20, J=1, {component}, {level}{begin}\n, FUNCTION={function}\n", k + 1);
+                text += &format!(
+                    "MOTION/{}, I=20, J=1, {component}, {level}{begin}\n, FUNCTION={function}\n",
+                    k + 1
+                );
             }
             let s = run(&text, &columns, 2.0, 20);
             for (k, column) in columns.iter().enumerate() {
@@ -226,7 +229,13 @@ fn a_driven_joint_is_a_driven_pair_of_markers() {
     let body = "PART/2, MASS=2, CM=20, IP=1,1,1, QG=1,0,0\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=-1,0,0\n\
                 JOINT/1, REVOLUTE, I=21, J=1\nACCGRAV/JGRAV=-9.81\n";
     let by = |motion: &str| {
-        let columns = ["AZ(21,1)", "WZ(21,1)", "WDTZ(21,1)", "MOTION(1,0,8,0)", "JOINT(1,0,2,0)"];
+        let columns = [
+            "AZ(21,1)",
+            "WZ(21,1)",
+            "WDTZ(21,1)",
+            "MOTION(1,0,8,0)",
+            "JOINT(1,0,2,0)",
+        ];
         let s = run(&format!("{body}{motion}\n"), &columns, 1.0, 10);
         columns.map(|c| values(&s, c).to_vec())
     };
