@@ -21,6 +21,7 @@
 //! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | the grammars, the tree, and back to source |
 //! | value | `walk.rs` | the reference: lazily correct, names what has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
+//! | | `smoothness.rs` | where it is not smooth, and which derivative jumps there |
 //!
 //! Parsing finds every mistake with its place; compiling resolves names, folds constants and shares equal parts; running
 //! allocates nothing.
@@ -38,6 +39,7 @@ mod parse;
 mod print;
 pub mod program;
 pub mod signature;
+pub mod smoothness;
 pub mod spline;
 mod symbols;
 mod token;

@@ -321,9 +321,10 @@ impl Piecewise {
     }
 }
 
-impl Table for Piecewise {
-    fn at(&self, x: f64, order: u32) -> f64 {
-        let (piece, origin) = self.piece(x);
+impl Piecewise {
+    /// The `order`-th derivative of a piece at `x`.
+    #[inline(always)]
+    fn polynomial(&self, piece: usize, origin: f64, x: f64, order: u32) -> f64 {
         let width = self.degree + 1;
         let c = &self.coefficients[piece * width..(piece + 1) * width];
         let u = x - origin;
@@ -346,6 +347,22 @@ impl Table for Piecewise {
             sum = sum * u + factor * c[j];
         }
         sum
+    }
+}
+
+impl Table for Piecewise {
+    fn at(&self, x: f64, order: u32) -> f64 {
+        let (piece, origin) = self.piece(x);
+        self.polynomial(piece, origin, x, order)
+    }
+    fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+    fn beside(&self, x: f64, above: bool, order: u32) -> f64 {
+        // pieces count from the one below all knots
+        let piece = self.knots.partition_point(|&k| k < x || above && k == x);
+        let origin = self.knots[piece.saturating_sub(1)];
+        self.polynomial(piece, origin, x, order)
     }
 }
 

@@ -1,17 +1,20 @@
 //! Numbers that physics is written in.
 //!
 //! Every formula of the crate is generic over [`Scalar`]: a plain `f64` gives the value, a [`Dual`] the derivatives,
-//! a [`Jet`] the rates in time, [`Lanes`] a batch of samples. There is no second copy of a formula to keep in step.
+//! a [`Jet`] the rates in time, [`Lanes`] a batch of samples, a [`Germ`] what
+//! the formula is like just beside a point. There is no second copy of a formula to keep in step.
 //!
 //! A formula that has cases asks for a [`Mask`] and selects; it never looks at the number. So the same lines run where
 //! a "number" is many samples at once, or a node of a program that is being recorded.
 
 mod dual;
+mod germ;
 mod jet;
 mod lanes;
 mod power;
 
 pub use dual::Dual;
+pub use germ::{Germ, ORDERS};
 pub use jet::Jet;
 pub use lanes::Lanes;
 pub use power::Exponent;
@@ -52,6 +55,15 @@ impl Mask for bool {
 pub trait Table: Debug + Send + Sync {
     /// The `order`-th derivative at `x`.
     fn at(&self, x: f64, order: u32) -> f64;
+    /// Where pieces meet, increasing.
+    fn knots(&self) -> &[f64] {
+        &[]
+    }
+    /// The `order`-th derivative at `x` of the piece just above or below it.
+    fn beside(&self, x: f64, above: bool, order: u32) -> f64 {
+        let _ = above;
+        self.at(x, order)
+    }
 }
 
 /// A number: `f64`, or something that carries more than a value and obeys the same rules.

@@ -1,6 +1,7 @@
 //! Programs as text, one operation per line, for people who want to see what is computed.
 
-use super::{Code, Input, Program};
+use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value};
+use super::{Builder, Code, Input, Program};
 use std::fmt;
 
 impl fmt::Display for Program {
@@ -71,6 +72,82 @@ impl Program {
             Some(Input::Slot(k)) => format!("slot{k}"),
             Some(input) => format!("{input}"),
             None => format!("r{}", register - constants.len() - self.used.len()),
+        }
+    }
+}
+
+/// Longest text of a value; what is deeper is left out.
+const LONGEST: usize = 80;
+
+impl Builder {
+    /// A value as a formula, shortened when it is long.
+    pub(crate) fn text(&self, v: Value) -> String {
+        let mut text = String::new();
+        self.write(v, 0, &mut text);
+        if text.chars().count() > LONGEST {
+            text = text.chars().take(LONGEST).collect::<String>() + "…";
+        }
+        text
+    }
+
+    /// `above`: how strongly the surroundings bind (1 sum, 2 product, 3 power).
+    fn write(&self, v: Value, above: u8, text: &mut String) {
+        if text.len() > 2 * LONGEST {
+            return;
+        }
+        let mut infix = |strength: u8, a: Value, sign: &str, b: Value| {
+            let open = strength < above;
+            text.push_str(if open { "(" } else { "" });
+            self.write(a, strength, text);
+            text.push_str(sign);
+            self.write(b, strength + 1, text);
+            text.push_str(if open { ")" } else { "" });
+        };
+        let node = self.nodes[v.index()];
+        match node {
+            Node::Constant(bits) => *text += &f64::from_bits(bits).to_string(),
+            Node::Input(k) => *text += &self.inputs[k as usize].to_string(),
+            Node::Binary(BinaryOp::Add, a, b) => infix(1, a, " + ", b),
+            Node::Binary(BinaryOp::Sub, a, b) => infix(1, a, " - ", b),
+            Node::Binary(BinaryOp::Mul, a, b) => infix(2, a, "*", b),
+            Node::Binary(BinaryOp::Div, a, b) => infix(2, a, "/", b),
+            Node::Binary(BinaryOp::Pow, a, b) => infix(3, a, "**", b),
+            Node::Compare(comparison, a, b) => {
+                let sign = match comparison {
+                    Comparison::Lt => " < ",
+                    Comparison::Le => " <= ",
+                    Comparison::Eq => " = ",
+                };
+                infix(0, a, sign, b);
+            }
+            Node::Unary(UnaryOp::Neg, x) => {
+                *text += "-";
+                self.write(x, 3, text);
+            }
+            Node::Whole(x, n) => {
+                self.write(x, 3, text);
+                *text += &format!("**{n}");
+            }
+            _ => {
+                *text += &match node {
+                    Node::Unary(op, _) => format!("{op:?}").to_uppercase(),
+                    Node::Binary(op, ..) => format!("{op:?}").to_uppercase(),
+                    Node::Call { function, .. } => function.name().to_string(),
+                    Node::Lookup { table, .. } => format!("table{table}"),
+                    Node::Partial { k, .. } => format!("partial{k}"),
+                    _ => "IF".to_string(),
+                };
+                let mut first = true;
+                self.operands(&node, |x| {
+                    *text += if std::mem::take(&mut first) {
+                        "("
+                    } else {
+                        ", "
+                    };
+                    self.write(x, 0, text);
+                });
+                *text += ")";
+            }
         }
     }
 }

@@ -33,6 +33,7 @@ pub use batch::Batch;
 pub use builder::{Builder, Folding};
 pub use operation::{BinaryOp, Comparison, UnaryOp, Value};
 pub use record::{Condition, Sym};
+pub(crate) use switching::{Break, Levels};
 
 use super::functions::Function;
 use super::measures::Measure;

@@ -1,0 +1,440 @@
+//! Continuity of an expression: where it is not smooth, and which derivative jumps there.
+//!
+//! Every operation that can break names a value and its levels: comparisons their difference at zero, roundings their argument
+//! at whole numbers, tables their argument at the knots. Those that depend on one variable alone (usually TIME) have fixed
+//! roots, which are found on an interval. Whether and how the expression breaks there is not guessed: it is evaluated over
+//! [`Germ`] on either side, and the one-sided derivatives are compared. So `ABS(TIME)**3` is C2 at 0, and
+//! `STEP(TIME,1,0,2,1) - STEP(TIME,1,0,2,1)` smooth.
+//!
+//! Values that depend on other inputs vanish on surfaces in the space of inputs. Points on them are sought from several places,
+//! and the expression is compared along the normal there.
+
+use super::Expr;
+use super::functions::Continuity;
+use super::interpolation::Bindings;
+use super::program::{Break, Builder, Folding, Input, Levels, Program, Value, Work};
+use crate::diagnostic::Diagnostic;
+use crate::scalar::{Germ, ORDERS};
+use std::ops::RangeInclusive;
+
+/// How smooth an expression is.
+///
+/// ```
+/// use cognate::expr::{Expr, functions::Continuity, interpolation::Bindings};
+/// let f = Expr::parse("STEP(TIME,1,0,2,1)")?;
+/// let found = f.smoothness(&Bindings::default(), 0.0..=10.0)?;
+/// assert_eq!(found.class, Continuity::C1);
+/// let times: Vec<f64> = found.breakpoints.iter().map(|b| b.at).collect();
+/// assert_eq!(times, [1.0, 2.0]);
+/// assert_eq!(found.breakpoints[0].order, 2);
+/// assert_eq!(found.breakpoints[0].jump(2), 6.0);
+/// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smoothness {
+    /// the worst of everything below; [`Continuity::Jump`] too where history is read (DELAY)
+    pub class: Continuity,
+    /// where it breaks in the interior of the interval, increasing
+    pub breakpoints: Vec<Breakpoint>,
+    /// where it breaks in the space of its other inputs
+    pub surfaces: Vec<Surface>,
+    /// false when there are more breakpoints than are told
+    pub complete: bool,
+}
+
+/// A point where an expression is not smooth in its variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Breakpoint {
+    /// value of the variable
+    pub at: f64,
+    /// the lowest derivative that jumps, becomes infinite or ends there: 0 the value, 1 the slope, 2 the curvature
+    pub order: usize,
+    /// limits of the derivatives from below (index = order); NaN where there is none, infinite where it grows without bound
+    pub before: [f64; ORDERS],
+    /// limits of the derivatives from above
+    pub after: [f64; ORDERS],
+}
+
+impl Breakpoint {
+    /// The class of an expression that has this break and no worse one.
+    pub fn class(&self) -> Continuity {
+        class(self.order)
+    }
+    /// By how much the `k`-th derivative jumps (0: the value); 0 where it does not or `k` is too high to be known.
+    pub fn jump(&self, k: usize) -> f64 {
+        match (self.before.get(k), self.after.get(k)) {
+            (Some(before), Some(after)) if k >= self.order => after - before,
+            _ => 0.0,
+        }
+    }
+}
+
+/// A surface in the space of inputs on which an expression is not smooth: where a switching function has a level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// the switching function
+    pub switch: String,
+    /// what it reads
+    pub inputs: Vec<Input>,
+    /// the lowest derivative across the surface that jumps
+    pub order: usize,
+}
+
+/// The class of what first jumps in the derivative of this order.
+pub fn class(order: usize) -> Continuity {
+    match order {
+        0 => Continuity::Jump,
+        1 => Continuity::C0,
+        2 => Continuity::C1,
+        3..ORDERS => Continuity::C2,
+        _ => Continuity::Smooth,
+    }
+}
+
+impl Expr {
+    /// How smooth it is for TIME in an interval, and for any values of its other inputs. Breaks at the ends are not asked for.
+    ///
+    /// # Errors
+    /// A spline or curve that is not bound.
+    pub fn smoothness(
+        &self,
+        bindings: &Bindings,
+        interval: RangeInclusive<f64>,
+    ) -> Result<Smoothness, Diagnostic> {
+        Ok(smoothness(
+            &self.compile(bindings)?,
+            0,
+            Input::Time,
+            interval,
+        ))
+    }
+}
+
+/// Most breakpoints that are told.
+pub const MOST_BREAKPOINTS: usize = 1000;
+/// Cells in which single crossings are looked for; further ones show by the slopes at the ends of a cell.
+const CELLS: usize = 1024;
+/// Places from which surfaces are sought, and draws of other inputs at a breakpoint.
+const DRAWS: usize = 12;
+/// Jumps below this part of what jumps are rounding.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// How smooth an output of a program is in one of its inputs within an interval, and across the surfaces of the others.
+///
+/// Roots that lie closer together than a thousandth of the interval are found if the switching function turns between them once.
+pub fn smoothness(
+    program: &Program,
+    output: usize,
+    variable: Input,
+    interval: RangeInclusive<f64>,
+) -> Smoothness {
+    let mut builder = Builder::new(Folding::Strict);
+    let written = program.record(&mut builder)[output];
+    let (value, breaks) = builder.breaks(written);
+    let mut inputs = builder.inputs_of(&[value]);
+    inputs.retain(|&i| i != variable);
+    inputs.insert(0, variable);
+    let whole = Whole {
+        program: builder.finish_with_inputs(&[value], &inputs),
+        inputs,
+    };
+    let (timed, others): (Vec<Break>, Vec<Break>) = breaks
+        .into_iter()
+        .partition(|b| builder.inputs_of(&[b.value]) == [variable]);
+    let mut candidates = Candidates::new(interval);
+    for b in &timed {
+        candidates.search(&mut builder, b, variable);
+    }
+    let mut breakpoints: Vec<Breakpoint> = candidates
+        .times()
+        .into_iter()
+        .filter_map(|t| whole.at(t))
+        .collect();
+    let complete = candidates.complete && breakpoints.len() <= MOST_BREAKPOINTS;
+    breakpoints.truncate(MOST_BREAKPOINTS);
+    let surfaces: Vec<Surface> = others
+        .iter()
+        .filter_map(|b| whole.surface(&mut builder, b))
+        .collect();
+    let history = whole.inputs.iter().any(|i| matches!(i, Input::Delayed(_)));
+    let worst = breakpoints
+        .iter()
+        .map(|b| b.order)
+        .chain(surfaces.iter().map(|s| s.order))
+        .chain(history.then_some(0))
+        .min();
+    Smoothness {
+        class: worst.map_or(Continuity::Smooth, class),
+        breakpoints,
+        surfaces,
+        complete,
+    }
+}
+
+/// Roots of switching functions of one variable.
+struct Candidates {
+    from: f64,
+    to: f64,
+    found: Vec<f64>,
+    complete: bool,
+}
+
+impl Candidates {
+    fn new(interval: RangeInclusive<f64>) -> Self {
+        let (from, to) = interval.into_inner();
+        Self {
+            from,
+            to,
+            found: Vec::new(),
+            complete: true,
+        }
+    }
+
+    /// What was found inside the interval, each once.
+    fn times(&mut self) -> Vec<f64> {
+        let (from, to) = (self.from, self.to);
+        self.found.retain(|&t| from < t && t < to);
+        self.found.sort_unstable_by(f64::total_cmp);
+        // the same place by another formula differs by roundings; the shortest digits are the likelier ones
+        let width = (to - from) * 1e-14;
+        let mut times: Vec<f64> = Vec::new();
+        for &t in &self.found {
+            match times.last_mut() {
+                Some(last) if t - *last <= width.max(8.0 * f64::EPSILON * t.abs()) => {
+                    if t.to_string().len() < last.to_string().len() {
+                        *last = t;
+                    }
+                }
+                _ => times.push(t),
+            }
+        }
+        times
+    }
+
+    /// Looks for the places where the value of a break reaches a level.
+    fn search(&mut self, builder: &mut Builder, b: &Break, variable: Input) {
+        if !(self.from < self.to) {
+            return;
+        }
+        let time = builder.input(variable);
+        let slope = builder.gradient(b.value, &[time])[0];
+        let program = builder.finish_with_inputs(&[b.value, slope], &[variable]);
+        let mut work = Work::default();
+        let mut function = |t: f64| {
+            let mut out = [0.0; 2];
+            program.run(&[t], &mut work, &mut out);
+            (out[0], out[1])
+        };
+        let mut left = (self.from, function(self.from));
+        for k in 1..=CELLS {
+            let part = k as f64 / CELLS as f64;
+            let t = self.from + (self.to - self.from) * part;
+            let right = (t, function(t));
+            self.cell(&mut function, &b.levels, left, right, 0);
+            left = right;
+        }
+    }
+
+    /// The places inside a cell.
+    fn cell(
+        &mut self,
+        function: &mut impl FnMut(f64) -> (f64, f64),
+        levels: &Levels,
+        left: (f64, (f64, f64)),
+        right: (f64, (f64, f64)),
+        depth: usize,
+    ) {
+        let (place_left, place_right) = (levels.place(left.1.0), levels.place(right.1.0));
+        let same = place_left == place_right || place_left.is_nan() && place_right.is_nan();
+        // the same side at both ends: the function may have been on the other between if it turns
+        let turns = left.1.1 * right.1.1 < 0.0;
+        if same && !(turns && depth < 40) {
+            return;
+        }
+        if self.found.len() > 8 * MOST_BREAKPOINTS {
+            self.complete = false;
+            return;
+        }
+        let middle = left.0 + (right.0 - left.0) / 2.0;
+        if middle <= left.0 || right.0 <= middle || depth > 1100 {
+            if !same {
+                let off = |x: f64| {
+                    let distance = (x - levels.nearest(x)).abs();
+                    if distance.is_nan() {
+                        f64::INFINITY
+                    } else {
+                        distance
+                    }
+                };
+                let nearer = off(right.1.0) < off(left.1.0);
+                self.found.push(if nearer { right.0 } else { left.0 });
+            }
+            return;
+        }
+        let middle = (middle, function(middle));
+        self.cell(function, levels, left, middle, depth + 1);
+        self.cell(function, levels, middle, right, depth + 1);
+    }
+}
+
+/// The expression with calls expanded; its first input is the variable.
+struct Whole {
+    program: Program,
+    inputs: Vec<Input>,
+}
+
+/// One-sided derivatives along a line.
+struct Sides {
+    /// derivatives before and after, with noise
+    before: [(f64, f64); ORDERS],
+    after: [(f64, f64); ORDERS],
+}
+
+impl Whole {
+    /// The one-sided derivatives at a place along a direction; `None` where there is no value on either side.
+    fn sides(&self, place: &[f64], direction: &[f64]) -> Option<Sides> {
+        let mut work = Work::default();
+        let mut side = |sign: f64| {
+            let inputs: Vec<Germ> = place
+                .iter()
+                .zip(direction)
+                .map(|(&at, &d)| Germ::line(at, sign * d))
+                .collect();
+            let mut out = [Germ::line(f64::NAN, 0.0)];
+            self.program.eval(&inputs, &mut work, &mut out);
+            out[0]
+        };
+        let (before, after) = (side(-1.0), side(1.0));
+        if before.limit().is_nan() && after.limit().is_nan() {
+            return None;
+        }
+        let of = |germ: Germ, sign: f64| {
+            std::array::from_fn(|k| {
+                let (d, noise) = germ.derivative_at(k);
+                (if k % 2 == 1 { sign * d } else { d }, noise)
+            })
+        };
+        Some(Sides {
+            before: of(before, -1.0),
+            after: of(after, 1.0),
+        })
+    }
+
+    /// The break at a value of the variable, whatever the other inputs are.
+    fn at(&self, t: f64) -> Option<Breakpoint> {
+        let n = self.inputs.len();
+        let mut direction = vec![0.0; n];
+        direction[0] = 1.0;
+        let mut worst: Option<Breakpoint> = None;
+        for draw in 0..if n == 1 { 1 } else { DRAWS } {
+            let mut place = drawn(n, draw);
+            place[0] = t;
+            let Some(sides) = self.sides(&place, &direction) else {
+                continue;
+            };
+            let mut order = sides.order();
+            if n == 1 && order != Some(0) && self.is_isolated(t, &sides) {
+                order = Some(0);
+            }
+            if let Some(order) = order
+                && worst.as_ref().is_none_or(|w| order < w.order)
+            {
+                worst = Some(Breakpoint {
+                    at: t,
+                    order,
+                    before: sides.before.map(|d| d.0),
+                    after: sides.after.map(|d| d.0),
+                });
+            }
+        }
+        worst
+    }
+
+    /// Whether the value at a point is not its limit.
+    fn is_isolated(&self, t: f64, sides: &Sides) -> bool {
+        let mut out = [0.0];
+        self.program.run(&[t], &mut Work::default(), &mut out);
+        let limit = sides.before[0].0;
+        let noise = 1e3 * (sides.before[0].1 + sides.after[0].1);
+        !((out[0] - limit).abs() <= noise.max(1e-6 * limit.abs().max(1e-300)).max(1e-9))
+    }
+
+    /// How the expression breaks where a switching function has a level.
+    fn surface(&self, builder: &mut Builder, b: &Break) -> Option<Surface> {
+        let own = builder.inputs_of(&[b.value]);
+        let variables: Vec<Value> = self.inputs.iter().map(|&i| builder.input(i)).collect();
+        let gradient = builder.gradient(b.value, &variables);
+        let outputs: Vec<Value> = [b.value].into_iter().chain(gradient).collect();
+        let program = builder.finish_with_inputs(&outputs, &self.inputs);
+        let mut order = None;
+        for draw in 0..DRAWS {
+            if let Some((place, normal)) = met(&program, &b.levels, drawn(self.inputs.len(), draw))
+                && let Some(found) = self.sides(&place, &normal).and_then(|s| s.order())
+            {
+                order = Some(order.map_or(found, |o: usize| o.min(found)));
+            }
+        }
+        Some(Surface {
+            switch: builder.text(b.value),
+            inputs: own,
+            order: order?,
+        })
+    }
+}
+
+impl Sides {
+    /// The lowest derivative that jumps; `None` if none does as far as known.
+    fn order(&self) -> Option<usize> {
+        (0..ORDERS).find(|&k| {
+            let ((before, n), (after, m)) = (self.before[k], self.after[k]);
+            if before.is_nan() && after.is_nan() && k > 0 {
+                return false;
+            }
+            let size = before.abs().max(after.abs());
+            let jump = (after - before).abs();
+            // what is infinite breaks, on both sides alike too
+            !size.is_finite() || !(jump <= (NEGLIGIBLE * size).max(1e3 * (n + m)))
+        })
+    }
+}
+
+/// Some values of inputs: of several sizes and both signs, the same each time.
+fn drawn(n: usize, draw: usize) -> Vec<f64> {
+    (0..n)
+        .map(|k| {
+            // Weyl sequences of different irrational steps
+            let step = (2.0 + k as f64).sqrt() + (3.0 + 2.0 * k as f64).cbrt();
+            let u = (step * (draw as f64 + 1.0)).fract();
+            let size = [1.0, 1.0, 0.1, 10.0, 1.0, 100.0][draw % 6];
+            let sign = if draw % 2 == 0 || u < 0.25 { 1.0 } else { -1.0 };
+            sign * size * (0.3 + u)
+        })
+        .collect()
+}
+
+/// A place near a given one where a function has a level, and the unit normal there. `program`: the function and its gradient.
+fn met(program: &Program, levels: &Levels, mut place: Vec<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
+    let n = place.len();
+    let mut out = vec![0.0; n + 1];
+    let mut work = Work::default();
+    let mut level = None;
+    for _ in 0..60 {
+        program.run(&place, &mut work, &mut out);
+        let level = *level.get_or_insert_with(|| levels.nearest(out[0]));
+        let off = out[0] - level;
+        let gradient = &out[1..];
+        let square: f64 = gradient.iter().map(|g| g * g).sum();
+        if !(square > 0.0) || !square.is_finite() || !off.is_finite() {
+            return None;
+        }
+        let size: f64 = place.iter().zip(gradient).map(|(x, g)| (x * g).abs()).sum();
+        if off.abs() <= 4.0 * f64::EPSILON * size.max(level.abs()) {
+            let norm = square.sqrt();
+            return Some((place.clone(), gradient.iter().map(|g| g / norm).collect()));
+        }
+        for (x, g) in place.iter_mut().zip(&out[1..]) {
+            *x -= off * g / square;
+        }
+    }
+    None
+}
