@@ -213,7 +213,7 @@ impl Candidates {
 
     /// Looks for the places where the value of a break reaches a level.
     fn search(&mut self, builder: &mut Builder, b: &Break, variable: Input) {
-        if !(self.from < self.to) {
+        if self.from >= self.to || self.from.is_nan() || self.to.is_nan() {
             return;
         }
         let time = builder.input(variable);
@@ -356,7 +356,8 @@ impl Whole {
         self.program.run(&[t], &mut Work::default(), &mut out);
         let limit = sides.before[0].0;
         let noise = 1e3 * (sides.before[0].1 + sides.after[0].1);
-        !((out[0] - limit).abs() <= noise.max(1e-6 * limit.abs().max(1e-300)).max(1e-9))
+        let off = (out[0] - limit).abs();
+        off.is_nan() || off > noise.max(1e-6 * limit.abs()).max(1e-9)
     }
 
     /// How the expression breaks where a switching function has a level.
@@ -393,7 +394,7 @@ impl Sides {
             let size = before.abs().max(after.abs());
             let jump = (after - before).abs();
             // what is infinite breaks, on both sides alike too
-            !size.is_finite() || !(jump <= (NEGLIGIBLE * size).max(1e3 * (n + m)))
+            !size.is_finite() || jump > (NEGLIGIBLE * size).max(1e3 * (n + m))
         })
     }
 }
@@ -406,7 +407,11 @@ fn drawn(n: usize, draw: usize) -> Vec<f64> {
             let step = (2.0 + k as f64).sqrt() + (3.0 + 2.0 * k as f64).cbrt();
             let u = (step * (draw as f64 + 1.0)).fract();
             let size = [1.0, 1.0, 0.1, 10.0, 1.0, 100.0][draw % 6];
-            let sign = if draw % 2 == 0 || u < 0.25 { 1.0 } else { -1.0 };
+            let sign = if draw.is_multiple_of(2) || u < 0.25 {
+                1.0
+            } else {
+                -1.0
+            };
             sign * size * (0.3 + u)
         })
         .collect()
@@ -424,7 +429,7 @@ fn met(program: &Program, levels: &Levels, mut place: Vec<f64>) -> Option<(Vec<f
         let off = out[0] - level;
         let gradient = &out[1..];
         let square: f64 = gradient.iter().map(|g| g * g).sum();
-        if !(square > 0.0) || !square.is_finite() || !off.is_finite() {
+        if square == 0.0 || !square.is_finite() || !off.is_finite() {
             return None;
         }
         let size: f64 = place.iter().zip(gradient).map(|(x, g)| (x * g).abs()).sum();
