@@ -4,6 +4,7 @@
 //! reflections (`numeric/rank.rs`), translations first; a row that depends on earlier ones is left out, and is no
 //! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
 
+use super::nearby;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
@@ -34,10 +35,16 @@ pub struct Redundant {
 /// What assembly found.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly {
-    /// rows that depend on others
+    /// rows that depend on others wherever the mechanism can go near here
     pub redundant: Vec<Redundant>,
-    /// freedoms of the assembled mechanism, from the rank
+    /// freedoms of the assembled mechanism, from the rank near here
     pub freedom: usize,
+    /// rows that depend on others at the assembled position, be it only there
+    pub dependent: Vec<Redundant>,
+    /// freedoms to first order, from the rank at the assembled position
+    pub freedom_here: usize,
+    /// another position near here, when one was looked for and found
+    pub place: Option<nearby::Place>,
     /// iterations it took
     pub iterations: usize,
     /// largest change of a coordinate
@@ -46,7 +53,8 @@ pub struct Assembly {
     pub warnings: Vec<String>,
 }
 
-fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<f64> {
+/// What programs read, with these positions, velocities and states.
+pub(super) fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<f64> {
     let mut n = Vec::with_capacity(scene.layout.len());
     n.push(t);
     n.extend_from_slice(q);
@@ -169,7 +177,7 @@ fn natural(scene: &Scene, r: usize) -> f64 {
 }
 
 /// The rows of a matrix, columns scaled by √w.
-fn scaled_rows(a: &DMatrix<f64>, w: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn scaled_rows(a: &DMatrix<f64>, w: &[f64]) -> Vec<Vec<f64>> {
     let row = |r: usize| (0..w.len()).map(|v| a[(r, v)] * w[v].sqrt()).collect();
     (0..a.nrows()).map(row).collect()
 }
@@ -187,37 +195,43 @@ fn least_change(a: &DMatrix<f64>, w: &[f64], b: &DVector<f64>) -> DVector<f64> {
     DVector::from_iterator(w.len(), x.iter().zip(w).map(|(x, w)| x * w.sqrt()))
 }
 
-/// Positions that satisfy all rows at time `t`, starting from `q`; finds which rows depend on others.
-///
-/// # Errors
-/// When the rows contradict each other: which, and by how much.
-pub fn positions(
-    scene: &mut Scene,
+/// How far [`close`] came.
+pub(super) struct Closed {
+    /// iterations it took
+    pub iterations: usize,
+    /// largest residual, relative to what counts as one for its row
+    pub size: f64,
+    /// residuals   (n_rows)
+    pub g: DVector<f64>,
+}
+
+/// Moves `q` by the least changes that satisfy the rows, but for those that `ignored` names.
+pub(super) fn close(
+    scene: &Scene,
     t: f64,
     q: &mut [f64],
     x: &[f64],
-) -> Result<Assembly, Vec<Diagnostic>> {
+    ignored: impl Fn(usize) -> bool,
+) -> Closed {
     let w = weights(scene);
     let mover = Mover::new(scene);
-    let mut found = Assembly::default();
-    let start = q.to_vec();
-    let worst = |scene: &Scene, g: &DVector<f64>| {
+    let worst = |g: &DVector<f64>| {
         (0..g.len())
             .map(|r| relative(scene, r, g[r]))
             .fold(0.0, f64::max)
     };
-    // all but the rows that will hold what the others leave
-    let rows_at = |scene: &Scene, t: f64, q: &[f64], x: &[f64]| {
+    let rows_at = |q: &[f64]| {
         let (mut g, mut gradient, drift) = rows_at(scene, t, q, x);
-        for r in (0..g.len()).filter(|&r| is_held(scene, r)) {
+        for r in (0..g.len()).filter(|&r| ignored(r)) {
             g[r] = 0.0;
             gradient.row_mut(r).fill(0.0);
         }
         (g, gradient, drift)
     };
-    let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
-    let mut size = worst(scene, &g);
-    while size > 1e-13 && found.iterations < 100 {
+    let (mut g, mut gradient, _) = rows_at(q);
+    let mut size = worst(&g);
+    let mut iterations = 0;
+    while size > 1e-13 && iterations < 100 {
         let step = least_change(&gradient, &w, &(-&g));
         let longest = step
             .iter()
@@ -229,7 +243,7 @@ pub fn positions(
         while damping > 1e-6 {
             let mut trial = q.to_vec();
             mover.displace(&mut trial, (&step * damping).as_slice());
-            let (g1, gradient1, _) = rows_at(scene, t, &trial, x);
+            let (g1, gradient1, _) = rows_at(&trial);
             if g1.norm() < g.norm() {
                 q.copy_from_slice(&trial);
                 (g, gradient, better) = (g1, gradient1, true);
@@ -237,14 +251,36 @@ pub fn positions(
             }
             damping *= 0.5;
         }
-        found.iterations += 1;
-        size = worst(scene, &g);
+        iterations += 1;
+        size = worst(&g);
         if !better {
             break;
         }
     }
-    if !size.is_finite() || size > CLOSED {
-        return Err(contradictions(scene, &g));
+    Closed {
+        iterations,
+        size,
+        g,
+    }
+}
+
+/// Positions that satisfy all rows at time `t`, starting from `q`; finds which rows depend on others.
+///
+/// # Errors
+/// When the rows contradict each other: which, and by how much.
+pub fn positions(
+    scene: &mut Scene,
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+) -> Result<Assembly, Vec<Diagnostic>> {
+    let mut found = Assembly::default();
+    let start = q.to_vec();
+    // all but the rows that will hold what the others leave
+    let closed = close(scene, t, q, x, |r| is_held(scene, r));
+    found.iterations = closed.iterations;
+    if !closed.size.is_finite() || closed.size > CLOSED {
+        return Err(contradictions(scene, &closed.g));
     }
     found.moved = q
         .iter()
@@ -252,13 +288,25 @@ pub fn positions(
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
     found.warnings = hold(scene, t, q, x);
-    let (_, gradient, _) = self::rows_at(scene, t, q, x);
-    let (independent, redundant) = rank(scene, &gradient, &w);
+    let (_, gradient, _) = rows_at(scene, t, q, x);
+    let n = scene.layout.n_v;
+    let (independent, dependent) = rank(scene, &gradient, &[]);
+    found.freedom_here = n - independent.len();
+    (found.freedom, found.redundant) = (found.freedom_here, dependent.clone());
+    let mut active = independent;
+    if !dependent.is_empty()
+        && let Some(around) = nearby::look(scene, t, q, x, &active)
+    {
+        // rows that depend on others here and nowhere else take part
+        found.freedom = n - around.independent.len();
+        found.redundant = around.redundant;
+        active = around.independent;
+        found.place = Some(around.q);
+    }
+    found.dependent = dependent;
     scene.active = (0..scene.rows.len())
-        .map(|r| independent.contains(&r))
+        .map(|r| active.contains(&r))
         .collect();
-    found.freedom = scene.layout.n_v - independent.len();
-    found.redundant = redundant;
     Ok(found)
 }
 
@@ -280,13 +328,19 @@ fn contradictions(scene: &Scene, g: &DVector<f64>) -> Vec<Diagnostic> {
 }
 
 /// Independent rows, and for each other row what it is a combination of: translations before rotations before sums.
-pub fn rank(scene: &Scene, gradient: &DMatrix<f64>, w: &[f64]) -> (Vec<usize>, Vec<Redundant>) {
+/// Rows in `first` come before all others.
+pub fn rank(
+    scene: &Scene,
+    gradient: &DMatrix<f64>,
+    first: &[usize],
+) -> (Vec<usize>, Vec<Redundant>) {
+    let w = &weights(scene)[..];
     let mut order: Vec<usize> = (0..scene.rows.len()).collect();
     let kind = |r: usize| match &scene.rows[r].kind {
         RowKind::Markers { law, .. } => u8::from(!law.is_length()),
         RowKind::Displacements(_) | RowKind::Formula { .. } => 2,
     };
-    order.sort_by_key(|&r| (kind(r), r));
+    order.sort_by_key(|&r| (!first.contains(&r), kind(r), r));
     let all = scaled_rows(gradient, w);
     let longest = w.iter().map(|w| w.sqrt()).fold(0.0, f64::max);
     let rows: Vec<Vec<f64>> = order

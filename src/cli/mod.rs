@@ -19,6 +19,7 @@ pub mod render;
 mod repl;
 mod run;
 mod summary;
+mod verify;
 
 use crate::diagnostic::Diagnostic;
 use clap::{Parser, Subcommand};
@@ -45,6 +46,7 @@ enum Verb {
     Plot(plot::Args),
     Repl(repl::Args),
     Run(run::Args),
+    Verify(verify::Args),
 }
 
 const EXIT_CODES: &str = "\
@@ -150,6 +152,7 @@ pub fn main() -> ExitCode {
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),
         Verb::Run(args) => run::run(args),
+        Verb::Verify(args) => verify::run(args),
     });
     let exit = match std::panic::catch_unwind(verb) {
         Ok(Ok(exit)) => exit,

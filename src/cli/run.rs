@@ -178,10 +178,10 @@ pub fn run(args: &Args) -> Outcome {
 }
 
 /// What is to be run.
-struct Job {
-    reading: Reading,
-    base: String,
-    steps: Vec<Step>,
+pub(super) struct Job {
+    pub reading: Reading,
+    pub base: String,
+    pub steps: Vec<Step>,
 }
 
 fn exit(status: Status) -> Exit {
@@ -239,7 +239,7 @@ fn stem(path: &Path) -> String {
         .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
-fn read(path: &Path) -> Result<Reading, Failure> {
+pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
     let reading = dataset::read(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
     if reading.failed() {
         let errors = reading
@@ -252,7 +252,7 @@ fn read(path: &Path) -> Result<Reading, Failure> {
 }
 
 /// A command file and the dataset it names.
-fn script(path: &Path) -> Result<Job, Failure> {
+pub(super) fn script(path: &Path) -> Result<Job, Failure> {
     let script = Script::read(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
     let Some(file) = script.model_file() else {
         let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));

@@ -24,6 +24,13 @@ impl<S: Scalar> Action<S> {
             torque: Vec3::zero(),
         }
     }
+    /// So many times as much.
+    pub fn times(&self, factor: S) -> Self {
+        Self {
+            force: self.force.times(factor),
+            torque: self.torque.times(factor),
+        }
+    }
     /// The reaction, about J's origin.
     pub fn reaction(&self, p_GI: Vec3<S>, p_GJ: Vec3<S>) -> Self {
         Self {

@@ -1,5 +1,6 @@
 //! Expressions of the model as programs: splines and arrays they name are found in the model.
 
+use super::Formula;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Profile;
 use crate::expr::ast::Dialect;
@@ -46,4 +47,15 @@ pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
 pub(super) fn compile(text: &str, bindings: &Bindings) -> Result<Program, Diagnostic> {
     let ast = parse(text, Dialect::Function, Profile::default())?;
     compile::compile(&[&ast], bindings)
+}
+
+/// A formula that is a number; `None` when it has no text because it is not finite.
+pub(super) fn constant(value: f64) -> Option<Formula> {
+    let text = format!("{value:e}");
+    let program = compile(&text, &Bindings::default()).ok()?;
+    Some(Formula {
+        name: "a constant".into(),
+        text,
+        program,
+    })
 }

@@ -372,6 +372,31 @@ impl Scene {
         depth.into_iter().max().unwrap_or(0)
     }
 
+    /// Whether a motion drives an angle rather than a length.
+    pub fn drives_an_angle(&self, motion: usize) -> bool {
+        if let Some(c) = self.motions[motion].coordinate {
+            return self.coordinates[c].angular;
+        }
+        self.rows.iter().any(|row| match &row.kind {
+            RowKind::Markers { law, motion: m, .. } => *m == Some(motion) && !law.is_length(),
+            _ => false,
+        })
+    }
+
+    /// The same scene with its motions standing still at these displacements.
+    #[must_use]
+    pub fn with_motions_at(&self, displacements: &[f64]) -> Scene {
+        let mut scene = self.clone();
+        for (motion, &value) in scene.motions.iter_mut().zip(displacements) {
+            if let Some(constant) = formula::constant(value) {
+                motion.level = Level::Displacement;
+                motion.formula = scene.formulas.len();
+                scene.formulas.push(constant);
+            }
+        }
+        scene
+    }
+
     /// What a motion's displacement is in the configuration of the dataset, where it drives a coordinate of the forest.
     pub fn initial_displacement(&self, motion: usize) -> Option<f64> {
         self.motions[motion]

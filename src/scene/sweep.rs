@@ -230,14 +230,19 @@ pub fn inward<S: Scalar>(
             }
         })
         .collect();
+    gather(scene, states, &mut carried);
+    carried
+}
+
+/// Adds to the wrench of each link those of all that it carries.
+pub fn gather<S: Scalar>(scene: &Scene, states: &[LinkState<S>], wrenches: &mut [Wrench<S>]) {
     for l in (0..scene.links.len()).rev() {
         if let Some(p) = scene.links[l].parent {
-            let up = to_parent(&states[l].X_PL, carried[l]);
-            carried[p].force += up.force;
-            carried[p].torque += up.torque;
+            let up = to_parent(&states[l].X_PL, wrenches[l]);
+            wrenches[p].force += up.force;
+            wrenches[p].torque += up.torque;
         }
     }
-    carried
 }
 
 /// The same wrench, about the parent's origin in the parent's axes.

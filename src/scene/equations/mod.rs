@@ -13,9 +13,11 @@ mod loops;
 mod measures;
 mod reactions;
 mod rows;
+mod stress;
 
 pub use dynamics::Solved;
 pub use rows::{RowValue, row_name};
+pub use stress::Share;
 
 use super::Scene;
 use super::layout::Layout;
@@ -51,6 +53,8 @@ pub struct Equations<'s, S: Scalar> {
     open: RefCell<Vec<usize>>,
     solved: OnceCell<Solved<S>>,
     solving: Cell<bool>,
+    /// states of stress that dependent rows permit
+    shares: OnceCell<Vec<Share<S>>>,
     /// values of the unknowns of algebraic loops
     loops: Vec<S>,
     /// notes what is asked for too early instead of complaining
@@ -89,6 +93,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             open: RefCell::new(Vec::new()),
             solved: OnceCell::new(),
             solving: Cell::new(false),
+            shares: OnceCell::new(),
             loops,
             discovering,
             discovered: RefCell::new(Vec::new()),
@@ -153,6 +158,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         }
     }
 
+    /// Value, rate and acceleration that a motion prescribes now.
+    pub fn prescribed(&self, motion: usize) -> Jet<S> {
+        self.driven[motion]
+    }
+
     /// A formula of time alone, with its rates.
     fn in_time(&self, formula: usize, open: &mut Vec<usize>) -> Jet<S> {
         let f = &self.scene.formulas[formula];
@@ -199,6 +209,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let state = sweep::marker_state(&self.scene.markers[m], &self.links);
         self.markers.borrow_mut()[m] = Some(state);
         state
+    }
+
+    /// The user's number of a marker.
+    pub fn marker_id(&self, m: usize) -> u32 {
+        self.scene.markers[m].id
     }
 
     /// A part's frame, with its accelerations when asked for.

@@ -48,18 +48,30 @@ impl<S: Scalar> Equations<'_, S> {
         Some((action, point(about), point(j)))
     }
 
-    /// The reaction of a constraint on its I marker.
+    /// The reaction of a constraint on its I marker: where rows depend on each other, its part of the smallest set.
     pub fn reaction(&self, c: usize) -> Action<S> {
+        let solved = self.solved();
+        let own = self.reaction_to(c, &solved.lambda, &solved.carried);
+        let shares = self.shares().iter();
+        shares.fold(own, |sum, share| {
+            sum.plus(&share.stress[c].times(share.factor))
+        })
+    }
+
+    /// What a constraint exerts on its I marker when rows have these multipliers and links are carried by these wrenches.
+    pub(super) fn reaction_to(&self, c: usize, lambda: &[S], carried: &[Wrench<S>]) -> Action<S> {
         let scene = self.scene;
         let element = &scene.constraints[c];
-        let solved = self.solved();
         let mut sum = Action::zero();
         let Some(about) = element.about else {
             return sum;
         };
         let p_I = self.marker(about).p_GM;
-        for r in element.rows.clone().filter(|&r| self.is_active(r)) {
-            let l = solved.lambda[r];
+        for r in element.rows.clone() {
+            let l = lambda[r];
+            if l.is_known_zero() {
+                continue;
+            }
             for (m, a) in self.row(r).actions {
                 if element.acts_on.contains(&m) {
                     let force = a.force.times(l);
@@ -84,7 +96,7 @@ impl<S: Scalar> Equations<'_, S> {
         };
         let drive = |coordinate: usize| {
             let f = &scene.freedoms[coordinate];
-            let magnitude = f.component(&solved.carried[f.link]);
+            let magnitude = f.component(&carried[f.link]);
             let mut w = Wrench::zero();
             let part = if f.turn { &mut w.torque } else { &mut w.force };
             part.0[f.axis] = magnitude.scale(f.sign);
@@ -100,7 +112,7 @@ impl<S: Scalar> Equations<'_, S> {
             };
         }
         if let Some((link, backward)) = element.carries {
-            let mut on_carried = at_i(link, &solved.carried[link]);
+            let mut on_carried = at_i(link, &carried[link]);
             // the part along a driven coordinate belongs to its MOTION
             for (k, coordinate) in scene.coordinates.iter().enumerate() {
                 if coordinate.joint == Some(element.id)

@@ -1,0 +1,172 @@
+//! What is free, as motions: for each free direction which parts move, and how.
+//!
+//! Directions that satisfy all rows to first order, combined so that each has an unknown of its own: as few parts as can be had cheaply move in each.
+
+use super::words::{axis, point};
+use crate::analysis::assemble;
+use crate::model::Model;
+use crate::numeric::rank::Rank;
+use crate::scene::compile::part_name;
+use crate::scene::equations::Equations;
+use crate::scene::programs::weights;
+use crate::scene::{Scene, Source};
+use crate::space::{MarkerState, Vec3};
+
+/// How a part moves in a free direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moving {
+    /// "PART/3"
+    pub part: String,
+    /// "slides along its Z"
+    pub words: String,
+    /// angular velocity, ground axes
+    pub angular: [f64; 3],
+    /// velocity of the centre of mass (of the part's origin when it has none), ground axes
+    pub linear: [f64; 3],
+    /// where that point is
+    pub at: [f64; 3],
+}
+
+/// A free direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Free {
+    /// the unknown whose rate is one: "JOINT/1 angle"
+    pub unknown: String,
+    /// parts that move, the one that has the unknown first
+    pub parts: Vec<Moving>,
+    /// "PART/3 slides along its Z; PART/4 goes with it"
+    pub words: String,
+}
+
+/// All free directions at a position.
+pub(super) fn motions(scene: &Scene, model: &Model, q: &[f64], x: &[f64]) -> Vec<Free> {
+    let w = weights(scene);
+    let (_, gradient, _) = assemble::rows_at(scene, 0.0, q, x);
+    let rows = assemble::scaled_rows(&gradient, &w);
+    let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
+    let mut owner = vec![0; w.len()];
+    for (c, coordinate) in scene.coordinates.iter().enumerate() {
+        if let Source::Free { v, .. } = coordinate.source {
+            owner[v] = c;
+        }
+    }
+    let moving = |v: &[f64]| -> Vec<(Vec3<f64>, MarkerState<f64>)> {
+        let numbers = assemble::numbers(scene, 0.0, q, v, x);
+        let at = Equations::new(scene, &numbers);
+        (0..scene.parts.len())
+            .map(|k| {
+                let state = at.part(k, false);
+                (centre(scene, model, k, &state), state)
+            })
+            .collect()
+    };
+    let still = moving(&vec![0.0; w.len()]);
+    rank.free_motions()
+        .into_iter()
+        .map(|(own, direction)| {
+            let one = w[own].sqrt();
+            let v: Vec<f64> = (direction.iter().zip(&w))
+                .map(|(d, w)| d * w.sqrt() / one)
+                .collect();
+            let coordinate = &scene.coordinates[owner[own]];
+            let mut parts = Vec::new();
+            let mut largest = 0.0_f64;
+            for (k, ((p, state), (_, rest))) in moving(&v).into_iter().zip(&still).enumerate() {
+                let angular = state.w_GM - rest.w_GM;
+                let arm = p - state.p_GM;
+                let linear = (state.v_GM - rest.v_GM) + angular.cross(arm);
+                let size = linear.norm().max(angular.norm() * scene.length);
+                largest = largest.max(size);
+                parts.push((k, p, state, angular, linear, size));
+            }
+            parts.retain(|part| part.5 > 1e-7 * largest);
+            parts.sort_by_key(|part| (scene.parts[part.0].link != Some(coordinate.link), part.0));
+            let parts: Vec<Moving> = parts
+                .into_iter()
+                .map(|(k, p, state, angular, linear, _)| Moving {
+                    part: part_name(scene.parts[k].point_mass, scene.parts[k].id),
+                    words: how(scene, p, &state, angular, linear),
+                    angular: angular.0,
+                    linear: linear.0,
+                    at: p.0,
+                })
+                .collect();
+            let words = match parts.split_first() {
+                None => format!("{} changes and moves no part", coordinate.name),
+                Some((first, rest)) => {
+                    let mut text = format!("{} {}", first.part, first.words);
+                    if !rest.is_empty() {
+                        let names: Vec<&str> =
+                            rest.iter().take(8).map(|p| p.part.as_str()).collect();
+                        text += &format!("; with it {}", names.join(", "));
+                        if rest.len() > 8 {
+                            text += &format!(" and {} more", rest.len() - 8);
+                        }
+                    }
+                    text
+                }
+            };
+            Free {
+                unknown: coordinate.name.clone(),
+                parts,
+                words,
+            }
+        })
+        .collect()
+}
+
+/// The centre of mass of a part, else its origin, in ground.
+fn centre(scene: &Scene, model: &Model, part: usize, state: &MarkerState<f64>) -> Vec3<f64> {
+    let p = &scene.parts[part];
+    let data = if p.point_mass {
+        model.point_masses.get(&p.id)
+    } else {
+        model.parts.get(&p.id)
+    };
+    let cm = data
+        .and_then(|d| d.cm)
+        .and_then(|m| scene.marker_of.get(&m))
+        .map_or(Vec3::zero(), |&m| match scene.markers[m].part {
+            Some(k) if k == part => p.frame.inverse().point(scene.markers[m].frame.position),
+            _ => Vec3::zero(),
+        });
+    state.p_GM + state.R_GM.apply(cm)
+}
+
+/// A twist in words: slides, turns or both.
+fn how(
+    scene: &Scene,
+    p: Vec3<f64>,
+    state: &MarkerState<f64>,
+    w: Vec3<f64>,
+    v: Vec3<f64>,
+) -> String {
+    let along = |direction: Vec3<f64>| {
+        let unit = direction.times(1.0 / direction.norm());
+        let own = (0..3).find(|&k| state.R_GM.column(k).dot(unit).abs() > 1.0 - 1e-9);
+        match own {
+            Some(k) => format!("its {}", ["X", "Y", "Z"][k]),
+            None => axis(direction, &[]),
+        }
+    };
+    let turning = w.norm() * scene.length;
+    if turning <= 1e-7 * v.norm() {
+        return format!("slides along {}", along(v));
+    }
+    // p + w × v / w² is on the axis; v along w is the pitch
+    let w2 = w.norm2();
+    let foot = p + w.cross(v).times(1.0 / w2);
+    let pitch = v.dot(w) / w2;
+    if v.norm() <= 1e-7 * turning {
+        return format!("turns about {} through {}", along(w), point(p));
+    }
+    if pitch.abs() <= 1e-7 * scene.length {
+        return format!("turns about {} through {}", along(w), point(foot));
+    }
+    format!(
+        "turns about {} through {} and slides along it by {:.4} per radian",
+        along(w),
+        point(foot),
+        pitch
+    )
+}

@@ -1,0 +1,329 @@
+//! Degrees of freedom that explain themselves: both counts, what is fixed twice, and what is free.
+//!
+//! ```text
+//! Gruebler   6 per part + 3 per point mass − equations of all constraints
+//! freedom    coordinates of the forest − rank of the rows that close loops, at the assembled position
+//! ```
+//!
+//! They differ by the rows that depend on others. Each of these is told with the elements that fix the same direction already: those that can be stressed
+//! against it without any load (`scene/equations/stress.rs`). Whether the dependence is one of this position only is found out at positions nearby.
+
+mod advice;
+mod free;
+mod words;
+
+pub use free::{Free, Moving};
+pub use words::axis;
+
+use super::assemble::{self, Assembly};
+use super::nearby::Place;
+use crate::diagnostic::Diagnostic;
+use crate::model::{Formula, Level, Model};
+use crate::physics::joint::Tie;
+use crate::scene::build::Options;
+use crate::scene::equations::{Equations, row_name};
+use crate::scene::{Scene, Source};
+use std::collections::BTreeMap;
+
+/// Stress in an element, relative to the largest in the state, below which it takes no part.
+const NONE: f64 = 1e-7;
+
+/// A row that depends on others, in words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dependent {
+    /// "JOINT/4 Zi.Xj"
+    pub row: String,
+    /// "JOINT/4"
+    pub element: String,
+    /// "rotation about ground X"
+    pub direction: String,
+    /// elements that fix the same already, carriers first
+    pub fixed_by: Vec<String>,
+    /// factors of the rows it is a combination of; rows of joints that carry parts are not among them
+    pub combination: Vec<(String, f64)>,
+    /// it depends on others at this position, but not nearby
+    pub only_here: bool,
+    /// all of this in a sentence
+    pub words: String,
+}
+
+/// An element whose reaction is not determined.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Undetermined {
+    /// "JOINT/4"
+    pub element: String,
+    /// of FX FY FZ TX TY TZ
+    pub components: Vec<&'static str>,
+    /// in whose axes: "ground", "MARKER/12"
+    pub axes: String,
+}
+
+/// What there is to say about the freedoms of a model.
+#[derive(Clone, Debug, Default)]
+pub struct Verification {
+    /// moving parts
+    pub parts: usize,
+    /// moving point masses
+    pub point_masses: usize,
+    /// constraint elements and equations, by statement: (keyword or type, how many, equations of all of them)
+    pub counted: Vec<(String, usize, usize)>,
+    /// the count
+    pub gruebler: i64,
+    /// from the rank at the assembled position; `None` when there is none
+    pub freedom: Option<usize>,
+    /// from the rank near it
+    pub freedom_nearby: Option<usize>,
+    /// rows that depend on others at the assembled position
+    pub dependent: Vec<Dependent>,
+    /// reactions that are not unique
+    pub undetermined: Vec<Undetermined>,
+    /// what could be changed
+    pub advice: Vec<String>,
+    /// free directions
+    pub free: Vec<Free>,
+    /// rows that cannot be satisfied
+    pub inconsistent: Vec<Diagnostic>,
+    /// what else the user should know
+    pub warnings: Vec<String>,
+    /// iterations of the assembly, and the largest change of a coordinate
+    pub assembly: (usize, f64),
+}
+
+impl Verification {
+    /// Names of the rows that depend on others.
+    pub fn redundant(&self) -> Vec<&str> {
+        self.dependent.iter().map(|d| d.row.as_str()).collect()
+    }
+}
+
+/// The model without what has no influence on its freedoms.
+fn skeleton(model: &Model) -> Model {
+    let mut model = model.clone();
+    model.sforces.clear();
+    model.vforces.clear();
+    model.vtorques.clear();
+    model.gforces.clear();
+    model.spring_dampers.clear();
+    model.bushings.clear();
+    model.fields.clear();
+    model.beams.clear();
+    model.nodal_forces.clear();
+    model.contacts.clear();
+    model.frictions.clear();
+    model.differentials.clear();
+    model.linear_systems.clear();
+    model.general_systems.clear();
+    model.transfer_functions.clear();
+    model.sensors.clear();
+    model.requests.clear();
+    model.many_requests.clear();
+    model
+}
+
+/// Equations of the constraints of a model: (what, how many elements, equations of all).
+fn counted(model: &Model) -> Vec<(String, usize, usize)> {
+    let mut found: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    let mut add = |what: String, equations: usize| {
+        let entry = found.entry(what).or_default();
+        *entry = (entry.0 + 1, entry.1 + equations);
+    };
+    let on = |keyword: &str, id: u32| !model.inactive.contains(&(keyword.to_string(), id));
+    for (_, joint) in model.joints.iter().filter(|(id, _)| on("JOINT", **id)) {
+        add(
+            format!("JOINT {}", format!("{:?}", joint.kind).to_uppercase()),
+            Tie::Joint(joint.kind).removes(),
+        );
+    }
+    for (_, p) in model.primitives.iter().filter(|(id, _)| on("JPRIM", **id)) {
+        let kind = words::primitive(p.kind);
+        add(format!("JPRIM {kind}"), Tie::Primitive(p.kind).removes());
+    }
+    macro_rules! kinds {
+        ($($keyword:literal $field:ident $equations:literal),* $(,)?) => { $(
+            for _ in model.$field.keys().filter(|id| on($keyword, **id)) {
+                add($keyword.into(), $equations);
+            }
+        )* };
+    }
+    kinds!(
+        "MOTION" motions 1, "COUPLER" couplers 1, "GEAR" gears 1, "GCON" general_constraints 1,
+        "PTCV" points_on_curves 2, "CVCV" curves_on_curves 2,
+    );
+    found.into_iter().map(|(k, (n, e))| (k, n, e)).collect()
+}
+
+/// Verifies a model: counts, assembles, and explains what it finds.
+///
+/// # Errors
+/// What keeps the model from being assembled at all. Rows that contradict each other are no such error.
+pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
+    let mut model = skeleton(model);
+    let mut warnings = Vec::new();
+    // what routines prescribe is not known: such motions keep the place that the dataset shows
+    for (id, motion) in &mut model.motions {
+        if matches!(motion.function, Formula::User { .. }) {
+            motion.function = Formula::text("0");
+            motion.level = Level::Velocity;
+            warnings.push(format!("MOTION/{id}: its USER function is taken to stand still"));
+        }
+    }
+    let options = Options {
+        mode: 4,
+        ..Options::default()
+    };
+    let mut scene = Scene::compile(&model, &options)?;
+    let counted = counted(&model);
+    let moving = |parts: &BTreeMap<u32, crate::model::Part>, keyword: &str| {
+        let on = |id: &u32| !model.inactive.contains(&(keyword.to_string(), *id));
+        parts.iter().filter(|(id, p)| !p.ground && on(id)).count()
+    };
+    let (parts, point_masses) = (
+        moving(&model.parts, "PART"),
+        moving(&model.point_masses, "POINT_MASS"),
+    );
+    let equations: usize = counted.iter().map(|c| c.2).sum();
+    let mut found = Verification {
+        parts,
+        point_masses,
+        counted,
+        gruebler: (6 * parts + 3 * point_masses) as i64 - equations as i64,
+        warnings,
+        ..Verification::default()
+    };
+    let mut q = scene.initial_q.clone();
+    let x = start(&scene, &model, &mut q);
+    let assembly = match assemble::positions(&mut scene, 0.0, &mut q, &x) {
+        Ok(assembly) => assembly,
+        Err(contradictions) => {
+            found.inconsistent = contradictions;
+            return Ok(found);
+        }
+    };
+    if let Err(contradictions) = assemble::velocities(&scene, &model, 0.0, &q, &x) {
+        found.inconsistent = contradictions;
+    }
+    found.assembly = (assembly.iterations, assembly.moved);
+    found.freedom = Some(assembly.freedom_here);
+    found.freedom_nearby = Some(assembly.freedom);
+    found.warnings.extend(assembly.warnings.iter().cloned());
+    let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
+    explain(&scene, &numbers, &assembly, &mut found);
+    found.free = free::motions(&scene, &model, &q, &x);
+    found.advice = advice::advice(&scene, &numbers, &assembly);
+    if assembly.freedom != assembly.freedom_here {
+        found.warnings.push(format!(
+            "at this position {} of the free directions lead nowhere, or to another branch: nearby the freedom is {}",
+            assembly.freedom_here.abs_diff(assembly.freedom),
+            assembly.freedom
+        ));
+    }
+    Ok(found)
+}
+
+/// Starting values of the states, and of joints that say where they begin.
+fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
+    for c in &scene.coordinates {
+        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else {
+            continue;
+        };
+        let given = if c.angular {
+            joint.ic_rotation[0]
+        } else {
+            joint.ic_translation[0]
+        };
+        if let (Some(value), Source::Free { q: place, .. }) = (given, c.source) {
+            q[place] = value;
+        }
+    }
+    let mut x = vec![0.0; scene.layout.n_x];
+    for (m, motion) in scene.motions.iter().enumerate() {
+        let given = model.motions.get(&motion.id).and_then(|m| m.ic_displacement);
+        if let Some(state) = motion.state {
+            x[state] = given.or_else(|| scene.initial_displacement(m)).unwrap_or(0.0);
+        }
+    }
+    x
+}
+
+/// Dependent rows in words, and the reactions they leave open.
+fn explain(scene: &Scene, numbers: &[f64], assembly: &Assembly, found: &mut Verification) {
+    let at = Equations::new(scene, numbers);
+    let permanent: Vec<usize> = assembly.redundant.iter().map(|r| r.row).collect();
+    let extra = assembly.dependent.len().saturating_sub(permanent.len());
+    let mut here_only: Vec<usize> = assembly
+        .dependent
+        .iter()
+        .map(|d| d.row)
+        .filter(|r| !permanent.contains(r))
+        .collect();
+    here_only.truncate(extra);
+    let mut open: Vec<[bool; 6]> = vec![[false; 6]; scene.constraints.len()];
+    for d in &assembly.dependent {
+        let mut lambda = vec![0.0; scene.rows.len()];
+        lambda[d.row] = 1.0;
+        for &(r, factor) in &d.combination {
+            lambda[r] = -factor;
+        }
+        let stress = at.stress(&lambda);
+        let size = |f: f64, t: f64| f.abs().max(t.abs() / scene.length);
+        let largest = stress
+            .iter()
+            .map(|a| size(a.force.norm(), a.torque.norm()))
+            .fold(0.0, f64::max);
+        let own = scene
+            .constraints
+            .iter()
+            .position(|c| c.rows.contains(&d.row));
+        let mut fixed_by = Vec::new();
+        for (c, action) in stress.iter().enumerate() {
+            let element = &scene.constraints[c];
+            let takes_part = size(action.force.norm(), action.torque.norm()) > NONE * largest
+                || element.rows.clone().any(|r| lambda[r] != 0.0);
+            if !takes_part {
+                continue;
+            }
+            let axes = words::axes(&at, element.markers.map(|m| m.1));
+            for k in 0..3 {
+                let e = axes.1.column(k);
+                open[c][k] |= e.dot(action.force).abs() > NONE * largest;
+                open[c][k + 3] |= e.dot(action.torque).abs() > NONE * largest * scene.length;
+            }
+            if own != Some(c) {
+                fixed_by.push(format!("{}/{}", element.keyword, element.id));
+            }
+        }
+        let row = &scene.rows[d.row];
+        let direction = words::direction(scene, &at, d.row);
+        let only_here = here_only.contains(&d.row);
+        found.dependent.push(Dependent {
+            words: words::sentence(&row.element, &direction, &fixed_by, only_here),
+            row: d.name.clone(),
+            element: row.element.clone(),
+            direction,
+            fixed_by,
+            combination: (d.combination.iter())
+                .map(|&(r, f)| (row_name(&scene.rows[r]), f))
+                .collect(),
+            only_here,
+        });
+    }
+    const COMPONENTS: [&str; 6] = ["FX", "FY", "FZ", "TX", "TY", "TZ"];
+    for (element, open) in scene.constraints.iter().zip(open) {
+        let components: Vec<&str> = (0..6).filter(|&k| open[k]).map(|k| COMPONENTS[k]).collect();
+        if !components.is_empty() {
+            found.undetermined.push(Undetermined {
+                element: format!("{}/{}", element.keyword, element.id),
+                components,
+                axes: words::axes(&at, element.markers.map(|m| m.1)).0,
+            });
+        }
+    }
+}
+
+/// What the numbers of a place nearby are.
+fn numbers_at(scene: &Scene, place: &Place) -> (Scene, Vec<f64>) {
+    let there = scene.with_motions_at(&place.motions);
+    let l = there.layout;
+    let numbers = assemble::numbers(&there, 0.0, &place.q, &vec![0.0; l.n_v], &vec![0.0; l.n_x]);
+    (there, numbers)
+}

@@ -1,0 +1,174 @@
+//! `cognate verify`: how many freedoms a model has, what fixes something twice, and what is free.
+
+use super::run::{read, script};
+use super::{Exit, Failure, Outcome, complain, remark, say};
+use crate::analysis::verify::{Verification, verify};
+use crate::dataset::command::Command;
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Count the freedoms of a model and explain what is fixed twice and what is free
+///
+/// Exit code 4 when the constraints contradict each other; redundancy alone is no failure.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate verify slider_crank.adm
+  cognate verify robot.acf --json")]
+pub struct Args {
+    /// Dataset (.adm), or command file (.acf): then the model as it is before the first simulation
+    model: PathBuf,
+    /// Print the findings as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args) -> Outcome {
+    let model = model_of(&args.model)?;
+    let found = verify(&model).map_err(|d| Failure::in_files(Exit::Model, d))?;
+    if args.json {
+        say(&format!("{:#}\n", as_json(&found)));
+    } else {
+        say(&as_text(&found));
+    }
+    if found.inconsistent.is_empty() {
+        return Ok(Exit::Done);
+    }
+    complain(&found.inconsistent, &super::render::Sources::default());
+    Ok(Exit::Model)
+}
+
+/// The model of a dataset, or of a command file as its commands leave it before the first simulation.
+pub fn model_of(path: &Path) -> Result<Model, Failure> {
+    let is_command = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("acf"));
+    if !is_command {
+        return Ok(read(path)?.model);
+    }
+    let job = script(path)?;
+    let mut model = job.reading.model;
+    for step in &job.steps {
+        match &step.command {
+            Command::Simulate(_) => break,
+            command => {
+                let wrong = |e: crate::dataset::Errors| Failure::in_files(Exit::Input, e.0);
+                model.apply(command).map_err(wrong)?;
+            }
+        }
+    }
+    if !job
+        .steps
+        .iter()
+        .any(|s| matches!(s.command, Command::Simulate(_)))
+    {
+        remark("no SIMULATE in the command file: this is the model after all its commands");
+    }
+    Ok(model)
+}
+
+fn finding(d: &Diagnostic) -> Value {
+    json!({ "row": d.element, "message": d.message, "advice": d.help })
+}
+
+fn as_json(v: &Verification) -> Value {
+    let dependent: Vec<Value> = (v.dependent.iter())
+        .map(|d| {
+            let combination: Vec<Value> = (d.combination.iter())
+                .map(|(row, factor)| json!({ "row": row, "factor": factor }))
+                .collect();
+            json!({
+                "row": d.row, "element": d.element, "direction": d.direction, "fixed_by": d.fixed_by,
+                "combination": combination, "only_here": d.only_here, "words": d.words,
+            })
+        })
+        .collect();
+    let free: Vec<Value> = (v.free.iter())
+        .map(|f| {
+            let parts: Vec<Value> = (f.parts.iter())
+                .map(|p| {
+                    json!({ "part": p.part, "words": p.words, "angular": p.angular, "linear": p.linear, "at": p.at })
+                })
+                .collect();
+            json!({ "unknown": f.unknown, "words": f.words, "parts": parts })
+        })
+        .collect();
+    let counted: Vec<Value> = (v.counted.iter())
+        .map(|(what, n, equations)| json!({ "what": what, "elements": n, "equations": equations }))
+        .collect();
+    let undetermined: Vec<Value> = (v.undetermined.iter())
+        .map(|u| json!({ "element": u.element, "components": u.components, "axes": u.axes }))
+        .collect();
+    json!({
+        "parts": v.parts,
+        "point_masses": v.point_masses,
+        "constraints": counted,
+        "gruebler": v.gruebler,
+        "freedom": v.freedom,
+        "freedom_nearby": v.freedom_nearby,
+        "consistent": v.inconsistent.is_empty(),
+        "inconsistent": v.inconsistent.iter().map(finding).collect::<Vec<_>>(),
+        "redundant": v.redundant(),
+        "dependent": dependent,
+        "reactions_not_unique": undetermined,
+        "advice": v.advice,
+        "free": free,
+        "assembly": { "iterations": v.assembly.0, "moved": v.assembly.1 },
+        "warnings": v.warnings,
+    })
+}
+
+fn as_text(v: &Verification) -> String {
+    let mut out = String::new();
+    let mut line = |text: String| {
+        let _ = writeln!(out, "{text}");
+    };
+    line(format!("{:5}  parts, 6 each", v.parts));
+    if v.point_masses > 0 {
+        line(format!("{:5}  point masses, 3 each", v.point_masses));
+    }
+    for (what, n, equations) in &v.counted {
+        line(format!("{n:5}  {what}, {equations} equations"));
+    }
+    line(format!("Gruebler count: {}", v.gruebler));
+    let Some(freedom) = v.freedom else {
+        line("no position satisfies all constraints".into());
+        return out;
+    };
+    line(format!(
+        "freedom: {freedom} (from the rank of the constraints where they are assembled)"
+    ));
+    if v.freedom_nearby != v.freedom {
+        line(format!(
+            "freedom near that position: {}",
+            v.freedom_nearby.unwrap_or(freedom)
+        ));
+    }
+    for f in &v.free {
+        line(format!("free: {}", f.words));
+    }
+    if v.dependent.is_empty() {
+        line("no redundant constraint".into());
+    }
+    for d in &v.dependent {
+        line(format!("redundant: {} — {}", d.row, d.words));
+    }
+    for u in &v.undetermined {
+        line(format!(
+            "reaction not unique: {} {} (axes of {}); results tell the smallest set",
+            u.element,
+            u.components.join(" "),
+            u.axes
+        ));
+    }
+    for advice in &v.advice {
+        line(format!("advice: {advice}"));
+    }
+    for warning in &v.warnings {
+        line(format!("warning: {warning}"));
+    }
+    out
+}
