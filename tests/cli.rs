@@ -458,3 +458,46 @@ fn what_cannot_be_run_says_so_with_its_code() {
         3
     );
 }
+
+#[test]
+fn verify_tells_both_counts_and_exits_by_consistency() {
+    let scene = |name: &str| format!("{}/tests/scenes/{name}.adm", env!("CARGO_MANIFEST_DIR"));
+    let out = cognate(&["verify", &scene("four_bar"), "--json"]);
+    assert_eq!(out.code, 0, "{}", out.err);
+    let found: serde_json::Value = serde_json::from_str(&out.out).expect("JSON");
+    // with its motion: three parts, four hinges, one motion
+    assert_eq!(
+        (&found["gruebler"], &found["freedom"]),
+        (&(-3).into(), &0.into())
+    );
+    assert_eq!(found["redundant"].as_array().map(Vec::len), Some(3));
+    assert!(
+        found["redundant"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("JOINT/")
+    );
+    let text = cognate(&["verify", &scene("four_bar")]).out;
+    assert!(
+        text.contains("Gruebler count: -3") && text.contains("already fixed by JOINT/"),
+        "{text}"
+    );
+    let outline = cognate(&["explain", &scene("four_bar"), "--json"]);
+    let outline: serde_json::Value = serde_json::from_str(&outline.out).expect("JSON");
+    assert_eq!(outline["forest"].as_array().map(Vec::len), Some(3));
+    assert_eq!(outline["prescribed"].as_array().map(Vec::len), Some(1));
+    let apart = scratch(
+        "verify",
+        "apart.adm",
+        "APART\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=5,0,0\n\
+         MARKER/10, PART=1\nMARKER/11, PART=1, QP=4,0,0\nJOINT/1, SPHERICAL, I=20, J=10\nJOINT/2, SPHERICAL, I=21, J=11\nEND\n",
+    );
+    let out = cognate(&["verify", path(&apart), "--json"]);
+    assert_eq!(out.code, 4, "{}", out.err);
+    let found: serde_json::Value = serde_json::from_str(&out.out).expect("JSON");
+    assert_eq!(
+        (&found["consistent"], &found["freedom"]),
+        (&false.into(), &serde_json::Value::Null)
+    );
+    assert!(out.err.contains("JOINT/2"), "{}", out.err);
+}

@@ -5,6 +5,7 @@
 //! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
 
 use super::nearby;
+use super::verify::direction;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
@@ -280,7 +281,8 @@ pub fn positions(
     let closed = close(scene, t, q, x, |r| is_held(scene, r));
     found.iterations = closed.iterations;
     if !closed.size.is_finite() || closed.size > CLOSED {
-        return Err(contradictions(scene, &closed.g));
+        let numbers = numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
+        return Err(contradictions(scene, &closed.g, &numbers));
     }
     found.moved = q
         .iter()
@@ -304,23 +306,33 @@ pub fn positions(
         found.place = Some(around.q);
     }
     found.dependent = dependent;
-    scene.active = (0..scene.rows.len())
-        .map(|r| active.contains(&r))
-        .collect();
+    scene.active = (0..scene.rows.len()).map(|r| active.contains(&r)).collect();
     Ok(found)
 }
 
-/// The rows that do not hold, worst first.
-fn contradictions(scene: &Scene, g: &DVector<f64>) -> Vec<Diagnostic> {
+/// The rows that do not hold, worst first: by how much, and in which direction.
+fn contradictions(scene: &Scene, g: &DVector<f64>, numbers: &[f64]) -> Vec<Diagnostic> {
     let mut bad: Vec<usize> = (0..g.len())
         .filter(|&r| relative(scene, r, g[r]) > CLOSED || !g[r].is_finite())
         .collect();
     bad.sort_by(|&a, &b| relative(scene, b, g[b]).total_cmp(&relative(scene, a, g[a])));
+    let at = Equations::new(scene, numbers);
     bad.into_iter()
         .take(20)
         .map(|r| {
             let row = &scene.rows[r];
-            Diagnostic::error("assembly", format!("cannot be satisfied: {} is off by {:.3e}", row.equation, g[r]))
+            let by = match &row.kind {
+                RowKind::Markers { law, .. } if law.is_length() => {
+                    let way = direction(scene, &at, r).replace("translation ", "");
+                    format!("{:.3e} {} {way}", g[r], scene.length_unit).replace("  ", " ")
+                }
+                RowKind::Markers { .. } => {
+                    let way = direction(scene, &at, r).replace("rotation ", "");
+                    format!("{:.3e} deg {way}", g[r].clamp(-1.0, 1.0).asin().to_degrees())
+                }
+                _ => format!("{:.3e}", g[r]),
+            };
+            Diagnostic::error("assembly", format!("cannot be satisfied: {} is off by {by}", row.equation))
                 .element(row.element.clone())
                 .help("move the parts nearer to where the joints want them, or remove a constraint that contradicts")
         })

@@ -8,6 +8,7 @@ use super::assemble::{self, Assembly};
 use super::columns::{self, Columns};
 use super::dynamics::{self, Ended, Trajectory, Watch};
 use super::kinematics;
+use super::misalignment;
 use super::statics;
 use super::system::System;
 use crate::diagnostic::Diagnostic;
@@ -169,7 +170,19 @@ impl Session {
             }
         }
         scene.turns.clone_from(&turns);
-        let assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
+        let first = self.carried.is_none();
+        let misaligned = if first {
+            misalignment::misaligned(&scene, &self.model)
+        } else {
+            Vec::new()
+        };
+        let mut assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
+        assembly.warnings.splice(0..0, misaligned);
+        if first {
+            let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
+            let turned = misalignment::turned(&scene, &self.model, &numbers);
+            assembly.warnings.extend(turned);
+        }
         let v = match v {
             _ if mode == STATIC => vec![0.0; l.n_v],
             Some(v) => v,

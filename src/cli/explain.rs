@@ -1,25 +1,42 @@
-//! `cognate explain`: what a code or a name means.
+//! `cognate explain`: what a code or a name means, or what becomes of a model.
 
 use super::functions;
-use super::{Exit, Outcome, say};
+use super::verify::model_of;
+use super::{Exit, Failure, Outcome, say};
+use crate::analysis::outline::{Outline, outline};
 use crate::diagnostic::codes::{CODES, code};
 use crate::diagnostic::{Diagnostic, near_names};
+use serde_json::{Value, json};
+use std::path::Path;
 
-/// Explain the code of a mistake, or a name of the language
+/// Explain the code of a mistake, a name of the language, or what becomes of a model
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   cognate explain
   cognate explain unexpected_token
-  cognate explain IMPACT")]
+  cognate explain IMPACT
+  cognate explain slider_crank.adm")]
 pub struct Args {
-    /// Code as it stands in error[CODE], or a name of the language; all codes when not given
+    /// Code as it stands in error[CODE], a name of the language, or a model (.adm, .acf); all codes when not given
     what: Option<String>,
+    /// Of a model: print the outline as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 pub fn run(args: &Args) -> Outcome {
     match &args.what {
         None => say(&list()),
+        Some(what) if is_model(what) => {
+            let model = model_of(Path::new(what))?;
+            let found = outline(&model).map_err(|d| Failure::in_files(Exit::Model, d))?;
+            if args.json {
+                say(&format!("{:#}\n", as_json(&found)));
+            } else {
+                say(&as_text(&found));
+            }
+        }
         Some(what) => say(&explained(what)?),
     }
     Ok(Exit::Done)
@@ -63,4 +80,69 @@ fn explained(what: &str) -> Result<String, Diagnostic> {
                 }
             }
         })
+}
+
+fn is_model(what: &str) -> bool {
+    let ending = Path::new(what).extension();
+    ending.is_some_and(|e| e.eq_ignore_ascii_case("adm") || e.eq_ignore_ascii_case("acf"))
+}
+
+fn as_json(o: &Outline) -> Value {
+    let forest: Vec<Value> = (o.forest.iter())
+        .map(|c| json!({ "part": c.part, "by": c.by, "carrier": c.carrier, "coordinates": c.coordinates }))
+        .collect();
+    let unknowns: Vec<Value> = (o.unknowns.iter())
+        .map(|(name, value)| json!({ "name": name, "value": value }))
+        .collect();
+    json!({
+        "forest": forest,
+        "welded": o.welded,
+        "unknowns": unknowns,
+        "prescribed": o.prescribed,
+        "rows": o.rows,
+        "left_out": o.left_out,
+        "operations": { "rate": o.operations.0, "projection": o.operations.1 },
+        "elimination": o.elimination,
+        "switches": o.switches,
+        "warnings": o.warnings,
+    })
+}
+
+fn as_text(o: &Outline) -> String {
+    let mut out = String::from("forest\n");
+    for c in &o.forest {
+        let how = match &c.by {
+            None => "moves freely in ground".to_string(),
+            Some(by) if c.coordinates.is_empty() => format!("is one with {} ({by})", c.carrier),
+            Some(_) => format!("on {} by {}", c.carrier, c.coordinates.join(", ")),
+        };
+        out += &format!("  {} {how}\n", c.part);
+    }
+    let mut list = |title: &str, lines: &[String]| {
+        if !lines.is_empty() {
+            out += &format!("{title}\n");
+            for line in lines {
+                out += &format!("  {line}\n");
+            }
+        }
+    };
+    let unknowns: Vec<String> = (o.unknowns.iter())
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    list("unknowns", &unknowns);
+    list("prescribed", &o.prescribed);
+    list("rows", &o.rows);
+    list("left out", &o.left_out);
+    list("warnings", &o.warnings);
+    out += &format!(
+        "recorded\n  {} operations for the rates, by {}\n",
+        o.operations.0, o.elimination
+    );
+    if o.operations.1 > 0 {
+        out += &format!("  {} operations to project onto the rows\n", o.operations.1);
+    }
+    if o.switches > 0 {
+        out += &format!("  {} values watched for a change of branch\n", o.switches);
+    }
+    out
 }

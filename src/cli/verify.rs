@@ -153,15 +153,25 @@ fn as_text(v: &Verification) -> String {
     if v.dependent.is_empty() {
         line("no redundant constraint".into());
     }
-    for d in &v.dependent {
-        line(format!("redundant: {} — {}", d.row, d.words));
+    for (first, group) in groups(&v.dependent, |a, b| {
+        (&a.element, &a.fixed_by, a.only_here) == (&b.element, &b.fixed_by, b.only_here)
+    }) {
+        let directions: Vec<&str> = group.iter().map(|d| d.direction.as_str()).collect();
+        let rows: Vec<&str> = group.iter().map(|d| d.row.as_str()).collect();
+        let words = first
+            .words
+            .replacen(&first.direction, &directions.join(", "), 1);
+        line(format!("redundant: {words} ({})", rows.join(", ")));
     }
-    for u in &v.undetermined {
+    for (first, group) in groups(&v.undetermined, |a, b| {
+        (&a.components, &a.axes) == (&b.components, &b.axes)
+    }) {
+        let elements: Vec<&str> = group.iter().map(|u| u.element.as_str()).collect();
         line(format!(
-            "reaction not unique: {} {} (axes of {}); results tell the smallest set",
-            u.element,
-            u.components.join(" "),
-            u.axes
+            "not unique: {} of {} (axes of {}); results tell the smallest set",
+            first.components.join(" "),
+            elements.join(", "),
+            first.axes
         ));
     }
     for advice in &v.advice {
@@ -171,4 +181,16 @@ fn as_text(v: &Verification) -> String {
         line(format!("warning: {warning}"));
     }
     out
+}
+
+/// What belongs together, in the order of the first of each group.
+fn groups<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<(&T, Vec<&T>)> {
+    let mut found: Vec<(&T, Vec<&T>)> = Vec::new();
+    for x in all {
+        match found.iter_mut().find(|(first, _)| same(first, x)) {
+            Some((_, group)) => group.push(x),
+            None => found.push((x, vec![x])),
+        }
+    }
+    found
 }

@@ -23,6 +23,7 @@ pub fn record(run: &Run) -> Value {
         "freedom": r.freedom,
         "redundant_rows": r.redundant.len(),
         "redundant": r.redundant,
+        "reactions": if r.redundant.is_empty() { "unique" } else { "smallest set: rows depend on each other" },
         "energy_drift": r.energy_drift,
         "constraint_drift": r.constraint_drift,
         "outputs": run.table_rows().count(),

@@ -107,6 +107,19 @@ impl Scene {
     }
 }
 
+/// Largest distance of a constraint's marker from the middle of all, as the dataset places them; one when all coincide.
+fn span(scene: &Scene) -> f64 {
+    let ends = |c: &ConstraintElement| c.markers.map(|(i, j)| [i, j]);
+    let points: Vec<Vec3<f64>> = (scene.constraints.iter().filter_map(ends).flatten())
+        .map(|m| scene.drawn(m).position)
+        .collect();
+    let sum = points.iter().fold(Vec3::zero(), |sum, p| sum + *p);
+    let middle = sum.times(1.0 / points.len().max(1) as f64);
+    let distances = points.iter().map(|p| (*p - middle).norm());
+    let largest = distances.filter(|d| d.is_finite()).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
 /// The joints and primitives of a model that are switched on.
 fn ties(model: &Model) -> Vec<NamedTie> {
     let joints = active(model, "JOINT", &model.joints)
@@ -158,6 +171,9 @@ impl<'m> Builder<'m> {
     /// Gravity and arrays of numbers.
     fn data(&mut self) {
         self.scene.gravity = Vec3(self.model.gravity);
+        if let Some(units) = &self.model.units {
+            self.scene.length_unit = units.length.to_ascii_lowercase();
+        }
         for (&id, array) in &self.model.arrays {
             if let ArrayKind::Ic(numbers) = &array.kind {
                 self.scene.arrays.insert(id, numbers.clone());
@@ -357,6 +373,7 @@ impl<'m> Builder<'m> {
         s.parts = c.parts.clone();
         s.markers = c.markers.clone();
         s.marker_of = c.marker_of.clone();
+        s.span = span(s);
         s.initial_q = std::mem::take(&mut c.q);
         (s.layout.n_q, s.layout.n_v) = (c.n_q, c.n_v);
         for (k, coordinate) in s.coordinates.iter().enumerate() {

@@ -360,6 +360,10 @@ pub struct Scene {
     pub articulated: bool,
     /// a typical length of the mechanism, for tolerances and scales
     pub length: f64,
+    /// distance over which constraints are spread: an arm for comparing torques with forces
+    pub span: f64,
+    /// the unit of lengths, for messages: "meter"; empty when the model says none
+    pub length_unit: String,
 }
 
 impl Scene {
@@ -370,6 +374,15 @@ impl Scene {
             depth[k] = 1 + self.carrier[k].map_or(0, |c| depth[c]);
         }
         depth.into_iter().max().unwrap_or(0)
+    }
+
+    /// Pose of a marker in ground as the dataset places its part.
+    pub fn drawn(&self, marker: usize) -> Frame<f64> {
+        let m = &self.markers[marker];
+        m.part.map_or(m.frame, |p| {
+            let p = &self.parts[p];
+            p.initial.compose(&p.frame.inverse().compose(&m.frame))
+        })
     }
 
     /// Whether a motion drives an angle rather than a length.

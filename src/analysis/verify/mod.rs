@@ -14,8 +14,10 @@ mod words;
 
 pub use free::{Free, Moving};
 pub use words::axis;
+pub(super) use words::direction;
 
 use super::assemble::{self, Assembly};
+use super::misalignment;
 use super::nearby::Place;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Level, Model};
@@ -164,7 +166,9 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         if matches!(motion.function, Formula::User { .. }) {
             motion.function = Formula::text("0");
             motion.level = Level::Velocity;
-            warnings.push(format!("MOTION/{id}: its USER function is taken to stand still"));
+            warnings.push(format!(
+                "MOTION/{id}: its USER function is taken to stand still"
+            ));
         }
     }
     let options = Options {
@@ -190,6 +194,9 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         warnings,
         ..Verification::default()
     };
+    found
+        .warnings
+        .extend(misalignment::misaligned(&scene, &model));
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
     let assembly = match assemble::positions(&mut scene, 0.0, &mut q, &x) {
@@ -207,6 +214,8 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     found.freedom_nearby = Some(assembly.freedom);
     found.warnings.extend(assembly.warnings.iter().cloned());
     let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
+    let turned = misalignment::turned(&scene, &model, &numbers);
+    found.warnings.extend(turned);
     explain(&scene, &numbers, &assembly, &mut found);
     found.free = free::motions(&scene, &model, &q, &x);
     found.advice = advice::advice(&scene, &numbers, &assembly);
@@ -221,7 +230,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
 }
 
 /// Starting values of the states, and of joints that say where they begin.
-fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
+pub(super) fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
     for c in &scene.coordinates {
         let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else {
             continue;
@@ -237,9 +246,14 @@ fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
     }
     let mut x = vec![0.0; scene.layout.n_x];
     for (m, motion) in scene.motions.iter().enumerate() {
-        let given = model.motions.get(&motion.id).and_then(|m| m.ic_displacement);
+        let given = model
+            .motions
+            .get(&motion.id)
+            .and_then(|m| m.ic_displacement);
         if let Some(state) = motion.state {
-            x[state] = given.or_else(|| scene.initial_displacement(m)).unwrap_or(0.0);
+            x[state] = given
+                .or_else(|| scene.initial_displacement(m))
+                .unwrap_or(0.0);
         }
     }
     x

@@ -52,7 +52,12 @@ pub(super) fn point(p: Vec3<f64>) -> String {
         }
         text.trim_end_matches('0').trim_end_matches('.').to_string()
     };
-    format!("({}, {}, {})", number(p.0[0]), number(p.0[1]), number(p.0[2]))
+    format!(
+        "({}, {}, {})",
+        number(p.0[0]),
+        number(p.0[1]),
+        number(p.0[2])
+    )
 }
 
 /// The axes in which an element's reaction is told: those of its J marker, ground's when they are parallel to these.
@@ -69,13 +74,13 @@ pub(super) fn axes(at: &Equations<'_, f64>, marker: Option<usize>) -> (String, M
 }
 
 /// What a row fixes: "translation along ground Z", "rotation about X of MARKER/4".
-pub(super) fn direction(scene: &Scene, at: &Equations<'_, f64>, row: usize) -> String {
+pub(in crate::analysis) fn direction(scene: &Scene, at: &Equations<'_, f64>, row: usize) -> String {
     let value = at.row(row);
     if let RowKind::Displacements(sum) = &scene.rows[row].kind {
         let n = sum.terms.len();
         return format!("a sum of {n} displacements");
     }
-    let Some((m, action)) = value.actions.first() else {
+    let Some((_, action)) = value.actions.first() else {
         return "a combination of coordinates".into();
     };
     let mut frames = Vec::new();
@@ -83,7 +88,6 @@ pub(super) fn direction(scene: &Scene, at: &Equations<'_, f64>, row: usize) -> S
         let name = format!("MARKER/{}", scene.markers[*m].id);
         frames.push((name, at.marker(*m).R_GM));
     }
-    let _ = m;
     let (force, torque) = (action.force, action.torque);
     if force.norm() > 1e-9 {
         format!("translation along {}", axis(force, &frames))

@@ -5,7 +5,7 @@
 //! rows or carry parts. Reactions are determined up to such states; what is reported is the set with
 //!
 //! ```text
-//! Σ |F_e|² + |T_e|²/L²  least over all constraint elements e,   T_e about the middle of the two markers, L the size of the mechanism
+//! Σ |F_e|² + |T_e|²/L²  least over all constraint elements e,   T_e about the middle of the two markers, L the distance over which constraints are spread
 //! ```
 //!
 //! which does not depend on the order of elements, on ground, on which marker is called I, nor on what carries what.
@@ -108,7 +108,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Scalar product of two sets of reactions.
     fn product(&self, a: &[Action<S>], b: &[Action<S>]) -> S {
-        let per_length = 1.0 / self.scene.length;
+        let per_length = 1.0 / self.scene.span;
         let mut sum = S::zero();
         for (c, element) in self.scene.constraints.iter().enumerate() {
             let arm = match (element.about, element.markers) {
@@ -118,7 +118,8 @@ impl<S: Scalar> Equations<'_, S> {
                 }
                 _ => Vec3::zero(),
             };
-            let torque = |x: &Action<S>| (x.torque + arm.cross(x.force)).times(S::constant(per_length));
+            let torque =
+                |x: &Action<S>| (x.torque + arm.cross(x.force)).times(S::constant(per_length));
             sum += a[c].force.dot(b[c].force) + torque(&a[c]).dot(torque(&b[c]));
         }
         sum
