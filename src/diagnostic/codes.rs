@@ -330,6 +330,16 @@ Splines; with z, y is a list of curves; end is natural, not-a-knot or periodic, 
     {\"1\": {\"x\": [1, 2, 3, 4], \"y\": [0, 2, 1, 3], \"end\": \"natural\", \"extrap\": \"linear\"}}",
     },
     Code {
+        name: "approximate",
+        summary: "something is solved by a simpler law than the dataset asks for",
+        explanation: "\
+The run goes on, and its results are those of the simpler law, which the message names.
+
+    BEAM, FORMULATION=STRING or NONLINEAR    the linear beam, which tension does not stiffen
+    FRICTION in a joint                      stiction by a steep smooth law of the velocity: what should stick creeps slowly
+    CONTACT, POISSON                         the impulses of restitution as a damper that works while bodies overlap",
+    },
+    Code {
         name: "bad_range",
         summary: "a range of times that has no samples, or too many",
         explanation: "\

@@ -38,6 +38,13 @@ impl<S: Scalar> Action<S> {
             torque: -self.torque - (p_GI - p_GJ).cross(self.force),
         }
     }
+    /// The same action, about `b` instead of `a`.
+    pub fn about(&self, a: Vec3<S>, b: Vec3<S>) -> Self {
+        Self {
+            force: self.force,
+            torque: self.torque + (a - b).cross(self.force),
+        }
+    }
     /// The sum with another action on the same marker.
     pub fn plus(&self, b: &Self) -> Self {
         Self {

@@ -2,8 +2,11 @@
 //! which coordinates lie behind them.
 
 pub mod action;
+pub mod beam;
 pub mod bushing;
 pub mod coupler;
+pub mod field;
 pub mod joint;
+pub mod nodal_force;
 pub mod row;
 pub mod spring_damper;

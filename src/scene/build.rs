@@ -495,10 +495,13 @@ impl<'m> Builder<'m> {
             };
             self.between(c, "BUSHING", id, (b.i, b.j), ForceLaw::Bushing(law));
         }
+        self.fields(c);
+        self.beams(c);
+        self.nodal_forces(c);
     }
 
     /// An element between I and J that reacts on J's part.
-    fn between(
+    pub(super) fn between(
         &mut self,
         c: &mut Compiler,
         keyword: &'static str,
@@ -656,18 +659,7 @@ impl<'m> Builder<'m> {
         for f in &self.scene.forces {
             let id = |m: usize| self.scene.markers[m].id;
             let ids = [id(f.i), f.j.map_or(0, id), 0, 0];
-            match f.law {
-                ForceLaw::SpringDamper(SpringDamper {
-                    rotational: true, ..
-                }) => {
-                    found.insert(Counted::Measure(Measure::Az, ids));
-                }
-                ForceLaw::Bushing(_) => {
-                    let angles = [Measure::Ax, Measure::Ay, Measure::Az];
-                    found.extend(angles.map(|m| Counted::Measure(m, ids)));
-                }
-                _ => {}
-            }
+            found.extend(f.law.angles().iter().map(|&m| Counted::Measure(m, ids)));
         }
         for row in &self.scene.rows {
             let RowKind::Displacements(sum) = &row.kind else {

@@ -4,9 +4,12 @@ use super::LinkIx;
 use super::equations::Equations;
 use crate::expr::measures::Measure;
 use crate::physics::action::{self, Action};
-use crate::physics::bushing::Bushing;
+use crate::physics::bushing::{self, Bushing};
+use crate::physics::field::Field;
+use crate::physics::nodal_force::NodalForce;
 use crate::physics::spring_damper::SpringDamper;
 use crate::scalar::Scalar;
+use std::sync::Arc;
 
 /// A force between markers.
 #[derive(Clone, Debug)]
@@ -50,6 +53,30 @@ pub enum ForceLaw {
     SpringDamper(SpringDamper),
     /// BUSHING
     Bushing(Bushing),
+    /// FIELD, BEAM
+    Field(Box<Field>),
+    /// one marker of an NFORCE
+    Nodal {
+        /// its numbers, shared by all its markers
+        law: Arc<NodalForce>,
+        /// all its I markers
+        markers: Arc<[usize]>,
+        /// which of them this is
+        place: usize,
+    },
+}
+
+impl ForceLaw {
+    /// The angles of I in J that the law reads.
+    pub fn angles(&self) -> &'static [Measure] {
+        match self {
+            ForceLaw::SpringDamper(law) if law.rotational => &[Measure::Az],
+            ForceLaw::Bushing(_) | ForceLaw::Field(_) | ForceLaw::Nodal { .. } => {
+                &[Measure::Ax, Measure::Ay, Measure::Az]
+            }
+            ForceLaw::Single { .. } | ForceLaw::Vector { .. } | ForceLaw::SpringDamper(_) => &[],
+        }
+    }
 }
 
 impl ForceElement {
@@ -60,6 +87,7 @@ impl ForceElement {
             .j
             .map_or_else(crate::space::MarkerState::ground, |j| at.marker(j));
         let angle = |measure: Measure| at.angle_between(measure, self.i, self.j);
+        let angles = || [Measure::Ax, Measure::Ay, Measure::Az].map(angle);
         match &self.law {
             ForceLaw::Single {
                 rotational,
@@ -72,11 +100,23 @@ impl ForceElement {
                 action::vector_force(&axes, [c[0], c[1], c[2]], [c[3], c[4], c[5]])
             }
             ForceLaw::SpringDamper(law) => law.action(&i, &j, || angle(Measure::Az)),
-            ForceLaw::Bushing(law) => law.action(
-                &i,
-                &j,
-                [angle(Measure::Ax), angle(Measure::Ay), angle(Measure::Az)],
-            ),
+            ForceLaw::Bushing(law) => law.action(&i, &j, angles()),
+            ForceLaw::Field(law) => law.action(&i, &j, angles()),
+            ForceLaw::Nodal {
+                law,
+                markers,
+                place,
+            } => {
+                let (mut x, mut rate) = (Vec::new(), Vec::new());
+                for &m in markers.iter() {
+                    let angles = [Measure::Ax, Measure::Ay, Measure::Az]
+                        .map(|measure| at.angle_between(measure, m, self.j));
+                    let (displacement, velocity) = bushing::deformation(&at.marker(m), &j, angles);
+                    x.extend(displacement);
+                    rate.extend(velocity);
+                }
+                law.action(*place, &j, &x, &rate)
+            }
         }
     }
 }

@@ -6,6 +6,7 @@
 pub mod articulated;
 pub mod build;
 pub mod compile;
+mod compliance;
 mod couplers;
 pub mod equations;
 pub mod forces;

@@ -22,16 +22,21 @@ impl<S: Scalar> Equations<'_, S> {
     /// Action of an element on its I marker, with the points of I and J; `None` when there is no such element.
     pub(super) fn element(&self, keyword: &str, id: u32) -> Option<(Action<S>, Vec3<S>, Vec3<S>)> {
         let scene = self.scene;
-        if let Some(f) = scene
-            .forces
-            .iter()
-            .position(|f| f.keyword == keyword && f.id == id)
-        {
-            let force = &scene.forces[f];
+        let mut total: Option<(Action<S>, Vec3<S>, Vec3<S>)> = None;
+        // an element of several pairs or markers is given about the first
+        for (f, force) in scene.forces.iter().enumerate() {
+            if force.keyword != keyword || force.id != id {
+                continue;
+            }
             let action = self.force_action(f);
-            let p_I = self.marker(force.i).p_GM;
-            let p_J = force.j.map_or(p_I, |j| self.marker(j).p_GM);
-            return Some((action, p_I, p_J));
+            let p = self.marker(force.i).p_GM;
+            total = Some(match total {
+                None => (action, p, force.j.map_or(p, |j| self.marker(j).p_GM)),
+                Some((sum, p_I, p_J)) => (sum.plus(&action.about(p, p_I)), p_I, p_J),
+            });
+        }
+        if total.is_some() {
+            return total;
         }
         let c = scene
             .constraints
@@ -131,12 +136,41 @@ impl<S: Scalar> Equations<'_, S> {
         sum
     }
 
+    /// NFORCE(id, at, comp, rm): the action on one of its markers, I or J.
+    fn nodal_force(&self, [id, at, comp, rm]: [u32; 4], asked_by: &str) -> S {
+        let scene = self.scene;
+        let number = |m: usize| scene.markers[m].id;
+        let mut found = None;
+        let nodes = scene.forces.iter().enumerate();
+        for (f, force) in nodes.filter(|(_, f)| f.keyword == "NFORCE" && f.id == id) {
+            let mut add = |action: Action<S>| {
+                found = Some(found.map_or(action, |sum: Action<S>| sum.plus(&action)));
+            };
+            if number(force.i) == at {
+                add(self.force_action(f));
+            }
+            if let Some(j) = force.j.filter(|&j| number(j) == at) {
+                let (p_I, p_J) = (self.marker(force.i).p_GM, self.marker(j).p_GM);
+                add(self.force_action(f).reaction(p_I, p_J));
+            }
+        }
+        match found {
+            Some(action) => self.component(&action, comp, rm, asked_by),
+            None => self.complain(format!(
+                "{asked_by}: NFORCE/{id} does not exist, is not active, or does not act on MARKER/{at}"
+            )),
+        }
+    }
+
     pub(super) fn element_force(
         &self,
         measure: Measure,
         [id, jflag, comp, rm]: [u32; 4],
         asked_by: &str,
     ) -> S {
+        if measure == Measure::Nforce {
+            return self.nodal_force([id, jflag, comp, rm], asked_by);
+        }
         let Some(keyword) = keyword_of(measure) else {
             return self.complain(format!("{asked_by}: {} is not solved yet", measure.name()));
         };
