@@ -311,6 +311,10 @@ impl Session {
         for warning in &assembly.warnings {
             self.warn(warning);
         }
+        for told in &system.scene.warnings {
+            let element = told.element.as_deref().unwrap_or("the model");
+            self.warn(&format!("{element}: {}", told.message));
+        }
         let (program, complaints) = self.columns.program(&system.scene);
         for complaint in complaints {
             if self

@@ -436,6 +436,9 @@ impl<'a> Settler<'a> {
                 return (Err(NoEquilibrium::Interrupted), jacobian);
             }
             if *iterations >= budget || falling > FALLING {
+                if self.is_rounding(p, &jacobian) {
+                    return (Ok(()), jacobian);
+                }
                 return (Err(self.unbalanced(p)), jacobian);
             }
             let longest = self.longest(p, &jacobian);
@@ -456,7 +459,7 @@ impl<'a> Settler<'a> {
                 }
             };
             let Some((next, quality, shortened)) = accepted else {
-                if small || self.converged(p) {
+                if small || self.converged(p) || self.is_rounding(p, &jacobian) {
                     return (Ok(()), jacobian);
                 }
                 return (Err(self.unbalanced(p)), jacobian);
@@ -527,6 +530,21 @@ impl<'a> Settler<'a> {
         let scale = at.load_scale();
         let scale = if scale.is_finite() { scale } else { 0.0 };
         scale / total_mass(scene).sqrt()
+    }
+
+    /// Whether what is left, in every coordinate, is what the last digits of the positions make of stiff forces.
+    fn is_rounding(&self, p: &Point, jacobian: &DMatrix<f64>) -> bool {
+        let scene = &self.system.scene;
+        let mut unit = vec![1.0; self.n_v()];
+        for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
+            if let (Some(v), false) = (f.v, c.angular) {
+                unit[v] = scene.length;
+            }
+        }
+        (0..self.n_v()).all(|i| {
+            let stiffness = (0..self.n_v()).map(|v| jacobian[(i, v)].abs() * unit[v]);
+            p.force[i].abs() <= 16.0 * f64::EPSILON * stiffness.sum::<f64>()
+        }) && p.state.amax() <= self.settings.error
     }
 
     /// How large the terms of the differential equations are.

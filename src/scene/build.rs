@@ -87,6 +87,7 @@ impl Scene {
         b.links(&mut c);
         b.couplers(&mut c, options.strict);
         b.forces(&mut c);
+        b.contacts(&mut c, &options.skip);
         b.systems(&mut c);
         b.timed(&mut c);
         b.general(&mut c);

@@ -5,6 +5,7 @@ use super::equations::Equations;
 use crate::expr::measures::Measure;
 use crate::physics::action::{self, Action};
 use crate::physics::bushing::{self, Bushing};
+use crate::physics::contact;
 use crate::physics::field::Field;
 use crate::physics::nodal_force::NodalForce;
 use crate::physics::spring_damper::SpringDamper;
@@ -55,6 +56,8 @@ pub enum ForceLaw {
     Bushing(Bushing),
     /// FIELD, BEAM
     Field(Box<Field>),
+    /// two solids of a CONTACT, and what they do where they touch
+    Contact(Box<(contact::Pair, contact::Law)>),
     /// one marker of an NFORCE
     Nodal {
         /// its numbers, shared by all its markers
@@ -74,7 +77,10 @@ impl ForceLaw {
             ForceLaw::Bushing(_) | ForceLaw::Field(_) | ForceLaw::Nodal { .. } => {
                 &[Measure::Ax, Measure::Ay, Measure::Az]
             }
-            ForceLaw::Single { .. } | ForceLaw::Vector { .. } | ForceLaw::SpringDamper(_) => &[],
+            ForceLaw::Single { .. }
+            | ForceLaw::Vector { .. }
+            | ForceLaw::SpringDamper(_)
+            | ForceLaw::Contact(_) => &[],
         }
     }
 }
@@ -102,6 +108,10 @@ impl ForceElement {
             ForceLaw::SpringDamper(law) => law.action(&i, &j, || angle(Measure::Az)),
             ForceLaw::Bushing(law) => law.action(&i, &j, angles()),
             ForceLaw::Field(law) => law.action(&i, &j, angles()),
+            ForceLaw::Contact(contact) => {
+                let (pair, law) = contact.as_ref();
+                contact::action(&pair.touches(&i, &j), law, &i, &j)
+            }
             ForceLaw::Nodal {
                 law,
                 markers,

@@ -7,6 +7,7 @@ pub mod articulated;
 pub mod build;
 pub mod compile;
 mod compliance;
+mod contacts;
 mod couplers;
 pub mod equations;
 pub mod forces;

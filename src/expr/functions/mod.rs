@@ -3,7 +3,7 @@
 //! The rows themselves stand in `table.rs`; longer formulas in a file per kind (`step.rs`, `contact.rs`, `series.rs`).
 //! Adding a function is adding one row: parsing, arity, help, compilation, derivatives and batches follow from it.
 
-mod contact;
+pub(crate) mod contact;
 pub(crate) mod prepared;
 mod series;
 pub(crate) mod step;

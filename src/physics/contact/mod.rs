@@ -1,0 +1,204 @@
+//! CONTACT: where two solids touch (a file per kind of question), and what they do to each other there (`law.rs`).
+//!
+//! Solids stand in the frame of one marker each. What is found is a list of [`Touch`]es of fixed length, whether they touch
+//! or not: whoever records the equations needs the same operations everywhere, and the law gives no force where the depth
+//! is negative. All of it is a formula of the two frames, so that derivatives and the instant of first touch come by
+//! themselves.
+//!
+//! | pair | points |
+//! |---|---|
+//! | ball – ball, plane, box, cylinder, frustum, torus | 1, from the distance of the centre (`ball.rs`) |
+//! | plane – box, hull | the corners (`plane.rs`) |
+//! | plane – cylinder, frustum | on each rim the deepest point and those a quarter and half a turn further |
+//! | plane – torus | the same four of its ring |
+//! | plane – ellipsoid | 1, the deepest |
+//! | point | a ball without radius |
+
+pub mod ball;
+pub mod law;
+pub mod plane;
+
+use super::action::Action;
+use crate::scalar::Scalar;
+use crate::space::{MarkerState, Vec3};
+pub use law::Law;
+
+/// A solid in the frame of its marker; lengths in model units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Solid {
+    /// about the origin; radius 0: a point
+    Ball {
+        /// its radius
+        radius: f64,
+    },
+    /// the half space below z = 0, above a rectangle where bounds are given
+    Plane {
+        /// least and largest x
+        x: [Option<f64>; 2],
+        /// least and largest y
+        y: [Option<f64>; 2],
+    },
+    /// edges along the axes
+    Box {
+        /// least corner
+        low: [f64; 3],
+        /// largest corner
+        high: [f64; 3],
+    },
+    /// about z: a cylinder where the radii agree, a cone where one is 0
+    Frustum {
+        /// z of the two ends, ascending
+        z: [f64; 2],
+        /// radii there
+        radius: [f64; 2],
+    },
+    /// about the origin
+    Ellipsoid {
+        /// half its diameters along the axes
+        semi: [f64; 3],
+    },
+    /// about z
+    Torus {
+        /// radius of the ring
+        ring: f64,
+        /// radius of the tube
+        tube: f64,
+    },
+    /// the convex hull of points
+    Hull(Vec<[f64; 3]>),
+}
+
+impl Solid {
+    /// What it is called.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Solid::Ball { radius } if *radius == 0.0 => "point",
+            Solid::Ball { .. } => "sphere",
+            Solid::Plane { .. } => "plane",
+            Solid::Box { .. } => "box",
+            Solid::Frustum { radius: [a, b], .. } if a == b => "cylinder",
+            Solid::Frustum { .. } => "frustum",
+            Solid::Ellipsoid { .. } => "ellipsoid",
+            Solid::Torus { .. } => "torus",
+            Solid::Hull(_) => "convex hull",
+        }
+    }
+}
+
+/// A place where two solids touch, or come nearest.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<S> {
+    /// how far they overlap; negative: they do not touch
+    pub depth: S,
+    /// unit vector from J's solid into I's, ground axes
+    pub normal: Vec3<S>,
+    /// where they act on each other, in ground
+    pub point: Vec3<S>,
+}
+
+impl<S: Scalar> Touch<S> {
+    /// The same, seen from the other solid.
+    fn turned(self) -> Self {
+        Self {
+            normal: -self.normal,
+            ..self
+        }
+    }
+}
+
+/// Which formula finds the touches of a pair.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pair {
+    /// a ball on I or, `turned`, on J, and a solid
+    Ball {
+        /// of the ball
+        radius: f64,
+        /// the other
+        solid: Solid,
+        /// the ball is J's
+        turned: bool,
+    },
+    /// a solid on I or, `turned`, on J, and a plane
+    Plane {
+        /// on the plane
+        solid: Solid,
+        /// bounds of the plane
+        x: [Option<f64>; 2],
+        /// bounds of the plane
+        y: [Option<f64>; 2],
+        /// the solid is J's
+        turned: bool,
+    },
+}
+
+impl Pair {
+    /// The formula for two solids; `None`: there is none.
+    pub fn of(i: &Solid, j: &Solid) -> Option<Pair> {
+        let ball = |radius: f64, solid: &Solid, turned: bool| {
+            let known = !matches!(solid, Solid::Ellipsoid { .. } | Solid::Hull(_));
+            known.then(|| Pair::Ball {
+                radius,
+                solid: solid.clone(),
+                turned,
+            })
+        };
+        let plane = |solid: &Solid, x: [Option<f64>; 2], y: [Option<f64>; 2], turned: bool| {
+            let known = !matches!(solid, Solid::Plane { .. });
+            known.then(|| Pair::Plane {
+                solid: solid.clone(),
+                x,
+                y,
+                turned,
+            })
+        };
+        match (i, j) {
+            (Solid::Ball { radius }, solid) => ball(*radius, solid, false),
+            (solid, Solid::Ball { radius }) => ball(*radius, solid, true),
+            (solid, Solid::Plane { x, y }) => plane(solid, *x, *y, false),
+            (Solid::Plane { x, y }, solid) => plane(solid, *x, *y, true),
+            _ => None,
+        }
+    }
+
+    /// Where the solids of I and J touch.
+    pub fn touches<S: Scalar>(&self, i: &MarkerState<S>, j: &MarkerState<S>) -> Vec<Touch<S>> {
+        match self {
+            Pair::Ball {
+                radius,
+                solid,
+                turned: false,
+            } => vec![ball::touch(*radius, i, solid, j)],
+            Pair::Ball { radius, solid, .. } => vec![ball::touch(*radius, j, solid, i).turned()],
+            Pair::Plane {
+                solid,
+                x,
+                y,
+                turned: false,
+            } => plane::touches(solid, i, (*x, *y), j),
+            Pair::Plane { solid, x, y, .. } => {
+                let found = plane::touches(solid, j, (*x, *y), i);
+                found.into_iter().map(Touch::turned).collect()
+            }
+        }
+    }
+}
+
+/// What the touches do to I, about its origin.
+pub fn action<S: Scalar>(
+    touches: &[Touch<S>],
+    law: &Law,
+    i: &MarkerState<S>,
+    j: &MarkerState<S>,
+) -> Action<S> {
+    let mut sum = Action::zero();
+    for touch in touches {
+        let (to_i, to_j) = (touch.point - i.p_GM, touch.point - j.p_GM);
+        let velocity = i.v_GM + i.w_GM.cross(to_i) - j.v_GM - j.w_GM.cross(to_j);
+        let force = law.force(touch.depth, touch.normal, velocity);
+        sum = sum.plus(&Action {
+            force,
+            torque: to_i.cross(force),
+        });
+    }
+    sum
+}
