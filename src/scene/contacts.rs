@@ -211,7 +211,9 @@ impl Builder<'_> {
             if !(coulomb.stiction_velocity > 0.0 && coulomb.stiction_velocity.is_finite()) {
                 return Err("friction needs a positive STICTION_TRANSITION_VELOCITY".into());
             }
-            if !(coulomb.friction_velocity > coulomb.stiction_velocity) {
+            if coulomb.friction_velocity.is_nan()
+                || coulomb.friction_velocity <= coulomb.stiction_velocity
+            {
                 return Err(
                     "FRICTION_TRANSITION_VELOCITY must be larger than STICTION_TRANSITION_VELOCITY"
                         .into(),
