@@ -327,8 +327,8 @@ fn what_acts_on_the_markers_of_an_nforce_balances() {
     let (mut force, mut torque) = (Vec3::zero(), Vec3::zero());
     for m in [22, 23, 32] {
         let p = Vec3(["X", "Y", "Z"].map(|k| last(&s, &format!("D{k}({m})"))));
-        force = force + vector(m, 2);
-        torque = torque + vector(m, 6) + p.cross(vector(m, 2));
+        force += vector(m, 2);
+        torque += vector(m, 6) + p.cross(vector(m, 2));
     }
     assert!(vector(22, 2).norm() > 1.0 && force.norm() < 1e-12 && torque.norm() < 1e-12);
 }
@@ -501,13 +501,9 @@ fn virtual_work_is_symmetric_where_nothing_is_loaded() {
             .collect();
         for (r, q) in all.iter().enumerate() {
             assert!(q.re.abs() < 1e-9);
-            for c in 0..12 {
-                assert!(
-                    (q.eps[c] - all[c].eps[r]).abs() < 1e-9 * 1e4,
-                    "{r} {c}: {} {}",
-                    q.eps[c],
-                    all[c].eps[r]
-                );
+            for (c, other) in all.iter().enumerate() {
+                let (a, b) = (q.eps[c], other.eps[r]);
+                assert!((a - b).abs() < 1e-9 * 1e4, "{r} {c}: {a} {b}");
             }
         }
         assert!(all[0].eps[0] < -1.0 && (Dual::<12>::zero() - all[0]).eps[6] < 0.0);
