@@ -1,6 +1,9 @@
 //! Real files, read where they lie: the folder named by COGNATE_CORPUS. Without it the tests say that they were skipped.
 #![cfg(feature = "solver")]
 
+#[path = "corpus/chrono.rs"]
+mod chrono;
+
 use cognate::dataset;
 use cognate::dataset::command::{Command, Script, Step};
 use cognate::dataset::syntax::{Item, TokenKind};

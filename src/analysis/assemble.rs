@@ -62,6 +62,8 @@ pub(super) fn numbers(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) ->
     n.extend_from_slice(v);
     n.extend_from_slice(x);
     n.extend_from_slice(&scene.turns);
+    n.resize(scene.layout.supplied().start, 0.0);
+    n.extend_from_slice(&scene.supplied_values);
     n.resize(scene.layout.len(), 0.0);
     n
 }

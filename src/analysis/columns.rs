@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{Model, RequestKind};
+use crate::model::{Formula, Model, RequestKind};
 use crate::results::{Component, Entity, Run, Units};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
@@ -23,6 +23,8 @@ enum What {
         id: u32,
         quantity: usize,
     },
+    /// a component of a REQUEST that a closure computes, from 0
+    Request { id: u32, component: usize },
     /// a component of the action of an element on its I marker, ground axes: 0–2 force, 3–5 torque
     Action {
         keyword: &'static str,
@@ -73,7 +75,17 @@ fn unit_of(text: &str, units: &Units) -> String {
 
 impl Columns {
     /// Declares all columns of a run: those of the parts, joints and forces when `full`, requests, and `user` expressions.
-    pub fn new(model: &Model, run: &mut Run, user: &[String], full: bool) -> Self {
+    /// `computed` tells whether there is a closure for a REQUEST of this number with this USER.
+    pub fn new(
+        model: &Model,
+        run: &mut Run,
+        user: &[String],
+        full: bool,
+        computed: &dyn Fn(u32, &Formula) -> bool,
+    ) -> Self {
+        run.columns.clear();
+        run.entities.clear();
+        run.add_column("time", run.units.time.clone());
         let mut this = Self::default();
         if full {
             this.parts(model, run);
@@ -82,7 +94,7 @@ impl Columns {
         for text in user {
             table.push(this.text(run, text.clone(), text, &run.units.clone()));
         }
-        this.requests(model, run, &mut table);
+        this.requests(model, run, &mut table, computed);
         if full {
             this.elements(model, run);
         }
@@ -230,7 +242,13 @@ impl Columns {
     }
 
     /// Each request as its components' expressions.
-    fn requests(&mut self, model: &Model, run: &mut Run, table: &mut Vec<usize>) {
+    fn requests(
+        &mut self,
+        model: &Model,
+        run: &mut Run,
+        table: &mut Vec<usize>,
+        computed: &dyn Fn(u32, &Formula) -> bool,
+    ) {
         let units = run.units.clone();
         for (&id, request) in &model.requests {
             let entity = request
@@ -299,14 +317,18 @@ impl Columns {
                     .iter()
                     .enumerate()
                     .filter_map(|(k, f)| match f {
-                        Some(crate::model::Formula::Expression { text, .. }) => {
+                        Some(Formula::Expression { text, .. }) => {
                             Some((k + 1, format!("F{}", k + 1), text.clone()))
                         }
                         _ => None,
                     })
                     .collect(),
+                RequestKind::User(user) if computed(id, user) => (1..=8)
+                    .map(|k| (k, format!("F{k}"), String::new()))
+                    .collect(),
                 RequestKind::User(_) => Vec::new(),
             };
+            let by_closure = matches!(request.kind, RequestKind::User(_));
             let mut shown = Vec::new();
             for (k, name, text) in components {
                 let given = request.cnames.get(k - 1);
@@ -314,7 +336,13 @@ impl Columns {
                     continue;
                 }
                 let name = given.cloned().unwrap_or(name);
-                let column = self.text(run, format!("{entity}.{name}"), &text, &units);
+                let title = format!("{entity}.{name}");
+                let column = if by_closure {
+                    let component = k - 1;
+                    self.push(run, title, String::new(), What::Request { id, component })
+                } else {
+                    self.text(run, title, &text, &units)
+                };
                 table.push(column);
                 shown.push(Component { name, column });
             }
@@ -364,6 +392,10 @@ impl Columns {
                     _ => state.alpha_GM.0[quantity - 15],
                 }
             }
+            What::Request { id, component } => match scene.requests.get(id) {
+                Some(formulas) => at.formula(formulas[*component]),
+                None => S::constant(f64::NAN),
+            },
             What::Action {
                 keyword,
                 id,

@@ -7,6 +7,7 @@
 //! A step over a switch is never kept: it is undone and repeated so that it ends where the branch changes, from where the
 //! method begins anew. Accuracy therefore does not fall when a kink lies inside a step.
 
+use super::outside;
 use super::system::System;
 use crate::numeric::event::Locator;
 use crate::numeric::{self, Method, Ode, Reason, Stats, Stop};
@@ -82,6 +83,8 @@ pub enum Ended {
     Interrupted,
     /// the method could not go on
     Stop(Stop),
+    /// a sensor asked: its place in [`Scene::sensors`](crate::scene::Scene::sensors)
+    Sensor(usize),
 }
 
 /// States at the output times that were reached.
@@ -97,6 +100,8 @@ pub struct Trajectory {
     pub methods: Vec<(f64, String)>,
     /// switches that were located: how many
     pub events: usize,
+    /// sensors that were triggered: when, and their places in the scene
+    pub triggered: Vec<(f64, usize)>,
     /// `None`: all output times were reached
     pub ended: Option<Ended>,
 }
@@ -124,8 +129,11 @@ pub fn integrate(
     let Some(&end) = outputs.last() else {
         return out;
     };
+    let mut outputs = outputs.to_vec();
+    system.outside.begin(t0, &[]);
+    system.begin_sensing();
     if n == 0 {
-        for &t in outputs {
+        for &t in &outputs {
             system.numbers[0] = t;
             out.t.push(t);
             out.rows.push(system.numbers.clone());
@@ -161,7 +169,7 @@ pub fn integrate(
         out.methods.push((t, name.clone()));
         let mut leg = Leg {
             system,
-            outputs,
+            outputs: &mut outputs,
             end,
             out: &mut out,
             watch,
@@ -229,7 +237,7 @@ enum Finished {
 /// The part of an integration that one method does.
 struct Leg<'a> {
     system: &'a mut System,
-    outputs: &'a [f64],
+    outputs: &'a mut Vec<f64>,
     end: f64,
     out: &'a mut Trajectory,
     watch: &'a mut dyn Watch,
@@ -259,7 +267,8 @@ impl Leg<'_> {
             if self.watch.interrupted() {
                 return Finished::Ended(Ended::Interrupted);
             }
-            let limit = switch_at.take().unwrap_or(self.end);
+            let horizon = self.horizon(method.t(), method.y());
+            let limit = switch_at.take().unwrap_or(self.end).min(horizon);
             let step = match method.step(self.system, limit) {
                 Ok(step) => step,
                 Err(stop) => return Finished::Ended(Ended::Stop(stop)),
@@ -297,6 +306,17 @@ impl Leg<'_> {
             redone = 0;
             self.emit(method, &step);
             self.watch.progress(step.t1, step.h, method.stats());
+            if self.system.outside.remembers()
+                && outside::remember(self.system, method, &step).is_err()
+            {
+                switched = true;
+            }
+            for k in self.system.sense(step.t1, method.y(), switched) {
+                switched |= self.react(k, method, step.t1);
+                if let Some(why) = self.out.ended.take() {
+                    return Finished::Ended(why);
+                }
+            }
             if switched && step.t1 < self.end {
                 self.out.events += 1;
                 state.copy_from_slice(method.y());
@@ -311,6 +331,43 @@ impl Leg<'_> {
             }
         }
         Finished::Done
+    }
+
+    /// How far a step may go: no further than values of the past are known.
+    fn horizon(&mut self, t: f64, y: &[f64]) -> f64 {
+        if !self.system.outside.remembers() {
+            return f64::INFINITY;
+        }
+        self.system.set(t, y);
+        let delay = self.system.outside.shortest_delay(&self.system.numbers);
+        t + delay.max(1e-9 * (self.end - t))
+    }
+
+    /// Does what a triggered sensor asks for; whether the integration is to begin anew.
+    fn react(&mut self, k: usize, method: &mut dyn Method<System>, t: f64) -> bool {
+        let sensor = self.system.scene.sensors[k].clone();
+        let ends = sensor.halt || sensor.end_simulation;
+        if (ends || sensor.print) && self.out.t.last() != Some(&t) {
+            self.out.t.push(t);
+            self.out.rows.push(self.system.row(t, method.y()));
+            // outputs are counted: one that was not foreseen takes a place
+            self.outputs.insert(self.out.t.len() - 1, t);
+        }
+        self.out.triggered.push((t, k));
+        if ends {
+            self.out.ended = Some(Ended::Sensor(k));
+        }
+        if let Some(dt) = sensor.dt {
+            self.outputs.truncate(self.out.t.len());
+            let n = (((self.end - t) / dt) - 1e-9).ceil().clamp(1.0, 1e8) as usize;
+            let end = self.end;
+            self.outputs
+                .extend((1..=n).map(|k| (t + k as f64 * dt).min(end)));
+        }
+        if let Some(h) = sensor.stepsize {
+            method.propose(h);
+        }
+        sensor.restart || sensor.stepsize.is_some() || sensor.evaluate.is_some()
     }
 
     /// Output times inside an accepted step, and the turns at its end.

@@ -25,6 +25,7 @@ pub fn trace(
     let mut y = system.numbers[l.y()].to_vec();
     let mut trial = y.clone();
     let mut dq = vec![0.0; l.n_v];
+    system.begin_sensing();
     for &target in outputs {
         let mut h = (target - t).min(h_max);
         let mut halvings = 0;
@@ -71,6 +72,15 @@ pub fn trace(
         }
         out.t.push(target);
         out.rows.push(system.row(target, &y));
+        // positions are found from output to output: so are sensors
+        for k in system.sense(target, &y, true) {
+            out.triggered.push((target, k));
+            let sensor = &system.scene.sensors[k];
+            if sensor.halt || sensor.end_simulation {
+                out.ended = Some(Ended::Sensor(k));
+                return out;
+            }
+        }
     }
     out
 }

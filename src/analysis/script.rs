@@ -1,6 +1,7 @@
 //! Commands one after another: what a command file does to a session.
 
 use super::dynamics::Watch;
+use super::linear::Wanted;
 use super::session::{Analysis, Session};
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::Diagnostic;
@@ -73,7 +74,7 @@ pub fn obey(
                     .map_err(|d| vec![located(d)])?;
                 before(session.time(), end);
                 status = session.simulate(analysis, end, n, watch)?;
-                if status != Status::Completed {
+                if status != Status::Completed || session.halted() {
                     return Ok(status);
                 }
             }
@@ -82,7 +83,23 @@ pub fn obey(
             }
             Command::Stop => break,
             Command::Show(_) => {}
-            Command::File { .. } | Command::Save(_) | Command::Reload(_) | Command::Linear(_) => {
+            Command::Linear(command) => {
+                let shapes = match command.coords[..] {
+                    [] => None,
+                    [only] => Some([only as usize; 2]),
+                    [first, last, ..] => Some([first as usize, last as usize]),
+                };
+                let wanted = Wanted {
+                    inputs: command.pinput,
+                    outputs: command.poutput,
+                    no_damping: command.no_damping,
+                    shapes,
+                };
+                let found = session.linearize(&wanted)?;
+                let matrices = command.state_matrices || !command.eigensolution;
+                session.linear.push((command.file.clone(), matrices, found));
+            }
+            Command::File { .. } | Command::Save(_) | Command::Reload(_) => {
                 let d = Diagnostic::error("unsupported", "this command is not obeyed yet");
                 return Err(vec![located(d)]);
             }

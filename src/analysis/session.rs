@@ -8,9 +8,11 @@ use super::assemble::{self, Assembly};
 use super::columns::{self, Columns};
 use super::dynamics::{self, Ended, Trajectory, Watch};
 use super::kinematics;
+use super::linear::{self, Linearization};
 use super::misalignment;
+use super::outside;
 use super::statics;
-use super::system::System;
+use super::system::{System, complaints};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::model::{Model, Orientation};
@@ -52,6 +54,8 @@ pub struct Options {
     pub full: bool,
     /// keywords of statements that are left out where they are not solved
     pub skip: std::collections::BTreeSet<String>,
+    /// take what `USER(…)` would compute as zero
+    pub zero_user: bool,
 }
 
 /// State carried from one simulation to the next, by the names of the unknowns.
@@ -67,6 +71,9 @@ struct Carried {
     parts: Vec<(bool, u32, MarkerState<f64>)>,
     /// turns that angles have counted
     turns: Vec<f64>,
+    /// numbers from outside, and what was before
+    supplied: Vec<f64>,
+    past: Vec<outside::Past>,
 }
 
 /// A model and its clock.
@@ -78,6 +85,11 @@ pub struct Session {
     options: Options,
     columns: Columns,
     carried: Option<Carried>,
+    hooks: Vec<outside::Hook>,
+    /// linear systems that commands asked for: name of their file where one was given, and whether matrices are wanted
+    pub linear: Vec<(Option<String>, bool, Linearization)>,
+    /// a sensor ended the run, not only its simulation
+    halted: bool,
 }
 
 /// Values of MODE.
@@ -85,6 +97,7 @@ const KINEMATIC: u32 = 1;
 const INITIAL_CONDITIONS: u32 = 3;
 const DYNAMIC: u32 = 4;
 const STATIC: u32 = 5;
+const LINEAR: u32 = 7;
 
 /// Default error of the integration when nobody says.
 const DEFAULT_ERROR: f64 = 1e-6;
@@ -94,7 +107,9 @@ impl Session {
     pub fn new(model: Model, name: &str, options: Options) -> Self {
         let units = units(&model);
         let mut run = Run::new(name, model.title.clone(), units);
-        let columns = Columns::new(&model, &mut run, &options.columns, options.full);
+        let columns = Columns::new(&model, &mut run, &options.columns, options.full, &|_, _| {
+            false
+        });
         run.record.repeats = options.repeat.max(1) as u32;
         Self {
             model,
@@ -102,7 +117,42 @@ impl Session {
             options,
             columns,
             carried: None,
+            hooks: Vec::new(),
+            linear: Vec::new(),
+            halted: false,
         }
+    }
+
+    /// Computes what `USER(…)` stands for by a closure.
+    ///
+    /// `name` is an element ("SFORCE/3"), the text of its ROUTINE, or the first number of `USER(…)`; `inputs` are expressions of the
+    /// function language whose values the closure is given, in this order. They may not depend on what it computes. See [`outside::Law`]
+    /// for what it has to fill in.
+    pub fn register(
+        &mut self,
+        name: &str,
+        inputs: &[&str],
+        law: impl Fn(&outside::Call<'_>, &mut [f64]) + Send + Sync + 'static,
+    ) {
+        self.hooks.push(outside::Hook {
+            name: name.to_string(),
+            inputs: inputs.iter().map(ToString::to_string).collect(),
+            law: std::sync::Arc::new(law),
+        });
+        if self.carried.is_none() {
+            let names: Vec<_> = self.hooks.iter().map(outside::Hook::as_name).collect();
+            let known = |id: u32, user: &crate::model::Formula| {
+                let element = format!("REQUEST/{id}");
+                names.iter().any(|n| n.stands_for(&element, user))
+            };
+            let (run, options) = (&mut self.run, &self.options);
+            self.columns = Columns::new(&self.model, run, &options.columns, options.full, &known);
+        }
+    }
+
+    /// Whether a sensor has ended the run.
+    pub fn halted(&self) -> bool {
+        self.halted
     }
 
     /// The clock.
@@ -110,12 +160,19 @@ impl Session {
         self.carried.as_ref().map_or(0.0, |c| c.t)
     }
 
-    /// Compiles the model for a MODE and brings it into its state.
-    fn prepare(&mut self, mode: u32) -> Result<(System, Assembly), Vec<Diagnostic>> {
+    /// Compiles the model for a MODE, with VARIABLEs that are inputs, and brings it into its state.
+    fn prepare(
+        &mut self,
+        mode: u32,
+        inputs: &[u32],
+    ) -> Result<(System, Assembly), Vec<Diagnostic>> {
         let options = build::Options {
             mode,
             extra: self.columns.extra.clone(),
             skip: self.options.skip.clone(),
+            hooks: self.hooks.iter().map(outside::Hook::as_name).collect(),
+            zero_user: self.options.zero_user,
+            plant_inputs: inputs.to_vec(),
             ..build::Options::default()
         };
         let mut scene = Scene::compile(&self.model, &options)?;
@@ -170,6 +227,7 @@ impl Session {
             }
         }
         scene.turns.clone_from(&turns);
+        scene.supplied_values = self.supplied(&scene, t, &q, &x)?;
         let first = self.carried.is_none();
         let misaligned = if first {
             misalignment::misaligned(&scene, &self.model)
@@ -184,7 +242,7 @@ impl Session {
             assembly.warnings.extend(turned);
         }
         let v = match v {
-            _ if mode == STATIC => vec![0.0; l.n_v],
+            _ if mode == STATIC || mode == LINEAR && self.is_at_rest() => vec![0.0; l.n_v],
             Some(v) => v,
             None => {
                 let at_rest = self.carried.as_ref().is_some_and(|c| c.at_rest);
@@ -192,7 +250,9 @@ impl Session {
                 assemble::velocities(&scene, given, t, &q, &x)?
             }
         };
-        let mut system = System::new(scene)?;
+        let mut system = System::with_hooks(scene, &self.hooks)?;
+        let past = self.carried.as_ref().map_or(&[][..], |c| &c.past);
+        system.outside.begin(t, past);
         let mut y = q;
         y.extend(v);
         y.extend(x);
@@ -212,6 +272,50 @@ impl Session {
         let y = row[l.y()].to_vec();
         system.count_turns(t, &y);
         Ok((system, assembly))
+    }
+
+    /// Numbers from outside where assembly begins: what sensors evaluated before, and what closures say of the configuration.
+    fn supplied(
+        &self,
+        scene: &Scene,
+        t: f64,
+        q: &[f64],
+        x: &[f64],
+    ) -> Result<Vec<f64>, Vec<Diagnostic>> {
+        let l = scene.layout;
+        let mut numbers = vec![0.0; l.len()];
+        let carried = self.carried.as_ref().map(|c| &c.supplied);
+        if let Some(values) = carried.filter(|v| v.len() == l.n_supplied) {
+            numbers[l.supplied()].copy_from_slice(values);
+        }
+        if !scene.hooks.is_empty() {
+            numbers[0] = t;
+            numbers[l.q()].copy_from_slice(q);
+            numbers[l.x()].copy_from_slice(x);
+            numbers[l.turns()].copy_from_slice(&scene.turns);
+            let mut outside = outside::Outside::new(scene, &self.hooks).map_err(complaints)?;
+            outside.evaluate(&mut numbers, true);
+        }
+        Ok(numbers[l.supplied()].to_vec())
+    }
+
+    fn is_at_rest(&self) -> bool {
+        self.carried.as_ref().is_some_and(|c| c.at_rest)
+    }
+
+    /// Linearizes the model about its present state; before any simulation, about its initial conditions.
+    ///
+    /// # Errors
+    /// What is wrong in the model, and what has no derivatives.
+    pub fn linearize(&mut self, wanted: &linear::Wanted) -> Result<Linearization, Vec<Diagnostic>> {
+        let inputs = linear::inputs(&self.model, wanted).map_err(|d| vec![d])?;
+        let (mut system, assembly) = self.prepare(LINEAR, &inputs)?;
+        self.first_facts(&system, &assembly);
+        let found = linear::linearize(&mut system, &self.model, wanted)?;
+        for line in found.table().lines() {
+            self.run.log.push(Event::Info(line.to_string()));
+        }
+        Ok(found)
     }
 
     /// IC, ICTRAN, ICROT of joints that carry a part: where assembly begins.
@@ -279,7 +383,7 @@ impl Session {
             Analysis::Static => STATIC,
             Analysis::Dynamic | Analysis::Transient => DYNAMIC,
         };
-        let (mut system, assembly) = self.prepare(mode)?;
+        let (mut system, assembly) = self.prepare(mode, &[])?;
         let mut analysis = analysis;
         if analysis == Analysis::Transient {
             analysis = if assembly.freedom == 0 {
@@ -305,7 +409,7 @@ impl Session {
             analysis = Analysis::Kinematic;
         }
         if analysis == Analysis::Kinematic && mode != KINEMATIC {
-            (system, _) = self.prepare(KINEMATIC)?;
+            (system, _) = self.prepare(KINEMATIC, &[])?;
         }
         self.first_facts(&system, &assembly);
         for warning in &assembly.warnings {
@@ -395,7 +499,9 @@ impl Session {
             system.numbers.copy_from_slice(&first);
             let clock = Instant::now();
             // states go on by integration, which keeps positions on the rows as well
-            trajectory = if kind == Kind::Kinematic && system.scene.layout.n_x == 0 {
+            let l = system.scene.layout;
+            let moved = l.n_x > 0 || l.n_q > 0 && system.outside.remembers();
+            trajectory = if kind == Kind::Kinematic && !moved {
                 kinematics::trace(system, &outputs, settings.h_max, watch)
             } else {
                 dynamics::integrate(system, &outputs, &settings, watch)
@@ -407,6 +513,14 @@ impl Session {
         self.rows(kind, program, &trajectory.rows);
         self.run.log.push(Event::End);
         let reached = trajectory.t.last().copied().unwrap_or(start);
+        for &(t, k) in &trajectory.triggered {
+            let sensor = &system.scene.sensors[k];
+            let message = format!("SENSOR/{} is triggered at time {t}", sensor.id);
+            self.run.log.push(Event::Info(message));
+        }
+        if let Some(Ended::Sensor(k)) = trajectory.ended {
+            self.halted |= system.scene.sensors[k].halt;
+        }
         let (status, reason, worst) = self.outcome(system, &trajectory);
         self.drift(system, &first, &trajectory.rows);
         let last = trajectory.rows.last().cloned().unwrap_or(first);
@@ -574,6 +688,8 @@ impl Session {
         self.carried = Some(Carried {
             t: numbers[0],
             turns: numbers[system.scene.layout.turns()].to_vec(),
+            supplied: numbers[system.scene.layout.supplied()].to_vec(),
+            past: system.outside.past(),
             names: unknown_names(&system.scene),
             at_rest: false,
             parts,
@@ -616,6 +732,12 @@ impl Session {
                 "interrupted; the results so far are kept".into(),
                 Vec::new(),
             ),
+            Some(Ended::Sensor(k)) => {
+                let name = format!("SENSOR/{}", system.scene.sensors[*k].id);
+                let at = trajectory.t.last().copied().unwrap_or(self.time());
+                let reason = format!("{name} ended the simulation at time {at}");
+                (Status::Completed, reason, Vec::new())
+            }
             Some(Ended::Stop(stop)) => {
                 let (status, sentence, worst) = explain(&system.scene, stop);
                 (status, sentence, vec![worst])

@@ -608,7 +608,7 @@ impl<'a> Settler<'a> {
         if let (Some(k), true) = (state, worst.as_ref().is_none_or(|w| w.0 < 1e-9)) {
             let place = self.states[k];
             let found = scene.differentials.iter().find(|d| d.state == Some(place));
-            let name = found.map_or_else(String::new, |d| format!("DIFF/{}", d.id));
+            let name = found.map_or_else(String::new, |d| d.name.clone());
             let sentence = format!("no equilibrium: {name} keeps the rate {:.6e}", p.state[k]);
             return NoEquilibrium::Unbalanced(sentence, name);
         }

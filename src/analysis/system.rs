@@ -14,6 +14,8 @@ use crate::scene::programs::{self, Switching, record};
 use crate::scene::{Scene, Source};
 
 use super::assemble::Mover;
+use super::outside::{Hook, Outside};
+use super::sensors::Sensors;
 use super::unknowns::{Unknowns, WIDTH};
 
 /// A scene with its programs, ready to be integrated.
@@ -29,6 +31,10 @@ pub struct System {
     switch_numbers: Vec<f64>,
     /// unknowns of loops that are not linear
     unknowns: Option<Unknowns>,
+    /// values of the past, results of closures
+    pub outside: Outside,
+    /// what is watched
+    pub sensors: Sensors,
     /// the loop that had no solution at the last numbers
     unsolved: Option<usize>,
     /// angles whose turns are counted
@@ -117,7 +123,15 @@ impl System {
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub fn new(mut scene: Scene) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(scene: Scene) -> Result<Self, Vec<Diagnostic>> {
+        Self::with_hooks(scene, &[])
+    }
+
+    /// As [`System::new`], with the closures that the scene's hooks refer to.
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub fn with_hooks(mut scene: Scene, hooks: &[Hook]) -> Result<Self, Vec<Diagnostic>> {
         usual_pivots(&mut scene);
         let rate = shortest_rate(&mut scene)?;
         let any = (0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true));
@@ -133,6 +147,8 @@ impl System {
         };
         let switching = programs::switching(&scene).map_err(complaints)?;
         let unknowns = Unknowns::new(&scene).map_err(complaints)?;
+        let outside = Outside::new(&scene, hooks).map_err(complaints)?;
+        let sensors = Sensors::new(&scene).map_err(complaints)?;
         let counted = if scene.counted.is_empty() {
             None
         } else {
@@ -148,12 +164,17 @@ impl System {
         for (z, u) in numbers[l.loops()].iter_mut().zip(&scene.loops) {
             *z = u.guess;
         }
+        for (x, value) in numbers[l.supplied()].iter_mut().zip(&scene.supplied_values) {
+            *x = *value;
+        }
         Ok(Self {
             rate,
             projection,
             switching,
             switch_numbers: Vec::new(),
             unknowns,
+            outside,
+            sensors,
             unsolved: None,
             counted,
             numbers,
@@ -257,13 +278,19 @@ impl System {
             y = kept;
         }
         self.set(t, &y);
+        if !self.outside.is_empty() {
+            self.outside.evaluate(&mut self.numbers, true);
+        }
         self.numbers.clone()
     }
 
-    fn set(&mut self, t: f64, y: &[f64]) {
+    pub(super) fn set(&mut self, t: f64, y: &[f64]) {
         self.numbers[Layout::TIME] = t;
         let places = self.scene.layout.y();
         self.numbers[places].copy_from_slice(y);
+        if !self.outside.is_empty() {
+            self.outside.evaluate(&mut self.numbers, false);
+        }
         if let Some(unknowns) = &mut self.unknowns {
             self.unsolved = unknowns.solve(&mut self.numbers).err();
         }
@@ -274,17 +301,21 @@ impl System {
     /// # Errors
     /// The index of a loop without a solution near, in [`Scene::loops`].
     pub fn resolve(&mut self) -> Result<(), usize> {
+        if !self.outside.is_empty() {
+            self.outside.evaluate(&mut self.numbers, true);
+        }
         if let Some(unknowns) = &mut self.unknowns {
             self.unsolved = unknowns.solve(&mut self.numbers).err();
         }
         self.unsolved.map_or(Ok(()), Err)
     }
 
-    /// Derivatives of the loops' unknowns along the directions of a row of numbers, into their places; `first`: at new numbers.
+    /// Derivatives of closures' results and loops' unknowns along the directions of a row of numbers, into their places; `first`: at new numbers.
     ///
     /// # Errors
     /// The index of a loop that nothing determines, in [`Scene::loops`].
     pub fn follow_along(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
+        self.outside.follow(numbers, first);
         match &mut self.unknowns {
             Some(unknowns) => unknowns.follow(numbers, first),
             None => Ok(()),
@@ -294,6 +325,7 @@ impl System {
     /// The same for the system's own numbers.
     fn follow(&mut self, first: bool) -> Result<(), Failure> {
         let n = self.scene.layout.y().len();
+        self.outside.follow(&mut self.dual_numbers, first);
         match &mut self.unknowns {
             Some(unknowns) => unknowns
                 .follow(&mut self.dual_numbers, first)
@@ -457,6 +489,7 @@ impl Ode for System {
                     *entry = out.eps[k - first];
                 }
             }
+            self.outside.forget(&mut self.dual_numbers);
             if let Some(unknowns) = &self.unknowns {
                 unknowns.forget(&mut self.dual_numbers);
             }

@@ -13,6 +13,7 @@ mod fmt;
 pub mod formula;
 mod functions;
 pub mod interrupt;
+mod linear;
 mod plot;
 pub mod progress;
 pub mod render;
@@ -43,6 +44,7 @@ enum Verb {
     Explain(explain::Args),
     Fmt(fmt::Args),
     Functions(functions::Args),
+    Linear(linear::Args),
     Plot(plot::Args),
     Repl(repl::Args),
     Run(run::Args),
@@ -149,6 +151,7 @@ pub fn main() -> ExitCode {
         Verb::Explain(args) => explain::run(args),
         Verb::Fmt(args) => fmt::run(args),
         Verb::Functions(args) => functions::run(args),
+        Verb::Linear(args) => linear::run(args),
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),
         Verb::Run(args) => run::run(args),

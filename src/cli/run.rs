@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 
-use super::{Exit, Failure, Outcome, interrupt, remark, say, summary};
+use super::{Exit, Failure, Outcome, interrupt, linear, remark, say, summary};
 use crate::analysis::dynamics::Watch;
 use crate::analysis::script::obey;
 use crate::analysis::session::{Options, Session};
@@ -51,6 +51,9 @@ pub struct Args {
     /// Leave out elements of this kind where they are not solved (repeatable)
     #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
     skip: Vec<String>,
+    /// Take what USER(…) would compute as zero
+    #[arg(long = "zero-user")]
+    zero_user: bool,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -119,6 +122,7 @@ pub fn run(args: &Args) -> Outcome {
         columns: args.columns.clone(),
         full,
         skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
+        zero_user: args.zero_user,
     };
     let mut session = Session::new(model, &base, options);
     session.run.record.model = args.model.display().to_string();
@@ -161,6 +165,7 @@ pub fn run(args: &Args) -> Outcome {
     });
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
     let mut written = write(&mut session.run, &dir, full)?;
+    written.extend(linear::write(&session, &dir)?);
     if args.json {
         say(&json::text(&json::record(&session.run)));
     } else if !args.quiet {
@@ -184,7 +189,7 @@ pub(super) struct Job {
     pub steps: Vec<Step>,
 }
 
-fn exit(status: Status) -> Exit {
+pub(super) fn exit(status: Status) -> Exit {
     match status {
         Status::Completed => Exit::Done,
         Status::Model => Exit::Model,
@@ -234,7 +239,7 @@ fn alone(args: &Args) -> Result<Job, Failure> {
     })
 }
 
-fn stem(path: &Path) -> String {
+pub(super) fn stem(path: &Path) -> String {
     path.file_stem()
         .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }

@@ -296,6 +296,8 @@ pub enum Event {
         /// such as (`Zi.Xj`, `JOINT_2`)
         equations: Vec<(String, String)>,
     },
+    /// something happened
+    Info(String),
     /// worth knowing; may have several lines
     Warning(String),
     /// could not be done; may have several lines

@@ -70,6 +70,7 @@ fn write_event(text: &mut String, event: &Event) -> std::fmt::Result {
             text.push('\n');
             Ok(())
         }
+        Event::Info(message) => writeln!(text, "\n  {message}"),
         Event::Warning(message) => boxed(text, "WARNING", message),
         Event::Error(message) => boxed(text, "ERROR", message),
         Event::InitialConditions { time, iterations } => {

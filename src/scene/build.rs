@@ -4,18 +4,19 @@ use super::compile::{Compiler, NamedTie, part_name};
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
 use super::loops::{self, Key};
+use super::outside::{HookName, SceneDelay, SceneHook, Supplied};
 use super::reads::{Allowed, offence};
 use super::sweep::Freedom;
 use super::{
-    ConstraintElement, Counted, Formula, LinkIx, LinkMotion, Row, RowKind, Scene,
-    SceneDifferential, SceneMotion, Source,
+    ConstraintElement, Counted, Entry, Formula, LinkIx, LinkMotion, Row, RowKind, Scene,
+    SceneMotion, Source,
 };
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::interpolation::Bindings;
-use crate::expr::measures::Measure;
-use crate::expr::program::Input;
+use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
 use crate::model::{
-    ArrayKind, Driven, Formula as ModelFormula, JointKind, Level, MarkerOwner, Model, VectorForce,
+    ArrayKind, Driven, Formula as ModelFormula, JointKind, Level, MarkerOwner, Model, RequestKind,
+    VectorForce,
 };
 use crate::physics::bushing::Bushing;
 use crate::physics::coupler::Gauge;
@@ -38,6 +39,12 @@ pub struct Options {
     pub extra: Vec<(String, String)>,
     /// keywords of statements that are left out where they are not solved
     pub skip: BTreeSet<String>,
+    /// closures for `USER(…)`
+    pub hooks: Vec<HookName>,
+    /// what `USER(…)` would compute is zero
+    pub zero_user: bool,
+    /// VARIABLEs to which numbers from outside are added: inputs of a linear system
+    pub plant_inputs: Vec<u32>,
 }
 
 /// Keeps an element of a model unless it has been switched off.
@@ -64,6 +71,8 @@ impl Scene {
             model,
             bindings,
             unusable,
+            hooks: &options.hooks,
+            zero_user: options.zero_user,
         };
         for d in super::unsupported::report(model, &options.skip) {
             match d.severity {
@@ -89,8 +98,10 @@ impl Scene {
         b.forces(&mut c);
         b.contacts(&mut c, &options.skip);
         b.systems(&mut c);
+        b.plant_inputs(&mut c, &options.plant_inputs);
         b.timed(&mut c);
         b.general(&mut c);
+        b.user_requests(&mut c);
         for (name, text) in &options.extra {
             let f = b.formula(&mut c, name, &ModelFormula::text(text.clone()));
             b.scene.extra.push(f);
@@ -166,6 +177,8 @@ pub(super) struct Builder<'m> {
     bindings: Bindings,
     /// splines that cannot be used: told when something asks for one
     unusable: Vec<Diagnostic>,
+    hooks: &'m [HookName],
+    pub(super) zero_user: bool,
 }
 
 impl<'m> Builder<'m> {
@@ -177,7 +190,8 @@ impl<'m> Builder<'m> {
         }
         for (&id, array) in &self.model.arrays {
             if let ArrayKind::Ic(numbers) = &array.kind {
-                self.scene.arrays.insert(id, numbers.clone());
+                let numbers = numbers.iter().copied().map(Entry::Number).collect();
+                self.scene.arrays.insert(id, numbers);
             }
         }
     }
@@ -189,31 +203,26 @@ impl<'m> Builder<'m> {
         name: &str,
         formula: &ModelFormula,
     ) -> usize {
-        let text = match formula {
-            ModelFormula::Expression { text, .. } => text.clone(),
-            ModelFormula::User { .. } => {
-                c.errors.push(
-                    Diagnostic::error(
-                        "user_routine",
-                        "USER needs a routine that is not part of the dataset",
-                    )
-                    .element(name)
-                    .help(
-                        "register a closure for it through the library, or switch the element off",
-                    ),
-                );
-                "0".into()
-            }
-        };
-        match super::formula::compile(&text, &self.bindings) {
-            Ok(program) => {
-                self.scene.formulas.push(Formula {
-                    name: name.to_string(),
-                    text,
-                    program,
-                });
-                self.scene.formulas.len() - 1
-            }
+        match formula {
+            ModelFormula::Expression { text, .. } => self.compiled(c, name, text),
+            ModelFormula::User { .. } => self.user(c, name, formula, 1, &[])[0],
+        }
+    }
+
+    /// A formula that has been compiled; its index.
+    fn push(&mut self, name: &str, text: &str, program: Program, delayed: Vec<usize>) -> usize {
+        self.scene.formulas.push(Formula {
+            name: name.to_string(),
+            text: text.to_string(),
+            program,
+            delayed,
+        });
+        self.scene.formulas.len() - 1
+    }
+
+    fn compiled(&mut self, c: &mut Compiler, name: &str, text: &str) -> usize {
+        let compiled = match super::formula::compile(text, &self.bindings) {
+            Ok(compiled) => compiled,
             Err(mut d) => {
                 d.element = Some(name.to_string());
                 if d.code == "unknown_element" {
@@ -221,7 +230,98 @@ impl<'m> Builder<'m> {
                 }
                 c.errors.push(d);
                 // never evaluated: a scene with errors is not made
-                usize::MAX
+                return usize::MAX;
+            }
+        };
+        // all parts of an expression number its delayed values alike
+        let first = self.scene.delays.len();
+        let n = compiled.delays.len();
+        let places: Vec<usize> = (0..n)
+            .map(|k| self.supply(Supplied::Delay(first + k)))
+            .collect();
+        for programs in compiled.delays {
+            let [expression, delay, history] =
+                programs.map(|p| self.push(name, text, p, places.clone()));
+            self.scene.delays.push(SceneDelay {
+                expression,
+                delay,
+                history,
+            });
+        }
+        self.push(name, text, compiled.program, places)
+    }
+
+    /// A place for a number from outside.
+    pub(super) fn supply(&mut self, what: Supplied) -> usize {
+        self.scene.supplied.push(what);
+        self.scene.layout.n_supplied = self.scene.supplied.len();
+        self.scene.supplied.len() - 1
+    }
+
+    /// `n` numbers that a closure of the user's computes for an element, as formulas; `reads`: what it is given beside its own
+    /// inputs.
+    pub(super) fn user(
+        &mut self,
+        c: &mut Compiler,
+        name: &str,
+        formula: &ModelFormula,
+        n: usize,
+        reads: &[String],
+    ) -> Vec<usize> {
+        let ModelFormula::User { constants, .. } = formula else {
+            return vec![self.formula(c, name, formula); n];
+        };
+        let element = name.split(' ').next().unwrap_or(name).to_string();
+        if self.zero_user {
+            return vec![self.compiled(c, name, "0"); n];
+        }
+        let known = (self.hooks.iter()).position(|h| h.stands_for(&element, formula));
+        let Some(closure) = known else {
+            let message = "USER needs a routine that is not part of the dataset";
+            c.errors.push(Diagnostic::error("user_routine", message).element(name).help(
+                "register a closure for it through the library, switch the element off, or take what USER would compute as zero (--zero-user)",
+            ));
+            return vec![usize::MAX; n];
+        };
+        let texts = self.hooks[closure].inputs.iter().chain(reads);
+        let inputs = texts.map(|text| self.compiled(c, name, text)).collect();
+        let hook = self.scene.hooks.len();
+        let places: Vec<usize> = (0..n)
+            .map(|k| self.supply(Supplied::Hook(hook, k)))
+            .collect();
+        self.scene.hooks.push(SceneHook {
+            closure,
+            output_only: element.starts_with("REQUEST/"),
+            element,
+            constants: constants.clone(),
+            inputs,
+            n,
+            place: places[0],
+        });
+        let text = format!("USER, {}", self.hooks[closure].name);
+        places
+            .into_iter()
+            .map(|place| {
+                let mut recorder = Recorder::new(Folding::Strict);
+                let value = recorder.input(Input::Delayed(0));
+                self.push(name, &text, recorder.finish(&[value]), vec![place])
+            })
+            .collect()
+    }
+
+    /// REQUEST, FUNCTION=USER: eight components, where there is a closure for it.
+    fn user_requests(&mut self, c: &mut Compiler) {
+        for (id, request) in active(self.model, "REQUEST", &self.model.requests) {
+            let RequestKind::User(user) = &request.kind else {
+                continue;
+            };
+            // one that nobody computes harms nobody
+            let before = c.errors.len();
+            let all = self.user(c, &format!("REQUEST/{id} FUNCTION"), user, 8, &[]);
+            if c.errors.len() == before {
+                self.scene.requests.insert(id, all);
+            } else {
+                c.errors.truncate(before);
             }
         }
     }
@@ -230,7 +330,14 @@ impl<'m> Builder<'m> {
         let mut drives = Vec::new();
         for (id, motion) in active(self.model, "MOTION", &self.model.motions) {
             let name = format!("MOTION/{id}");
-            let formula = self.formula(c, &format!("{name} FUNCTION"), &motion.function);
+            // a closure yields the value and its first two derivatives
+            let formula = match &motion.function {
+                user @ ModelFormula::User { .. } => {
+                    let all = self.user(c, &format!("{name} FUNCTION"), user, 3, &[]);
+                    all[0]
+                }
+                text => self.formula(c, &format!("{name} FUNCTION"), text),
+            };
             let m = self.scene.motions.len();
             let places = match motion.level {
                 Level::Displacement => 0,
@@ -353,12 +460,16 @@ impl<'m> Builder<'m> {
     /// Motions are prescribed by time alone.
     fn timed(&mut self, c: &mut Compiler) {
         for motion in &self.scene.motions {
+            // a closure tells the derivatives itself
+            if self.scene.computed(motion.formula).is_some() {
+                continue;
+            }
             if let Some(offence) = offence(&self.scene, motion.formula, Allowed::Time) {
                 let what = format!("its function reads {}: {}", offence.what, offence.why);
                 c.errors.push(
                     Diagnostic::error("motion_reads", what)
                         .element(format!("MOTION/{}", motion.id))
-                        .help("a MOTION is prescribed by TIME alone; relate places to each other by a COUPLER or GCON, react to what happens by a force"),
+                        .help("a MOTION is prescribed by TIME and states that depend on nothing else; relate places to each other by a COUPLER or GCON, react to what happens by a force"),
                 );
             }
         }
@@ -528,10 +639,18 @@ impl<'m> Builder<'m> {
 
     fn vector(&mut self, c: &mut Compiler, keyword: &'static str, id: u32, f: &VectorForce) {
         let name = format!("{keyword}/{id}");
-        if let Some(user) = &f.user {
-            self.formula(c, &format!("{name} FUNCTION"), user);
-        }
         let mut formulas = [None; 6];
+        if let Some(user) = &f.user {
+            let places = match keyword {
+                "VFORCE" => 0..3,
+                "VTORQUE" => 3..6,
+                _ => 0..6,
+            };
+            let all = self.user(c, &format!("{name} FUNCTION"), user, places.len(), &[]);
+            for (place, formula) in places.zip(all) {
+                formulas[place] = Some(formula);
+            }
+        }
         for (k, part) in f.force.iter().chain(&f.torque).enumerate() {
             if let Some(part) = part {
                 let component = ["FX", "FY", "FZ", "TX", "TY", "TZ"][k];
@@ -560,64 +679,6 @@ impl<'m> Builder<'m> {
             reaction,
             law,
         });
-    }
-
-    /// VARIABLE and DIFF.
-    fn systems(&mut self, c: &mut Compiler) {
-        let model = self.model;
-        for (id, variable) in active(model, "VARIABLE", &model.variables) {
-            let f = self.formula(c, &format!("VARIABLE/{id} FUNCTION"), &variable.function);
-            self.scene.variables.insert(id, f);
-        }
-        for (id, d) in active(model, "DIFF", &model.differentials) {
-            let name = format!("DIFF/{id}");
-            let formula = self.formula(c, &format!("{name} FUNCTION"), &d.function);
-            self.scene.differentials.push(SceneDifferential {
-                id,
-                state: None,
-                formula,
-                initial: d.ic.map(|x| x.unwrap_or(0.0)),
-                static_hold: d.static_hold,
-                implicit: d.implicit,
-            });
-        }
-        for d in 0..self.scene.differentials.len() {
-            let SceneDifferential {
-                id,
-                formula,
-                implicit,
-                ..
-            } = self.scene.differentials[d];
-            if !implicit || self.reads_rate(formula, id) {
-                self.scene.differentials[d].state = Some(self.scene.layout.n_x);
-                self.scene.layout.n_x += 1;
-            }
-        }
-    }
-
-    /// Whether a formula reads DIF1 of an equation, itself or through VARIABLEs and other rates.
-    fn reads_rate(&self, formula: usize, id: u32) -> bool {
-        let mut seen = BTreeSet::new();
-        let mut next = vec![formula];
-        while let Some(f) = next.pop() {
-            let Some(formula) = self.scene.formulas.get(f).filter(|_| seen.insert(f)) else {
-                continue;
-            };
-            for input in formula.program.inputs() {
-                match input {
-                    Input::Measure(Measure::Dif1, [d, ..]) if *d == id => return true,
-                    Input::Measure(Measure::Dif1, [d, ..]) => {
-                        let other = self.scene.differentials.iter().find(|x| x.id == *d);
-                        next.extend(other.map(|x| x.formula));
-                    }
-                    Input::Measure(Measure::Varval, [v, ..]) => {
-                        next.extend(self.scene.variables.get(v));
-                    }
-                    _ => {}
-                }
-            }
-        }
-        false
     }
 
     /// Unknowns that functions define through each other.
@@ -704,7 +765,7 @@ pub fn unknown_names(scene: &Scene) -> Vec<String> {
     }
     for d in &scene.differentials {
         if let Some(state) = d.state {
-            names[l.n_q + l.n_v + state] = format!("DIFF/{}", d.id);
+            names[l.n_q + l.n_v + state].clone_from(&d.name);
         }
     }
     for m in &scene.motions {

@@ -40,22 +40,38 @@ pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
     (bindings, errors)
 }
 
+/// An expression as programs.
+pub(super) struct Compiled {
+    /// its value
+    pub program: Program,
+    /// of each value of the past that it reads: what is remembered, how long ago, what it was before the start
+    pub delays: Vec<[Program; 3]>,
+}
+
 /// Compiles the text of an expression.
 ///
 /// # Errors
 /// What the language has to say about it; columns count from the beginning of the text.
-pub(super) fn compile(text: &str, bindings: &Bindings) -> Result<Program, Diagnostic> {
+pub(super) fn compile(text: &str, bindings: &Bindings) -> Result<Compiled, Diagnostic> {
     let ast = parse(text, Dialect::Function, Profile::default())?;
-    compile::compile(&[&ast], bindings)
+    let mut compiler = compile::Compiler::new(bindings);
+    let value = compiler.add(&ast)?;
+    let delays = compiler.delays().iter();
+    let delays = delays.map(|d| [d.expression, d.delay, d.history].map(|v| compiler.finish(&[v])));
+    Ok(Compiled {
+        program: compiler.finish(&[value]),
+        delays: delays.collect(),
+    })
 }
 
 /// A formula that is a number; `None` when it has no text because it is not finite.
 pub(super) fn constant(value: f64) -> Option<Formula> {
     let text = format!("{value:e}");
-    let program = compile(&text, &Bindings::default()).ok()?;
+    let program = compile(&text, &Bindings::default()).ok()?.program;
     Some(Formula {
         name: "a constant".into(),
         text,
         program,
+        delayed: Vec::new(),
     })
 }

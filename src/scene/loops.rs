@@ -91,7 +91,7 @@ fn unknown(scene: &Scene, key: Key, guesses: &dyn Fn(&Key) -> f64) -> Unknown {
     let name = match key {
         Key::Formula(f) => scene.formulas[f].name.clone(),
         Key::Measure(m, ids) => super::reads::input_name(Input::Measure(m, ids)),
-        Key::Rate(d) | Key::Value(d) => format!("DIFF/{}", scene.differentials[d].id),
+        Key::Rate(d) | Key::Value(d) => scene.differentials[d].name.clone(),
     };
     Unknown {
         key,

@@ -16,10 +16,12 @@ mod formula;
 mod general;
 pub mod layout;
 pub mod loops;
+pub mod outside;
 pub mod programs;
 mod reads;
 pub mod solve;
 pub mod sweep;
+mod systems;
 mod unsupported;
 
 use crate::expr::measures::Measure;
@@ -240,6 +242,19 @@ pub struct Formula {
     pub text: String,
     /// its code; asks for its inputs by [`Input`](crate::expr::program::Input)
     pub program: Program,
+    /// where its delayed values stand among the numbers from outside
+    pub delayed: Vec<usize>,
+}
+
+/// An entry of an ARRAY.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Entry {
+    /// it stands in the dataset
+    Number(f64),
+    /// a state: index in [`Scene::differentials`]
+    State(usize),
+    /// an input or output: index in [`Scene::formulas`]
+    Formula(usize),
 }
 
 /// A MOTION.
@@ -261,11 +276,13 @@ pub struct SceneMotion {
     pub offset: f64,
 }
 
-/// A DIFF: `ẋ = function`.
+/// A differential equation `ẋ = function`: of a DIFF, or a state of another element.
 #[derive(Clone, Debug)]
 pub struct SceneDifferential {
-    /// user's number
+    /// user's number of a DIFF, else 0
     pub id: u32,
+    /// "DIFF/3", "LSE/1 state 2"
+    pub name: String,
     /// place in x; `None`: implicit without DIF1, an algebraic equation
     pub state: Option<usize>,
     /// index in [`Scene::formulas`]: the rate, or what is zero
@@ -332,8 +349,22 @@ pub struct Scene {
     pub differentials: Vec<SceneDifferential>,
     /// user's VARIABLE number → formula
     pub variables: BTreeMap<u32, usize>,
-    /// user's ARRAY number → numbers
-    pub arrays: BTreeMap<u32, Vec<f64>>,
+    /// user's ARRAY number → entries
+    pub arrays: BTreeMap<u32, Vec<Entry>>,
+    /// (POUTPUT rather than PINPUT, user's number) → formulas
+    pub plants: BTreeMap<(bool, u32), Vec<usize>>,
+    /// sensors
+    pub sensors: Vec<outside::SceneSensor>,
+    /// values of the past
+    pub delays: Vec<outside::SceneDelay>,
+    /// calls of the user's closures
+    pub hooks: Vec<outside::SceneHook>,
+    /// user's REQUEST number → formulas, of those that a closure computes
+    pub requests: BTreeMap<u32, Vec<usize>>,
+    /// numbers from outside, in the order of their places
+    pub supplied: Vec<outside::Supplied>,
+    /// what these are before the first step; empty: zeros   (n_supplied)
+    pub supplied_values: Vec<f64>,
     /// all expressions
     pub formulas: Vec<Formula>,
     /// of these, the ones asked for beside those of the model
@@ -410,6 +441,13 @@ impl Scene {
             }
         }
         scene
+    }
+
+    /// Where the results of a closure of the user's stand among the numbers from outside, when a formula is one of them: for a MOTION
+    /// the value and its two derivatives in time.
+    pub fn computed(&self, formula: usize) -> Option<usize> {
+        let place = *self.formulas.get(formula)?.delayed.first()?;
+        matches!(self.supplied.get(place), Some(outside::Supplied::Hook(..))).then_some(place)
     }
 
     /// What a motion's displacement is in the configuration of the dataset, where it drives a coordinate of the forest.

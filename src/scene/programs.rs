@@ -103,9 +103,24 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
                 sources.extend(action.force.0.into_iter().chain(action.torque.0));
             }
             sources.extend(at.loop_formulas());
+            sources.extend(scene.sensors.iter().map(|s| at.formula(s.formula)));
+            // a sensor is triggered where what it watches passes its value
+            sources.extend(scene.sensors.iter().map(|s| {
+                let beyond = at.formula(s.formula) - Sym::Constant(s.value);
+                if s.angular { beyond.sin() } else { beyond }
+            }));
             sources
         },
-        |builder, values| builder.switching(&values),
+        |builder, values| {
+            let watched = values[values.len() - scene.sensors.len()..].iter().copied();
+            let mut switches = builder.switching(&values);
+            for value in watched {
+                if builder.constant_of(value).is_none() && !switches.contains(&value) {
+                    switches.push(value);
+                }
+            }
+            switches
+        },
     );
     if !complaints.is_empty() {
         return Err(complaints);

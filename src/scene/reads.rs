@@ -4,7 +4,7 @@
 //! function of places from how markers move; a function that reads velocities, forces or states has no such rates
 //! and is refused, with the name of what it reads and through which VARIABLE.
 
-use super::Scene;
+use super::{Entry, Scene};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
 
@@ -54,6 +54,30 @@ fn search(
                 }),
             };
         }
+        if let (Some(equation), Allowed::Time) = (state(scene, *input), allowed) {
+            let d = &scene.differentials[equation];
+            if d.implicit || d.state.is_none() {
+                return Some(Offence {
+                    what: input_name(*input),
+                    why: "its equation does not tell its rate",
+                });
+            }
+            // a rate may depend on the state itself
+            if open.contains(&d.formula) {
+                return None;
+            }
+            return search(scene, d.formula, allowed, open);
+        }
+        if let Some(Entry::Formula(f)) = entry(scene, *input) {
+            return if open.contains(&f) {
+                Some(Offence {
+                    what: input_name(*input),
+                    why: "it depends on itself",
+                })
+            } else {
+                search(scene, f, allowed, open)
+            };
+        }
         let why = refused(scene, *input, allowed)?;
         Some(Offence {
             what: input_name(*input),
@@ -62,6 +86,26 @@ fn search(
     });
     open.pop();
     found
+}
+
+/// The entry of an ARRAY that an input is.
+fn entry(scene: &Scene, input: Input) -> Option<Entry> {
+    let Input::Measure(Measure::Aryval, [id, k, ..]) = input else {
+        return None;
+    };
+    let entries = scene.arrays.get(&id)?;
+    entries.get((k as usize).checked_sub(1)?).copied()
+}
+
+/// The differential equation whose state an input is.
+fn state(scene: &Scene, input: Input) -> Option<usize> {
+    match (entry(scene, input), input) {
+        (Some(Entry::State(d)), _) => Some(d),
+        (_, Input::Measure(Measure::Dif, [id, ..])) => {
+            scene.differentials.iter().position(|d| d.id == id)
+        }
+        _ => None,
+    }
 }
 
 fn within(offence: Offence, variable: u32) -> Offence {
@@ -78,10 +122,9 @@ fn within(offence: Offence, variable: u32) -> Offence {
 fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<&'static str> {
     let measure = match input {
         Input::Time | Input::Mode => return None,
-        Input::Measure(measure, [id, k, ..]) => {
+        Input::Measure(measure, _) => {
             if measure == Measure::Aryval {
-                let held = scene.arrays.get(&id);
-                let known = held.is_some_and(|a| (1..=a.len()).contains(&(k as usize)));
+                let known = matches!(entry(scene, input), Some(Entry::Number(_)));
                 return (!known).then_some("it is no number of an ARRAY with NUMBERS");
             }
             measure

@@ -14,7 +14,6 @@ fn unsolved(model: &Model) -> Vec<(&'static str, u32)> {
     }
     kinds!(
         "PTCV" points_on_curves, "CVCV" curves_on_curves, "FRICTION" frictions,
-        "LSE" linear_systems, "GSE" general_systems, "TFSISO" transfer_functions, "SENSOR" sensors,
     );
     const FLEXIBLE: [&str; 9] = [
         "FLEX_BODY",

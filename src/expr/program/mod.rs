@@ -166,6 +166,10 @@ impl Program {
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
     }
+    /// Whether the input at a position among them is read at all.
+    pub fn reads(&self, position: usize) -> bool {
+        self.used.iter().any(|&k| k as usize == position)
+    }
     /// How many numbers come out.
     pub fn n_outputs(&self) -> usize {
         self.outputs.len()

@@ -69,7 +69,10 @@ impl<S: Scalar> Equations<'_, S> {
                     variable.map_or_else(nothing, |&v| self.traced(v, open))
                 }
                 Input::Measure(Measure::Aryval, [id, k, ..]) => {
-                    let number = self.array(id, k).unwrap_or(f64::NAN);
+                    let number = match self.entry(id, k) {
+                        Some(crate::scene::Entry::Number(x)) => x,
+                        _ => f64::NAN,
+                    };
                     Traced::of_time(Jet::constant(number))
                 }
                 Input::Measure(measure, ids) => {

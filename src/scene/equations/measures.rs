@@ -5,7 +5,8 @@ use crate::expr::measures::{Family, Measure};
 use crate::physics::coupler::Gauge;
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
-use crate::scene::{Counted, sweep};
+use crate::scene::outside::Supplied;
+use crate::scene::{Counted, Entry, sweep};
 use crate::space::kinematic;
 
 impl<S: Scalar> Equations<'_, S> {
@@ -97,10 +98,31 @@ impl<S: Scalar> Equations<'_, S> {
                 Some(&f) => self.formula(f),
                 None => self.complain(format!("{asked_by}: VARIABLE/{id} does not exist")),
             },
-            Measure::Aryval => match self.array(id, k) {
-                Some(x) => S::constant(x),
+            Measure::Aryval => match self.entry(id, k) {
+                Some(Entry::Number(x)) => S::constant(x),
+                Some(Entry::State(d)) => self.state_of(d),
+                Some(Entry::Formula(f)) => self.formula(f),
                 None => self.complain(format!("{asked_by}: ARRAY/{id} has no entry {k}")),
             },
+            Measure::Pinval | Measure::Pouval => {
+                let output = measure == Measure::Pouval;
+                let plant = scene.plants.get(&(output, id));
+                match plant.and_then(|p| p.get((k as usize).wrapping_sub(1))) {
+                    Some(&f) => self.formula(f),
+                    None => self.complain(format!(
+                        "{asked_by}: {}/{id} has no entry {k}",
+                        if output { "POUTPUT" } else { "PINPUT" }
+                    )),
+                }
+            }
+            Measure::Senval => {
+                let wanted =
+                    |s: &Supplied| matches!(*s, Supplied::Sensor(k) if scene.sensors[k].id == id);
+                match scene.supplied.iter().position(wanted) {
+                    Some(place) => self.supplied[place],
+                    None => self.complain(format!("{asked_by}: SENSOR/{id} does not exist")),
+                }
+            }
             Measure::Dif | Measure::Dif1 => {
                 match scene.differentials.iter().position(|d| d.id == id) {
                     Some(d) if measure == Measure::Dif => self.state_of(d),

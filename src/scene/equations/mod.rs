@@ -19,10 +19,11 @@ pub use dynamics::Solved;
 pub use rows::{RowValue, row_name};
 pub use stress::Share;
 
-use super::Scene;
 use super::layout::Layout;
 use super::loops::Key;
+use super::outside::Supplied;
 use super::sweep::{self, Coordinates, LinkState};
+use super::{Entry, Scene};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Work};
 use crate::model::Level;
@@ -44,6 +45,8 @@ pub struct Equations<'s, S: Scalar> {
     v: Vec<S>,
     x: Vec<S>,
     turns: Vec<S>,
+    /// numbers from outside   (n_supplied)
+    supplied: Vec<S>,
     driven: Vec<Jet<S>>,
     /// with the accelerations of driven coordinates only
     links: Vec<LinkState<S>>,
@@ -86,6 +89,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             v: numbers[l.v()].to_vec(),
             x: numbers[l.x()].to_vec(),
             turns: numbers[l.turns()].to_vec(),
+            supplied: numbers[l.supplied()].to_vec(),
             driven: Vec::new(),
             links: Vec::new(),
             markers: RefCell::new(vec![None; scene.markers.len()]),
@@ -148,7 +152,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     fn drive_in_time(&self, m: usize) -> Jet<S> {
         let motion = &self.scene.motions[m];
-        let f = self.in_time(motion.formula, &mut Vec::new());
+        let f = match self.scene.computed(motion.formula) {
+            // a closure of the user's tells its derivatives
+            Some(p) => Jet::new(self.supplied[p], self.supplied[p + 1], self.supplied[p + 2]),
+            None => self.in_time(motion.formula, 2, &mut Vec::new()),
+        };
         let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
         let offset = S::constant(motion.offset);
         match motion.level {
@@ -163,13 +171,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
         self.driven[motion]
     }
 
-    /// A formula of time alone, with its rates.
-    fn in_time(&self, formula: usize, open: &mut Vec<usize>) -> Jet<S> {
+    /// A formula of time and of differential equations that depend on nothing else, with its rates up to `order`.
+    fn in_time(&self, formula: usize, order: usize, open: &mut Vec<usize>) -> Jet<S> {
         let f = &self.scene.formulas[formula];
         if open.contains(&formula) {
             return Jet::constant(f64::NAN);
         }
         open.push(formula);
+        let variable = |id: &u32, open: &mut Vec<usize>| match self.scene.variables.get(id) {
+            Some(&v) => self.in_time(v, order, open),
+            None => Jet::constant(f64::NAN),
+        };
         let inputs: Vec<Jet<S>> = f
             .program
             .inputs()
@@ -177,12 +189,18 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .map(|input| match input {
                 Input::Time => Jet::variable(self.t),
                 Input::Mode => Jet::constant(self.scene.mode),
-                Input::Measure(Measure::Varval, [id, ..]) => match self.scene.variables.get(id) {
-                    Some(&v) => self.in_time(v, open),
+                Input::Measure(Measure::Varval, [id, ..]) => variable(id, open),
+                Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(*id, *k) {
+                    Some(Entry::Number(x)) => Jet::constant(x),
+                    Some(Entry::State(d)) => self.state_in_time(d, order),
+                    Some(Entry::Formula(f)) => self.in_time(f, order, open),
                     None => Jet::constant(f64::NAN),
                 },
-                Input::Measure(Measure::Aryval, [id, k, ..]) => {
-                    Jet::constant(self.array(*id, *k).unwrap_or(f64::NAN))
+                Input::Measure(Measure::Dif, [id, ..]) => {
+                    match self.scene.differentials.iter().position(|d| d.id == *id) {
+                        Some(d) => self.state_in_time(d, order),
+                        None => Jet::constant(f64::NAN),
+                    }
                 }
                 _ => Jet::constant(f64::NAN),
             })
@@ -190,15 +208,28 @@ impl<'s, S: Scalar> Equations<'s, S> {
         open.pop();
         let mut out = [Jet::zero()];
         f.program.eval(&inputs, &mut Work::default(), &mut out);
-        out[0]
+        out[0] + Jet::new(self.added(formula), S::zero(), S::zero())
     }
 
-    fn array(&self, id: u32, k: u32) -> Option<f64> {
-        self.scene
-            .arrays
-            .get(&id)?
-            .get((k as usize).checked_sub(1)?)
-            .copied()
+    /// A state of a differential equation with its rates up to `order`: each order needs its formula one order lower.
+    fn state_in_time(&self, d: usize, order: usize) -> Jet<S> {
+        let equation = &self.scene.differentials[d];
+        let Some(value) = equation.state.map(|s| self.x[s]) else {
+            return Jet::constant(f64::NAN);
+        };
+        if order == 0 {
+            return Jet::new(value, S::zero(), S::zero());
+        }
+        if equation.implicit {
+            return Jet::constant(f64::NAN);
+        }
+        let rate = self.in_time(equation.formula, order - 1, &mut Vec::new());
+        Jet::new(value, rate.value, rate.first)
+    }
+
+    fn entry(&self, id: u32, k: u32) -> Option<Entry> {
+        let entries = self.scene.arrays.get(&id)?;
+        entries.get((k as usize).checked_sub(1)?).copied()
     }
 
     /// Pose and velocity of a marker; its accelerations are those of driven coordinates only.
@@ -270,14 +301,39 @@ impl<'s, S: Scalar> Equations<'s, S> {
             .program
             .inputs()
             .iter()
-            .map(|&i| self.input(i, &formula.name))
+            .map(|&i| match i {
+                Input::Delayed(k) => self.delayed(formula.delayed.get(k as usize).copied()),
+                other => self.input(other, &formula.name),
+            })
             .collect();
         self.open.borrow_mut().pop();
         let mut out = [S::zero()];
         formula
             .program
             .eval(&inputs, &mut Work::default(), &mut out);
-        out[0]
+        out[0] + self.added(f)
+    }
+
+    /// What is added to a formula from outside, where it is a plant input.
+    fn added(&self, f: usize) -> S {
+        let mut supplied = self.scene.supplied.iter();
+        match supplied.position(|s| *s == Supplied::Input(f)) {
+            Some(place) => self.supplied[place],
+            None => S::zero(),
+        }
+    }
+
+    /// A number from outside; at rest the past is like the present.
+    fn delayed(&self, place: Option<usize>) -> S {
+        let Some(place) = place else {
+            return S::constant(f64::NAN);
+        };
+        match self.scene.supplied[place] {
+            Supplied::Delay(k) if self.scene.mode == STATIC => {
+                self.formula(self.scene.delays[k].expression)
+            }
+            _ => self.supplied[place],
+        }
     }
 
     /// What a formula asks for: the one door between the language and the scene.
@@ -286,9 +342,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
             Input::Time => self.t,
             Input::Mode => S::constant(self.scene.mode),
             Input::Measure(measure, ids) => self.measure(measure, ids, asked_by),
-            Input::Delayed(_) => self.complain(format!("{asked_by}: DELAY is not solved yet")),
-            Input::Slot(_) => {
-                unreachable!("slots are inputs of recorded programs, not of formulas")
+            Input::Delayed(_) | Input::Slot(_) => {
+                unreachable!("numbers from outside are asked for by formulas alone")
             }
         }
     }

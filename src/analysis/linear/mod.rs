@@ -1,0 +1,377 @@
+//! Small motions about a state: eigenvalues, mode shapes, and the matrices of the linear system between plant inputs and outputs.
+//!
+//! The rate is differentiated as it stands, and restricted to what the rows allow:
+//!
+//! ```text
+//! δq = T Z ξ,  δv = Z η + P ξ      G Z = 0,  Zᵀ Z = 1,  P = −G⁺ ∂(G v + ġ₀)/∂q Z      (T: from tangents to positions)
+//! ż = A z + B u,  y = C z + D u    z = (ξ, η, x)
+//! ```
+//!
+//! With every position free, ξ are the changes of the coordinates themselves. An input is a number added to its VARIABLE, so
+//! that whatever else the VARIABLE does goes on. Motions keep moving; about a state in which things move, A is that of the instant.
+
+mod modes;
+mod write;
+
+use super::assemble;
+use super::system::{System, complaints};
+use super::unknowns::WIDTH;
+use crate::diagnostic::Diagnostic;
+use crate::expr::program::{Program, Work};
+use crate::model::Model;
+use crate::scalar::Dual;
+use crate::scene::equations::Equations;
+use crate::scene::outside::Supplied;
+use crate::scene::programs::record;
+use crate::scene::{Scene, build};
+use nalgebra::{DMatrix, DVector};
+
+/// What is wanted of a linearization.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wanted {
+    /// PINPUT and POUTPUT whose VARIABLEs are u and y; `None`: all there are, in the order of their numbers
+    pub inputs: Option<u32>,
+    /// see `inputs`
+    pub outputs: Option<u32>,
+    /// leave out what depends on velocities
+    pub no_damping: bool,
+    /// first and last mode whose shape is wanted, from 1; `None`: all
+    pub shapes: Option<[usize; 2]>,
+}
+
+/// How a part moves in a mode; real and imaginary parts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartShape {
+    /// "PART/2"
+    pub part: String,
+    /// of its centre of mass, ground axes
+    pub translation: [[f64; 2]; 3],
+    /// small rotation about ground axes, rad
+    pub rotation: [[f64; 2]; 3],
+}
+
+/// An eigenvalue with its mode; of a pair of conjugate ones, that with the positive imaginary part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// per time
+    pub re: f64,
+    /// rad per time
+    pub im: f64,
+    /// how the parts move; the largest translation (or, without any, rotation or state) is 1. Empty when it was not wanted.
+    pub parts: Vec<PartShape>,
+    /// how the states move: name, real and imaginary part
+    pub states: Vec<(String, [f64; 2])>,
+}
+
+impl Mode {
+    /// |λ|/2π, cycles per time
+    pub fn frequency(&self) -> f64 {
+        self.re.hypot(self.im) / std::f64::consts::TAU
+    }
+    /// −Re λ/|λ|
+    pub fn damping_ratio(&self) -> f64 {
+        let size = self.re.hypot(self.im);
+        if size == 0.0 { 0.0 } else { -self.re / size }
+    }
+}
+
+/// A linear system about a state of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Linearization {
+    /// when
+    pub time: f64,
+    /// names of z
+    pub states: Vec<String>,
+    /// names of u: VARIABLEs
+    pub inputs: Vec<String>,
+    /// names of y: VARIABLEs
+    pub outputs: Vec<String>,
+    /// ż = A z + B u, y = C z + D u; row after row
+    pub a: Vec<Vec<f64>>,
+    /// see `a`
+    pub b: Vec<Vec<f64>>,
+    /// see `a`
+    pub c: Vec<Vec<f64>>,
+    /// see `a`
+    pub d: Vec<Vec<f64>>,
+    /// by |λ|
+    pub modes: Vec<Mode>,
+}
+
+/// The VARIABLEs of plants, in order.
+fn variables(model: &Model, output: bool, one: Option<u32>) -> Result<Vec<u32>, Diagnostic> {
+    let (keyword, all) = if output {
+        ("POUTPUT", &model.plant_outputs)
+    } else {
+        ("PINPUT", &model.plant_inputs)
+    };
+    match one {
+        Some(id) => match all.get(&id) {
+            Some(plant) => Ok(plant.variables.clone()),
+            None => Err(Diagnostic::error(
+                "model",
+                format!("LINEAR names {keyword}/{id}, which does not exist"),
+            )),
+        },
+        None => Ok(all.values().flat_map(|p| p.variables.clone()).collect()),
+    }
+}
+
+/// The VARIABLEs that are inputs, for the options of a scene.
+///
+/// # Errors
+/// When a PINPUT does not exist.
+pub fn inputs(model: &Model, wanted: &Wanted) -> Result<Vec<u32>, Diagnostic> {
+    variables(model, false, wanted.inputs)
+}
+
+/// Derivatives of a program along some directions: each is a list of (place in the numbers, slope).
+fn along(
+    system: &mut System,
+    program: &Program,
+    directions: &[Vec<(usize, f64)>],
+) -> Result<DMatrix<f64>, usize> {
+    let lift = |x: &f64| Dual {
+        re: *x,
+        eps: [0.0; WIDTH],
+    };
+    let mut numbers: Vec<Dual<WIDTH>> = system.numbers.iter().map(lift).collect();
+    let mut out = vec![lift(&0.0); program.n_outputs()];
+    let mut work: Work<Dual<WIDTH>> = Work::default();
+    let mut slopes = DMatrix::zeros(program.n_outputs(), directions.len());
+    for first in (0..directions.len()).step_by(WIDTH) {
+        let last = (first + WIDTH).min(directions.len());
+        for (k, direction) in directions[first..last].iter().enumerate() {
+            for &(place, slope) in direction {
+                numbers[place].eps[k] += slope;
+            }
+        }
+        system.follow_along(&mut numbers, first == 0)?;
+        program.eval(&numbers, &mut work, &mut out);
+        for k in first..last {
+            for (i, x) in out.iter().enumerate() {
+                slopes[(i, k)] = x.eps[k - first];
+            }
+        }
+        for x in &mut numbers {
+            x.eps = [0.0; WIDTH];
+        }
+    }
+    Ok(slopes)
+}
+
+fn rows(m: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    m.row_iter().map(|r| r.iter().copied().collect()).collect()
+}
+
+/// The subspace of small motions: from z to changes of tangents, velocities and states.
+struct Small {
+    /// (n_v × n_free)
+    z: DMatrix<f64>,
+    /// (n_v × n_free)
+    p: DMatrix<f64>,
+}
+
+impl Small {
+    fn at(system: &mut System) -> Result<Self, Vec<Diagnostic>> {
+        let l = system.scene.layout;
+        let n = l.n_v;
+        let scene = &system.scene;
+        let active: Vec<usize> = (0..scene.rows.len())
+            .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
+            .collect();
+        if active.is_empty() {
+            let z = DMatrix::identity(n, n);
+            let p = DMatrix::zeros(n, n);
+            return Ok(Self { z, p });
+        }
+        let at = Equations::new(scene, &system.numbers);
+        let mut g = DMatrix::zeros(active.len(), n);
+        for (k, &r) in active.iter().enumerate() {
+            for (v, x) in at.row(r).gradient {
+                g[(k, v)] += x;
+            }
+        }
+        let z = assemble::null_space(&g, n);
+        let velocity = record(scene, |at| {
+            let rate = |r: &usize| {
+                let row = at.row(*r);
+                let v = at.velocities();
+                row.gradient
+                    .iter()
+                    .fold(row.drift, |s, &(k, x)| s + x * v[k])
+            };
+            active.iter().map(rate).collect()
+        })
+        .map_err(complaints)?;
+        let moves = tangents(system);
+        let change = along(system, &velocity, &moves).map_err(|k| undetermined(system, k))?;
+        let p = if change.amax() == 0.0 {
+            DMatrix::zeros(n, z.ncols())
+        } else {
+            // G⁺ = Gᵀ (G Gᵀ)⁻¹
+            let gram = &g * g.transpose();
+            let solved = gram
+                .lu()
+                .solve(&(change * &z))
+                .unwrap_or_else(|| DMatrix::zeros(active.len(), z.ncols()));
+            -(g.transpose() * solved)
+        };
+        Ok(Self { z, p })
+    }
+}
+
+/// Directions along the tangents of positions.
+fn tangents(system: &System) -> Vec<Vec<(usize, f64)>> {
+    let l = system.scene.layout;
+    let mut moves = vec![Vec::new(); l.n_v];
+    for (v, place, slope) in system.mover().tangents(&system.numbers[l.q()]) {
+        moves[v].push((l.q().start + place, slope));
+    }
+    moves
+}
+
+fn undetermined(system: &System, k: usize) -> Vec<Diagnostic> {
+    let name = system
+        .scene
+        .loops
+        .get(k)
+        .map_or_else(String::new, |u| u.name.clone());
+    vec![Diagnostic::error("loop", "nothing determines it in this state").element(name)]
+}
+
+/// Linearizes a system about the state in its numbers.
+///
+/// # Errors
+/// What the equations complained about, plants that do not exist, eigenvalues that do not converge.
+pub fn linearize(
+    system: &mut System,
+    model: &Model,
+    wanted: &Wanted,
+) -> Result<Linearization, Vec<Diagnostic>> {
+    let l = system.scene.layout;
+    let (n_q, n_v, n_x) = (l.n_q, l.n_v, l.n_x);
+    let output_ids = variables(model, true, wanted.outputs).map_err(|d| vec![d])?;
+    let input_ids = variables(model, false, wanted.inputs).map_err(|d| vec![d])?;
+    let small = Small::at(system)?;
+    let n = small.z.ncols();
+    let mut watched = Vec::with_capacity(output_ids.len());
+    for id in &output_ids {
+        match system.scene.variables.get(id) {
+            Some(&f) => watched.push(f),
+            None => {
+                let d =
+                    Diagnostic::error("model", "is an output but does not exist or is not active");
+                return Err(vec![d.element(format!("VARIABLE/{id}"))]);
+            }
+        }
+    }
+    let program = record(&system.scene, |at| {
+        let mut out = at.rates();
+        out.extend(watched.iter().map(|&f| at.formula(f)));
+        out
+    })
+    .map_err(complaints)?;
+    // z: tangents with the velocities that they bring about, velocities, states; then inputs
+    let moves = tangents(system);
+    let mut directions: Vec<Vec<(usize, f64)>> = Vec::new();
+    let speeds = |column: &[f64]| -> Vec<(usize, f64)> {
+        let all = column.iter().enumerate().filter(|(_, s)| **s != 0.0);
+        all.map(|(v, s)| (l.v().start + v, *s)).collect()
+    };
+    for k in 0..n {
+        let mut direction = speeds(small.p.column(k).as_slice());
+        for (v, s) in small
+            .z
+            .column(k)
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| **s != 0.0)
+        {
+            direction.extend(moves[v].iter().map(|(place, slope)| (*place, slope * s)));
+        }
+        directions.push(direction);
+    }
+    for k in 0..n {
+        directions.push(if wanted.no_damping {
+            Vec::new()
+        } else {
+            speeds(small.z.column(k).as_slice())
+        });
+    }
+    directions.extend((0..n_x).map(|k| vec![(l.x().start + k, 1.0)]));
+    for id in &input_ids {
+        let own = |s: &Supplied| matches!(s, Supplied::Input(f) if system.scene.variables.get(id) == Some(f));
+        let place = system.scene.supplied.iter().position(own);
+        directions.push(place.map_or_else(Vec::new, |p| vec![(l.supplied().start + p, 1.0)]));
+    }
+    let slopes = along(system, &program, &directions).map_err(|k| undetermined(system, k))?;
+    if slopes.iter().any(|x| !x.is_finite()) {
+        return Err(vec![Diagnostic::error(
+            "linear",
+            "the equations have no finite derivatives in this state",
+        )]);
+    }
+    let n_z = 2 * n + n_x;
+    let mut a = DMatrix::zeros(n_z, slopes.ncols());
+    let q = system.numbers[l.q()].to_vec();
+    for k in 0..slopes.ncols() {
+        let column: Vec<f64> = slopes.column(k).iter().copied().collect();
+        let tangent = DVector::from_vec(system.mover().tangent(&q, &column[..n_q], n_v));
+        let speed = DVector::from_column_slice(&column[n_q..n_q + n_v]);
+        a.view_mut((0, k), (n, 1))
+            .copy_from(&small.z.tr_mul(&tangent));
+        a.view_mut((n, k), (n, 1))
+            .copy_from(&small.z.tr_mul(&speed));
+        for i in 0..n_x {
+            a[(2 * n + i, k)] = column[n_q + n_v + i];
+        }
+    }
+    if wanted.no_damping {
+        // δξ̇ = η still holds
+        for k in 0..n {
+            a[(k, n + k)] = 1.0;
+        }
+    }
+    let below = n_q + n_v + n_x;
+    let y = slopes.rows(below, watched.len()).into_owned();
+    let own = a.columns(0, n_z).into_owned();
+    let names = build::unknown_names(&system.scene);
+    let modes = modes::modes(system, model, &small, &own, wanted)?;
+    let named = |ids: &[u32]| ids.iter().map(|id| format!("VARIABLE/{id}")).collect();
+    Ok(Linearization {
+        time: system.numbers[0],
+        states: state_names(&system.scene, &small, &names),
+        inputs: named(&input_ids),
+        outputs: named(&output_ids),
+        b: rows(&a.columns(n_z, input_ids.len()).into_owned()),
+        c: rows(&y.columns(0, n_z).into_owned()),
+        d: rows(&y.columns(n_z, input_ids.len()).into_owned()),
+        a: rows(&own),
+        modes,
+    })
+}
+
+/// Names of z: coordinates where all are free, else combinations of them.
+fn state_names(scene: &Scene, small: &Small, names: &[String]) -> Vec<String> {
+    let l = scene.layout;
+    let n = small.z.ncols();
+    let free = n == l.n_v;
+    let mut own = vec![String::new(); l.n_v];
+    for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
+        if let Some(v) = f.v {
+            own[v].clone_from(&c.name);
+        }
+    }
+    let position = |k: usize| {
+        if free {
+            own[k].clone()
+        } else {
+            format!("combination {} of coordinates", k + 1)
+        }
+    };
+    let mut all: Vec<String> = (0..n).map(position).collect();
+    all.extend((0..n).map(|k| format!("rate of {}", position(k))));
+    all.extend(names[l.n_q + l.n_v..].iter().cloned());
+    all
+}

@@ -1,0 +1,224 @@
+//! Eigenvalues and mode shapes of a linear system.
+//!
+//! Eigenvalues are those of the balanced matrix, so that slow modes keep their digits beside fast ones. Shapes come from inverse
+//! iteration, `(A − λ') x ← x` with λ' beside λ; those of equal eigenvalues are kept apart.
+
+use super::{Mode, PartShape, Small, Wanted};
+use crate::analysis::system::System;
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use crate::scene::build;
+use crate::scene::equations::Equations;
+use nalgebra::linalg::Schur;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Iterations with the inverse: each takes away all but a rounding of the other modes.
+const ITERATIONS: usize = 4;
+
+/// Eigenvalues of A by size, one of each conjugate pair, with their shapes.
+pub(super) fn modes(
+    system: &System,
+    model: &Model,
+    small: &Small,
+    a: &DMatrix<f64>,
+    wanted: &Wanted,
+) -> Result<Vec<Mode>, Vec<Diagnostic>> {
+    let size = a.nrows();
+    if size == 0 {
+        return Ok(Vec::new());
+    }
+    let mut balanced = a.clone();
+    let scales = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
+    let schur =
+        Schur::try_new(balanced.clone(), f64::EPSILON, 100 * size.max(30)).ok_or_else(|| {
+            vec![Diagnostic::error(
+                "linear",
+                "the eigenvalues cannot be found: the iteration does not converge",
+            )]
+        })?;
+    let mut values: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+    let norm = balanced.norm();
+    for v in &mut values {
+        // a real one that has been perturbed into a pair by less than rounding stays as it is
+        if v.im.abs() < 1e-14 * v.norm() {
+            v.im = 0.0;
+        }
+    }
+    values.retain(|v| v.im >= 0.0);
+    values.sort_by(|x, y| x.norm().total_cmp(&y.norm()).then(x.re.total_cmp(&y.re)));
+    let [first, last] = wanted.shapes.unwrap_or([1, usize::MAX]);
+    let motion = PartMotion::of(system, model, small);
+    let names = build::unknown_names(&system.scene);
+    let mut found: Vec<Mode> = Vec::with_capacity(values.len());
+    let mut vectors: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
+    for (k, &value) in values.iter().enumerate() {
+        let mut mode = Mode {
+            re: value.re,
+            im: value.im,
+            parts: Vec::new(),
+            states: Vec::new(),
+        };
+        if (first..=last).contains(&(k + 1)) {
+            let near: Vec<&DVector<Complex<f64>>> = vectors
+                .iter()
+                .filter(|(v, _)| (v - value).norm() <= 1e-8 * value.norm().max(1e-6 * norm))
+                .map(|(_, x)| x)
+                .collect();
+            if let Some(x) = eigenvector(&balanced, value, norm, &near) {
+                let own = DVector::from_iterator(
+                    size,
+                    x.iter()
+                        .zip(scales.iter())
+                        .map(|(x, s)| x * Complex::new(*s, 0.0)),
+                );
+                vectors.push((value, x));
+                motion.show(&mut mode, &own, &names);
+            }
+        }
+        found.push(mode);
+    }
+    Ok(found)
+}
+
+/// An eigenvector by inverse iteration, apart from those found before for the same value.
+fn eigenvector(
+    a: &DMatrix<f64>,
+    value: Complex<f64>,
+    norm: f64,
+    before: &[&DVector<Complex<f64>>],
+) -> Option<DVector<Complex<f64>>> {
+    let n = a.nrows();
+    let shift = value + Complex::new(1e-13 * norm.min(value.norm() + 1e-3 * norm), 0.0);
+    let mut shifted = a.map(|x| Complex::new(x, 0.0));
+    for k in 0..n {
+        shifted[(k, k)] -= shift;
+    }
+    let lu = shifted.lu();
+    // any start that is not special will do; another for each repetition
+    let seed = before.len() as f64;
+    let mut x = DVector::from_fn(n, |k, _| {
+        Complex::new(
+            1.0 + (1.7 * k as f64 + seed).sin() * 0.5,
+            (2.3 * k as f64 + 3.0 * seed).cos() * 0.3,
+        )
+    });
+    for _ in 0..ITERATIONS {
+        for b in before {
+            let part = b.dotc(&x);
+            x -= *b * part;
+        }
+        x = lu.solve(&x)?;
+        let size = x.norm();
+        if !size.is_finite() || size == 0.0 {
+            return None;
+        }
+        x.unscale_mut(size);
+    }
+    Some(x)
+}
+
+/// How parts move with z: centre of mass and rotation, ground axes.
+struct PartMotion {
+    parts: Vec<String>,
+    /// (6 n_parts × n_free)
+    map: DMatrix<f64>,
+    n: usize,
+    n_x: usize,
+    places: usize,
+}
+
+impl PartMotion {
+    fn of(system: &System, model: &Model, small: &Small) -> Self {
+        let scene = &system.scene;
+        let l = scene.layout;
+        let mut numbers = system.numbers.clone();
+        let mut twists = |k: Option<usize>| -> Vec<f64> {
+            numbers[l.v()].fill(0.0);
+            if let Some(k) = k {
+                numbers[l.v().start + k] = 1.0;
+            }
+            let at = Equations::new(scene, &numbers);
+            let mut all = Vec::with_capacity(6 * scene.parts.len());
+            for (k, part) in scene.parts.iter().enumerate() {
+                let state = at.part(k, false);
+                let parts = if part.point_mass {
+                    &model.point_masses
+                } else {
+                    &model.parts
+                };
+                let cm = parts.get(&part.id).and_then(|p| p.cm);
+                let cm = cm.and_then(|cm| scene.marker_of.get(&cm));
+                let cm = cm.map_or(state.p_GM, |&m| at.marker(m).p_GM);
+                let v = state.v_GM + state.w_GM.cross(cm - state.p_GM);
+                all.extend(v.0.into_iter().chain(state.w_GM.0));
+            }
+            all
+        };
+        let none = twists(None);
+        let mut jacobian = DMatrix::zeros(none.len(), l.n_v);
+        for k in 0..l.n_v {
+            for (i, x) in twists(Some(k)).iter().enumerate() {
+                jacobian[(i, k)] = x - none[i];
+            }
+        }
+        let name =
+            |p: &crate::scene::PartOnLink| crate::scene::compile::part_name(p.point_mass, p.id);
+        Self {
+            parts: scene.parts.iter().map(name).collect(),
+            map: jacobian * &small.z,
+            n: small.z.ncols(),
+            n_x: l.n_x,
+            places: l.n_q + l.n_v,
+        }
+    }
+
+    /// Fills in a mode's shape: scaled so that its largest number is 1.
+    fn show(&self, mode: &mut Mode, z: &DVector<Complex<f64>>, names: &[String]) {
+        let map = self.map.map(|x| Complex::new(x, 0.0));
+        let moved = map * z.rows(0, self.n);
+        let largest = |all: &mut dyn Iterator<Item = Complex<f64>>| {
+            all.fold(Complex::new(0.0, 0.0), |m: Complex<f64>, x| {
+                if x.norm() > m.norm() * (1.0 + 1e-9) {
+                    x
+                } else {
+                    m
+                }
+            })
+        };
+        let part = |first: usize| {
+            moved
+                .iter()
+                .enumerate()
+                .filter(move |(k, _)| k % 6 / 3 == first)
+                .map(|(_, x)| *x)
+        };
+        let whole = z.norm();
+        let mut unit = largest(&mut part(0));
+        if unit.norm() <= 1e-9 * whole {
+            unit = largest(&mut part(1));
+        }
+        if unit.norm() <= 1e-9 * whole {
+            unit = largest(&mut z.rows(2 * self.n, self.n_x).iter().copied());
+        }
+        if unit.norm() == 0.0 {
+            return;
+        }
+        let pair = |x: Complex<f64>| {
+            let x = x / unit;
+            [x.re, x.im]
+        };
+        mode.parts = self
+            .parts
+            .iter()
+            .enumerate()
+            .map(|(k, name)| PartShape {
+                part: name.clone(),
+                translation: [0, 1, 2].map(|i| pair(moved[6 * k + i])),
+                rotation: [3, 4, 5].map(|i| pair(moved[6 * k + i])),
+            })
+            .collect();
+        mode.states = (0..self.n_x)
+            .map(|k| (names[self.places + k].clone(), pair(z[2 * self.n + k])))
+            .collect();
+    }
+}

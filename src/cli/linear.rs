@@ -1,0 +1,138 @@
+//! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
+
+use super::{Exit, Failure, Outcome, interrupt, remark, run, say};
+use crate::analysis::dynamics::Watch;
+use crate::analysis::linear::Wanted;
+use crate::analysis::script::obey;
+use crate::analysis::session::{Analysis, Options, Session};
+use crate::diagnostic::Diagnostic;
+use crate::results::{self, Status, json};
+use std::path::{Path, PathBuf};
+
+/// Linearize a model: eigenvalues, mode shapes, and the matrices A, B, C, D between its plant inputs and outputs
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate linear pendulum.adm
+  cognate linear pendulum.adm --static --no-damping
+  cognate linear plant.acf --out results        after the simulations of the command file")]
+pub struct Args {
+    /// Dataset (.adm), or command file (.acf) whose simulations lead to the state
+    model: PathBuf,
+    /// About the equilibrium next to the initial configuration
+    #[arg(long = "static")]
+    settle: bool,
+    /// Leave out what depends on velocities
+    #[arg(long)]
+    no_damping: bool,
+    /// PINPUT whose VARIABLEs are the inputs (all when not given)
+    #[arg(long, value_name = "ID")]
+    pinput: Option<u32>,
+    /// POUTPUT whose VARIABLEs are the outputs (all when not given)
+    #[arg(long, value_name = "ID")]
+    poutput: Option<u32>,
+    /// Folder that NAME_linear.json and NAME_linear.m are written to
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Leave out elements of this kind where they are not solved (repeatable)
+    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
+    skip: Vec<String>,
+    /// Take what USER(…) would compute as zero
+    #[arg(long = "zero-user")]
+    zero_user: bool,
+    /// Print everything as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+struct Quiet;
+
+impl Watch for Quiet {
+    fn interrupted(&mut self) -> bool {
+        interrupt::requested()
+    }
+}
+
+/// The linear system of a model.
+pub fn run(args: &Args) -> Outcome {
+    interrupt::install();
+    let commands = (args.model.extension()).is_some_and(|e| e.eq_ignore_ascii_case("acf"));
+    let (reading, base, steps) = if commands {
+        let job = run::script(&args.model)?;
+        (job.reading, job.base, job.steps)
+    } else {
+        (run::read(&args.model)?, run::stem(&args.model), Vec::new())
+    };
+    let options = Options {
+        skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
+        zero_user: args.zero_user,
+        ..Options::default()
+    };
+    let mut session = Session::new(reading.model, &base, options);
+    let in_model = |errors| Failure::in_files(Exit::Model, errors);
+    let mut status = obey(&mut session, &steps, |_, _| (), &mut Quiet).map_err(in_model)?;
+    if args.settle && status == Status::Completed {
+        let now = session.time();
+        status = session
+            .simulate(Analysis::Static, now, 1, &mut Quiet)
+            .map_err(in_model)?;
+    }
+    if status != Status::Completed {
+        remark(&session.run.record.stop_reason);
+        return Ok(run::exit(status));
+    }
+    let wanted = Wanted {
+        inputs: args.pinput,
+        outputs: args.poutput,
+        no_damping: args.no_damping,
+        shapes: None,
+    };
+    let found = session.linearize(&wanted).map_err(in_model)?;
+    if args.json {
+        say(&json::text(&found.json()));
+    } else {
+        say(&found.table());
+    }
+    session.linear = vec![(None, true, found)];
+    if let Some(dir) = &args.out {
+        for file in write(&session, dir)? {
+            remark(format!("wrote {}", file.display()));
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// Writes the linear systems that a session has found; the names of the files.
+pub fn write(session: &Session, dir: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let mut written = Vec::new();
+    let mut own = 0;
+    for (file, matrices, found) in &session.linear {
+        let name = match file {
+            Some(file) if *file != session.run.name => file.clone(),
+            _ => {
+                own += 1;
+                let number = if own > 1 {
+                    own.to_string()
+                } else {
+                    String::new()
+                };
+                format!("{}_linear{number}", session.run.name)
+            }
+        };
+        let mut texts = vec![("json", json::text(&found.json()))];
+        if *matrices {
+            texts.push(("m", found.matlab()));
+        }
+        for (ending, text) in texts {
+            let path = dir.join(format!("{name}.{ending}"));
+            if let Some(folder) = path.parent() {
+                std::fs::create_dir_all(folder).map_err(|e| {
+                    Diagnostic::error("file_unwritable", format!("{}: {e}", folder.display()))
+                })?;
+            }
+            results::write_text(&path, &text)?;
+            written.push(path);
+        }
+    }
+    Ok(written)
+}

@@ -1,0 +1,103 @@
+//! Numbers that come from outside the equations: last values of sensors, values of the past, results of the user's closures.
+//!
+//! They have places of their own at the end of the row that programs read. Whoever fills the row computes them from what stands
+//! before them, so that the programs need not know where they come from.
+
+use crate::model::{Comparison, Formula};
+
+/// One number from outside, in the order of the places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Supplied {
+    /// what a sensor evaluated last: index in [`Scene::sensors`](super::Scene::sensors)
+    Sensor(usize),
+    /// a value of the past: index in [`Scene::delays`](super::Scene::delays)
+    Delay(usize),
+    /// what is added to a VARIABLE that is a plant input: index in the formulas
+    Input(usize),
+    /// a result of a closure: index in [`Scene::hooks`](super::Scene::hooks), and which
+    Hook(usize, usize),
+}
+
+/// A SENSOR.
+#[derive(Clone, Debug)]
+pub struct SceneSensor {
+    /// user's number
+    pub id: u32,
+    /// what is watched: index in the formulas
+    pub formula: usize,
+    /// how it is compared
+    pub comparison: Comparison,
+    /// with what
+    pub value: f64,
+    /// how near counts as equal
+    pub error: f64,
+    /// modulo 2π
+    pub angular: bool,
+    /// what SENVAL yields after it was triggered: index in the formulas
+    pub evaluate: Option<usize>,
+    /// ends the run
+    pub halt: bool,
+    /// ends the simulation
+    pub end_simulation: bool,
+    /// shows the state
+    pub print: bool,
+    /// distance of outputs afterwards
+    pub dt: Option<f64>,
+    /// length of the next integration step
+    pub stepsize: Option<f64>,
+    /// the integration begins anew
+    pub restart: bool,
+}
+
+/// A value of the past: `DELAY(expression, delay, history)`; indices in the formulas.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneDelay {
+    /// what is remembered
+    pub expression: usize,
+    /// how long ago
+    pub delay: usize,
+    /// what it was before the start
+    pub history: usize,
+}
+
+/// A closure of the user's that the library was given: what it is called for, and which expressions it reads.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HookName {
+    /// an element ("SFORCE/3"), the text of ROUTINE, or the first number of USER
+    pub name: String,
+    /// expressions whose values it is given
+    pub inputs: Vec<String>,
+}
+
+impl HookName {
+    /// Whether it computes this USER of this element.
+    pub fn stands_for(&self, element: &str, user: &Formula) -> bool {
+        let Formula::User { constants, routine } = user else {
+            return false;
+        };
+        self.name.eq_ignore_ascii_case(element)
+            || (routine.as_ref()).is_some_and(|r| r.trim().eq_ignore_ascii_case(&self.name))
+            || constants
+                .first()
+                .is_some_and(|c| c.to_string() == self.name)
+    }
+}
+
+/// A call of a closure, for one element.
+#[derive(Clone, Debug)]
+pub struct SceneHook {
+    /// which closure: index in [`Options::hooks`](super::build::Options::hooks)
+    pub closure: usize,
+    /// the element: "SFORCE/3"
+    pub element: String,
+    /// the numbers of USER
+    pub constants: Vec<f64>,
+    /// what it reads: indices in the formulas
+    pub inputs: Vec<usize>,
+    /// how many numbers it yields
+    pub n: usize,
+    /// place of the first
+    pub place: usize,
+    /// nothing that moves depends on it
+    pub output_only: bool,
+}

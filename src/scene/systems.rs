@@ -1,0 +1,500 @@
+//! Equations of the user's: VARIABLE, DIFF, LSE, TFSISO, GSE, the arrays through which they read each other, plants and sensors.
+//!
+//! Every state is a differential equation with a formula as its rate, whatever statement it comes from; every output is a formula:
+//!
+//! ```text
+//! LSE      ẋ = A x + B u,  y = C x + D u
+//! TFSISO   y/u = (b₀ + b₁ s + …)/(a₀ + a₁ s + … + aₙ sⁿ):
+//!          ẋᵢ = xᵢ₊₁,  ẋₙ = (u − Σ aᵢ xᵢ₊₁)/aₙ,  y = Σ (bᵢ − aᵢ bₙ/aₙ) xᵢ₊₁ + (bₙ/aₙ) u
+//! ```
+//!
+//! So circles through inputs and outputs, derivatives, statics and messages are those of all formulas.
+
+use super::build::{Builder, active};
+use super::compile::Compiler;
+use super::outside::{SceneSensor, Supplied};
+use super::{Entry, Formula, SceneDifferential};
+use crate::expr::measures::Measure;
+use crate::expr::program::{Builder as Recorder, Folding, Input, Program, Sym};
+use crate::model::{ArrayKind, GeneralSystem, LinearSystem, TransferFunction};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
+/// What a state is at the beginning and at rest.
+struct Start {
+    value: f64,
+    hold: bool,
+}
+
+/// A matrix of the model: numbers row after row.
+struct Numbers {
+    rows: usize,
+    columns: usize,
+    values: Vec<f64>,
+}
+
+/// A term of a sum: factor, array, entry.
+type Term = (f64, u32, usize);
+
+impl Builder<'_> {
+    /// All system elements.
+    pub(super) fn systems(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, variable) in active(model, "VARIABLE", &model.variables) {
+            let f = self.formula(c, &format!("VARIABLE/{id} FUNCTION"), &variable.function);
+            self.scene.variables.insert(id, f);
+        }
+        self.input_arrays(c);
+        for (id, d) in active(model, "DIFF", &model.differentials) {
+            let name = format!("DIFF/{id}");
+            let formula = self.formula(c, &format!("{name} FUNCTION"), &d.function);
+            self.scene.differentials.push(SceneDifferential {
+                id,
+                name,
+                state: None,
+                formula,
+                initial: d.ic.map(|x| x.unwrap_or(0.0)),
+                static_hold: d.static_hold,
+                implicit: d.implicit,
+            });
+        }
+        for d in 0..self.scene.differentials.len() {
+            let equation = &self.scene.differentials[d];
+            let (id, formula) = (equation.id, equation.formula);
+            if !equation.implicit || self.reads_rate(formula, id) {
+                self.scene.differentials[d].state = Some(self.scene.layout.n_x);
+                self.scene.layout.n_x += 1;
+            }
+        }
+        for (id, s) in active(model, "LSE", &model.linear_systems) {
+            if let Err(why) = self.linear_system(id, s) {
+                c.error(&format!("LSE/{id}"), why);
+            }
+        }
+        for (id, s) in active(model, "TFSISO", &model.transfer_functions) {
+            if let Err(why) = self.transfer_function(id, s) {
+                c.error(&format!("TFSISO/{id}"), why);
+            }
+        }
+        for (id, s) in active(model, "GSE", &model.general_systems) {
+            if let Err(why) = self.general_system(c, id, s) {
+                c.error(&format!("GSE/{id}"), why);
+            }
+        }
+        self.plants(c);
+        self.sensors(c);
+    }
+
+    /// ARRAY, U: values of VARIABLEs.
+    fn input_arrays(&mut self, c: &mut Compiler) {
+        for (&id, array) in &self.model.arrays {
+            let ArrayKind::Inputs(variables) = &array.kind else {
+                continue;
+            };
+            match self.values_of(variables) {
+                Ok(entries) => {
+                    let entries = entries.into_iter().map(Entry::Formula).collect();
+                    self.scene.arrays.insert(id, entries);
+                }
+                Err(why) => c.error(&format!("ARRAY/{id}"), why),
+            }
+        }
+    }
+
+    /// Formulas of VARIABLEs.
+    fn values_of(&self, variables: &[u32]) -> Result<Vec<usize>, String> {
+        let found = variables.iter().map(|v| {
+            let formula = self.scene.variables.get(v).copied();
+            formula.ok_or_else(|| format!("VARIABLE/{v} does not exist or is not active"))
+        });
+        found.collect()
+    }
+
+    /// PINPUT, POUTPUT.
+    fn plants(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (output, keyword, all) in [
+            (false, "PINPUT", &model.plant_inputs),
+            (true, "POUTPUT", &model.plant_outputs),
+        ] {
+            for (id, plant) in active(model, keyword, all) {
+                match self.values_of(&plant.variables) {
+                    Ok(entries) => {
+                        self.scene.plants.insert((output, id), entries);
+                    }
+                    Err(why) => c.error(&format!("{keyword}/{id}"), why),
+                }
+            }
+        }
+    }
+
+    /// Places for what is added to VARIABLEs.
+    pub(super) fn plant_inputs(&mut self, c: &mut Compiler, variables: &[u32]) {
+        match self.values_of(variables) {
+            Ok(formulas) => {
+                for f in formulas {
+                    if !self.scene.supplied.contains(&Supplied::Input(f)) {
+                        self.supply(Supplied::Input(f));
+                    }
+                }
+            }
+            Err(why) => c.error("PINPUT", why),
+        }
+    }
+
+    fn sensors(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, s) in active(model, "SENSOR", &model.sensors) {
+            let name = format!("SENSOR/{id}");
+            let formula = self.formula(c, &format!("{name} FUNCTION"), &s.function);
+            let evaluate =
+                (s.evaluate.as_ref()).map(|e| self.formula(c, &format!("{name} EVALUATE"), e));
+            let index = self.scene.sensors.len();
+            self.supply(Supplied::Sensor(index));
+            self.scene.sensors.push(SceneSensor {
+                id,
+                formula,
+                comparison: s.comparison,
+                value: s.value,
+                error: s.error.unwrap_or(1e-3).abs(),
+                angular: s.angular,
+                evaluate,
+                halt: s.halt,
+                end_simulation: s.end_simulation,
+                print: s.print,
+                dt: s.dt.filter(|dt| *dt > 0.0),
+                stepsize: s.stepsize.filter(|h| *h > 0.0),
+                restart: s.restart,
+            });
+        }
+    }
+
+    /// Whether a formula reads DIF1 of an equation, itself or through VARIABLEs and other rates.
+    fn reads_rate(&self, formula: usize, id: u32) -> bool {
+        let mut seen = BTreeSet::new();
+        let mut next = vec![formula];
+        while let Some(f) = next.pop() {
+            let Some(formula) = self.scene.formulas.get(f).filter(|_| seen.insert(f)) else {
+                continue;
+            };
+            for input in formula.program.inputs() {
+                match input {
+                    Input::Measure(Measure::Dif1, [d, ..]) if *d == id => return true,
+                    Input::Measure(Measure::Dif1, [d, ..]) => {
+                        let other = self.scene.differentials.iter().find(|x| x.id == *d);
+                        next.extend(other.map(|x| x.formula));
+                    }
+                    Input::Measure(Measure::Varval, [v, ..]) => {
+                        next.extend(self.scene.variables.get(v));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        false
+    }
+
+    /// A state with its rate; its index among the differential equations.
+    fn state(&mut self, name: String, formula: usize, start: &Start) -> usize {
+        self.scene.differentials.push(SceneDifferential {
+            id: 0,
+            name,
+            state: Some(self.scene.layout.n_x),
+            formula,
+            initial: [start.value, 0.0],
+            static_hold: start.hold,
+            implicit: false,
+        });
+        self.scene.layout.n_x += 1;
+        self.scene.differentials.len() - 1
+    }
+
+    /// `Σ factor · entry` as a formula.
+    fn sum(&mut self, name: String, terms: &[Term]) -> usize {
+        let program = sum(terms);
+        let shown = terms
+            .iter()
+            .map(|(f, array, k)| format!("{f:+}*ARYVAL({array},{k})"));
+        let text = shown.collect();
+        self.scene.formulas.push(Formula {
+            name,
+            text,
+            program,
+            delayed: Vec::new(),
+        });
+        self.scene.formulas.len() - 1
+    }
+
+    /// An array that an element fills, `n` long: whether its kind and size are right.
+    fn filled(&mut self, id: u32, states: bool, entries: Vec<Entry>) -> Result<(), String> {
+        let Some(array) = self.model.arrays.get(&id) else {
+            return Err(format!("ARRAY/{id} does not exist"));
+        };
+        let (kind, expected) = if states {
+            ("X", ArrayKind::States)
+        } else {
+            ("Y", ArrayKind::Outputs)
+        };
+        if array.kind != expected {
+            return Err(format!("ARRAY/{id} should be of the kind {kind}"));
+        }
+        if array.size.is_some_and(|n| n != entries.len()) {
+            let (given, n) = (array.size.unwrap_or(0), entries.len());
+            return Err(format!("ARRAY/{id} has SIZE = {given}, but {n} entries"));
+        }
+        if self.scene.arrays.insert(id, entries).is_some() {
+            return Err(format!("ARRAY/{id} is already filled by another element"));
+        }
+        Ok(())
+    }
+
+    fn length_of_inputs(&self, u: Option<u32>) -> Result<usize, String> {
+        let Some(u) = u else { return Ok(0) };
+        match self.model.arrays.get(&u).map(|a| &a.kind) {
+            Some(ArrayKind::Inputs(variables)) => Ok(variables.len()),
+            Some(_) => Err(format!("ARRAY/{u} should be of the kind U")),
+            None => Err(format!("ARRAY/{u} does not exist")),
+        }
+    }
+
+    /// Values at the start: the numbers of an IC array, zeros without one.
+    fn initial(&self, ic: Option<u32>, n: usize) -> Result<Vec<f64>, String> {
+        let Some(ic) = ic else {
+            return Ok(vec![0.0; n]);
+        };
+        match self.model.arrays.get(&ic).map(|a| &a.kind) {
+            Some(ArrayKind::Ic(numbers)) if numbers.len() == n => Ok(numbers.clone()),
+            Some(ArrayKind::Ic(numbers)) => Err(format!(
+                "ARRAY/{ic} gives {} initial values for {n} states",
+                numbers.len()
+            )),
+            Some(_) => Err(format!("ARRAY/{ic} should be of the kind IC")),
+            None => Err(format!("ARRAY/{ic} does not exist")),
+        }
+    }
+
+    /// The numbers of a MATRIX; how many rows and columns are wanted, where that is known.
+    fn matrix(
+        &self,
+        id: u32,
+        rows: Option<usize>,
+        columns: Option<usize>,
+    ) -> Result<Numbers, String> {
+        let Some(matrix) = self.model.matrices.get(&id) else {
+            return Err(format!("MATRIX/{id} does not exist"));
+        };
+        let values = matrix.by_rows().ok_or_else(|| {
+            format!("MATRIX/{id} does not hold as many numbers as its ROWS and COLUMNS say")
+        })?;
+        let found = Numbers {
+            rows: matrix.rows,
+            columns: matrix.columns,
+            values,
+        };
+        let fits = |wanted: Option<usize>, n: usize| wanted.is_none_or(|w| w == n);
+        if fits(rows, found.rows) && fits(columns, found.columns) {
+            return Ok(found);
+        }
+        let wanted = |n: Option<usize>| n.map_or_else(|| "any".to_string(), |n| n.to_string());
+        Err(format!(
+            "MATRIX/{id} is {} by {}, but {} by {} are wanted here",
+            found.rows,
+            found.columns,
+            wanted(rows),
+            wanted(columns)
+        ))
+    }
+
+    fn linear_system(&mut self, id: u32, s: &LinearSystem) -> Result<(), String> {
+        let a = self.matrix(s.a, None, None)?;
+        let n = a.rows;
+        if a.columns != n {
+            return Err(format!(
+                "MATRIX/{} is {n} by {}, not square",
+                s.a, a.columns
+            ));
+        }
+        let m = self.length_of_inputs(s.u)?;
+        let u = s.u.unwrap_or(0);
+        let optional = |matrix: Option<u32>, rows, columns| {
+            matrix.map(|id| self.matrix(id, rows, columns)).transpose()
+        };
+        let b = optional(s.b, Some(n), Some(m))?;
+        let cc = optional(s.c, None, Some(n))?;
+        let d = optional(s.d, cc.as_ref().map(|c| c.rows), Some(m))?;
+        let initial = self.initial(s.ic, n)?;
+        let row = |matrix: &Option<Numbers>, i: usize, array: u32| -> Vec<Term> {
+            let Some(matrix) = matrix else {
+                return Vec::new();
+            };
+            let values = &matrix.values[i * matrix.columns..(i + 1) * matrix.columns];
+            let terms = values.iter().enumerate().filter(|(_, f)| **f != 0.0);
+            terms.map(|(k, &f)| (f, array, k + 1)).collect()
+        };
+        let outputs = cc.as_ref().or(d.as_ref()).map_or(0, |c| c.rows);
+        let a = Some(a);
+        let mut states = Vec::with_capacity(n);
+        for (i, &value) in initial.iter().enumerate() {
+            let mut terms = row(&a, i, s.x);
+            terms.extend(row(&b, i, u));
+            let name = format!("LSE/{id} state {}", i + 1);
+            let rate = self.sum(name.clone(), &terms);
+            let start = Start {
+                value,
+                hold: s.static_hold,
+            };
+            states.push(Entry::State(self.state(name, rate, &start)));
+        }
+        self.filled(s.x, true, states)?;
+        let mut values = Vec::with_capacity(outputs);
+        for i in 0..outputs {
+            let mut terms = row(&cc, i, s.x);
+            terms.extend(row(&d, i, u));
+            values.push(Entry::Formula(
+                self.sum(format!("LSE/{id} output {}", i + 1), &terms),
+            ));
+        }
+        match s.y {
+            Some(y) => self.filled(y, false, values),
+            None => Ok(()),
+        }
+    }
+
+    fn transfer_function(&mut self, id: u32, s: &TransferFunction) -> Result<(), String> {
+        let trimmed = |c: &[f64]| c.iter().rposition(|x| *x != 0.0).map_or(0, |k| k + 1);
+        let a = &s.denominator[..trimmed(&s.denominator)];
+        let b = &s.numerator[..trimmed(&s.numerator)];
+        let Some((&an, lower)) = a.split_last() else {
+            return Err("its DENOMINATOR is zero".into());
+        };
+        let n = lower.len();
+        if b.len() > a.len() {
+            return Err(format!(
+                "its numerator has degree {}, more than the {n} of its denominator: such a system would differentiate its input",
+                b.len() - 1
+            ));
+        }
+        if self.length_of_inputs(Some(s.u))? != 1 {
+            return Err(format!("ARRAY/{} should hold the one input", s.u));
+        }
+        let at = |k: usize| b.get(k).copied().unwrap_or(0.0);
+        let mut states = Vec::with_capacity(n);
+        for i in 0..n {
+            let terms = if i + 1 < n {
+                vec![(1.0, s.x, i + 2)]
+            } else {
+                let own = lower.iter().enumerate().filter(|(_, a)| **a != 0.0);
+                let mut terms: Vec<Term> = own.map(|(k, a)| (-a / an, s.x, k + 1)).collect();
+                terms.push((1.0 / an, s.u, 1));
+                terms
+            };
+            let name = format!("TFSISO/{id} state {}", i + 1);
+            let rate = self.sum(name.clone(), &terms);
+            let start = Start {
+                value: 0.0,
+                hold: s.static_hold,
+            };
+            states.push(Entry::State(self.state(name, rate, &start)));
+        }
+        self.filled(s.x, true, states)?;
+        let through = at(n) / an;
+        let mut terms: Vec<Term> = (0..n)
+            .map(|k| (at(k) - lower[k] * through, s.x, k + 1))
+            .filter(|t| t.0 != 0.0)
+            .collect();
+        if through != 0.0 {
+            terms.push((through, s.u, 1));
+        }
+        let y = Entry::Formula(self.sum(format!("TFSISO/{id} output"), &terms));
+        self.filled(s.y, false, vec![y])
+    }
+
+    /// States and outputs that a closure of the user's computes, from its own inputs, the states and the entries of U.
+    fn general_system(
+        &mut self,
+        c: &mut Compiler,
+        id: u32,
+        s: &GeneralSystem,
+    ) -> Result<(), String> {
+        let name = format!("GSE/{id}");
+        let initial = self.initial(s.ic, s.ns)?;
+        let m = self.length_of_inputs(s.u)?;
+        let discrete = if s.xd.is_some() { s.nd } else { 0 };
+        let numbers = |values: Vec<f64>| values.into_iter().map(Entry::Number).collect();
+        if self.zero_user {
+            // nothing moves: what would be computed is zero
+            if let Some(x) = s.x {
+                self.filled(x, true, numbers(initial))?;
+            }
+            if let Some(xd) = s.xd {
+                let values = self.initial(s.icd, discrete)?;
+                self.filled(xd, true, numbers(values))?;
+            }
+            if let Some(y) = s.y {
+                self.filled(y, false, numbers(vec![0.0; s.no]))?;
+            }
+            return Ok(());
+        }
+        if s.nd > 0 {
+            return Err("its discrete states (ND, XD) are not solved".into());
+        }
+        let (Some(function), true) = (&s.function, s.ns + s.no > 0) else {
+            return Ok(());
+        };
+        let array = |id: Option<u32>, n: usize| {
+            (1..=n).filter_map(move |k| id.map(|id| format!("ARYVAL({id},{k})")))
+        };
+        let reads: Vec<String> = array(s.x, s.ns).chain(array(s.u, m)).collect();
+        let results = self.user(
+            c,
+            &format!("{name} FUNCTION"),
+            function,
+            s.ns + s.no,
+            &reads,
+        );
+        let mut states = Vec::with_capacity(s.ns);
+        for (i, value) in initial.into_iter().enumerate() {
+            let start = Start {
+                value,
+                hold: s.static_hold,
+            };
+            states.push(Entry::State(self.state(
+                format!("{name} state {}", i + 1),
+                results[i],
+                &start,
+            )));
+        }
+        if let Some(x) = s.x {
+            self.filled(x, true, states)?;
+        }
+        let outputs = results[s.ns..]
+            .iter()
+            .copied()
+            .map(Entry::Formula)
+            .collect();
+        match s.y {
+            Some(y) => self.filled(y, false, outputs),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The program of a sum.
+fn sum(terms: &[Term]) -> Program {
+    let builder = RefCell::new(Recorder::new(Folding::Strict));
+    let mut total: Option<Sym<'_>> = None;
+    for &(factor, array, k) in terms {
+        let input = Input::Measure(Measure::Aryval, [array, k as u32, 0, 0]);
+        let entry = Sym::input(input, &builder);
+        let term = if factor == 1.0 {
+            entry
+        } else {
+            Sym::Constant(factor) * entry
+        };
+        total = Some(total.map_or(term, |sum| sum + term));
+    }
+    let total = total.unwrap_or(Sym::Constant(0.0));
+    let recorder = &mut *builder.borrow_mut();
+    let value = total.value(recorder);
+    recorder.finish(&[value])
+}

@@ -1,0 +1,462 @@
+//! System elements: linear systems, transfer functions and differential equations agree with each other and with closed forms; sensors
+//! act where and when they should; values of the past; closures of the user's.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::script::obey;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::dataset::command::Script;
+use cognate::model::Model;
+use cognate::results::Status;
+
+const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+/// A unit mass that may move along x; MARKER/2 on it, MARKER/3 on ground.
+const BODY: &str = "PART/2, MASS=1, CM=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
+                    JOINT/1, TRANSLATIONAL, I=2, J=3\n";
+
+fn session(text: &str, columns: &[&str], method: &str) -> Session {
+    let model =
+        Model::from_text(&format!("{GROUND}{BODY}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        method: Some(method.to_string()),
+        error: Some(1e-10),
+        ..Options::default()
+    };
+    Session::new(model, "test", options)
+}
+
+fn go(s: &mut Session, end: f64, steps: usize) {
+    let status = s
+        .simulate(Analysis::Dynamic, end, steps, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+}
+
+fn rest(s: &mut Session) {
+    let status = s
+        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+}
+
+fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
+    s.run.column(column).unwrap()
+}
+
+fn last(s: &Session, column: &str) -> f64 {
+    *values(s, column).last().unwrap()
+}
+
+/// The refusal of a model.
+fn refused(text: &str) -> String {
+    let mut s = session(text, &[], "AUTO");
+    let errors = s
+        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
+        .expect_err("a mistake");
+    errors.iter().map(|e| format!("{e}\n")).collect()
+}
+
+/// y/u = (2 + 3 s)/(5 + 0.6 s + s²) in three ways: TFSISO/1 → ARRAY/13, LSE/1 → ARRAY/23, DIFF/1, 2 → VARIABLE/9.
+fn three_ways(input: &str) -> String {
+    format!(
+        "VARIABLE/1, FUNCTION={input}\nARRAY/10, U, VARIABLES=1\n\
+         ARRAY/11, X\nARRAY/13, Y\n\
+         TFSISO/1, X=11, U=10, Y=13, NUMERATOR=2,3, DENOMINATOR=5,0.6,1\n\
+         ARRAY/21, X, SIZE=2\nARRAY/23, Y, SIZE=1\nARRAY/24, IC, NUMBERS=0,0\n\
+         MATRIX/1, FULL=RORDER, ROWS=2, COLUMNS=2, VALUES=0,1,-5,-0.6\n\
+         MATRIX/2, FULL=RORDER, ROWS=2, COLUMNS=1, VALUES=0,1\n\
+         MATRIX/3, FULL=RORDER, ROWS=1, COLUMNS=2, VALUES=2,3\n\
+         LSE/1, X=21, U=10, Y=23, IC=24, A=1, B=2, C=3\n\
+         DIFF/1, IC=0, FUNCTION=DIF(2)\nDIFF/2, IC=0, FUNCTION=VARVAL(1)-5*DIF(1)-0.6*DIF(2)\n\
+         VARIABLE/9, FUNCTION=2*DIF(1)+3*DIF(2)\n"
+    )
+}
+
+const WAYS: [&str; 3] = ["ARYVAL(13,1)", "ARYVAL(23,1)", "VARVAL(9)"];
+
+#[test]
+fn transfer_functions_linear_systems_and_differential_equations_agree() {
+    // step response: y = 2/5 (1 − e^(−0.3 t)(cos ω t + 0.3/ω sin ω t)) + 3/ω e^(−0.3 t) sin ω t,  ω² = 5 − 0.09
+    let omega = (5.0_f64 - 0.09).sqrt();
+    for method in ["DOP853", "RADAU5"] {
+        let mut s = session(&three_ways("1"), &WAYS, method);
+        go(&mut s, 4.0, 16);
+        for (row, &t) in values(&s, "time").iter().enumerate() {
+            let decay = (-0.3 * t).exp();
+            let (sin, cos) = (omega * t).sin_cos();
+            let exact = 0.4 * (1.0 - decay * (cos + 0.3 / omega * sin)) + 3.0 / omega * decay * sin;
+            for way in WAYS {
+                let y = values(&s, way)[row];
+                assert!(
+                    (y - exact).abs() < 1e-8,
+                    "{method} {way} at {t}: {y}, {exact}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn systems_start_from_rest_where_statics_has_put_them() {
+    let mut s = session(
+        &format!(
+            "{}SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=-DZ(2,3,3)+ARYVAL(13,1)-VZ(2,3,3)\n",
+            three_ways("3")
+        ),
+        &[
+            "ARYVAL(13,1)",
+            "ARYVAL(23,1)",
+            "VARVAL(9)",
+            "ARYVAL(11,1)",
+            "DZ(2,3,3)",
+        ],
+        "AUTO",
+    );
+    rest(&mut s);
+    for way in WAYS {
+        assert!((last(&s, way) - 1.2).abs() < 1e-12, "{way}");
+    }
+    assert!((last(&s, "ARYVAL(11,1)") - 0.6).abs() < 1e-12);
+    assert!((last(&s, "DZ(2,3,3)") - 1.2).abs() < 1e-12);
+    go(&mut s, 2.0, 4);
+    for way in WAYS {
+        assert!(
+            values(&s, way)[1..].iter().all(|y| (y - 1.2).abs() < 1e-9),
+            "{way}"
+        );
+    }
+}
+
+#[test]
+fn a_held_system_keeps_its_states_in_statics() {
+    let text = three_ways("3")
+        .replace("C=3", "C=3, STATIC_HOLD")
+        .replace("NUMBERS=0,0", "NUMBERS=0.25,0.5");
+    let force = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=-DZ(2,3,3)\n";
+    let mut s = session(&format!("{text}{force}"), &WAYS, "AUTO");
+    rest(&mut s);
+    assert!((last(&s, WAYS[0]) - 1.2).abs() < 1e-12);
+    assert_eq!(last(&s, WAYS[1]), 2.0);
+}
+
+#[test]
+fn what_feeds_an_output_through_is_solved_in_a_circle() {
+    // y = u + x, ẋ = −x, u = 1 − y/2: y = (1 + x)/1.5
+    let text = "VARIABLE/1, FUNCTION=1-0.5*ARYVAL(13,1)\nARRAY/10, U, VARIABLES=1\nARRAY/11, X\nARRAY/13, Y\n\
+                ARRAY/14, IC, NUMBERS=2\nMATRIX/1, FULL=RORDER, ROWS=1, COLUMNS=1, VALUES=-1\n\
+                MATRIX/2, FULL=RORDER, ROWS=1, COLUMNS=1, VALUES=1\n\
+                LSE/1, X=11, U=10, Y=13, IC=14, A=1, C=2, D=2\n";
+    let mut s = session(text, &["ARYVAL(13,1)"], "AUTO");
+    go(&mut s, 2.0, 4);
+    for (y, t) in values(&s, "ARYVAL(13,1)").iter().zip(values(&s, "time")) {
+        let exact = (1.0 + 2.0 * (-t).exp()) / 1.5;
+        assert!((y - exact).abs() < 1e-8, "{y} at {t}");
+    }
+}
+
+#[test]
+fn a_gain_is_a_transfer_function_without_states_and_plants_read_variables() {
+    let text = "VARIABLE/1, FUNCTION=TIME\nARRAY/10, U, VARIABLES=1\nARRAY/11, X\nARRAY/13, Y\n\
+                TFSISO/1, X=11, U=10, Y=13, NUMERATOR=6, DENOMINATOR=4\n\
+                VARIABLE/2, FUNCTION=ARYVAL(13,1)\nPINPUT/3, VARIABLES=1\nPOUTPUT/4, VARIABLES=2,1\n";
+    let mut s = session(text, &["POUVAL(4,1)", "POUVAL(4,2)", "PINVAL(3,1)"], "AUTO");
+    go(&mut s, 2.0, 2);
+    assert_eq!(values(&s, "POUVAL(4,1)")[1..], [1.5, 3.0]);
+    assert_eq!(values(&s, "POUVAL(4,2)"), values(&s, "PINVAL(3,1)"));
+}
+
+#[test]
+fn systems_that_do_not_fit_together_are_refused_with_their_names() {
+    let base = three_ways("1");
+    for (from, to, says) in [
+        ("SIZE=2", "SIZE=3", "ARRAY/21 has SIZE = 3, but 2 entries"),
+        (
+            "NUMBERS=0,0",
+            "NUMBERS=0,0,0",
+            "ARRAY/24 gives 3 initial values for 2 states",
+        ),
+        (
+            "ROWS=1, COLUMNS=2, VALUES=2,3",
+            "ROWS=1, COLUMNS=3, VALUES=2,3,4",
+            "MATRIX/3 is 1 by 3",
+        ),
+    ] {
+        let text = base.replace(from, to);
+        assert_ne!(text, base);
+        let said = refused(&text);
+        assert!(said.contains(says), "{said}");
+    }
+}
+
+#[test]
+fn a_sensor_ends_the_simulation_where_its_expression_passes_its_value() {
+    // x = t²/2 reaches 2 at t = 2
+    let push = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=1\n";
+    for (sensor, time) in [
+        ("VALUE=2, GE, RETURN", 2.0),
+        ("VALUE=2, EQ, HALT", 2.0),
+        ("VALUE=4.5, GE, ERROR=1E-8, RETURN", 3.0),
+    ] {
+        for method in ["DOP853", "RADAU5"] {
+            let text = format!("{push}SENSOR/7, FUNCTION=DZ(2,3,3)\\, {sensor}\n");
+            let mut s = session(&text, &["DZ(2,3,3)"], method);
+            go(&mut s, 10.0, 4);
+            assert!(
+                (s.time() - time).abs() < 1e-7,
+                "{method} {sensor}: {}",
+                s.time()
+            );
+            assert!((last(&s, "time") - time).abs() < 1e-7);
+            assert!(s.run.record.stop_reason.contains("SENSOR/7"));
+            assert_eq!(s.halted(), sensor.contains("HALT"));
+        }
+    }
+}
+
+#[test]
+fn a_sensor_that_holds_at_the_start_waits_until_it_has_not_held() {
+    // cos t: at least 0.5 until π/3, again from 5π/3
+    let text = "SENSOR/1, FUNCTION=COS(TIME)\\, VALUE=0.5, GE, RETURN\n";
+    let mut s = session(text, &[], "AUTO");
+    go(&mut s, 10.0, 10);
+    assert!(
+        (s.time() - 5.0 * std::f64::consts::PI / 3.0).abs() < 1e-9,
+        "{}",
+        s.time()
+    );
+    // an angle modulo a turn
+    let text = "SENSOR/1, FUNCTION=2*TIME+7\\, VALUE=1, EQ, ANGULAR, ERROR=1E-9, RETURN\n";
+    let mut s = session(text, &[], "AUTO");
+    go(&mut s, 10.0, 10);
+    let due = (std::f64::consts::TAU - 6.0) / 2.0;
+    assert!((s.time() - due).abs() < 1e-8, "{}", s.time());
+}
+
+#[test]
+fn a_sensor_evaluates_what_a_force_then_reads() {
+    // from t = 1 on the force is what the velocity was then
+    let text = "SENSOR/1, FUNCTION=TIME\\, VALUE=1, GE, EVALUATE=2*VZ(2,3,3)\\\n\
+                SENSOR/2, FUNCTION=TIME\\, VALUE=0, EQ, EVALUATE=DZ(2,3,3)+5\\\n\
+                SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=IF(TIME-1: 3, SENVAL(1), SENVAL(1))\n";
+    let mut s = session(text, &["SENVAL(1)", "SENVAL(2)", "VZ(2,3,3)"], "AUTO");
+    go(&mut s, 2.0, 2);
+    assert_eq!(values(&s, "SENVAL(2)")[1..], [5.0, 5.0]);
+    assert!((last(&s, "SENVAL(1)") - 6.0).abs() < 1e-8);
+    assert!(
+        (last(&s, "VZ(2,3,3)") - 9.0).abs() < 1e-8,
+        "{}",
+        last(&s, "VZ(2,3,3)")
+    );
+}
+
+#[test]
+fn a_sensor_changes_the_distance_of_outputs_and_prints() {
+    let text = "SENSOR/1, FUNCTION=TIME\\, VALUE=0.75, GE, DT=0.1, PRINT\n";
+    let mut s = session(text, &[], "AUTO");
+    go(&mut s, 1.0, 2);
+    let expected = [0.0, 0.5, 0.75, 0.85, 0.95, 1.0];
+    let found = values(&s, "time");
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() < 1e-9, "{found:?}");
+    }
+}
+
+#[test]
+fn commands_go_on_after_a_return_and_end_after_a_halt() {
+    for (action, rows) in [("RETURN", 3), ("HALT", 2)] {
+        let text =
+            format!("{GROUND}{BODY}SENSOR/1, FUNCTION=TIME\\, VALUE=0.5, GE, {action}\nEND\n");
+        let model = Model::from_text(&text).unwrap();
+        let script = Script::from_text(
+            "\nFILE/MODEL=x\nSIMULATE/DYNAMIC, END=1, STEPS=1\nDEACTIVATE/SENSOR, ID=1\nSIMULATE/DYNAMIC, END=3, STEPS=1\nSTOP\n",
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
+        let mut s = Session::new(model, "test", Options::default());
+        let steps = script.steps;
+        let status =
+            obey(&mut s, &steps, |_, _| (), &mut Unwatched).unwrap_or_else(|e| panic!("{e:?}"));
+        assert_eq!(status, Status::Completed);
+        assert_eq!(
+            values(&s, "time").len(),
+            rows,
+            "{action}: {:?}",
+            values(&s, "time")
+        );
+    }
+}
+
+#[test]
+fn values_of_the_past_follow_what_was() {
+    // ẏ = −y(t − 1), y = 1 before: pieces of polynomials, y = 1 − t, then 1 − t + (t − 1)²/2, then − (t − 2)³/6 more
+    let text = "DIFF/1, IC=1, FUNCTION=-DELAY(DIF(1),1,1)\n\
+                VARIABLE/2, FUNCTION=DELAY(SIN(TIME),0.3+0.1*TIME,TIME**2)\n";
+    for (method, bound) in [("DOP853", 1e-9), ("RADAU5", 1e-8)] {
+        let mut s = session(text, &["DIF(1)", "VARVAL(2)"], method);
+        go(&mut s, 3.0, 12);
+        for (row, &t) in values(&s, "time").iter().enumerate() {
+            let mut y = 1.0 - t;
+            y += if t > 1.0 {
+                (t - 1.0).powi(2) / 2.0
+            } else {
+                0.0
+            };
+            y -= if t > 2.0 {
+                (t - 2.0).powi(3) / 6.0
+            } else {
+                0.0
+            };
+            let found = values(&s, "DIF(1)")[row];
+            assert!((found - y).abs() < bound, "{method}: {found} at {t}, {y}");
+            let then = t - 0.3 - 0.1 * t;
+            let past = if then < 0.0 { then * then } else { then.sin() };
+            let found = values(&s, "VARVAL(2)")[row];
+            assert!(
+                (found - past).abs() < 1e-6,
+                "{method}: {found} at {t}, {past}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_past_of_one_simulation_is_known_in_the_next() {
+    let mut s = session(
+        "DIFF/1, IC=1, FUNCTION=-DELAY(DIF(1),1,1)\n",
+        &["DIF(1)"],
+        "AUTO",
+    );
+    for end in [0.75, 1.5, 3.0] {
+        go(&mut s, end, 2);
+    }
+    let exact = 1.0 - 3.0 + 2.0 - 1.0 / 6.0;
+    assert!(
+        (last(&s, "DIF(1)") - exact).abs() < 1e-8,
+        "{}",
+        last(&s, "DIF(1)")
+    );
+}
+
+#[test]
+fn closures_compute_what_user_stands_for() {
+    let text = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=USER(100, 4, 0.2)\n\
+                VARIABLE/1, FUNCTION=USER(7)\\, ROUTINE=mylib::twice\n\
+                REQUEST/1, FUNCTION=USER(1,2)\n";
+    let reference =
+        "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=1-4*DZ(2,3,3)-0.2*VZ(2,3,3)\n";
+    for method in ["DOP853", "RADAU5"] {
+        let mut s = session(text, &["DZ(2,3,3)", "VARVAL(1)"], method);
+        s.register("100", &["DZ(2,3,3)", "VZ(2,3,3)"], |call, out| {
+            let [_, k, c] = call.constants else { return };
+            out[0] = 1.0 - k * call.values[0] - c * call.values[1];
+        });
+        s.register("mylib::twice", &["TIME"], |call, out| {
+            out[0] = 2.0 * call.values[0]
+        });
+        s.register("REQUEST/1", &["VARVAL(1)"], |call, out| {
+            out[0] = call.values[0] + 1.0;
+            out[7] = call.time;
+        });
+        go(&mut s, 3.0, 6);
+        let mut plain = session(reference, &["DZ(2,3,3)"], method);
+        go(&mut plain, 3.0, 6);
+        for (a, b) in values(&s, "DZ(2,3,3)")
+            .iter()
+            .zip(values(&plain, "DZ(2,3,3)"))
+        {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+        assert_eq!(last(&s, "VARVAL(1)"), 6.0);
+        assert_eq!(
+            (last(&s, "REQUEST_1.F1"), last(&s, "REQUEST_1.F8")),
+            (7.0, 3.0)
+        );
+    }
+}
+
+#[test]
+fn a_closure_may_drive_a_motion_and_be_a_general_system() {
+    let text = "MOTION/1, JOINT=1, TRANSLATION, FUNCTION=USER(5)\n\
+                VARIABLE/1, FUNCTION=1\nARRAY/10, U, VARIABLES=1\nARRAY/11, X\nARRAY/12, Y\nARRAY/13, IC, NUMBERS=2\n\
+                GSE/1, NS=1, NO=1, X=11, U=10, Y=12, IC=13, FUNCTION=USER(9)\n";
+    let mut s = session(
+        text,
+        &["DZ(2,3,3)", "ACCZ(2,3,3)", "ARYVAL(11,1)", "ARYVAL(12,1)"],
+        "AUTO",
+    );
+    s.register("5", &["TIME"], |call, out| {
+        let (sin, cos) = call.values[0].sin_cos();
+        out.copy_from_slice(&[sin, cos, -sin]);
+    });
+    // ẋ = u − x, y = 3 x
+    s.register("GSE/1", &[], |call, out| {
+        let [x, u] = call.values else { return };
+        out.copy_from_slice(&[u - x, 3.0 * x]);
+    });
+    go(&mut s, 2.0, 4);
+    for (row, &t) in values(&s, "time").iter().enumerate() {
+        assert!((values(&s, "DZ(2,3,3)")[row] - t.sin()).abs() < 1e-9);
+        assert!((values(&s, "ACCZ(2,3,3)")[row] + t.sin()).abs() < 1e-9);
+        let x = 1.0 + (-t).exp();
+        assert!((values(&s, "ARYVAL(11,1)")[row] - x).abs() < 1e-8);
+        assert!((values(&s, "ARYVAL(12,1)")[row] - 3.0 * x).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn without_its_closure_user_is_refused_or_zero_as_asked() {
+    let text = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=USER(100)\n\
+                ARRAY/12, Y\nGSE/1, NO=1, Y=12, FUNCTION=USER(1)\n";
+    let said = refused(text);
+    assert!(
+        said.contains("SFORCE/1") && said.contains("GSE/1"),
+        "{said}"
+    );
+    let mut s = session(text, &["DZ(2,3,3)", "ARYVAL(12,1)"], "AUTO");
+    s.register("100", &["ACCZ(2,3,3)"], |_, _| ());
+    let said = s
+        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
+        .expect_err("GSE/1 is missing");
+    assert!(said.len() == 1, "{said:?}");
+    let model = s.model.clone();
+    let options = Options {
+        zero_user: true,
+        columns: vec!["DZ(2,3,3)".into(), "ARYVAL(12,1)".into()],
+        ..Options::default()
+    };
+    let mut s = Session::new(model, "test", options);
+    go(&mut s, 1.0, 1);
+    assert_eq!(
+        (last(&s, "DZ(2,3,3)"), last(&s, "ARYVAL(12,1)")),
+        (0.0, 0.0)
+    );
+}
+
+#[test]
+fn a_closure_that_reads_its_own_result_is_refused() {
+    let text = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=USER(100)\n";
+    let mut s = session(text, &[], "AUTO");
+    s.register("100", &["ACCZ(2,3,3)"], |_, out| out[0] = 1.0);
+    let said = s
+        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
+        .expect_err("a circle");
+    assert!(said[0].to_string().contains("SFORCE/1"), "{said:?}");
+}
+
+#[test]
+fn a_motion_may_follow_a_differential_equation_of_time() {
+    // DIF(1) = sin t, so the body moves like it, its acceleration too
+    let text =
+        "DIFF/1, IC=0, FUNCTION=COS(TIME)\nMOTION/1, JOINT=1, TRANSLATION, FUNCTION=2*DIF(1)\n";
+    let mut s = session(text, &["DZ(2,3,3)", "VZ(2,3,3)", "ACCZ(2,3,3)"], "AUTO");
+    go(&mut s, 2.0, 4);
+    for (row, &t) in values(&s, "time").iter().enumerate() {
+        assert!(
+            (values(&s, "DZ(2,3,3)")[row] - 2.0 * t.sin()).abs() < 1e-8,
+            "{t}"
+        );
+        assert!((values(&s, "VZ(2,3,3)")[row] - 2.0 * t.cos()).abs() < 1e-8);
+        assert!((values(&s, "ACCZ(2,3,3)")[row] + 2.0 * t.sin()).abs() < 1e-8);
+    }
+}
