@@ -252,3 +252,105 @@ fn a_driven_joint_is_a_driven_pair_of_markers() {
         }
     }
 }
+
+/// A MATRIX and a CURVE through its points.
+fn curve(id: u32, kind: &str, points: &[[f64; 2]]) -> String {
+    let mut text = format!("MATRIX/{id}, FULL=RORDER, ROWS={}, COLUMNS=3, VALUES=", points.len());
+    for (k, p) in points.iter().enumerate() {
+        let comma = if k == 0 { "" } else { "," };
+        text += &format!("{comma}\n, {:.17},{:.17},0", p[0], p[1]);
+    }
+    text + &format!("\nCURVE/{id}, {kind}, MATRIX={id}, CURVE_POINTS\n")
+}
+
+/// Points of a circle, the last like the first. The spline through n of them is off by R (2π/n)⁴/384: 2e-9 R for 200.
+fn circle(radius: f64, n: usize) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = (0..n)
+        .map(|k| {
+            let angle = std::f64::consts::TAU * k as f64 / n as f64;
+            [radius * angle.cos(), radius * angle.sin()]
+        })
+        .collect();
+    points.push(points[0]);
+    points
+}
+
+const R: f64 = 0.05;
+const ECCENTRIC: f64 = 0.02;
+
+/// A disc that turns about a point beside its centre under a follower that goes up and down above that point.
+fn cam_and_follower(height: f64, tie: &str) -> String {
+    format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP={ECCENTRIC},0,0\n\
+         MARKER/22, PART=2, FLOATING\n\
+         PART/3, MASS=0.5, CM=30, IP=1,1,1, QG=0,{height},0\nMARKER/30, PART=3\n\
+         MARKER/31, PART=3, REULER=0,-90D,0\nMARKER/11, PART=1, REULER=0,-90D,0\n\
+         JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, TRANSLATIONAL, I=31, J=11\n{tie}ACCGRAV/JGRAV=-9.81\n{}",
+        curve(1, "CLOSED", &circle(R, 200))
+    )
+}
+
+/// Height, velocity and acceleration of what stays at a distance from the centre of the disc while it turns by t.
+fn lift(distance: f64, t: f64) -> [f64; 3] {
+    use cognate::scalar::{Jet, Scalar};
+    let t = Jet::variable(t);
+    let (s, c) = t.sin_cos();
+    let e = Jet::constant(ECCENTRIC);
+    let y = e * s + (Jet::constant(distance).square() - (e * c).square()).sqrt();
+    [y.value, y.first, y.second]
+}
+
+#[test]
+fn a_point_rides_on_a_disc_as_the_triangle_says() {
+    let columns = ["DY(30,1)", "VY(30,1)", "ACCY(30,1)", "PTCV(1,0,3,0)", "PTCV(1,0,2,0)", "PTCV(1,1,3,0)", "PTCV(1,0,5,0)", "FY(30,22)"];
+    let turns = 3.0 * std::f64::consts::TAU;
+    let drive = "PTCV/1, CURVE=1, I=30, JFLOAT=22, RM=21\nMOTION/1, JOINT=1, FUNCTION=TIME\n";
+    let s = run(&cam_and_follower(0.045, drive), &columns, turns, 300);
+    for k in 0..3 {
+        // each derivative of the spline is two orders worse than the one before
+        let tolerance = [1e-9, 1e-6, 1e-4][k];
+        let error = off(&s, columns[k], |t| lift(R, t)[k]);
+        assert!(error < tolerance, "{}: {error}", columns[k]);
+    }
+    let t = values(&s, "time");
+    for (k, &t) in t.iter().enumerate() {
+        // the contact pushes along the line from the centre to the follower
+        let (x, y) = (-ECCENTRIC * t.cos(), lift(R, t)[0] - ECCENTRIC * t.sin());
+        let up = 0.5 * (lift(R, t)[2] + 9.81);
+        let (fy, fx) = (values(&s, "PTCV(1,0,3,0)")[k], values(&s, "PTCV(1,0,2,0)")[k]);
+        assert!((fy - up).abs() < 1e-4, "{fy} {up}");
+        assert!((fx - up * x / y).abs() < 1e-4);
+        assert!((values(&s, "PTCV(1,1,3,0)")[k] + fy).abs() < 1e-12);
+        assert!(values(&s, "PTCV(1,0,5,0)")[k].abs() < 1e-12);
+        assert!((values(&s, "FY(30,22)")[k] - fy).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_flat_and_a_roller_ride_on_a_disc() {
+    let line: Vec<[f64; 2]> = (0..5).map(|k| [0.05 * f64::from(k) - 0.1, 0.0]).collect();
+    let roller = 0.015;
+    for (follower, kind, points, height) in [
+        ("flat", "OPEN", line, 0.08),
+        ("roller", "CLOSED", circle(roller, 200), 0.07),
+    ] {
+        let columns = ["DY(30,1)", "VY(30,1)", "ACCY(30,1)", "CVCV(1,0,3,0)", "CVCV(1,1,3,0)", "CVCV(1,0,5,0)"];
+        let tie = format!(
+            "CVCV/1, ICURVE=2, IRM=30, JCURVE=1, JRM=21\nMOTION/1, JOINT=1, FUNCTION=TIME\n{}",
+            curve(2, kind, &points)
+        );
+        let s = run(&cam_and_follower(height, &tie), &columns, 7.0, 70);
+        let expected = |t: f64| match follower {
+            "flat" => [ECCENTRIC * t.sin() + R, ECCENTRIC * t.cos(), -ECCENTRIC * t.sin()],
+            _ => lift(R + roller, t),
+        };
+        for k in 0..3 {
+            let tolerance = [1e-9, 1e-6, 1e-4][k];
+            let error = off(&s, columns[k], |t| expected(t)[k]);
+            assert!(error < tolerance, "{follower} {}: {error}", columns[k]);
+        }
+        assert!(off(&s, "CVCV(1,0,3,0)", |t| 0.5 * (expected(t)[2] + 9.81)) < 1e-4);
+        assert!(off(&s, "CVCV(1,1,3,0)", |t| -0.5 * (expected(t)[2] + 9.81)) < 1e-4);
+        assert!(off(&s, "CVCV(1,0,5,0)", |_| 0.0) < 1e-12);
+    }
+}

@@ -9,6 +9,7 @@ use super::verify::direction;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
+use crate::scene::cams;
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::programs::weights;
 use crate::scene::{RowKind, Scene, Source};
@@ -176,6 +177,7 @@ fn natural(scene: &Scene, r: usize) -> f64 {
         RowKind::Markers { .. } => 1.0,
         RowKind::Displacements(sum) => sum.scale(scene.length),
         RowKind::Formula { scale, .. } => *scale,
+        RowKind::Cam { .. } => scene.length,
     }
 }
 
@@ -210,29 +212,33 @@ pub(super) struct Closed {
 
 /// Moves `q` by the least changes that satisfy the rows, but for those that `ignored` names.
 pub(super) fn close(
-    scene: &Scene,
+    scene: &mut Scene,
     t: f64,
     q: &mut [f64],
     x: &[f64],
-    ignored: impl Fn(usize) -> bool,
+    ignored: impl Fn(&Scene, usize) -> bool,
 ) -> Closed {
     let w = weights(scene);
     let mover = Mover::new(scene);
-    let worst = |g: &DVector<f64>| {
+    let worst = |scene: &Scene, g: &DVector<f64>| {
         (0..g.len())
             .map(|r| relative(scene, r, g[r]))
             .fold(0.0, f64::max)
     };
-    let rows_at = |q: &[f64]| {
+    // contacts on curves go along
+    let rows_at = |scene: &mut Scene, q: &[f64]| {
+        let still = vec![0.0; scene.layout.n_v];
+        let here = numbers(scene, t, q, &still, x);
+        cams::track(scene, &here);
         let (mut g, mut gradient, drift) = rows_at(scene, t, q, x);
-        for r in (0..g.len()).filter(|&r| ignored(r)) {
+        for r in (0..g.len()).filter(|&r| ignored(scene, r)) {
             g[r] = 0.0;
             gradient.row_mut(r).fill(0.0);
         }
         (g, gradient, drift)
     };
-    let (mut g, mut gradient, _) = rows_at(q);
-    let mut size = worst(&g);
+    let (mut g, mut gradient, _) = rows_at(scene, q);
+    let mut size = worst(scene, &g);
     let mut iterations = 0;
     while size > 1e-13 && iterations < 100 {
         let step = least_change(&gradient, &w, &(-&g));
@@ -246,16 +252,18 @@ pub(super) fn close(
         while damping > 1e-6 {
             let mut trial = q.to_vec();
             mover.displace(&mut trial, (&step * damping).as_slice());
-            let (g1, gradient1, _) = rows_at(&trial);
+            let contacts = scene.cams.clone();
+            let (g1, gradient1, _) = rows_at(scene, &trial);
             if g1.norm() < g.norm() {
                 q.copy_from_slice(&trial);
                 (g, gradient, better) = (g1, gradient1, true);
                 break;
             }
+            scene.cams = contacts;
             damping *= 0.5;
         }
         iterations += 1;
-        size = worst(&g);
+        size = worst(scene, &g);
         if !better {
             break;
         }
@@ -280,11 +288,18 @@ pub fn positions(
     let mut found = Assembly::default();
     let start = q.to_vec();
     // all but the rows that will hold what the others leave
-    let closed = close(scene, t, q, x, |r| is_held(scene, r));
+    let closed = close(scene, t, q, x, is_held);
     found.iterations = closed.iterations;
+    let reached = numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
+    if let Some(broken) = cams::broken(scene, &reached, None) {
+        return Err(vec![
+            Diagnostic::error(broken.code, broken.sentence)
+                .element(broken.element)
+                .help(broken.advice),
+        ]);
+    }
     if !closed.size.is_finite() || closed.size > CLOSED {
-        let numbers = numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
-        return Err(contradictions(scene, &closed.g, &numbers));
+        return Err(contradictions(scene, &closed.g, &reached));
     }
     found.moved = q
         .iter()
@@ -352,7 +367,7 @@ pub fn rank(
     let mut order: Vec<usize> = (0..scene.rows.len()).collect();
     let kind = |r: usize| match &scene.rows[r].kind {
         RowKind::Markers { law, .. } => u8::from(!law.is_length()),
-        RowKind::Displacements(_) | RowKind::Formula { .. } => 2,
+        RowKind::Displacements(_) | RowKind::Formula { .. } | RowKind::Cam { .. } => 2,
     };
     order.sort_by_key(|&r| (!first.contains(&r), kind(r), r));
     let all = scaled_rows(gradient, w);
@@ -539,6 +554,14 @@ fn part_velocities(
                 data.angular_velocity[k].is_some(),
                 data.angular_velocity[k].unwrap_or(0.0),
             ));
+        }
+    }
+    for (c, cam) in scene.cams.iter().enumerate() {
+        for (k, along) in at.cam_speeds(c).into_iter().enumerate() {
+            if let Some(given) = cam.velocity[k] {
+                values.push(along);
+                wanted.push((true, given));
+            }
         }
     }
     for c in &scene.coordinates {

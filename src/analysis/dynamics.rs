@@ -10,7 +10,8 @@
 use super::outside;
 use super::system::System;
 use crate::numeric::event::Locator;
-use crate::numeric::{self, Method, Ode, Reason, Stats, Stop};
+use crate::numeric::{self, Method, Ode, Reason, Stats, Step, Stop};
+use crate::scene::cams::Broken;
 
 /// What a caller may do while time passes.
 pub trait Watch {
@@ -85,6 +86,13 @@ pub enum Ended {
     Stop(Stop),
     /// a sensor asked: its place in [`Scene::sensors`](crate::scene::Scene::sensors)
     Sensor(usize),
+    /// a contact of curves ends
+    Broken {
+        /// when
+        t: f64,
+        /// which, and what to do
+        broken: Broken,
+    },
 }
 
 /// States at the output times that were reached.
@@ -304,6 +312,10 @@ impl Leg<'_> {
                 }
             }
             redone = 0;
+            if let Some((t, broken)) = self.broken(method, &step) {
+                self.emit(method, &Step { t1: t, ..step });
+                return Finished::Ended(Ended::Broken { t, broken });
+            }
             self.emit(method, &step);
             self.watch.progress(step.t1, step.h, method.stats());
             if self.system.outside.remembers()
@@ -368,6 +380,28 @@ impl Leg<'_> {
             method.propose(h);
         }
         sensor.restart || sensor.stepsize.is_some() || sensor.evaluate.is_some()
+    }
+
+    /// When in an accepted step a contact of curves ends, and which.
+    fn broken(&mut self, method: &mut dyn Method<System>, step: &Step) -> Option<(f64, Broken)> {
+        let mut found = self.system.broken(step.t1, method.y(), self.end)?;
+        let (mut whole, mut ended) = (step.t0, step.t1);
+        let mut state = method.y().to_vec();
+        // to rounding
+        while ended - whole > 4.0 * f64::EPSILON * ended.abs().max(step.h) {
+            let middle = 0.5 * (whole + ended);
+            if middle <= whole || middle >= ended {
+                break;
+            }
+            if method.interpolate(self.system, middle, &mut state).is_err() {
+                break;
+            }
+            match self.system.broken(middle, &state, self.end) {
+                Some(broken) => (ended, found) = (middle, broken),
+                None => whole = middle,
+            }
+        }
+        Some((whole, found))
     }
 
     /// Output times inside an accepted step, and the turns at its end.

@@ -92,10 +92,10 @@ pub fn look(scene: &Scene, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Opti
         } else if !drives {
             continue;
         }
-        let there = scene.with_motions_at(&motions);
+        let mut there = scene.with_motions_at(&motions);
         let mut q1 = q.to_vec();
         mover.displace(&mut q1, &change);
-        let closed = assemble::close(&there, t, &mut q1, x, |_| false);
+        let closed = assemble::close(&mut there, t, &mut q1, x, |_, _| false);
         let far = distance(scene, &w, q, &q1);
         let moved = far > 0.1 * step || drives && !motions.is_empty();
         if !(closed.size <= CLOSED && moved && far < 20.0 * step) {

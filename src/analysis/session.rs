@@ -212,6 +212,10 @@ impl Session {
                     None => complete &= k >= l.n_q + l.n_v,
                 }
             }
+            for cam in &mut scene.cams {
+                let name = &names[l.n_q + l.n_v + cam.state];
+                cam.begun = values.contains_key(name.as_str());
+            }
             if complete && !carried.at_rest {
                 v = Some(speeds);
             }
@@ -241,6 +245,7 @@ impl Session {
             let turned = misalignment::turned(&scene, &self.model, &numbers);
             assembly.warnings.extend(turned);
         }
+        scene.begin_states(&mut x);
         let v = match v {
             _ if mode == STATIC || mode == LINEAR && self.is_at_rest() => vec![0.0; l.n_v],
             Some(v) => v,
@@ -738,6 +743,11 @@ impl Session {
                 let reason = format!("{name} ended the simulation at time {at}");
                 (Status::Completed, reason, Vec::new())
             }
+            Some(Ended::Broken { t, broken }) => (
+                Status::Stopped,
+                format!("stopped at time {t}: {}; {}", broken.sentence, broken.advice),
+                vec![broken.element.clone()],
+            ),
             Some(Ended::Stop(stop)) => {
                 let (status, sentence, worst) = explain(&system.scene, stop);
                 (status, sentence, vec![worst])

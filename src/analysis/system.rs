@@ -8,6 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Ode};
 use crate::scalar::Dual;
+use crate::scene::cams::{self, Broken, Cam};
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, Switching, record};
@@ -50,6 +51,8 @@ pub struct System {
     dual_numbers: Vec<Dual<WIDTH>>,
     dual_out: Vec<Dual<WIDTH>>,
     change: Vec<f64>,
+    /// places in x of contacts on curves
+    contacts: Vec<usize>,
     /// rates and weakness   (n + 1)
     rates: Vec<f64>,
     /// rows have nearly been dependent since the last accepted step
@@ -106,6 +109,12 @@ fn usual_pivots(scene: &mut Scene) {
             }
         })
         .collect();
+}
+
+/// Places in x of the contacts on curves, in their order.
+fn contact_states(scene: &Scene) -> Vec<usize> {
+    let states = |cam: &Cam| cam.state..cam.state + cam.contact.n_parameters();
+    scene.cams.iter().flat_map(states).collect()
 }
 
 /// The rates, and how many pivots of the rows were weak.
@@ -186,9 +195,10 @@ impl System {
             dual_work: Work::default(),
             dual_numbers: Vec::new(),
             dual_out: Vec::new(),
-            change: vec![0.0; 2 * l.n_v],
+            change: vec![0.0; 2 * l.n_v + contact_states(&scene).len()],
             rates: vec![0.0; l.y().len() + 1],
             was_weak: false,
+            contacts: contact_states(&scene),
             stage: Vec::with_capacity(l.y().len()),
             mover,
             scene,
@@ -208,6 +218,15 @@ impl System {
     /// Moves positions along tangents.
     pub fn mover(&self) -> &Mover {
         &self.mover
+    }
+
+    /// The first contact of curves that is none at a state. `until`: when the run was to end.
+    pub fn broken(&mut self, t: f64, y: &[f64], until: f64) -> Option<Broken> {
+        if self.scene.cams.is_empty() {
+            return None;
+        }
+        self.set(t, y);
+        cams::broken(&self.scene, &self.numbers, Some(until))
     }
 
     /// How many switching functions there are.
@@ -394,7 +413,8 @@ impl Ode for System {
         for _ in 0..8 {
             self.set(t, y);
             program.run(&self.numbers, &mut self.project_work, &mut self.change);
-            let (dq, dv) = self.change.split_at(l.n_v);
+            let (dq, rest) = self.change.split_at(l.n_v);
+            let (dv, ds) = rest.split_at(l.n_v);
             let size = dq.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             if !size.is_finite() || size > 2.0 * last {
                 break;
@@ -402,6 +422,9 @@ impl Ode for System {
             last = size;
             for (v, d) in y[l.n_q..l.n_q + l.n_v].iter_mut().zip(dv) {
                 *v += d;
+            }
+            for (&place, d) in self.contacts.iter().zip(ds) {
+                y[l.n_q + l.n_v + place] += d;
             }
             if size > 0.0 {
                 self.mover.displace(&mut y[..l.n_q], dq);
@@ -434,7 +457,7 @@ impl Ode for System {
             numbers[Layout::TIME] = t;
             numbers[l.y()].copy_from_slice(&state);
             program.run(numbers, &mut self.project_work, &mut self.change);
-            self.change[n_v..].to_vec()
+            self.change[n_v..2 * n_v].to_vec()
         };
         let none = normal(&vec![0.0; n_v], &mut self.numbers);
         let of_q = normal(&tangent, &mut self.numbers);

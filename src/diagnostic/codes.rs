@@ -358,7 +358,8 @@ meaning. What is defined stands for its whole expression: after `:let w = 1+1`, 
         summary: "the function of a MOTION reads something that is no function of time",
         explanation: "\
 A MOTION prescribes what a joint or a marker does, whatever force that takes. Its rate and acceleration are those of its
-function, so the function may read TIME, MODE, numbers of an ARRAY, splines of these, and VARIABLEs of these; nothing that moves.
+function, so the function may read TIME, MODE, numbers of an ARRAY, splines of these, and VARIABLEs of these; nothing that
+moves.
 
     MOTION/1, JOINT=1, FUNCTION=0.5*DX(4,5)      write a COUPLER, or GCON/1, FUNCTION=AZ(2,3)-0.5*DX(4,5)
     MOTION/1, JOINT=1, FUNCTION=DIF(3)           a controller exerts a force: write an SFORCE that follows DIF(3)",
@@ -373,6 +374,39 @@ are refused.
 
     GCON/1, FUNCTION=VX(2,1)-2*VX(3,1)      holds where DX(2,1)-2*DX(3,1) keeps its value: write that
     GCON/1, FUNCTION=DM(2,1)-0.5            a rod of length 0.5",
+    },
+    Code {
+        name: "curve_data",
+        summary: "the data of a CURVE make no curve that can be followed",
+        explanation: "\
+A CURVE needs a MATRIX in the dataset with one row x, y, z for each point: at least four, neighbours apart, the last like the
+first where it is CLOSED. Through points the order is 4 (cubic) or 2 (straight lines); for control points it is 2 to 10.
+FUNCTION=USER needs a routine that is not part of the dataset: tabulate the curve in a MATRIX.
+
+    CURVE/1, CLOSED, ORDER=4, MATRIX=1, CURVE_POINTS",
+    },
+    Code {
+        name: "curve_left",
+        summary: "a contact lies beyond an end of an open curve",
+        explanation: "\
+PTCV and CVCV hold the contact on the curve; an open curve ends. The message says at which end and by how much it is missed.
+Extend the curve well past the expected contact (about 20% on each side), or make it CLOSED where it returns to itself.
+In a run the same stops the simulation; results up to the end of the curve are kept.",
+    },
+    Code {
+        name: "no_common_tangent",
+        summary: "two curves of a CVCV have no common tangent near where they should touch",
+        explanation: "\
+A CVCV makes two curves touch: in one point, with one tangent there. Where no pair of places has parallel tangents square to
+the line between them, there is nothing to hold. Bring the parts nearer to where they touch, or name the places of the first
+contact with IDISP and JDISP. Two straight lines touch everywhere and nowhere: one of the curves has to be curved.",
+    },
+    Code {
+        name: "curves_not_coplanar",
+        summary: "two curves of a CVCV do not lie in one plane",
+        explanation: "\
+The curves of a CVCV lie in the x-y planes of IRM and JRM, z = 0, and these planes must be one and the same all the time.
+CVCV does not turn parts to make them so: that is up to joints, such as PLANAR, or REVOLUTE with parallel axes.",
     },
     Code {
         name: "usage",

@@ -4,6 +4,7 @@
 pub mod action;
 pub mod beam;
 pub mod bushing;
+pub mod cam;
 pub mod contact;
 pub mod coupler;
 pub mod field;

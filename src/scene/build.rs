@@ -102,6 +102,7 @@ impl Scene {
         b.timed(&mut c);
         b.general(&mut c);
         b.user_requests(&mut c);
+        b.cams(&mut c);
         for (name, text) in &options.extra {
             let f = b.formula(&mut c, name, &ModelFormula::text(text.clone()));
             b.scene.extra.push(f);
@@ -739,6 +740,9 @@ impl<'m> Builder<'m> {
     }
 }
 
+/// The sides of a contact of curves; where there is one curve, it is called by the first.
+const SIDES: [&str; 2] = ["I", "J"];
+
 /// Places of the unknowns by name, for messages: the names of q, v and x.
 pub fn unknown_names(scene: &Scene) -> Vec<String> {
     let l: Layout = scene.layout;
@@ -771,6 +775,12 @@ pub fn unknown_names(scene: &Scene) -> Vec<String> {
     for m in &scene.motions {
         if let Some(s) = m.state {
             names[l.n_q + l.n_v + s] = format!("MOTION/{} displacement", m.id);
+        }
+    }
+    for cam in &scene.cams {
+        for (k, curve) in cam.curves.iter().enumerate() {
+            let name = format!("{} place on CURVE/{curve} of {}", cam.name(), SIDES[k]);
+            names[l.n_q + l.n_v + cam.state + k] = name;
         }
     }
     names

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::Profile;
 use crate::expr::ast::Dialect;
 use crate::expr::compile;
-use crate::expr::interpolation::{Bindings, Spline};
+use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use crate::expr::parse;
 use crate::expr::program::Program;
 use crate::expr::spline::{Ends, Extrapolation};
@@ -37,7 +37,53 @@ pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
             ),
         }
     }
+    for &id in model.curves.keys() {
+        match curve(model, id) {
+            Ok(curve) => {
+                bindings.curves.insert(id, curve);
+            }
+            Err(why) => errors.push(why),
+        }
+    }
     (bindings, errors)
+}
+
+/// A CURVE of a model.
+///
+/// # Errors
+/// Why its data make none.
+pub(super) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
+    let unfit = |what: String| {
+        Diagnostic::error("curve_data", what)
+            .element(format!("CURVE/{id}"))
+            .help("give a MATRIX with one row x, y, z for each point")
+    };
+    let data = (model.curves.get(&id)).ok_or_else(|| unfit("does not exist".into()))?;
+    if data.function.is_some() {
+        let what = "FUNCTION=USER needs a routine that is not part of the dataset";
+        return Err(unfit(what.into()));
+    }
+    let matrix = data.matrix.and_then(|m| model.matrices.get(&m));
+    let matrix = matrix.ok_or_else(|| unfit("has no MATRIX with its points".into()))?;
+    if let Some(file) = &matrix.file {
+        let what = format!("its points stand in the file {file}, which is not read");
+        return Err(unfit(what));
+    }
+    let numbers = matrix.by_rows().filter(|_| matrix.columns == 3);
+    let numbers =
+        numbers.ok_or_else(|| unfit("its MATRIX does not have a row x, y, z per point".into()))?;
+    let points: Vec<[f64; 3]> = (numbers.chunks_exact(3))
+        .map(|p| [p[0], p[1], p[2]])
+        .collect();
+    let kind = if data.through_points {
+        CurvePoints::OnCurve
+    } else {
+        CurvePoints::Control
+    };
+    let order = data.order.unwrap_or(4) as usize;
+    Curve::new(&points, data.closed, order, kind)
+        .map(Arc::new)
+        .map_err(|why| unfit(why.to_string()))
 }
 
 /// An expression as programs.

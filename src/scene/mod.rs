@@ -5,6 +5,7 @@
 
 pub mod articulated;
 pub mod build;
+pub mod cams;
 pub mod compile;
 mod compliance;
 mod contacts;
@@ -181,6 +182,13 @@ pub enum RowKind {
         /// what counts as one
         scale: f64,
     },
+    /// a point on a curve, or a curve on a curve
+    Cam {
+        /// index in [`Scene::cams`]
+        cam: usize,
+        /// which of its two rows
+        component: usize,
+    },
 }
 
 /// A weighted sum of displacements that keeps its value.
@@ -345,6 +353,8 @@ pub struct Scene {
     pub forces: Vec<ForceElement>,
     /// motions
     pub motions: Vec<SceneMotion>,
+    /// points on curves and curves on curves
+    pub cams: Vec<cams::Cam>,
     /// differential equations
     pub differentials: Vec<SceneDifferential>,
     /// user's VARIABLE number → formula

@@ -148,7 +148,8 @@ pub fn weights(scene: &Scene) -> Vec<f64> {
     w
 }
 
-/// Least changes that satisfy the active rows to first order: of the positions (as a tangent, n_v), then of the velocities.
+/// Least changes that satisfy the active rows to first order: of the positions (as a tangent, n_v), then of the velocities; then
+/// those of the places of contacts on curves.
 ///
 /// ```text
 /// Δq = −A Gᵀ (G A Gᵀ)⁻¹ g        Δv = −A Gᵀ (G A Gᵀ)⁻¹ (G v + ġ₀)
@@ -206,5 +207,6 @@ pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &
         }
         out.extend(change);
     }
+    out.extend(at.cam_corrections());
     out
 }

@@ -13,7 +13,7 @@ fn unsolved(model: &Model) -> Vec<(&'static str, u32)> {
         )* };
     }
     kinds!(
-        "PTCV" points_on_curves, "CVCV" curves_on_curves, "FRICTION" frictions,
+        "FRICTION" frictions,
     );
     const FLEXIBLE: [&str; 9] = [
         "FLEX_BODY",

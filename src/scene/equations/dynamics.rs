@@ -307,6 +307,14 @@ impl<S: Scalar> Equations<'_, S> {
                 }
             }
         }
+        if self.scene.mode != STATIC {
+            for (c, cam) in self.scene.cams.iter().enumerate() {
+                let jets = self.cam_jets(c);
+                for (k, jet) in jets.iter().enumerate().take(cam.contact.n_parameters()) {
+                    out[cam.state + k] = jet.first;
+                }
+            }
+        }
         for (k, d) in self.scene.differentials.iter().enumerate() {
             let Some(state) = d.state else { continue };
             // at rest the residual of an implicit equation stands for its rate

@@ -7,6 +7,7 @@
 //!
 //! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
 
+mod cams;
 mod dynamics;
 mod general;
 mod loops;

@@ -4,7 +4,7 @@ use super::Equations;
 use crate::expr::measures::Measure;
 use crate::physics::action::Action;
 use crate::scalar::Scalar;
-use crate::scene::Source;
+use crate::scene::{ConstraintElement, Source};
 use crate::scene::loops::Key;
 use crate::scene::sweep::Wrench;
 use crate::space::{Mat3, Vec3};
@@ -50,10 +50,15 @@ impl<S: Scalar> Equations<'_, S> {
             self.reaction(c)
         };
         let point = |m: usize| self.marker(m).p_GM;
+        if let Some(cam) = self.cam_of(&scene.constraints[c]) {
+            let place = self.cam_place(cam);
+            return Some((action, place, place));
+        }
         Some((action, point(about), point(j)))
     }
 
-    /// The reaction of a constraint on its I marker: where rows depend on each other, its part of the smallest set.
+    /// The reaction of a constraint on its I marker (of a contact of curves about where it touches): where rows depend on each
+    /// other, its part of the smallest set.
     pub fn reaction(&self, c: usize) -> Action<S> {
         let solved = self.solved();
         let own = self.reaction_to(c, &solved.lambda, &solved.carried);
@@ -71,7 +76,10 @@ impl<S: Scalar> Equations<'_, S> {
         let Some(about) = element.about else {
             return sum;
         };
-        let p_I = self.marker(about).p_GM;
+        let p_I = match self.cam_of(element) {
+            Some(cam) => self.cam_place(cam),
+            None => self.marker(about).p_GM,
+        };
         for r in element.rows.clone() {
             let l = lambda[r];
             if l.is_known_zero() {
@@ -81,7 +89,7 @@ impl<S: Scalar> Equations<'_, S> {
                 if element.acts_on.contains(&m) {
                     let force = a.force.times(l);
                     let arm = self.marker(m).p_GM - p_I;
-                    let torque = if m == about {
+                    let torque = if m == about && self.cam_of(element).is_none() {
                         a.torque.times(l)
                     } else {
                         a.torque.times(l) + arm.cross(force)
@@ -253,9 +261,17 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Whether a constraint acts between two markers, given by their numbers.
     pub(super) fn carries_reaction(&self, i: u32, j: u32) -> bool {
+        let mut all = self.scene.constraints.iter();
+        all.any(|c| (self.named(c)).is_some_and(|m| m == (i, j) || m == (j, i)))
+    }
+
+    /// Numbers of the markers between which a constraint acts: floating ones where contacts of curves have them.
+    fn named(&self, element: &ConstraintElement) -> Option<(u32, u32)> {
         let id = |m: usize| self.scene.markers[m].id;
-        let mut markers = self.scene.constraints.iter().filter_map(|c| c.markers);
-        markers.any(|(a, b)| [(i, j), (j, i)].contains(&(id(a), id(b))))
+        match self.cam_of(element) {
+            Some(cam) => Some(self.scene.cams[cam].between),
+            None => element.markers.map(|(a, b)| (id(a), id(b))),
+        }
     }
 
     /// Sum of what acts on marker `i` from elements between `i` and `j`; `j` = 0: from action-only forces.
@@ -286,22 +302,18 @@ impl<S: Scalar> Equations<'_, S> {
             add(markers, action, p_I, p_J);
         }
         for (c, element) in scene.constraints.iter().enumerate() {
-            let Some((a, b)) = element.markers else {
+            let (Some((a, b)), Some(markers)) = (element.markers, self.named(element)) else {
                 continue;
             };
-            let markers = (id(a), id(b));
             if markers != (i, j) && markers != (j, i) {
                 continue;
             }
             if self.discovering {
                 continue;
             }
-            add(
-                markers,
-                self.reaction(c),
-                self.marker(a).p_GM,
-                self.marker(b).p_GM,
-            );
+            let place = self.cam_of(element).map(|cam| self.cam_place(cam));
+            let point = |m: usize| place.unwrap_or_else(|| self.marker(m).p_GM);
+            add(markers, self.reaction(c), point(a), point(b));
         }
         sum
     }

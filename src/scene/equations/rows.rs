@@ -37,6 +37,7 @@ impl<S: Scalar> Equations<'_, S> {
             }
             RowKind::Displacements(sum) => self.sum_row(sum),
             RowKind::Formula { formula, .. } => self.formula_row(*formula),
+            RowKind::Cam { cam, component } => self.cam_row(*cam, *component),
         }
     }
 

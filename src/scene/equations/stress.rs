@@ -112,6 +112,8 @@ impl<S: Scalar> Equations<'_, S> {
         let mut sum = S::zero();
         for (c, element) in self.scene.constraints.iter().enumerate() {
             let arm = match (element.about, element.markers) {
+                // given about where it touches
+                _ if self.cam_of(element).is_some() => Vec3::zero(),
                 (Some(about), Some((i, j))) if about == i => {
                     let (p_I, p_J) = (self.marker(i).p_GM, self.marker(j).p_GM);
                     (p_I - p_J).times(S::constant(0.5))

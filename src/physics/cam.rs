@@ -1,0 +1,282 @@
+//! Points on curves and curves on curves: PTCV and CVCV as equations between two marker frames.
+//!
+//! A curve `c(s)` is given in the coordinates of its marker. Where the contact is on it, its parameter s, follows from the frames: it is
+//! found by Newton's iteration from a value near, over whatever number the frames are made of, so that derivatives are those of the
+//! implicit function. With `c' = dc/ds`, `p` the point in the coordinates of the curve, and for two curves `D = P_I − P_J`, tangents T:
+//!
+//! ```text
+//! PTCV    0 = (p − c) · c'                           s: the point of the curve next to I     (1)
+//!         n₁ · (p − c) = 0,  n₂ · (p − c) = 0        n₁ ∥ c' × r,  n₂ = c'/|c'| × n₁         (2)
+//! CVCV    0 = D · T_I,   0 = (T_I × T_J) · z_I       s_I, s_J: tangents are parallel         (3)
+//!         D · n = 0,  D · z_I = 0                    n = z_I × T_I/|T_I|                     (4)
+//! ```
+//!
+//! r is a fixed direction that no tangent of the curve comes near (z for a curve in the x–y plane), so that the normals are smooth all
+//! along. What (2) and (4) exert has no part along the curve: contact without friction. An open curve goes on straight beyond its ends, so that a step
+//! that overshoots has a value; a run does not keep it. The parameter of a closed curve counts its turns.
+
+use crate::expr::interpolation::Curve;
+use crate::scalar::{Scalar, Table};
+use crate::space::{Frame, Vec3};
+use std::sync::Arc;
+
+/// A curve that can be followed beyond its ends.
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// x, y, z over the parameter, from −1 to 1 and beyond
+    tables: [Arc<dyn Table>; 3],
+    /// it returns to its beginning
+    pub closed: bool,
+    /// r: no tangent comes near this direction
+    away: Vec3<f64>,
+    /// length of the polygon through its samples
+    pub length: f64,
+    /// largest |z|
+    pub height: f64,
+}
+
+/// Pieces into which a curve is divided where it is searched.
+pub const SAMPLES: usize = 256;
+
+/// Goes on straight beyond −1 and 1.
+#[derive(Debug)]
+struct Straight(Arc<dyn Table>);
+
+impl Table for Straight {
+    fn at(&self, x: f64, order: u32) -> f64 {
+        let end = x.clamp(-1.0, 1.0);
+        if x == end || x.is_nan() {
+            return self.0.at(x, order);
+        }
+        match order {
+            0 => self.0.at(end, 0) + (x - end) * self.0.at(end, 1),
+            1 => self.0.at(end, 1),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Repeats itself with period 2.
+#[derive(Debug)]
+struct Around(Arc<dyn Table>);
+
+impl Table for Around {
+    fn at(&self, x: f64, order: u32) -> f64 {
+        self.0.at((x + 1.0).rem_euclid(2.0) - 1.0, order)
+    }
+}
+
+impl Path {
+    /// The curve with what lies beyond its ends.
+    pub fn new(curve: &Curve) -> Self {
+        let closed = curve.is_closed();
+        let beyond = |t: &Arc<dyn Table>| -> Arc<dyn Table> {
+            if closed {
+                Arc::new(Around(t.clone()))
+            } else {
+                Arc::new(Straight(t.clone()))
+            }
+        };
+        let mut path = Self {
+            tables: [0, 1, 2].map(|k| beyond(&curve.components()[k])),
+            closed,
+            away: Vec3::axis(2),
+            length: 0.0,
+            height: 0.0,
+        };
+        let points: Vec<Vec3<f64>> = samples().map(|s| path.at(s, 0)).collect();
+        path.length = points.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
+        path.height = points.iter().map(|p| p.0[2].abs()).fold(0.0, f64::max);
+        path.away = path.far_from_tangents();
+        path
+    }
+
+    /// Of some directions the one that stays farthest from all tangents; z where that is good enough.
+    fn far_from_tangents(&self) -> Vec3<f64> {
+        let tangents: Vec<Vec3<f64>> = samples()
+            .map(|s| self.at(s, 1))
+            .filter(|t: &Vec3<f64>| t.norm() > 0.0)
+            .map(|t| t.times(1.0 / t.norm()))
+            .collect();
+        let nearest = |r: Vec3<f64>| {
+            let sines = tangents.iter().map(|t| t.cross(r).norm());
+            sines.fold(f64::INFINITY, f64::min)
+        };
+        let z = Vec3::axis(2);
+        let mut best = (nearest(z), z);
+        if best.0 > 0.5 {
+            return z;
+        }
+        // equally spread over half a sphere: a spiral with the golden angle
+        for k in 0..200 {
+            let height = (f64::from(k) + 0.5) / 200.0;
+            let (sin, cos) = (f64::from(k) * 2.399_963_229_728_653).sin_cos();
+            let width = (1.0 - height * height).sqrt();
+            let r = Vec3([width * cos, width * sin, height]);
+            let apart = nearest(r);
+            if apart > best.0 + 1e-9 {
+                best = (apart, r);
+            }
+        }
+        best.1
+    }
+
+    /// The derivative of some order with respect to the parameter, in the coordinates of the curve.
+    pub fn at<S: Scalar>(&self, s: S, order: u32) -> Vec3<S> {
+        Vec3([0, 1, 2].map(|k| s.lookup(&self.tables[k], order)))
+    }
+
+    /// How far beyond an end of an open curve a parameter is, as a length; not positive: it is on the curve.
+    pub fn beyond(&self, s: f64) -> f64 {
+        if self.closed {
+            return f64::NEG_INFINITY;
+        }
+        let end = if s < 0.0 { -1.0 } else { 1.0 };
+        let tangent: Vec3<f64> = self.at(end, 1);
+        (s.abs() - 1.0) * tangent.norm()
+    }
+
+    /// The parameter of the sample nearest to a point in the coordinates of the curve.
+    pub fn nearest(&self, p: Vec3<f64>) -> f64 {
+        let distance = |s: f64| (self.at(s, 0) - p).norm2();
+        samples()
+            .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or(0.0)
+    }
+}
+
+/// Parameters at which a curve is looked at.
+pub fn samples() -> impl Iterator<Item = f64> {
+    (0..=SAMPLES).map(|k| 2.0 * k as f64 / SAMPLES as f64 - 1.0)
+}
+
+/// What touches what.
+#[derive(Clone, Debug)]
+pub enum Contact {
+    /// PTCV: the origin of I is on a curve of J
+    Point(Path),
+    /// CVCV: a curve of I and a curve of J have a common tangent
+    Curves(Path, Path),
+}
+
+/// Names of the rows of either.
+pub const ROWS: [[&str; 2]; 2] = [["across 1", "across 2"], ["gap", "out of plane"]];
+
+impl Contact {
+    /// How many parameters it has.
+    pub fn n_parameters(&self) -> usize {
+        self.paths().len()
+    }
+
+    /// Its curves: that of I first where there are two.
+    pub fn paths(&self) -> Vec<&Path> {
+        match self {
+            Contact::Point(path) => vec![path],
+            Contact::Curves(i, j) => vec![i, j],
+        }
+    }
+
+    /// What must vanish for the parameters to be those of the contact (1), (3), and its derivatives along them.
+    fn conditions<S: Scalar>(
+        &self,
+        i: &Frame<S>,
+        j: &Frame<S>,
+        s: [S; 2],
+    ) -> ([S; 2], [[S; 2]; 2]) {
+        match self {
+            Contact::Point(path) => {
+                let p = j.rotation.apply_transposed(i.position - j.position);
+                let [c, t, bend] = [0, 1, 2].map(|k| path.at(s[0], k));
+                let d = p - c;
+                let (one, zero) = (S::one(), S::zero());
+                (
+                    [d.dot(t), zero],
+                    [[d.dot(bend) - t.dot(t), zero], [zero, one]],
+                )
+            }
+            Contact::Curves(path_i, path_j) => {
+                let [p_i, t_i, b_i] = in_ground(path_i, i, s[0]);
+                let [p_j, t_j, b_j] = in_ground(path_j, j, s[1]);
+                let (d, z) = (p_i - p_j, i.rotation.column(2));
+                (
+                    [d.dot(t_i), t_i.cross(t_j).dot(z)],
+                    [
+                        [t_i.dot(t_i) + d.dot(b_i), -t_j.dot(t_i)],
+                        [b_i.cross(t_j).dot(z), t_i.cross(b_j).dot(z)],
+                    ],
+                )
+            }
+        }
+    }
+
+    /// Parameters after some steps of Newton's iteration.
+    pub fn refined<S: Scalar>(
+        &self,
+        i: &Frame<S>,
+        j: &Frame<S>,
+        s: [S; 2],
+        steps: usize,
+    ) -> [S; 2] {
+        let mut s = s;
+        for _ in 0..steps {
+            let ([f, g], [[a, b], [c, d]]) = self.conditions(i, j, s);
+            if let Contact::Point(_) = self {
+                s[0] -= f / a;
+                continue;
+            }
+            let per = (a * d - b * c).recip();
+            s[0] -= (d * f - b * g) * per;
+            s[1] -= (a * g - c * f) * per;
+        }
+        s
+    }
+
+    /// How far the conditions are from holding, as a pure number: 0 where the parameters are those of the contact.
+    pub fn missing(&self, i: &Frame<f64>, j: &Frame<f64>, s: [f64; 2]) -> f64 {
+        let ([f, g], _) = self.conditions(i, j, s);
+        let size = |path: &Path, s: f64| path.at::<f64>(s, 1).norm().max(f64::MIN_POSITIVE);
+        match self {
+            Contact::Point(path) => (f / (size(path, s[0]) * path.length)).abs(),
+            Contact::Curves(a, b) => {
+                let (t_i, t_j) = (size(a, s[0]), size(b, s[1]));
+                let length = a.length.max(b.length);
+                (f / (t_i * length)).abs().max((g / (t_i * t_j)).abs())
+            }
+        }
+    }
+
+    /// What the rows say at given parameters (2), (4).
+    pub fn gaps<S: Scalar>(&self, i: &Frame<S>, j: &Frame<S>, s: [S; 2]) -> [S; 2] {
+        match self {
+            Contact::Point(path) => {
+                let d = j.rotation.apply_transposed(i.position - j.position) - path.at(s[0], 0);
+                let t: Vec3<S> = path.at(s[0], 1);
+                let across = t.cross(Vec3::constant(path.away));
+                let n1 = across.times(across.norm2().sqrt().recip());
+                let n2 = t.times(t.norm2().sqrt().recip()).cross(n1);
+                [d.dot(n1), d.dot(n2)]
+            }
+            Contact::Curves(path_i, path_j) => {
+                let [p_i, t_i, _] = in_ground(path_i, i, s[0]);
+                let [p_j, _, _] = in_ground(path_j, j, s[1]);
+                let (d, z) = (p_i - p_j, i.rotation.column(2));
+                let n = z.cross(t_i);
+                [d.dot(n) * n.norm2().sqrt().recip(), d.dot(z)]
+            }
+        }
+    }
+
+    /// Where it touches, in ground.
+    pub fn place<S: Scalar>(&self, i: &Frame<S>, j: &Frame<S>, s: [S; 2]) -> Vec3<S> {
+        match self {
+            Contact::Point(path) => j.point(path.at(s[0], 0)),
+            Contact::Curves(path_i, _) => i.point(path_i.at(s[0], 0)),
+        }
+    }
+}
+
+/// Place, first and second derivative of a curve, in ground axes.
+fn in_ground<S: Scalar>(path: &Path, marker: &Frame<S>, s: S) -> [Vec3<S>; 3] {
+    let turned = |order: u32| marker.rotation.apply(path.at(s, order));
+    [marker.position + turned(0), turned(1), turned(2)]
+}

@@ -1,0 +1,403 @@
+//! PTCV and CVCV: their rows, where their contacts begin, how these are followed while parts are put together, and what ends them.
+//!
+//! The parameter of a contact is a state: its rate is that of the point which the rows hold, so that any method predicts it with
+//! the accuracy of all else, and Newton's iteration inside the equations has next to nothing to do. Where no time passes (assembly, equilibrium)
+//! it is followed from one position to the next; where nothing is known yet the whole curve is searched.
+
+use super::build::{Builder, active};
+use super::compile::Compiler;
+use super::equations::Equations;
+use super::{ConstraintElement, Row, RowKind, Scene};
+use crate::diagnostic::Diagnostic;
+use crate::model::CurveSide;
+use crate::physics::cam::{Contact, Path, ROWS, samples};
+use crate::space::{Frame, Vec3};
+
+/// A PTCV or CVCV.
+#[derive(Clone, Debug)]
+pub struct Cam {
+    /// PTCV or CVCV
+    pub keyword: &'static str,
+    /// user's number
+    pub id: u32,
+    /// the curves
+    pub contact: Contact,
+    /// I marker, or the marker in whose coordinates the curve of I is
+    pub i: usize,
+    /// the marker in whose coordinates the curve (of J) is
+    pub j: usize,
+    /// users' numbers of the curves
+    pub curves: Vec<u32>,
+    /// users' numbers of the markers between which the reaction is asked for: floating ones where there are
+    pub between: (u32, u32),
+    /// first place of its parameters in x
+    pub state: usize,
+    /// its parameters where the states are zero
+    pub offset: [f64; 2],
+    /// the states say where it touches
+    pub begun: bool,
+    /// where it is to touch first: a point in the coordinates of a marker, per curve
+    pub start: Vec<Option<(Vec3<f64>, usize)>>,
+    /// velocity along each curve at the start
+    pub velocity: Vec<Option<f64>>,
+}
+
+impl Cam {
+    /// "PTCV/3"
+    pub fn name(&self) -> String {
+        format!("{}/{}", self.keyword, self.id)
+    }
+}
+
+/// Conditions of a contact count as holding below this.
+const HOLDS: f64 = 1e-9;
+/// Largest change of a parameter from one iterate to the next; a whole curve is 2.
+const STRIDE: f64 = 0.1;
+/// Planes count as one below this sine of the angle between them.
+const COPLANAR: f64 = 1e-6;
+
+impl Builder<'_> {
+    /// Two rows for each PTCV and CVCV.
+    pub(super) fn cams(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, p) in active(model, "PTCV", &model.points_on_curves) {
+            let name = format!("PTCV/{id}");
+            let (i, j) = (c.marker(p.i, &name), c.marker(p.rm, &name));
+            let side = CurveSide {
+                curve: p.curve,
+                rm: p.rm,
+                float: p.jfloat,
+                start: p.start,
+                start_marker: p.start_marker,
+                velocity: p.velocity,
+            };
+            let path = self.path(c, p.curve);
+            if let (Some(i), Some(j), Some(path)) = (i, j, path) {
+                let between = (p.i, p.jfloat.unwrap_or(p.rm));
+                self.cam(c, ("PTCV", id), Contact::Point(path), (i, j), between, &[&side]);
+            }
+        }
+        for (id, cc) in active(model, "CVCV", &model.curves_on_curves) {
+            let name = format!("CVCV/{id}");
+            let (i, j) = (c.marker(cc.i.rm, &name), c.marker(cc.j.rm, &name));
+            let (path_i, path_j) = (self.path(c, cc.i.curve), self.path(c, cc.j.curve));
+            let (Some(i), Some(j), Some(path_i), Some(path_j)) = (i, j, path_i, path_j) else {
+                continue;
+            };
+            let mut planar = true;
+            for (path, curve) in [(&path_i, cc.i.curve), (&path_j, cc.j.curve)] {
+                if path.height > 1e-9 * path.length {
+                    planar = false;
+                    let what = format!("CURVE/{curve} leaves the x-y plane of its marker by {:.3e}", path.height);
+                    c.errors.push(not_coplanar(&name, what));
+                }
+            }
+            if planar {
+                let float = |s: &CurveSide| s.float.unwrap_or(s.rm);
+                let between = (float(&cc.i), float(&cc.j));
+                let contact = Contact::Curves(path_i, path_j);
+                self.cam(c, ("CVCV", id), contact, (i, j), between, &[&cc.i, &cc.j]);
+            }
+        }
+    }
+
+    fn path(&self, c: &mut Compiler, curve: u32) -> Option<Path> {
+        match super::formula::curve(self.model, curve) {
+            Ok(curve) => Some(Path::new(&curve)),
+            Err(why) => {
+                if !c.errors.contains(&why) {
+                    c.errors.push(why);
+                }
+                None
+            }
+        }
+    }
+
+    fn cam(
+        &mut self,
+        c: &mut Compiler,
+        (keyword, id): (&'static str, u32),
+        contact: Contact,
+        (i, j): (usize, usize),
+        between: (u32, u32),
+        sides: &[&CurveSide],
+    ) {
+        let name = format!("{keyword}/{id}");
+        let mut start = Vec::new();
+        for side in sides {
+            let marker = c.marker(side.start_marker.unwrap_or(side.rm), &name);
+            start.push(side.start.zip(marker).map(|(p, m)| (Vec3(p), m)));
+        }
+        let n = contact.n_parameters();
+        let equations = ROWS[n - 1];
+        let state = self.scene.layout.n_x;
+        self.scene.layout.n_x += n;
+        let (cam, first) = (self.scene.cams.len(), self.scene.rows.len());
+        self.scene.cams.push(Cam {
+            keyword,
+            id,
+            contact,
+            i,
+            j,
+            curves: sides.iter().map(|s| s.curve).collect(),
+            between,
+            state,
+            offset: [0.0; 2],
+            begun: false,
+            start,
+            velocity: sides.iter().map(|s| s.velocity).collect(),
+        });
+        for (component, equation) in equations.iter().enumerate() {
+            self.scene.rows.push(Row {
+                element: name.clone(),
+                equation: (*equation).into(),
+                kind: RowKind::Cam { cam, component },
+            });
+        }
+        self.scene.constraints.push(ConstraintElement {
+            keyword,
+            id,
+            markers: Some((i, j)),
+            acts_on: vec![i],
+            about: Some(i),
+            carries: None,
+            rows: first..first + 2,
+            coordinate: None,
+        });
+    }
+}
+
+fn not_coplanar(name: &str, what: String) -> Diagnostic {
+    Diagnostic::error("curves_not_coplanar", what)
+        .element(name)
+        .help("the curves of a CVCV must lie in the x-y planes of IRM and JRM, which joints hold together")
+}
+
+/// Parameters of a cam from its states.
+fn parameters(cam: &Cam, x: &[f64]) -> [f64; 2] {
+    let mut s = cam.offset;
+    for k in 0..cam.contact.n_parameters() {
+        s[k] += x.get(cam.state + k).copied().unwrap_or(0.0);
+    }
+    s
+}
+
+/// Brings the parameters of all contacts to where the numbers of an instant have them.
+pub fn track(scene: &mut Scene, numbers: &[f64]) {
+    if scene.cams.is_empty() {
+        return;
+    }
+    let x = numbers[scene.layout.x()].to_vec();
+    let at = Equations::<f64>::new(scene, numbers);
+    let found: Vec<[f64; 2]> = scene
+        .cams
+        .iter()
+        .map(|cam| {
+            let (i, j) = (at.frame(cam.i), at.frame(cam.j));
+            let near = cam.begun.then(|| follow(&cam.contact, &i, &j, parameters(cam, &x)));
+            match near.flatten() {
+                Some(s) => s,
+                None => search(cam, &i, &j, &at).unwrap_or_else(|| parameters(cam, &x)),
+            }
+        })
+        .collect();
+    for (cam, s) in scene.cams.iter_mut().zip(found) {
+        for k in 0..cam.contact.n_parameters() {
+            cam.offset[k] = s[k] - x.get(cam.state + k).copied().unwrap_or(0.0);
+        }
+        cam.begun = true;
+    }
+}
+
+/// Newton's iteration from parameters near; `None`: it does not converge.
+fn follow(contact: &Contact, i: &Frame<f64>, j: &Frame<f64>, s: [f64; 2]) -> Option<[f64; 2]> {
+    let mut s = s;
+    for _ in 0..60 {
+        let next = contact.refined(i, j, s, 1);
+        let step = [next[0] - s[0], next[1] - s[1]];
+        let longest = step[0].abs().max(step[1].abs());
+        if !longest.is_finite() {
+            return None;
+        }
+        let shorter = (STRIDE / longest).min(1.0);
+        s = [s[0] + shorter * step[0], s[1] + shorter * step[1]];
+        if longest < 1e-14 {
+            break;
+        }
+    }
+    (contact.missing(i, j, s) < HOLDS).then_some(s)
+}
+
+/// The contact among all: where it is asked for, else where the gap is smallest.
+fn search(cam: &Cam, i: &Frame<f64>, j: &Frame<f64>, at: &Equations<'_, f64>) -> Option<[f64; 2]> {
+    let asked = |k: usize, frame: &Frame<f64>, path: &Path| {
+        let (point, marker) = (*cam.start.get(k)?)?;
+        let ground = at.frame(marker).point(point);
+        Some(path.nearest(frame.inverse().point(ground)))
+    };
+    match &cam.contact {
+        Contact::Point(path) => {
+            let near = asked(0, j, path);
+            let near = near.unwrap_or_else(|| path.nearest(j.inverse().point(i.position)));
+            follow(&cam.contact, i, j, [near, 0.0]).or(Some([near, 0.0]))
+        }
+        Contact::Curves(path_i, path_j) => {
+            let (near_i, near_j) = (asked(0, i, path_i), asked(1, j, path_j));
+            if let (Some(a), Some(b)) = (near_i, near_j)
+                && let Some(s) = follow(&cam.contact, i, j, [a, b])
+            {
+                return Some(s);
+            }
+            closest_pair(&cam.contact, (path_i, near_i), (path_j, near_j), i, j)
+        }
+    }
+}
+
+/// Of all pairs of places with parallel tangents the one with the smallest gap.
+fn closest_pair(
+    contact: &Contact,
+    (path_i, near_i): (&Path, Option<f64>),
+    (path_j, near_j): (&Path, Option<f64>),
+    i: &Frame<f64>,
+    j: &Frame<f64>,
+) -> Option<[f64; 2]> {
+    let size2 = path_i.length.max(path_j.length).powi(2);
+    let look = |path: &Path, frame: &Frame<f64>, near: Option<f64>| -> Vec<(f64, Vec3<f64>, Vec3<f64>)> {
+        let all: Vec<f64> = near.map_or_else(|| samples().step_by(2).collect(), |s| vec![s]);
+        all.into_iter()
+            .map(|s| {
+                let tangent = frame.rotation.apply(path.at(s, 1));
+                let n = tangent.norm().max(f64::MIN_POSITIVE);
+                (s, frame.point(path.at(s, 0)), tangent.times(1.0 / n))
+            })
+            .collect()
+    };
+    let (all_i, all_j) = (look(path_i, i, near_i), look(path_j, j, near_j));
+    let mut pairs: Vec<(f64, [f64; 2])> = Vec::new();
+    for (s_i, p_i, t_i) in &all_i {
+        for (s_j, p_j, t_j) in &all_j {
+            let cost = (*p_i - *p_j).norm2() + size2 * t_i.cross(*t_j).norm2();
+            pairs.push((cost, [*s_i, *s_j]));
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best: Option<(f64, [f64; 2])> = None;
+    let mut tried: Vec<[f64; 2]> = Vec::new();
+    for (_, s) in pairs {
+        // one start for each region
+        if (tried.iter()).any(|t| (t[0] - s[0]).abs() < 0.06 && (t[1] - s[1]).abs() < 0.06) {
+            continue;
+        }
+        tried.push(s);
+        if let Some(found) = follow(contact, i, j, s) {
+            let inside = path_i.beyond(found[0]) <= 0.0 && path_j.beyond(found[1]) <= 0.0;
+            let outside = if inside { 0.0 } else { size2.sqrt() };
+            let gap = contact.gaps(i, j, found)[0].abs() + outside;
+            if best.is_none_or(|b| gap < b.0) {
+                best = Some((gap, found));
+            }
+        }
+        if tried.len() >= 60 {
+            break;
+        }
+    }
+    best.map(|b| b.1)
+}
+
+/// What keeps the contacts of an instant from being contacts: (element, code, sentence, advice) of the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken {
+    /// "PTCV/3"
+    pub element: String,
+    /// of the diagnostic
+    pub code: &'static str,
+    /// what is wrong
+    pub sentence: String,
+    /// what to do
+    pub advice: String,
+}
+
+/// The first contact that is none. `until`: when the run was to end, for how far a curve is too short.
+pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Broken> {
+    if scene.cams.is_empty() {
+        return None;
+    }
+    let at = Equations::<f64>::new(scene, numbers);
+    let x = &numbers[scene.layout.x()];
+    scene.cams.iter().enumerate().find_map(|(c, cam)| {
+        let (i, j) = (at.frame(cam.i), at.frame(cam.j));
+        let s = cam.contact.refined(&i, &j, parameters(cam, x), 2);
+        let element = cam.name();
+        for (k, path) in cam.contact.paths().iter().enumerate() {
+            let beyond = path.beyond(s[k]);
+            if beyond <= 0.0 || beyond.is_nan() {
+                continue;
+            }
+            let end = if s[k] < 0.0 { -1.0 } else { 1.0 };
+            let place: Vec3<f64> = path.at(end, 0);
+            let tangent: Vec3<f64> = path.at(end, 1);
+            let speed = at.cam_jets(c)[k].first.abs() * tangent.norm();
+            let which = if end < 0.0 { "first" } else { "last" };
+            let sentence = format!(
+                "the contact leaves the open CURVE/{} at its {which} point ({:.6}, {:.6}, {:.6})",
+                cam.curves[k], place.0[0], place.0[1], place.0[2]
+            );
+            let advice = match until {
+                Some(until) => format!(
+                    "extend CURVE/{} beyond that point: it moves on at {speed:.4}, which takes {:.4} more until time {until}",
+                    cam.curves[k],
+                    speed * (until - numbers[0])
+                ),
+                None => format!("extend CURVE/{} beyond that point by more than {beyond:.6}", cam.curves[k]),
+            };
+            return Some(Broken {
+                element,
+                code: "curve_left",
+                sentence,
+                advice,
+            });
+        }
+        let apart = cam.contact.missing(&i, &j, s);
+        if !(apart < 1e-6) {
+            let what = match cam.contact {
+                Contact::Point(_) => "no point of the curve is next to I",
+                Contact::Curves(..) => "the two curves have no common tangent near",
+            };
+            return Some(Broken {
+                element,
+                code: "no_common_tangent",
+                sentence: what.into(),
+                advice: "bring the parts to where they touch, or say where with DISP, IDISP and JDISP".into(),
+            });
+        }
+        let tilt = i.rotation.column(2).cross(j.rotation.column(2)).norm();
+        if matches!(cam.contact, Contact::Curves(..)) && tilt > COPLANAR {
+            return Some(Broken {
+                element,
+                code: "curves_not_coplanar",
+                sentence: format!("the planes of the curves are inclined to each other by {:.3e} rad", tilt.asin()),
+                advice: "let joints hold the x-y planes of IRM and JRM together".into(),
+            });
+        }
+        None
+    })
+}
+
+impl Scene {
+    /// States of contacts and of motions that begin where they are take over what assembly has found for them.
+    pub fn begin_states(&mut self, x: &mut [f64]) {
+        for cam in &mut self.cams {
+            for k in 0..cam.contact.n_parameters() {
+                x[cam.state + k] += cam.offset[k];
+            }
+            cam.offset = [0.0; 2];
+        }
+        for motion in &mut self.motions {
+            if let Some(s) = motion.state {
+                x[s] += motion.offset;
+                motion.offset = 0.0;
+                motion.held = false;
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Rows of contacts of curves, and the rates of their parameters.
+
+use super::rows::{moving, seed, twist};
+use super::{Equations, RowValue};
+use crate::physics::cam::Path;
+use crate::scalar::{Dual, Jet, Scalar};
+use crate::scene::ConstraintElement;
+use crate::space::{Frame, Vec3};
+
+/// Newton's steps that bring a parameter from its state to where it is: from 1e-4 beyond rounding.
+const STEPS: usize = 2;
+
+impl<S: Scalar> Equations<'_, S> {
+    /// Pose of a marker.
+    pub(in crate::scene) fn frame(&self, m: usize) -> Frame<S> {
+        let state = self.marker(m);
+        Frame {
+            rotation: state.R_GM,
+            position: state.p_GM,
+        }
+    }
+
+    /// Parameters of a contact as its states have them.
+    fn cam_states(&self, c: usize) -> [S; 2] {
+        let cam = &self.scene.cams[c];
+        let mut s = [S::zero(); 2];
+        for (k, s) in s
+            .iter_mut()
+            .enumerate()
+            .take(cam.contact.n_parameters())
+        {
+            *s = self.x[cam.state + k] + S::constant(cam.offset[k]);
+        }
+        s
+    }
+
+    /// Parameters of a contact.
+    pub(in crate::scene) fn cam_parameters(&self, c: usize) -> [S; 2] {
+        let cam = &self.scene.cams[c];
+        let (i, j) = (self.frame(cam.i), self.frame(cam.j));
+        cam.contact.refined(&i, &j, self.cam_states(c), STEPS)
+    }
+
+    /// Parameters with their rates; v̇ = 0.
+    pub(in crate::scene) fn cam_jets(&self, c: usize) -> [Jet<S>; 2] {
+        let cam = &self.scene.cams[c];
+        let (i, j) = (moving(&self.marker(cam.i)), moving(&self.marker(cam.j)));
+        let still = |x: S| Jet::new(x, S::zero(), S::zero());
+        // each step of Newton's iteration makes one more derivative right
+        let s = self.cam_parameters(c).map(still);
+        cam.contact.refined(&i, &j, s, 2)
+    }
+
+    /// How fast a contact moves along its curves, by curves.
+    pub fn cam_speeds(&self, c: usize) -> Vec<S> {
+        let paths = self.scene.cams[c].contact.paths();
+        let speed = |(path, s): (&&Path, Jet<S>)| {
+            let tangent: Vec3<S> = path.at(s.value, 1);
+            s.first * tangent.norm2().sqrt()
+        };
+        paths.iter().zip(self.cam_jets(c)).map(speed).collect()
+    }
+
+    /// Where a contact is, in ground.
+    pub fn cam_place(&self, c: usize) -> Vec3<S> {
+        let cam = &self.scene.cams[c];
+        let (i, j) = (self.frame(cam.i), self.frame(cam.j));
+        cam.contact.place(&i, &j, self.cam_parameters(c))
+    }
+
+    /// The contact that a constraint is.
+    pub(super) fn cam_of(&self, element: &ConstraintElement) -> Option<usize> {
+        let mut cams = self.scene.cams.iter();
+        cams.position(|c| c.keyword == element.keyword && c.id == element.id)
+    }
+
+    /// How far states of contacts are from where the contacts are, in the order of the contacts.
+    pub(in crate::scene) fn cam_corrections(&self) -> Vec<S> {
+        let mut out = Vec::new();
+        for (c, cam) in self.scene.cams.iter().enumerate() {
+            let (from, to) = (self.cam_states(c), self.cam_parameters(c));
+            out.extend((0..cam.contact.n_parameters()).map(|k| to[k] - from[k]));
+        }
+        out
+    }
+
+    /// One of the two rows of a contact.
+    pub(super) fn cam_row(&self, c: usize, component: usize) -> RowValue<S> {
+        let cam = &self.scene.cams[c];
+        let (I, J) = (self.marker(cam.i), self.marker(cam.j));
+        let (i, j) = (seed::<12, S>(&I, 0), seed::<12, S>(&J, 6));
+        let fixed = |re: S| Dual {
+            re,
+            eps: [S::zero(); 12],
+        };
+        let s = cam.contact.refined(&i, &j, self.cam_parameters(c).map(fixed), 1);
+        let seeded = cam.contact.gaps(&i, &j, s)[component];
+        let actions = vec![(cam.i, twist(&seeded, 0)), (cam.j, twist(&seeded, 6))];
+        let gradient = self.gradient_of(&actions);
+        let rates = cam.contact.gaps(&moving(&I), &moving(&J), self.cam_jets(c))[component];
+        RowValue {
+            value: seeded.re,
+            drift: rates.first - self.along(&gradient),
+            gradient,
+            gamma: -rates.second,
+            actions,
+        }
+    }
+}
