@@ -3,6 +3,7 @@
 
 use cognate::analysis::assemble;
 use cognate::model::Model;
+use cognate::scene::cams;
 use cognate::scene::equations::Equations;
 use cognate::scene::{LinkMotion, RowKind, Scene, Source, build::Options};
 use cognate::space::{Frame, Mat3, Vec3, rotation};
@@ -245,6 +246,33 @@ fn all_rows() -> Vec<String> {
     ] {
         all.push(format!("GCON/1, I=5, FUNCTION={function}\n"));
     }
+    let wave: String = (0..13)
+        .map(|k| {
+            let angle = std::f64::consts::TAU * f64::from(k % 12) / 12.0;
+            let (x, y) = (1.5 * angle.cos(), angle.sin() - 0.2 * (2.0 * angle).cos());
+            format!("\n, {x:.9},{y:.9}")
+        })
+        .collect();
+    let rows = |z: fn(f64) -> f64, scale: f64| -> String {
+        let numbers: Vec<Vec<f64>> = (wave.split("\n, ").skip(1))
+            .map(|p| p.split(',').map(|x| x.parse().unwrap()).collect())
+            .collect();
+        (numbers.iter())
+            .map(|p| format!("\n, {},{},{}", scale * p[0], scale * p[1], z(p[0])))
+            .collect::<String>()
+            .replacen("\n, ", "", 1)
+    };
+    let matrix = |id: u32, numbers: String| {
+        format!("MATRIX/{id}, FULL=RORDER, ROWS=13, COLUMNS=3\n, VALUES={numbers}\n")
+    };
+    let space = matrix(1, rows(|x| x * x - 0.3 * x, 1.0));
+    let plane = matrix(2, rows(|_| 0.0, 1.0)) + &matrix(3, rows(|_| 0.0, 0.2));
+    for (kind, points) in [("OPEN", "CURVE_POINTS"), ("CLOSED", "CURVE_POINTS"), ("CLOSED", "CONTROL_POINTS, ORDER=5")] {
+        all.push(format!("PTCV/1, CURVE=1, I=5, RM=4\nCURVE/1, {kind}, MATRIX=1, {points}\n{space}"));
+        all.push(format!(
+            "CVCV/1, ICURVE=2, IRM=5, JCURVE=3, JRM=4\nCURVE/2, {kind}, MATRIX=2, {points}\nCURVE/3, {kind}, MATRIX=3, {points}\n{plane}"
+        ));
+    }
     for component in ["X", "Y", "Z", "B1", "B2", "B3"] {
         all.push(format!(
             "MOTION/1, I=5, J=4, {component}, FUNCTION=0.3*SIN(2*TIME)+0.1\n"
@@ -261,11 +289,20 @@ fn gradients_and_rates_are_those_of_the_value() {
     let h = 1e-4;
     for tie in all_rows() {
         let text = pair(&mut draw, &Mat3::identity(), &tie);
-        let (_, scene) = compiled(&text, true);
+        let (_, mut scene) = compiled(&text, true);
         assert!(!scene.rows.is_empty(), "{tie}");
+        let mut looked = 0;
         for _ in 0..5 {
             let (q, v) = anywhere(&scene, &mut draw);
             let t = draw.next();
+            let here = all_numbers(&scene, t, &q, &v);
+            cams::track(&mut scene, &here);
+            // in a configuration drawn at random curves need not have a common tangent
+            let code = cams::broken(&scene, &here, None).map(|b| b.code);
+            if code == Some("no_common_tangent") {
+                continue;
+            }
+            looked += 1;
             let at_time = |dt: f64| {
                 let n = all_numbers(&scene, t + dt, &after(&scene, &q, &v, dt), &v);
                 let at = Equations::<f64>::new(&scene, &n);
@@ -306,6 +343,7 @@ fn gradients_and_rates_are_those_of_the_value() {
                 );
             }
         }
+        assert!(looked > 1, "{tie}");
     }
 }
 

@@ -354,3 +354,164 @@ fn a_flat_and_a_roller_ride_on_a_disc() {
         assert!(off(&s, "CVCV(1,0,5,0)", |_| 0.0) < 1e-12);
     }
 }
+
+/// Contact forces of a cam do no work, so that a bead on a wire keeps its energy; it comes round many times.
+#[test]
+fn a_bead_on_a_closed_wire_keeps_its_energy() {
+    let text = format!(
+        "PART/3, MASS=0.5, CM=30, IP=1,1,1, QG={R},0,0, VY=2\nMARKER/30, PART=3\n\
+         JPRIM/1, PARALLEL_AXES, I=30, J=1\nMOTION/1, I=30, J=1, B3, FUNCTION=0\n\
+         PTCV/1, CURVE=1, I=30, RM=1\nACCGRAV/JGRAV=-9.81\n{}",
+        curve(1, "CLOSED", &circle(R, 200))
+    );
+    let s = run(&text, &["DX(30,1)", "DY(30,1)", "VM(30,1)", "PTCV(1,0,2,0)", "PTCV(1,0,3,0)"], 2.0, 200);
+    for k in 0..201 {
+        let [x, y, v] = ["DX(30,1)", "DY(30,1)", "VM(30,1)"].map(|c| values(&s, c)[k]);
+        assert!((x.hypot(y) - R).abs() < 1e-9);
+        let energy = 0.5 * v * v + 9.81 * y;
+        assert!((energy - 2.0).abs() < 1e-7, "{energy}");
+        // towards the centre: m v²/R and what carries the weight
+        let push = 0.5 * (v * v / R - 9.81 * y / R);
+        let (fx, fy) = (values(&s, "PTCV(1,0,2,0)")[k], values(&s, "PTCV(1,0,3,0)")[k]);
+        // the curvature of the spline is off by (2π/200)²/12
+        assert!((fx + push * x / R).abs() < 5e-3 && (fy + push * y / R).abs() < 5e-3, "{fx} {fy}");
+    }
+}
+
+#[test]
+fn a_bead_rests_at_the_bottom_of_its_wire() {
+    // a parabola along the valley of which a spring pulls: y = x²/2 a, bottom where m g x/a = k (l − x)
+    let points: Vec<[f64; 2]> = (0..161)
+        .map(|k| {
+            let x = 0.025 * f64::from(k) - 2.0;
+            [x, 0.5 * x * x]
+        })
+        .collect();
+    let text = format!(
+        "PART/3, MASS=2, CM=30, IP=1,1,1, QG=-1,0.8,0\nMARKER/30, PART=3\nJPRIM/1, ORIENTATION, I=30, J=1\n\
+         PTCV/1, CURVE=1, I=30, RM=1\nACCGRAV/JGRAV=-9.81\n\
+         VFORCE/1, I=30, JFLOAT=12, RM=1, FX=5*(1-DX(30,1))\\FY=0\\FZ=0\nMARKER/12, PART=1, FLOATING\n{}",
+        curve(1, "OPEN", &points)
+    );
+    let mut s = session(&text, &["DX(30,1)", "DY(30,1)"], 1e-8);
+    let status = s
+        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let x = 5.0 / (5.0 + 2.0 * 9.81);
+    let last = |c: &str| *values(&s, c).last().unwrap();
+    assert!((last("DX(30,1)") - x).abs() < 1e-6, "{} {x}", last("DX(30,1)"));
+    assert!((last("DY(30,1)") - 0.5 * x * x).abs() < 1e-6);
+}
+
+/// A cam that lifts by a cycloid, stays up, comes down, stays down: a point above its axis.
+#[test]
+fn a_cam_with_dwells_leaves_its_follower_alone() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let rise = |u: f64| u - (std::f64::consts::TAU * u).sin() / std::f64::consts::TAU;
+    let radius = move |angle: f64| {
+        let a = angle.rem_euclid(std::f64::consts::TAU) / quarter;
+        let up = match a {
+            a if a < 1.0 => rise(a),
+            a if a < 2.0 => 1.0,
+            a if a < 3.0 => rise(3.0 - a),
+            _ => 0.0,
+        };
+        0.05 + 0.02 * up
+    };
+    let n = 720;
+    let mut points: Vec<[f64; 2]> = (0..n)
+        .map(|k| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(n);
+            [radius(angle) * angle.cos(), radius(angle) * angle.sin()]
+        })
+        .collect();
+    points.push(points[0]);
+    let text = format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\n\
+         PART/3, MASS=0.5, CM=30, IP=1,1,1, QG=0,0.06,0\nMARKER/30, PART=3\n\
+         MARKER/31, PART=3, REULER=0,-90D,0\nMARKER/11, PART=1, REULER=0,-90D,0\n\
+         JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, TRANSLATIONAL, I=31, J=11\n\
+         MOTION/1, JOINT=1, FUNCTION=TIME\nPTCV/1, CURVE=1, I=30, RM=20\n{}",
+        curve(1, "CLOSED", &points)
+    );
+    let s = run(&text, &["DY(30,1)", "VY(30,1)"], 2.0 * std::f64::consts::TAU, 400);
+    // above the axis the cam shows its radius at 90° − t; the spline is off by 0.02 (2π/720)⁴ f⁗/384
+    let shown = |t: f64| radius(quarter - t);
+    assert!(off(&s, "DY(30,1)", shown) < 1e-7, "{}", off(&s, "DY(30,1)", shown));
+    for (&t, &v) in values(&s, "time").iter().zip(values(&s, "VY(30,1)")) {
+        let a = (quarter - t).rem_euclid(std::f64::consts::TAU) / quarter;
+        let dwells = (1.05..1.95).contains(&a) || (3.05..3.95).contains(&a);
+        assert!(!dwells || v.abs() < 1e-6, "{t}: {v}");
+    }
+}
+
+/// A pin that drives a wheel through a slot in it, and leaves the slot at its end.
+#[test]
+fn a_geneva_wheel_turns_while_the_pin_is_in_its_slot() {
+    let crank = 1.0;
+    let centres = 2.0_f64.sqrt();
+    let slot: Vec<[f64; 2]> = (0..5)
+        .map(|k| [-(0.35 + 0.165 * f64::from(k)), 0.0])
+        .collect();
+    let text = format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP={crank},0,0\n\
+         PART/3, MASS=2, CM=30, IP=1,1,3, QG={centres},0,0\nMARKER/30, PART=3\nMARKER/10, PART=1, QP={centres},0,0\n\
+         JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=10\n\
+         MOTION/1, JOINT=1, FUNCTION=TIME-0.7\nPTCV/1, CURVE=1, I=21, RM=30\n{}",
+        curve(1, "OPEN", &slot)
+    );
+    let columns = ["AZ(30,10)", "WZ(30,10)", "JOINT(2,0,8,0)", "MOTION(1,0,8,0)"];
+    let wheel = |t: f64| {
+        use cognate::scalar::{Jet, Scalar};
+        let a = Jet::variable(t) - Jet::constant(0.7);
+        let (s, c) = a.sin_cos();
+        let d = Jet::constant(centres);
+        -(s.atan2(d - c))
+    };
+    let s = run(&text, &columns, 1.4, 140);
+    assert!(off(&s, "AZ(30,10)", |t| wheel(t).value) < 1e-11);
+    assert!(off(&s, "WZ(30,10)", |t| wheel(t).first) < 1e-9);
+    // what drives the crank is what the wheel's inertia takes, by the ratio of speeds
+    let torque = |t: f64| 3.0 * wheel(t).second * wheel(t).first;
+    assert!(off(&s, "MOTION(1,0,8,0)", torque) < 1e-7, "{}", off(&s, "MOTION(1,0,8,0)", torque));
+    // on and on: the pin leaves the slot where its distance from the wheel's centre is 1.01
+    let mut s = session(&text, &columns, 1e-8);
+    let status = s
+        .simulate(Analysis::Transient, 3.0, 300, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Stopped);
+    let angle = ((1.0 + 2.0 - 1.01_f64.powi(2)) / (2.0 * centres)).acos();
+    let when = 0.7 + angle;
+    let why = &s.run.record.stop_reason;
+    let told: f64 = why["stopped at time ".len()..].split(':').next().unwrap().parse().unwrap();
+    assert!((told - when).abs() < 1e-9, "{why} {when}");
+    assert!(why.contains("CURVE/1") && why.contains("(-1.010000, 0.000000") && why.contains("extend"), "{why}");
+    assert_eq!(s.run.record.simulations[0].worst, ["PTCV/1"]);
+    assert!(values(&s, "time").last().unwrap() <= &when);
+}
+
+#[test]
+fn what_is_wrong_with_curves_is_said() {
+    let line: Vec<[f64; 2]> = (0..5).map(|k| [0.05 * f64::from(k) - 0.1, 0.0]).collect();
+    let drive = "MOTION/1, JOINT=1, FUNCTION=TIME\n";
+    // a follower that begins beside the end of its line
+    let beside = |x: f64, line: &[[f64; 2]], more: &str| {
+        cam_and_follower(
+            0.07,
+            &format!("{drive}MARKER/39, PART=3, QP={x},0,0{more}\nCVCV/1, ICURVE=2, IRM=39, JCURVE=1, JRM=21\n{}", curve(2, "OPEN", line)),
+        )
+    };
+    let (code, what) = refused(&beside(1.0, &line, ""));
+    assert_eq!(code, "curve_left");
+    assert!(what.contains("CVCV/1") && what.contains("CURVE/2") && what.contains("first point (-0.1"), "{what}");
+    let (code, what) = refused(&beside(0.0, &line, ", REULER=0,10D,0"));
+    assert_eq!(code, "curves_not_coplanar", "{what}");
+    // two straight lines
+    let text = beside(0.0, &line, "").replace("JCURVE=1, JRM=21", "JCURVE=2, JRM=20");
+    assert_eq!(refused(&text).0, "no_common_tangent");
+    let user = cam_and_follower(0.045, &format!("{drive}PTCV/1, CURVE=3, I=30, RM=21\nCURVE/3, CLOSED, FUNCTION=USER(1)\n"));
+    let (code, what) = refused(&user);
+    assert_eq!(code, "curve_data");
+    assert!(what.contains("CURVE/3") && what.contains("USER"), "{what}");
+}
