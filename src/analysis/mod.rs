@@ -2,6 +2,7 @@
 
 pub mod assemble;
 pub mod columns;
+pub mod drives;
 pub mod dynamics;
 pub mod kinematics;
 pub mod linear;

@@ -6,6 +6,7 @@
 
 use super::assemble::{self, Assembly};
 use super::columns::{self, Columns};
+use super::drives;
 use super::dynamics::{self, Ended, Trajectory, Watch};
 use super::kinematics;
 use super::linear::{self, Linearization};
@@ -52,6 +53,8 @@ pub struct Options {
     pub columns: Vec<String>,
     /// columns of all parts and joints
     pub full: bool,
+    /// run motions whose displacement or velocity jumps, piece by piece
+    pub piecewise: bool,
     /// keywords of statements that are left out where they are not solved
     pub skip: std::collections::BTreeSet<String>,
     /// take what `USER(…)` would compute as zero
@@ -415,6 +418,18 @@ impl Session {
         }
         if analysis == Analysis::Kinematic && mode != KINEMATIC {
             (system, _) = self.prepare(KINEMATIC, &[])?;
+        }
+        if matches!(analysis, Analysis::Kinematic | Analysis::Dynamic) {
+            let breaks = drives::breaks(&system.scene, self.time(), end)?;
+            let refused = drives::refused(&breaks);
+            if !refused.is_empty() && !self.options.piecewise {
+                return Err(refused);
+            }
+            for warning in drives::warnings(&breaks, self.options.piecewise) {
+                self.warn(&warning);
+            }
+            let jumps = breaks.into_iter().filter(|b| b.order < 2);
+            self.run.record.piecewise.extend(jumps.map(|b| b.into()));
         }
         self.first_facts(&system, &assembly);
         for warning in &assembly.warnings {

@@ -54,6 +54,9 @@ pub struct Args {
     /// Take what USER(…) would compute as zero
     #[arg(long = "zero-user")]
     zero_user: bool,
+    /// Run motions whose displacement or velocity jumps, piece by piece
+    #[arg(long)]
+    piecewise: bool,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -121,6 +124,7 @@ pub fn run(args: &Args) -> Outcome {
         repeat: args.repeat,
         columns: args.columns.clone(),
         full,
+        piecewise: args.piecewise,
         skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
         zero_user: args.zero_user,
     };

@@ -409,6 +409,20 @@ The curves of a CVCV lie in the x-y planes of IRM and JRM, z = 0, and these plan
 CVCV does not turn parts to make them so: that is up to joints, such as PLANAR, or REVOLUTE with parallel axes.",
     },
     Code {
+        name: "motion_jumps",
+        summary: "what a MOTION prescribes, or its velocity, jumps within the run",
+        explanation: "\
+A displacement that jumps takes an infinite velocity, a velocity that jumps an infinite force: there is no motion between. The
+message names the times. Join the pieces by a function that is smooth, such as STEP5.
+
+    IF(TIME-1: 0, 0, 1)                 jumps: STEP5(TIME, 1, 0, 1.1, 1)
+    MAX(0, TIME-1)                      its velocity jumps: POLY(STEP5(TIME,1,0,1.2,0.1), 0, 1)+MAX(0, TIME-1.2), or the like
+    MOTION/1, VELOCITY, FUNCTION=STEP(TIME,0,0,1,2)      a velocity may bend, it must not jump
+
+`--piecewise` runs it all the same, from piece to piece; the record of the run then lists the jumps. Where the acceleration
+jumps it runs, with a warning, and forces jump.",
+    },
+    Code {
         name: "usage",
         summary: "a command is not used as it can be used",
         explanation: "\

@@ -2,7 +2,7 @@
 //!
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
-use super::{Counts, Run, Simulation};
+use super::{Counts, Jump, Run, Simulation};
 use serde_json::{Map, Value, json};
 
 /// The record of a run: status, counts, timings, and one entry per simulation.
@@ -28,6 +28,7 @@ pub fn record(run: &Run) -> Value {
         "constraint_drift": r.constraint_drift,
         "outputs": run.table_rows().count(),
         "warnings": r.warnings,
+        "piecewise": r.piecewise.iter().map(jump).collect::<Vec<_>>(),
         "versions": { "cognate": env!("CARGO_PKG_VERSION"), "record": 1 },
         "simulations": r.simulations.iter().map(simulation).collect::<Vec<_>>(),
     });
@@ -35,6 +36,10 @@ pub fn record(run: &Run) -> Value {
         add_counts(record, &r.counts);
     }
     record
+}
+
+fn jump(j: &Jump) -> Value {
+    json!({ "element": format!("MOTION/{}", j.motion), "time": j.at, "of": j.of, "by": j.by })
 }
 
 fn simulation(s: &Simulation) -> Value {

@@ -253,8 +253,23 @@ pub struct Record {
     pub constraint_drift: Option<f64>,
     /// what the user should know, one sentence each
     pub warnings: Vec<String>,
+    /// jumps of what motions prescribe that were run all the same
+    pub piecewise: Vec<Jump>,
     /// one per SIMULATE command
     pub simulations: Vec<Simulation>,
+}
+
+/// A jump of what a MOTION prescribes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jump {
+    /// user's number of the MOTION
+    pub motion: u32,
+    /// when
+    pub at: f64,
+    /// "displacement" or "velocity"
+    pub of: &'static str,
+    /// by how much
+    pub by: f64,
 }
 
 /// The facts about one simulation.

@@ -216,6 +216,7 @@ impl<'m> Builder<'m> {
             name: name.to_string(),
             text: text.to_string(),
             program,
+            gradient: None,
             delayed,
         });
         self.scene.formulas.len() - 1

@@ -119,5 +119,6 @@ pub(super) fn constant(value: f64) -> Option<Formula> {
         text,
         program,
         delayed: Vec::new(),
+        gradient: None,
     })
 }

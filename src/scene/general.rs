@@ -16,7 +16,7 @@ use super::build::{Builder, active};
 use super::compile::Compiler;
 use super::equations::Equations;
 use super::reads::{Allowed, offence};
-use super::{ConstraintElement, Row, RowKind, Scene};
+use super::{ConstraintElement, Entry, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
@@ -39,6 +39,10 @@ impl Builder<'_> {
                         .help("a GCON relates places: displacements and angles of markers, TIME, and VARIABLEs of these"),
                 );
                 continue;
+            }
+            for f in formulas_read(&self.scene, formula) {
+                let f = &mut self.scene.formulas[f];
+                f.gradient = Some(f.program.with_gradient(f.program.inputs()));
             }
             let read = markers_read(&self.scene, formula);
             let about = match gcon.i {
@@ -121,27 +125,42 @@ impl Builder<'_> {
     }
 }
 
-/// The markers that a formula of places reads, itself or through VARIABLEs; ground as such (identifier 0) is none.
-fn markers_read(scene: &Scene, formula: usize) -> BTreeSet<usize> {
-    let (mut seen, mut next, mut found) = (BTreeSet::new(), vec![formula], BTreeSet::new());
+/// A formula and those of the VARIABLEs it reads.
+fn formulas_read(scene: &Scene, formula: usize) -> BTreeSet<usize> {
+    let (mut seen, mut next) = (BTreeSet::new(), vec![formula]);
     while let Some(f) = next.pop() {
-        let Some(formula) = scene.formulas.get(f).filter(|_| seen.insert(f)) else {
+        if f >= scene.formulas.len() || !seen.insert(f) {
             continue;
-        };
-        for input in formula.program.inputs() {
+        }
+        for input in scene.formulas[f].program.inputs() {
             match input {
                 Input::Measure(Measure::Varval, [v, ..]) => next.extend(scene.variables.get(v)),
-                Input::Measure(m, ids) if m.row().family == Family::Displacement => {
-                    // the first two arguments of ORIENT are no markers
-                    let ids = if *m == Measure::Orient {
-                        &ids[2..]
-                    } else {
-                        &ids[..]
-                    };
-                    found.extend(ids.iter().filter_map(|id| scene.marker_of.get(id)));
+                Input::Measure(Measure::Aryval, [a, k, ..]) => {
+                    let entries = scene.arrays.get(a).map_or(&[][..], Vec::as_slice);
+                    let entry = (*k as usize).checked_sub(1).and_then(|k| entries.get(k));
+                    if let Some(Entry::Formula(f)) = entry {
+                        next.push(*f);
+                    }
                 }
                 _ => {}
             }
+        }
+    }
+    seen
+}
+
+/// The markers that a formula of places reads, itself or through VARIABLEs; ground as such (identifier 0) is none.
+fn markers_read(scene: &Scene, formula: usize) -> BTreeSet<usize> {
+    let all = formulas_read(scene, formula);
+    let inputs = (all.iter()).flat_map(|&f| scene.formulas[f].program.inputs());
+    let mut found = BTreeSet::new();
+    for input in inputs {
+        if let Input::Measure(m, ids) = input
+            && m.row().family == Family::Displacement
+        {
+            // the first two arguments of ORIENT are no markers
+            let first = if *m == Measure::Orient { 2 } else { 0 };
+            found.extend(ids[first..].iter().filter_map(|id| scene.marker_of.get(id)));
         }
     }
     found

@@ -250,6 +250,8 @@ pub struct Formula {
     pub text: String,
     /// its code; asks for its inputs by [`Input`](crate::expr::program::Input)
     pub program: Program,
+    /// its value and its partial derivatives by its inputs, where a constraint needs them
+    pub gradient: Option<Program>,
     /// where its delayed values stand among the numbers from outside
     pub delayed: Vec<usize>,
 }

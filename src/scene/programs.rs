@@ -75,7 +75,7 @@ where
     (program, equations.complaints())
 }
 
-/// Where loads and differential equations change branch.
+/// Where loads, differential equations and motions change branch.
 #[derive(Debug)]
 pub struct Switching {
     /// one value per switch, changing sign there; reads the unknowns of linear loops after the layout's numbers
@@ -84,7 +84,7 @@ pub struct Switching {
     pub unknowns: Option<Program>,
 }
 
-/// Where loads and differential equations change branch. `None`: nowhere.
+/// Where loads, differential equations and motions change branch. `None`: nowhere.
 ///
 /// # Errors
 /// What the equations complained about.
@@ -103,6 +103,10 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
                 sources.extend(action.force.0.into_iter().chain(action.torque.0));
             }
             sources.extend(at.loop_formulas());
+            for m in 0..scene.motions.len() {
+                let drive = at.prescribed(m);
+                sources.extend([drive.value, drive.first, drive.second]);
+            }
             sources.extend(scene.sensors.iter().map(|s| at.formula(s.formula)));
             // a sensor is triggered where what it watches passes its value
             sources.extend(scene.sensors.iter().map(|s| {

@@ -220,6 +220,7 @@ impl Builder<'_> {
             name,
             text,
             program,
+            gradient: None,
             delayed: Vec::new(),
         });
         self.scene.formulas.len() - 1

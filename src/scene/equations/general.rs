@@ -4,7 +4,7 @@
 //! e = e(m₁ … m_k)     δe = Σ ∂e/∂mᵢ δmᵢ      δmᵢ = wrenchᵢ · twists of its markers
 //! ```
 //!
-//! The partial derivatives come from the function over duals, the wrenches from each measure over duals along the twists of the markers it
+//! The partial derivatives come from the gradient of the function's program, the wrenches from each measure over duals along the twists of the markers it
 //! reads, the rates from both over jets.
 
 use super::rows::{moving, seed, twist};
@@ -12,12 +12,10 @@ use super::{Equations, RowValue};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Work};
 use crate::physics::action::Action;
-use crate::scalar::{Dual, Jet, Scalar};
-use crate::scene::Counted;
+use crate::scalar::{Jet, Scalar};
+use crate::scene::{Counted, Entry};
 use crate::space::{Frame, MarkerState, kinematic};
 
-/// Directions that are followed at once through a function.
-const WIDTH: usize = 8;
 /// Most markers that one measure reads.
 const MARKERS: usize = 3;
 
@@ -69,11 +67,11 @@ impl<S: Scalar> Equations<'_, S> {
                     variable.map_or_else(nothing, |&v| self.traced(v, open))
                 }
                 Input::Measure(Measure::Aryval, [id, k, ..]) => {
-                    let number = match self.entry(id, k) {
-                        Some(crate::scene::Entry::Number(x)) => x,
-                        _ => f64::NAN,
-                    };
-                    Traced::of_time(Jet::constant(number))
+                    match self.entry(id, k) {
+                        Some(Entry::Number(x)) => Traced::of_time(Jet::constant(x)),
+                        Some(Entry::Formula(f)) => self.traced(f, open),
+                        _ => nothing(),
+                    }
                 }
                 Input::Measure(measure, ids) => {
                     self.traced_measure(measure, ids).unwrap_or_else(nothing)
@@ -93,34 +91,22 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// `Σ ∂e/∂mᵢ wrenchᵢ`, by markers.
     fn chained(&self, formula: usize, inputs: &[Traced<S>]) -> Vec<(usize, Action<S>)> {
-        let program = &self.scene.formulas[formula].program;
+        let Some(program) = &self.scene.formulas[formula].gradient else {
+            return Vec::new();
+        };
+        let values: Vec<S> = inputs.iter().map(|i| i.jet.value).collect();
+        let mut out = vec![S::zero(); 1 + inputs.len()];
+        program.eval(&values, &mut Work::default(), &mut out);
         let mut sum: Vec<(usize, Action<S>)> = Vec::new();
-        let moving: Vec<usize> = (0..inputs.len())
-            .filter(|&k| !inputs[k].actions.is_empty())
-            .collect();
-        let mut work = Work::default();
-        for some in moving.chunks(WIDTH) {
-            let duals: Vec<Dual<WIDTH, S>> = (inputs.iter().enumerate())
-                .map(|(k, input)| match some.iter().position(|&s| s == k) {
-                    Some(direction) => Dual::variable(input.jet.value, direction),
-                    None => Dual {
-                        re: input.jet.value,
-                        eps: [S::zero(); WIDTH],
-                    },
-                })
-                .collect();
-            let mut out = [Dual::zero()];
-            program.eval(&duals, &mut work, &mut out);
-            for (&k, &partial) in some.iter().zip(&out[0].eps) {
-                for (m, action) in &inputs[k].actions {
-                    let part = Action {
-                        force: action.force.times(partial),
-                        torque: action.torque.times(partial),
-                    };
-                    match sum.iter_mut().find(|s| s.0 == *m) {
-                        Some(entry) => entry.1 = entry.1.plus(&part),
-                        None => sum.push((*m, part)),
-                    }
+        for (input, &partial) in inputs.iter().zip(&out[1..]) {
+            for (m, action) in &input.actions {
+                let part = Action {
+                    force: action.force.times(partial),
+                    torque: action.torque.times(partial),
+                };
+                match sum.iter_mut().find(|s| s.0 == *m) {
+                    Some(entry) => entry.1 = entry.1.plus(&part),
+                    None => sum.push((*m, part)),
                 }
             }
         }

@@ -172,6 +172,12 @@ impl<'s, S: Scalar> Equations<'s, S> {
         self.driven[motion]
     }
 
+    /// The function of a motion, whatever its level.
+    pub fn motion_function(&self, m: usize) -> S {
+        let formula = self.scene.motions[m].formula;
+        self.in_time(formula, 0, &mut Vec::new()).value
+    }
+
     /// A formula of time and of differential equations that depend on nothing else, with its rates up to `order`.
     fn in_time(&self, formula: usize, order: usize, open: &mut Vec<usize>) -> Jet<S> {
         let f = &self.scene.formulas[formula];
