@@ -267,8 +267,14 @@ fn all_rows() -> Vec<String> {
     };
     let space = matrix(1, rows(|x| x * x - 0.3 * x, 1.0));
     let plane = matrix(2, rows(|_| 0.0, 1.0)) + &matrix(3, rows(|_| 0.0, 0.2));
-    for (kind, points) in [("OPEN", "CURVE_POINTS"), ("CLOSED", "CURVE_POINTS"), ("CLOSED", "CONTROL_POINTS, ORDER=5")] {
-        all.push(format!("PTCV/1, CURVE=1, I=5, RM=4\nCURVE/1, {kind}, MATRIX=1, {points}\n{space}"));
+    for (kind, points) in [
+        ("OPEN", "CURVE_POINTS"),
+        ("CLOSED", "CURVE_POINTS"),
+        ("CLOSED", "CONTROL_POINTS, ORDER=5"),
+    ] {
+        all.push(format!(
+            "PTCV/1, CURVE=1, I=5, RM=4\nCURVE/1, {kind}, MATRIX=1, {points}\n{space}"
+        ));
         all.push(format!(
             "CVCV/1, ICURVE=2, IRM=5, JCURVE=3, JRM=4\nCURVE/2, {kind}, MATRIX=2, {points}\nCURVE/3, {kind}, MATRIX=3, {points}\n{plane}"
         ));

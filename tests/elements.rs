@@ -255,7 +255,10 @@ fn a_driven_joint_is_a_driven_pair_of_markers() {
 
 /// A MATRIX and a CURVE through its points.
 fn curve(id: u32, kind: &str, points: &[[f64; 2]]) -> String {
-    let mut text = format!("MATRIX/{id}, FULL=RORDER, ROWS={}, COLUMNS=3, VALUES=", points.len());
+    let mut text = format!(
+        "MATRIX/{id}, FULL=RORDER, ROWS={}, COLUMNS=3, VALUES=",
+        points.len()
+    );
     for (k, p) in points.iter().enumerate() {
         let comma = if k == 0 { "" } else { "," };
         text += &format!("{comma}\n, {:.17},{:.17},0", p[0], p[1]);
@@ -302,7 +305,16 @@ fn lift(distance: f64, t: f64) -> [f64; 3] {
 
 #[test]
 fn a_point_rides_on_a_disc_as_the_triangle_says() {
-    let columns = ["DY(30,1)", "VY(30,1)", "ACCY(30,1)", "PTCV(1,0,3,0)", "PTCV(1,0,2,0)", "PTCV(1,1,3,0)", "PTCV(1,0,5,0)", "FY(30,22)"];
+    let columns = [
+        "DY(30,1)",
+        "VY(30,1)",
+        "ACCY(30,1)",
+        "PTCV(1,0,3,0)",
+        "PTCV(1,0,2,0)",
+        "PTCV(1,1,3,0)",
+        "PTCV(1,0,5,0)",
+        "FY(30,22)",
+    ];
     let turns = 3.0 * std::f64::consts::TAU;
     let drive = "PTCV/1, CURVE=1, I=30, JFLOAT=22, RM=21\nMOTION/1, JOINT=1, FUNCTION=TIME\n";
     let s = run(&cam_and_follower(0.045, drive), &columns, turns, 300);
@@ -317,7 +329,10 @@ fn a_point_rides_on_a_disc_as_the_triangle_says() {
         // the contact pushes along the line from the centre to the follower
         let (x, y) = (-ECCENTRIC * t.cos(), lift(R, t)[0] - ECCENTRIC * t.sin());
         let up = 0.5 * (lift(R, t)[2] + 9.81);
-        let (fy, fx) = (values(&s, "PTCV(1,0,3,0)")[k], values(&s, "PTCV(1,0,2,0)")[k]);
+        let (fy, fx) = (
+            values(&s, "PTCV(1,0,3,0)")[k],
+            values(&s, "PTCV(1,0,2,0)")[k],
+        );
         assert!((fy - up).abs() < 1e-4, "{fy} {up}");
         assert!((fx - up * x / y).abs() < 1e-4);
         assert!((values(&s, "PTCV(1,1,3,0)")[k] + fy).abs() < 1e-12);
@@ -334,14 +349,25 @@ fn a_flat_and_a_roller_ride_on_a_disc() {
         ("flat", "OPEN", line, 0.08),
         ("roller", "CLOSED", circle(roller, 200), 0.07),
     ] {
-        let columns = ["DY(30,1)", "VY(30,1)", "ACCY(30,1)", "CVCV(1,0,3,0)", "CVCV(1,1,3,0)", "CVCV(1,0,5,0)"];
+        let columns = [
+            "DY(30,1)",
+            "VY(30,1)",
+            "ACCY(30,1)",
+            "CVCV(1,0,3,0)",
+            "CVCV(1,1,3,0)",
+            "CVCV(1,0,5,0)",
+        ];
         let tie = format!(
             "CVCV/1, ICURVE=2, IRM=30, JCURVE=1, JRM=21\nMOTION/1, JOINT=1, FUNCTION=TIME\n{}",
             curve(2, kind, &points)
         );
         let s = run(&cam_and_follower(height, &tie), &columns, 7.0, 70);
         let expected = |t: f64| match follower {
-            "flat" => [ECCENTRIC * t.sin() + R, ECCENTRIC * t.cos(), -ECCENTRIC * t.sin()],
+            "flat" => [
+                ECCENTRIC * t.sin() + R,
+                ECCENTRIC * t.cos(),
+                -ECCENTRIC * t.sin(),
+            ],
             _ => lift(R + roller, t),
         };
         for k in 0..3 {
@@ -364,7 +390,18 @@ fn a_bead_on_a_closed_wire_keeps_its_energy() {
          PTCV/1, CURVE=1, I=30, RM=1\nACCGRAV/JGRAV=-9.81\n{}",
         curve(1, "CLOSED", &circle(R, 200))
     );
-    let s = run(&text, &["DX(30,1)", "DY(30,1)", "VM(30,1)", "PTCV(1,0,2,0)", "PTCV(1,0,3,0)"], 2.0, 200);
+    let s = run(
+        &text,
+        &[
+            "DX(30,1)",
+            "DY(30,1)",
+            "VM(30,1)",
+            "PTCV(1,0,2,0)",
+            "PTCV(1,0,3,0)",
+        ],
+        2.0,
+        200,
+    );
     for k in 0..201 {
         let [x, y, v] = ["DX(30,1)", "DY(30,1)", "VM(30,1)"].map(|c| values(&s, c)[k]);
         assert!((x.hypot(y) - R).abs() < 1e-9);
@@ -372,9 +409,15 @@ fn a_bead_on_a_closed_wire_keeps_its_energy() {
         assert!((energy - 2.0).abs() < 1e-7, "{energy}");
         // towards the centre: m v²/R and what carries the weight
         let push = 0.5 * (v * v / R - 9.81 * y / R);
-        let (fx, fy) = (values(&s, "PTCV(1,0,2,0)")[k], values(&s, "PTCV(1,0,3,0)")[k]);
+        let (fx, fy) = (
+            values(&s, "PTCV(1,0,2,0)")[k],
+            values(&s, "PTCV(1,0,3,0)")[k],
+        );
         // the curvature of the spline is off by (2π/200)²/12
-        assert!((fx + push * x / R).abs() < 5e-3 && (fy + push * y / R).abs() < 5e-3, "{fx} {fy}");
+        assert!(
+            (fx + push * x / R).abs() < 5e-3 && (fy + push * y / R).abs() < 5e-3,
+            "{fx} {fy}"
+        );
     }
 }
 
@@ -400,7 +443,11 @@ fn a_bead_rests_at_the_bottom_of_its_wire() {
     assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
     let x = 5.0 / (5.0 + 2.0 * 9.81);
     let last = |c: &str| *values(&s, c).last().unwrap();
-    assert!((last("DX(30,1)") - x).abs() < 1e-6, "{} {x}", last("DX(30,1)"));
+    assert!(
+        (last("DX(30,1)") - x).abs() < 1e-6,
+        "{} {x}",
+        last("DX(30,1)")
+    );
     assert!((last("DY(30,1)") - 0.5 * x * x).abs() < 1e-6);
 }
 
@@ -435,10 +482,19 @@ fn a_cam_with_dwells_leaves_its_follower_alone() {
          MOTION/1, JOINT=1, FUNCTION=TIME\nPTCV/1, CURVE=1, I=30, RM=20\n{}",
         curve(1, "CLOSED", &points)
     );
-    let s = run(&text, &["DY(30,1)", "VY(30,1)"], 2.0 * std::f64::consts::TAU, 400);
+    let s = run(
+        &text,
+        &["DY(30,1)", "VY(30,1)"],
+        2.0 * std::f64::consts::TAU,
+        400,
+    );
     // above the axis the cam shows its radius at 90° − t; the spline is off by 0.02 (2π/720)⁴ f⁗/384
     let shown = |t: f64| radius(quarter - t);
-    assert!(off(&s, "DY(30,1)", shown) < 1e-7, "{}", off(&s, "DY(30,1)", shown));
+    assert!(
+        off(&s, "DY(30,1)", shown) < 1e-7,
+        "{}",
+        off(&s, "DY(30,1)", shown)
+    );
     for (&t, &v) in values(&s, "time").iter().zip(values(&s, "VY(30,1)")) {
         let a = (quarter - t).rem_euclid(std::f64::consts::TAU) / quarter;
         let dwells = (1.05..1.95).contains(&a) || (3.05..3.95).contains(&a);
@@ -461,7 +517,12 @@ fn a_geneva_wheel_turns_while_the_pin_is_in_its_slot() {
          MOTION/1, JOINT=1, FUNCTION=TIME-0.7\nPTCV/1, CURVE=1, I=21, RM=30\n{}",
         curve(1, "OPEN", &slot)
     );
-    let columns = ["AZ(30,10)", "WZ(30,10)", "JOINT(2,0,8,0)", "MOTION(1,0,8,0)"];
+    let columns = [
+        "AZ(30,10)",
+        "WZ(30,10)",
+        "JOINT(2,0,8,0)",
+        "MOTION(1,0,8,0)",
+    ];
     let wheel = |t: f64| {
         use cognate::scalar::{Jet, Scalar};
         let a = Jet::variable(t) - Jet::constant(0.7);
@@ -474,7 +535,11 @@ fn a_geneva_wheel_turns_while_the_pin_is_in_its_slot() {
     assert!(off(&s, "WZ(30,10)", |t| wheel(t).first) < 1e-9);
     // what drives the crank is what the wheel's inertia takes, by the ratio of speeds
     let torque = |t: f64| 3.0 * wheel(t).second * wheel(t).first;
-    assert!(off(&s, "MOTION(1,0,8,0)", torque) < 1e-7, "{}", off(&s, "MOTION(1,0,8,0)", torque));
+    assert!(
+        off(&s, "MOTION(1,0,8,0)", torque) < 1e-7,
+        "{}",
+        off(&s, "MOTION(1,0,8,0)", torque)
+    );
     // on and on: the pin leaves the slot where its distance from the wheel's centre is 1.01
     let mut s = session(&text, &columns, 1e-8);
     let status = s
@@ -484,9 +549,17 @@ fn a_geneva_wheel_turns_while_the_pin_is_in_its_slot() {
     let angle = ((1.0 + 2.0 - 1.01_f64.powi(2)) / (2.0 * centres)).acos();
     let when = 0.7 + angle;
     let why = &s.run.record.stop_reason;
-    let told: f64 = why["stopped at time ".len()..].split(':').next().unwrap().parse().unwrap();
+    let told: f64 = why["stopped at time ".len()..]
+        .split(':')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
     assert!((told - when).abs() < 1e-9, "{why} {when}");
-    assert!(why.contains("CURVE/1") && why.contains("(-1.010000, 0.000000") && why.contains("extend"), "{why}");
+    assert!(
+        why.contains("CURVE/1") && why.contains("(-1.010000, 0.000000") && why.contains("extend"),
+        "{why}"
+    );
     assert_eq!(s.run.record.simulations[0].worst, ["PTCV/1"]);
     assert!(values(&s, "time").last().unwrap() <= &when);
 }
@@ -499,18 +572,27 @@ fn what_is_wrong_with_curves_is_said() {
     let beside = |x: f64, line: &[[f64; 2]], more: &str| {
         cam_and_follower(
             0.07,
-            &format!("{drive}MARKER/39, PART=3, QP={x},0,0{more}\nCVCV/1, ICURVE=2, IRM=39, JCURVE=1, JRM=21\n{}", curve(2, "OPEN", line)),
+            &format!(
+                "{drive}MARKER/39, PART=3, QP={x},0,0{more}\nCVCV/1, ICURVE=2, IRM=39, JCURVE=1, JRM=21\n{}",
+                curve(2, "OPEN", line)
+            ),
         )
     };
     let (code, what) = refused(&beside(1.0, &line, ""));
     assert_eq!(code, "curve_left");
-    assert!(what.contains("CVCV/1") && what.contains("CURVE/2") && what.contains("first point (-0.1"), "{what}");
+    assert!(
+        what.contains("CVCV/1") && what.contains("CURVE/2") && what.contains("first point (-0.1"),
+        "{what}"
+    );
     let (code, what) = refused(&beside(0.0, &line, ", REULER=0,10D,0"));
     assert_eq!(code, "curves_not_coplanar", "{what}");
     // two straight lines
     let text = beside(0.0, &line, "").replace("JCURVE=1, JRM=21", "JCURVE=2, JRM=20");
     assert_eq!(refused(&text).0, "no_common_tangent");
-    let user = cam_and_follower(0.045, &format!("{drive}PTCV/1, CURVE=3, I=30, RM=21\nCURVE/3, CLOSED, FUNCTION=USER(1)\n"));
+    let user = cam_and_follower(
+        0.045,
+        &format!("{drive}PTCV/1, CURVE=3, I=30, RM=21\nCURVE/3, CLOSED, FUNCTION=USER(1)\n"),
+    );
     let (code, what) = refused(&user);
     assert_eq!(code, "curve_data");
     assert!(what.contains("CURVE/3") && what.contains("USER"), "{what}");

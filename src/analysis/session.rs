@@ -760,7 +760,10 @@ impl Session {
             }
             Some(Ended::Broken { t, broken }) => (
                 Status::Stopped,
-                format!("stopped at time {t}: {}; {}", broken.sentence, broken.advice),
+                format!(
+                    "stopped at time {t}: {}; {}",
+                    broken.sentence, broken.advice
+                ),
                 vec![broken.element.clone()],
             ),
             Some(Ended::Stop(stop)) => {

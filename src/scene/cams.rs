@@ -74,7 +74,14 @@ impl Builder<'_> {
             let path = self.path(c, p.curve);
             if let (Some(i), Some(j), Some(path)) = (i, j, path) {
                 let between = (p.i, p.jfloat.unwrap_or(p.rm));
-                self.cam(c, ("PTCV", id), Contact::Point(path), (i, j), between, &[&side]);
+                self.cam(
+                    c,
+                    ("PTCV", id),
+                    Contact::Point(path),
+                    (i, j),
+                    between,
+                    &[&side],
+                );
             }
         }
         for (id, cc) in active(model, "CVCV", &model.curves_on_curves) {
@@ -88,7 +95,10 @@ impl Builder<'_> {
             for (path, curve) in [(&path_i, cc.i.curve), (&path_j, cc.j.curve)] {
                 if path.height > 1e-9 * path.length {
                     planar = false;
-                    let what = format!("CURVE/{curve} leaves the x-y plane of its marker by {:.3e}", path.height);
+                    let what = format!(
+                        "CURVE/{curve} leaves the x-y plane of its marker by {:.3e}",
+                        path.height
+                    );
                     c.errors.push(not_coplanar(&name, what));
                 }
             }
@@ -194,7 +204,9 @@ pub fn track(scene: &mut Scene, numbers: &[f64]) {
         .iter()
         .map(|cam| {
             let (i, j) = (at.frame(cam.i), at.frame(cam.j));
-            let near = cam.begun.then(|| follow(&cam.contact, &i, &j, parameters(cam, &x)));
+            let near = cam
+                .begun
+                .then(|| follow(&cam.contact, &i, &j, parameters(cam, &x)));
             match near.flatten() {
                 Some(s) => s,
                 None => search(cam, &i, &j, &at).unwrap_or_else(|| parameters(cam, &x)),
@@ -262,16 +274,17 @@ fn closest_pair(
     j: &Frame<f64>,
 ) -> Option<[f64; 2]> {
     let size2 = path_i.length.max(path_j.length).powi(2);
-    let look = |path: &Path, frame: &Frame<f64>, near: Option<f64>| -> Vec<(f64, Vec3<f64>, Vec3<f64>)> {
-        let all: Vec<f64> = near.map_or_else(|| samples().step_by(2).collect(), |s| vec![s]);
-        all.into_iter()
-            .map(|s| {
-                let tangent = frame.rotation.apply(path.at(s, 1));
-                let n = tangent.norm().max(f64::MIN_POSITIVE);
-                (s, frame.point(path.at(s, 0)), tangent.times(1.0 / n))
-            })
-            .collect()
-    };
+    let look =
+        |path: &Path, frame: &Frame<f64>, near: Option<f64>| -> Vec<(f64, Vec3<f64>, Vec3<f64>)> {
+            let all: Vec<f64> = near.map_or_else(|| samples().step_by(2).collect(), |s| vec![s]);
+            all.into_iter()
+                .map(|s| {
+                    let tangent = frame.rotation.apply(path.at(s, 1));
+                    let n = tangent.norm().max(f64::MIN_POSITIVE);
+                    (s, frame.point(path.at(s, 0)), tangent.times(1.0 / n))
+                })
+                .collect()
+        };
     let (all_i, all_j) = (look(path_i, i, near_i), look(path_j, j, near_j));
     let mut pairs: Vec<(f64, [f64; 2])> = Vec::new();
     for (s_i, p_i, t_i) in &all_i {

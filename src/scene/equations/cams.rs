@@ -24,11 +24,7 @@ impl<S: Scalar> Equations<'_, S> {
     fn cam_states(&self, c: usize) -> [S; 2] {
         let cam = &self.scene.cams[c];
         let mut s = [S::zero(); 2];
-        for (k, s) in s
-            .iter_mut()
-            .enumerate()
-            .take(cam.contact.n_parameters())
-        {
+        for (k, s) in s.iter_mut().enumerate().take(cam.contact.n_parameters()) {
             *s = self.x[cam.state + k] + S::constant(cam.offset[k]);
         }
         s
@@ -93,7 +89,9 @@ impl<S: Scalar> Equations<'_, S> {
             re,
             eps: [S::zero(); 12],
         };
-        let s = cam.contact.refined(&i, &j, self.cam_parameters(c).map(fixed), 1);
+        let s = cam
+            .contact
+            .refined(&i, &j, self.cam_parameters(c).map(fixed), 1);
         let seeded = cam.contact.gaps(&i, &j, s)[component];
         let actions = vec![(cam.i, twist(&seeded, 0)), (cam.j, twist(&seeded, 6))];
         let gradient = self.gradient_of(&actions);

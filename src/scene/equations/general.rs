@@ -66,13 +66,11 @@ impl<S: Scalar> Equations<'_, S> {
                     let variable = self.scene.variables.get(&id);
                     variable.map_or_else(nothing, |&v| self.traced(v, open))
                 }
-                Input::Measure(Measure::Aryval, [id, k, ..]) => {
-                    match self.entry(id, k) {
-                        Some(Entry::Number(x)) => Traced::of_time(Jet::constant(x)),
-                        Some(Entry::Formula(f)) => self.traced(f, open),
-                        _ => nothing(),
-                    }
-                }
+                Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k) {
+                    Some(Entry::Number(x)) => Traced::of_time(Jet::constant(x)),
+                    Some(Entry::Formula(f)) => self.traced(f, open),
+                    _ => nothing(),
+                },
                 Input::Measure(measure, ids) => {
                     self.traced_measure(measure, ids).unwrap_or_else(nothing)
                 }

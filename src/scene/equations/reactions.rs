@@ -4,9 +4,9 @@ use super::Equations;
 use crate::expr::measures::Measure;
 use crate::physics::action::Action;
 use crate::scalar::Scalar;
-use crate::scene::{ConstraintElement, Source};
 use crate::scene::loops::Key;
 use crate::scene::sweep::Wrench;
+use crate::scene::{ConstraintElement, Source};
 use crate::space::{Mat3, Vec3};
 
 impl<S: Scalar> Equations<'_, S> {
