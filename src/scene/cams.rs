@@ -186,8 +186,8 @@ fn not_coplanar(name: &str, what: String) -> Diagnostic {
 /// Parameters of a cam from its states.
 fn parameters(cam: &Cam, x: &[f64]) -> [f64; 2] {
     let mut s = cam.offset;
-    for k in 0..cam.contact.n_parameters() {
-        s[k] += x.get(cam.state + k).copied().unwrap_or(0.0);
+    for (k, s) in s.iter_mut().enumerate().take(cam.contact.n_parameters()) {
+        *s += x.get(cam.state + k).copied().unwrap_or(0.0);
     }
     s
 }
@@ -214,8 +214,8 @@ pub fn track(scene: &mut Scene, numbers: &[f64]) {
         })
         .collect();
     for (cam, s) in scene.cams.iter_mut().zip(found) {
-        for k in 0..cam.contact.n_parameters() {
-            cam.offset[k] = s[k] - x.get(cam.state + k).copied().unwrap_or(0.0);
+        for (k, s) in s.iter().enumerate().take(cam.contact.n_parameters()) {
+            cam.offset[k] = s - x.get(cam.state + k).copied().unwrap_or(0.0);
         }
         cam.begun = true;
     }
@@ -371,7 +371,7 @@ pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Brok
             });
         }
         let apart = cam.contact.missing(&i, &j, s);
-        if !(apart < 1e-6) {
+        if apart.is_nan() || apart > 1e-6 {
             let what = match cam.contact {
                 Contact::Point(_) => "no point of the curve is next to I",
                 Contact::Curves(..) => "the two curves have no common tangent near",
