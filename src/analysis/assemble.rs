@@ -171,7 +171,7 @@ fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
 }
 
 /// What counts as one for a row.
-fn natural(scene: &Scene, r: usize) -> f64 {
+pub(super) fn natural(scene: &Scene, r: usize) -> f64 {
     match &scene.rows[r].kind {
         RowKind::Markers { law, .. } if law.is_length() => scene.length,
         RowKind::Markers { .. } => 1.0,
@@ -462,6 +462,21 @@ pub fn velocities(
     Ok(v.iter()
         .map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x })
         .collect())
+}
+
+/// The velocities nearest to the given ones that all rows permit   (n_v)
+pub(super) fn nearest_velocities(
+    scene: &Scene,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+    v: &[f64],
+) -> Vec<f64> {
+    let (_, gradient, drift) = rows_at(scene, t, q, x);
+    let given = DVector::from_column_slice(v);
+    let missing = -(&gradient * &given + drift);
+    let change = least_change(&gradient, &weights(scene), &missing);
+    (given + change).iter().copied().collect()
 }
 
 /// An orthonormal basis of what a matrix maps to zero, by columns.

@@ -8,9 +8,10 @@
 //! method begins anew. Accuracy therefore does not fall when a kink lies inside a step.
 
 use super::outside;
+use super::ranks;
 use super::system::System;
 use crate::numeric::event::Locator;
-use crate::numeric::{self, Method, Ode, Reason, Stats, Step, Stop};
+use crate::numeric::{self, Failure, Method, Ode, Reason, Stats, Step, Stop};
 use crate::scene::cams::Broken;
 
 /// What a caller may do while time passes.
@@ -110,6 +111,12 @@ pub struct Trajectory {
     pub events: usize,
     /// sensors that were triggered: when, and their places in the scene
     pub triggered: Vec<(f64, usize)>,
+    /// states (all numbers) about positions where rows are nearly dependent; `None` separates what does not follow on
+    pub weak: Vec<Option<Vec<f64>>>,
+    /// choices of rows after the first: the row of results from which each holds, when it was made, and which rows take part
+    pub selections: Vec<(usize, f64, Vec<bool>)>,
+    /// a row that was left out no longer followed from the others: when it was restored, and its index
+    pub restored: Vec<(f64, usize)>,
     /// `None`: all output times were reached
     pub ended: Option<Ended>,
 }
@@ -165,6 +172,7 @@ pub fn integrate(
         options.method.to_ascii_uppercase()
     };
     let mut t = t0;
+    let mut restarts = 0;
     loop {
         let Some(mut method) = numeric::ode_method::<System>(&name, n, &settings) else {
             out.ended = Some(Ended::Stop(Stop {
@@ -174,7 +182,9 @@ pub fn integrate(
             }));
             return out;
         };
-        out.methods.push((t, name.clone()));
+        if out.methods.last().is_none_or(|m| m.1 != name) {
+            out.methods.push((t, name.clone()));
+        }
         let mut leg = Leg {
             system,
             outputs: &mut outputs,
@@ -187,8 +197,27 @@ pub fn integrate(
         match finished {
             Finished::Done => return out,
             Finished::Ended(why) => {
+                // where it stopped is part of the results
+                let t = method.t();
+                if matches!(why, Ended::Stop(_))
+                    && out.t.last().is_none_or(|&last| last < t)
+                    && t > t0
+                {
+                    out.t.push(t);
+                    out.rows.push(system.row(t, method.y()));
+                }
                 out.ended = Some(why);
                 return out;
+            }
+            Finished::Rows(state) => {
+                restarts += 1;
+                if restarts > RESTARTS {
+                    let (reason, t, h) = (Reason::TooManySteps, method.t(), 0.0);
+                    out.ended = Some(Ended::Stop(Stop { reason, t, h }));
+                    return out;
+                }
+                t = method.t();
+                y.copy_from_slice(&state);
             }
             Finished::Stiff => {
                 t = method.t();
@@ -198,6 +227,17 @@ pub fn integrate(
         }
     }
 }
+
+/// Restarts with other rows before something is wrong.
+const RESTARTS: usize = 10_000;
+/// States kept to find positions where rows become dependent.
+const MOST_KEPT: f64 = 2000.0;
+/// Most velocities of a mechanism all of whose states are kept for that.
+const SMALL: usize = 30;
+/// A row that is left out follows from the others when it is smaller than this, relative to what counts as one.
+const FOLLOWS: f64 = 1e-8;
+/// A step that violates one by more than this is shortened.
+const CLOSE: f64 = 1e-6;
 
 /// Steps of an explicit method that stability may force before an implicit one is taken from the start.
 const STABLE_STEPS: f64 = 2000.0;
@@ -240,6 +280,8 @@ enum Finished {
     Ended(Ended),
     /// another method would do better from here
     Stiff,
+    /// other rows are to be kept from here, or the state has been put onto all of them
+    Rows(Vec<f64>),
 }
 
 /// The part of an integration that one method does.
@@ -271,16 +313,44 @@ impl Leg<'_> {
         // end of the next step, when a switch has been located inside the one before
         let mut switch_at: Option<f64> = None;
         let mut redone = 0;
+        let mut halved = 0;
+        let has_rows = !self.system.scene.rows.is_empty();
+        let mut before = vec![0.0; if has_rows { y.len() } else { 0 }];
+        self.system.take_weak();
         while method.t() < self.end {
             if self.watch.interrupted() {
                 return Finished::Ended(Ended::Interrupted);
             }
             let horizon = self.horizon(method.t(), method.y());
             let limit = switch_at.take().unwrap_or(self.end).min(horizon);
+            if has_rows {
+                before.copy_from_slice(method.y());
+            }
             let step = match method.step(self.system, limit) {
                 Ok(step) => step,
                 Err(stop) => return Finished::Ended(Ended::Stop(stop)),
             };
+            let off = self.system.worst_left_out(step.t1, method.y());
+            let off = off.filter(|off| off.1.is_nan() || off.1 > FOLLOWS);
+            if let Some((_, size)) = off
+                && size > CLOSE
+                && step.t1 - step.t0 > 1e-12 * self.end.abs().max(step.t1.abs())
+                && halved < 40
+            {
+                // beyond a position where the others leave two ways and this row one
+                halved += 1;
+                method.undo();
+                if self.choose(step.t0, &before) {
+                    return Finished::Rows(before);
+                }
+                if n_switches > 0 {
+                    self.system.switches(step.t0, method.y(), &mut sides);
+                    locator.begin(&sides);
+                }
+                switch_at = Some(step.t0 + 0.5 * (step.t1 - step.t0));
+                continue;
+            }
+            halved = 0;
             let mut switched = false;
             if n_switches > 0 {
                 let system = &mut *self.system;
@@ -328,6 +398,9 @@ impl Leg<'_> {
                 if let Some(why) = self.out.ended.take() {
                     return Finished::Ended(why);
                 }
+            }
+            if has_rows && let Some(finished) = self.rows(method, &before, step.t0, off) {
+                return finished;
             }
             if switched && step.t1 < self.end {
                 self.out.events += 1;
@@ -402,6 +475,73 @@ impl Leg<'_> {
             }
         }
         Some((whole, found))
+    }
+
+    /// Looks after the rows at the end of an accepted step: notes where they are nearly dependent, chooses others, restores one that no longer follows.
+    fn rows(
+        &mut self,
+        method: &dyn Method<System>,
+        before: &[f64],
+        t0: f64,
+        off: Option<(usize, f64)>,
+    ) -> Option<Finished> {
+        let (t, weak) = (method.t(), self.system.take_weak());
+        let l = self.system.scene.layout;
+        let mut numbers = self.system.numbers.clone();
+        let mut at = |t: f64, y: &[f64]| {
+            numbers[0] = t;
+            numbers[l.y()].copy_from_slice(y);
+            numbers.clone()
+        };
+        let kept = &mut self.out.weak;
+        // all states of small mechanisms, else those where an evaluation has found rows nearly dependent; looking at one costs n³
+        let most = (1e8 / (l.n_v as f64).powi(3)).clamp(60.0, MOST_KEPT) as usize;
+        if kept.len() < most && (weak || l.n_v <= SMALL) {
+            let follows = kept
+                .last()
+                .and_then(Option::as_ref)
+                .is_some_and(|n| n[0] == t0);
+            if !follows {
+                kept.push(None);
+                kept.push(Some(at(t0, before)));
+            }
+            kept.push(Some(at(t, method.y())));
+        }
+        if let Some((row, _)) = off {
+            let mut numbers = at(t, method.y());
+            if !ranks::repair(&self.system.scene, &mut numbers) {
+                let what = Failure {
+                    what: row,
+                    recoverable: false,
+                };
+                let (reason, h) = (Reason::Projection(what), method.t() - t0);
+                return Some(Finished::Ended(Ended::Stop(Stop { reason, t, h })));
+            }
+            self.out.restored.push((t, row));
+            let y = numbers[l.y()].to_vec();
+            self.choose(t, &y);
+            return Some(Finished::Rows(numbers[l.y()].to_vec()));
+        }
+        if weak && self.system.watches_rows() && self.choose(t, method.y()) {
+            return Some(Finished::Rows(method.y().to_vec()));
+        }
+        None
+    }
+
+    /// Chooses other rows where they are better; tells whether it did.
+    fn choose(&mut self, t: f64, y: &[f64]) -> bool {
+        let l = self.system.scene.layout;
+        self.system.numbers[0] = t;
+        self.system.numbers[l.y()].copy_from_slice(y);
+        let Some(active) = ranks::better_rows(&self.system.scene, &self.system.numbers) else {
+            return false;
+        };
+        let chosen = (self.out.rows.len(), t, active.clone());
+        if self.system.reselect(active).is_err() {
+            return false;
+        }
+        self.out.selections.push(chosen);
+        true
     }
 
     /// Output times inside an accepted step, and the turns at its end.

@@ -5,11 +5,23 @@
 //! further, and what stands in the way is named.
 
 use super::dynamics::{Ended, Trajectory, Watch};
+use super::ranks;
 use super::system::System;
 use crate::numeric::{Failure, Ode, Reason, Stop};
 
 /// Halvings of a step before the mechanism counts as locked.
 const HALVINGS: u32 = 24;
+
+/// States kept to find positions where rows become dependent.
+const MOST_KEPT: f64 = 2000.0;
+
+/// All numbers at a state.
+fn numbers_at(system: &System, t: f64, y: &[f64]) -> Vec<f64> {
+    let mut numbers = system.numbers.clone();
+    numbers[0] = t;
+    numbers[system.scene.layout.y()].copy_from_slice(y);
+    numbers
+}
 
 /// Moves through all `outputs` (ascending, after the state's time).
 pub fn trace(
@@ -26,6 +38,11 @@ pub fn trace(
     let mut trial = y.clone();
     let mut dq = vec![0.0; l.n_v];
     system.begin_sensing();
+    let started = t;
+    let most_kept = (1e8 / (l.n_v as f64).powi(3)).clamp(60.0, MOST_KEPT);
+    if !system.scene.rows.is_empty() {
+        out.weak.push(Some(system.numbers.clone()));
+    }
     for &target in outputs {
         let mut h = (target - t).min(h_max);
         let mut halvings = 0;
@@ -50,6 +67,19 @@ pub fn trace(
                 Ok(()) => {
                     y.copy_from_slice(&trial);
                     t = next;
+                    let numbers = numbers_at(system, t, &y);
+                    if system.watches_rows()
+                        && let Some(active) = ranks::better_rows(&system.scene, &numbers)
+                    {
+                        let chosen = (out.rows.len(), t, active.clone());
+                        system.numbers.copy_from_slice(&numbers);
+                        if system.reselect(active).is_ok() {
+                            out.selections.push(chosen);
+                        }
+                    }
+                    if (out.weak.len() as f64) < most_kept && !system.scene.rows.is_empty() {
+                        out.weak.push(Some(numbers));
+                    }
                     out.stats.steps += 1;
                     if halvings > 0 {
                         h *= 2.0;
@@ -64,6 +94,11 @@ pub fn trace(
                     halvings += 1;
                     if halvings > HALVINGS {
                         let reason = Reason::Projection(failure);
+                        // the last configuration is kept
+                        if out.t.last().is_none_or(|&last| last < t) && t > started {
+                            out.t.push(t);
+                            out.rows.push(system.row(t, &y));
+                        }
                         out.ended = Some(Ended::Stop(Stop { reason, t, h }));
                         return out;
                     }
@@ -94,6 +129,17 @@ fn converged(
 ) -> Result<(), Failure> {
     let predicted = trial.to_vec();
     system.project(t, trial)?;
+    if let Some((what, off)) = system.worst_left_out(t, trial)
+        && (off.is_nan() || off > 1e-8)
+    {
+        // the rows that take part leave two ways here; all rows together one
+        let mut numbers = numbers_at(system, t, trial);
+        if !ranks::repair(&system.scene, &mut numbers) {
+            let recoverable = true;
+            return Err(Failure { what, recoverable });
+        }
+        trial.copy_from_slice(&numbers[system.scene.layout.y()]);
+    }
     let n_q = system.scene.layout.n_q;
     let moved = |a: &[f64], b: &[f64]| {
         a.iter()

@@ -10,6 +10,7 @@ pub mod misalignment;
 pub mod nearby;
 pub mod outline;
 pub mod outside;
+pub mod ranks;
 pub mod script;
 pub mod sensors;
 pub mod session;

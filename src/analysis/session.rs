@@ -12,6 +12,7 @@ use super::kinematics;
 use super::linear::{self, Linearization};
 use super::misalignment;
 use super::outside;
+use super::ranks;
 use super::statics;
 use super::system::{System, complaints};
 use crate::diagnostic::Diagnostic;
@@ -515,7 +516,11 @@ impl Session {
         let first = system.numbers.clone();
         let mut seconds = Vec::new();
         let mut trajectory = Trajectory::default();
+        let chosen = system.scene.active.clone();
         for _ in 0..self.options.repeat.max(1) {
+            if !trajectory.selections.is_empty() && system.reselect(chosen.clone()).is_err() {
+                break;
+            }
             system.numbers.copy_from_slice(&first);
             let clock = Instant::now();
             // states go on by integration, which keeps positions on the rows as well
@@ -530,8 +535,9 @@ impl Session {
         }
         seconds.sort_by(f64::total_cmp);
         let seconds = seconds[seconds.len() / 2];
-        self.rows(kind, program, &trajectory.rows);
+        self.selected_rows(kind, program, system, &trajectory);
         self.run.log.push(Event::End);
+        self.rank_changes(system, chosen, &trajectory);
         let reached = trajectory.t.last().copied().unwrap_or(start);
         for &(t, k) in &trajectory.triggered {
             let sensor = &system.scene.sensors[k];
@@ -699,6 +705,86 @@ impl Session {
         self.run.end();
     }
 
+    /// The rows of a simulation, each with the columns of the rows that took part there.
+    fn selected_rows(
+        &mut self,
+        kind: Kind,
+        program: &crate::expr::program::Program,
+        system: &System,
+        trajectory: &Trajectory,
+    ) {
+        self.run.begin(kind);
+        let mut from = 0;
+        let mut program = program.clone();
+        for (until, _, active) in &trajectory.selections {
+            columns::append(&mut self.run, &program, &trajectory.rows[from..*until]);
+            let mut scene = system.scene.clone();
+            scene.active.clone_from(active);
+            (program, from) = (self.columns.program(&scene).0, *until);
+        }
+        columns::append(&mut self.run, &program, &trajectory.rows[from..]);
+        self.run.end();
+    }
+
+    /// Tells when and where the rank of the rows changed.
+    fn rank_changes(&mut self, system: &System, chosen: Vec<bool>, trajectory: &Trajectory) {
+        let names = |active: &[bool]| -> Vec<String> {
+            let rows = system.scene.rows.iter().zip(active);
+            rows.filter(|r| *r.1).map(|r| row_name(r.0)).collect()
+        };
+        let mut told = Vec::new();
+        let mut scene = system.scene.clone();
+        scene.active = chosen;
+        let n = scene.layout.n_v as f64;
+        // looking costs n³ per state
+        if n.powi(3) * trajectory.weak.len() as f64 <= 1e9 {
+            for pass in ranks::passes(&scene, &trajectory.weak) {
+                told.push(results::RankChange {
+                    time: pass.t,
+                    what: "passes",
+                    rows: pass.rows,
+                    place: pass.place,
+                });
+            }
+        }
+        for (_, t, active) in &trajectory.selections {
+            let before = names(&scene.active);
+            let rows = names(active)
+                .into_iter()
+                .filter(|r| !before.contains(r))
+                .collect();
+            scene.active.clone_from(active);
+            told.push(results::RankChange {
+                time: *t,
+                what: "other rows",
+                rows,
+                place: Vec::new(),
+            });
+        }
+        for &(t, row) in &trajectory.restored {
+            told.push(results::RankChange {
+                time: t,
+                what: "restored",
+                rows: vec![row_name(&scene.rows[row])],
+                place: Vec::new(),
+            });
+        }
+        told.sort_by(|a, b| a.time.total_cmp(&b.time));
+        for change in told.iter().take(20) {
+            let rows = change.rows.join(", ");
+            let time = change.time;
+            self.warn(&match change.what {
+                "passes" => format!(
+                    "at time {time:.9} the rank of the constraints falls in passing: {rows} depends on others where {}",
+                    ranks::words(&change.place)
+                ),
+                "restored" => format!("at time {time:.9} {rows} no longer follows from the others; it is kept from there"),
+                _ => format!("at time {time:.9} other rows are kept: {rows} in place of what they make superfluous"),
+            });
+        }
+        self.run.record.rank_changes.extend(told);
+    }
+
     fn keep(&mut self, system: &System, numbers: Vec<f64>) {
         let at = Equations::new(&system.scene, &numbers);
         let parts = system.scene.parts.iter().enumerate();
@@ -767,7 +853,27 @@ impl Session {
                 vec![broken.element.clone()],
             ),
             Some(Ended::Stop(stop)) => {
-                let (status, sentence, worst) = explain(&system.scene, stop);
+                let (status, mut sentence, mut worst) = explain(&system.scene, stop);
+                let stands = trajectory.rows.last().unwrap_or(&system.numbers);
+                let rows = !matches!(stop.reason, Reason::TooManySteps | Reason::Singular(_));
+                if let (true, Some(lock)) = (rows, ranks::locked(&system.scene, stands)) {
+                    let why = match &lock.motion {
+                        Some(motion) => format!(
+                            "the mechanism is locked: {motion} drives it past its reach, {} cannot follow",
+                            lock.row
+                        ),
+                        None => format!(
+                            "the constraints can be kept no longer: {} has become dependent on others",
+                            lock.row
+                        ),
+                    };
+                    sentence = format!(
+                        "stopped at time {}: {why}, where {}",
+                        stop.t,
+                        ranks::words(&lock.place)
+                    );
+                    worst = lock.row;
+                }
                 (status, sentence, vec![worst])
             }
         }

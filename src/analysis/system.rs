@@ -7,7 +7,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Ode};
-use crate::scalar::Dual;
+use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
@@ -57,6 +57,10 @@ pub struct System {
     rates: Vec<f64>,
     /// rows have nearly been dependent since the last accepted step
     was_weak: bool,
+    /// the same, since somebody last asked
+    weak_seen: bool,
+    /// rows that are left out and may not follow from the others wherever the mechanism goes, and their values
+    left_out: Option<(Vec<usize>, Program)>,
     /// a stage of a method on the rows   (n)
     stage: Vec<f64>,
     mover: Mover,
@@ -117,6 +121,33 @@ fn contact_states(scene: &Scene) -> Vec<usize> {
     scene.cams.iter().flat_map(states).collect()
 }
 
+/// The least changes onto the rows; `None` when none takes part.
+fn projection_program(scene: &Scene) -> Result<Option<Program>, Vec<Diagnostic>> {
+    if !(0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true)) {
+        return Ok(None);
+    }
+    let program = record(scene, |at| programs::projection(scene, at, at.velocities()));
+    program.map(Some).map_err(complaints)
+}
+
+/// Rows that are left out without being zero whatever happens, and the program of their values.
+fn left_out(scene: &Scene) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnostic>> {
+    let idle = |r: &usize| !scene.active.get(*r).copied().unwrap_or(true);
+    let idle: Vec<usize> = (0..scene.rows.len()).filter(idle).collect();
+    if idle.is_empty() {
+        return Ok(None);
+    }
+    let mut rows = Vec::new();
+    let program = record(scene, |at| {
+        let values = idle.iter().map(|&r| (r, at.row(r).value));
+        let changing: Vec<_> = values.filter(|(_, x)| x.known().is_none()).collect();
+        rows = changing.iter().map(|c| c.0).collect();
+        changing.into_iter().map(|c| c.1).collect()
+    })
+    .map_err(complaints)?;
+    Ok((!rows.is_empty()).then_some((rows, program)))
+}
+
 /// The rates, and how many pivots of the rows were weak.
 fn rate_program(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     record(scene, |at| {
@@ -143,17 +174,8 @@ impl System {
     pub fn with_hooks(mut scene: Scene, hooks: &[Hook]) -> Result<Self, Vec<Diagnostic>> {
         usual_pivots(&mut scene);
         let rate = shortest_rate(&mut scene)?;
-        let any = (0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true));
-        let projection = if any {
-            Some(
-                record(&scene, |at| {
-                    programs::projection(&scene, at, at.velocities())
-                })
-                .map_err(complaints)?,
-            )
-        } else {
-            None
-        };
+        let projection = projection_program(&scene)?;
+        let left_out = left_out(&scene)?;
         let switching = programs::switching(&scene).map_err(complaints)?;
         let unknowns = Unknowns::new(&scene).map_err(complaints)?;
         let outside = Outside::new(&scene, hooks).map_err(complaints)?;
@@ -199,6 +221,8 @@ impl System {
             rates: vec![0.0; l.y().len() + 1],
             was_weak: false,
             contacts: contact_states(&scene),
+            weak_seen: false,
+            left_out,
             stage: Vec::with_capacity(l.y().len()),
             mover,
             scene,
@@ -252,6 +276,48 @@ impl System {
         all[..n].copy_from_slice(&self.numbers);
         unknowns.run(&self.numbers, &mut self.unknown_work, &mut all[n..]);
         switches.run(all, &mut self.switch_work, values);
+    }
+
+    /// Whether rows have nearly been dependent since this was last asked.
+    pub fn take_weak(&mut self) -> bool {
+        std::mem::take(&mut self.weak_seen)
+    }
+
+    /// Whether rows that are left out have to be watched: they say something that changes.
+    pub fn watches_rows(&self) -> bool {
+        self.left_out.is_some()
+    }
+
+    /// The row among those left out that is violated most at a state, and by how much, relative to what counts as one.
+    pub fn worst_left_out(&mut self, t: f64, y: &[f64]) -> Option<(usize, f64)> {
+        self.left_out.as_ref()?;
+        self.set(t, y);
+        let (rows, program) = self.left_out.as_ref()?;
+        let mut values = vec![0.0; rows.len()];
+        program.run(&self.numbers, &mut self.project_work, &mut values);
+        super::ranks::worst_left_out(&self.scene, rows, &values)
+    }
+
+    /// Goes on with other rows.
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub fn reselect(&mut self, active: Vec<bool>) -> Result<(), Vec<Diagnostic>> {
+        let mut scene = self.scene.clone();
+        scene.active = active;
+        // what is usual is seen where others are chosen
+        scene.initial_q = self.numbers[scene.layout.q()].to_vec();
+        scene.usual.clear();
+        usual_pivots(&mut scene);
+        scene.initial_q.clone_from(&self.scene.initial_q);
+        self.rate = shortest_rate(&mut scene)?;
+        self.projection = projection_program(&scene)?;
+        self.left_out = left_out(&scene)?;
+        self.switching = programs::switching(&scene).map_err(complaints)?;
+        self.unknowns = Unknowns::new(&scene).map_err(complaints)?;
+        self.was_weak = false;
+        self.scene = scene;
+        Ok(())
     }
 
     /// Whether there are angles whose turns are counted.
@@ -374,7 +440,7 @@ impl Ode for System {
         self.rate
             .run(&self.numbers, &mut self.work, &mut self.rates);
         if self.rates[n] > 0.0 && self.projection.is_some() {
-            self.was_weak = true;
+            (self.was_weak, self.weak_seen) = (true, true);
             // near a position where rows become dependent, what violates them is magnified: evaluate on the rows
             let mut stage = std::mem::take(&mut self.stage);
             stage.clear();

@@ -2,7 +2,7 @@
 //!
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
-use super::{Counts, Jump, Run, Simulation};
+use super::{Counts, Jump, RankChange, Run, Simulation};
 use serde_json::{Map, Value, json};
 
 /// The record of a run: status, counts, timings, and one entry per simulation.
@@ -24,6 +24,7 @@ pub fn record(run: &Run) -> Value {
         "redundant_rows": r.redundant.len(),
         "redundant": r.redundant,
         "reactions": if r.redundant.is_empty() { "unique" } else { "smallest set: rows depend on each other" },
+        "rank_changes": r.rank_changes.iter().map(rank_change).collect::<Vec<_>>(),
         "energy_drift": r.energy_drift,
         "constraint_drift": r.constraint_drift,
         "outputs": run.table_rows().count(),
@@ -40,6 +41,13 @@ pub fn record(run: &Run) -> Value {
 
 fn jump(j: &Jump) -> Value {
     json!({ "element": format!("MOTION/{}", j.motion), "time": j.at, "of": j.of, "by": j.by })
+}
+
+fn rank_change(c: &RankChange) -> Value {
+    let place: Map<String, Value> = (c.place.iter())
+        .map(|(name, x)| (name.clone(), json!(x)))
+        .collect();
+    json!({ "time": c.time, "what": c.what, "rows": c.rows, "place": place })
 }
 
 fn simulation(s: &Simulation) -> Value {

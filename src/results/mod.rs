@@ -247,6 +247,8 @@ pub struct Record {
     pub freedom: i64,
     /// rows left out because others imply them, by name
     pub redundant: Vec<String>,
+    /// when and where the rank of the rows changed
+    pub rank_changes: Vec<RankChange>,
     /// largest change of the energy balance, relative to its largest part; `None`: not watched
     pub energy_drift: Option<f64>,
     /// largest residual of a constraint row over the run; `None`: there are no rows
@@ -270,6 +272,19 @@ pub struct Jump {
     pub of: &'static str,
     /// by how much
     pub by: f64,
+}
+
+/// A change of the rank of the rows during a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankChange {
+    /// when
+    pub time: f64,
+    /// "passes": rows are dependent at that position alone; "other rows": others are kept from there; "restored": a row that followed from others no longer does
+    pub what: &'static str,
+    /// the rows concerned
+    pub rows: Vec<String>,
+    /// coordinates there: names and values
+    pub place: Vec<(String, f64)>,
 }
 
 /// The facts about one simulation.
