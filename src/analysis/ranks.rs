@@ -183,7 +183,8 @@ pub fn repair(scene: &Scene, numbers: &mut [f64]) -> bool {
     let t = numbers[0];
     let x = numbers[l.x()].to_vec();
     let mut q = numbers[l.q()].to_vec();
-    let closed = assemble::close(scene, t, &mut q, &x, |_| false);
+    let mut own = scene.clone();
+    let closed = assemble::close(&mut own, t, &mut q, &x, |_, _| false);
     if closed.size.is_nan() || closed.size > assemble::CLOSED {
         return false;
     }
@@ -284,7 +285,8 @@ fn between(scene: &Scene, a: &[f64], b: &[f64], s: f64, rows: Option<&[usize]>) 
     mover.normalize(&mut q);
     if let Some(rows) = rows {
         let x = n[l.x()].to_vec();
-        assemble::close(scene, n[0], &mut q, &x, |r| !rows.contains(&r));
+        let mut own = scene.clone();
+        assemble::close(&mut own, n[0], &mut q, &x, |_, r| !rows.contains(&r));
     }
     n[l.q()].copy_from_slice(&q);
     n
