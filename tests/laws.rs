@@ -274,7 +274,7 @@ fn units_do_not_matter() {
 /// Positions at the end with all joints as rows between free parts.
 fn without_forest(model: &Model, names: &[String]) -> Run {
     let mut run = Run::new("cut", "", cognate::results::Units::default());
-    let wanted = columns::Columns::new(model, &mut run, names, &[], false);
+    let wanted = columns::Columns::new(model, &mut run, names, false, &|_, _| false);
     let options = build::Options {
         cut_all: true,
         mode: 4,
