@@ -5,12 +5,12 @@
 //! ```
 //!
 //! A step over a switch is never kept: it is undone and repeated so that it ends where the branch changes, from where the
-//! method begins anew. Accuracy therefore does not fall when a kink lies inside a step.
+//! method begins anew. Accuracy therefore does not fall when a kink lies inside a step. [`switches`](super::switches) knows how.
 
 use super::outside;
 use super::ranks;
+use super::switches::{Switches, Verdict};
 use super::system::System;
-use crate::numeric::event::Locator;
 use crate::numeric::{self, Failure, Method, Ode, Reason, Stats, Step, Stop};
 use crate::scene::cams::Broken;
 
@@ -194,6 +194,7 @@ pub fn integrate(
         };
         let finished = leg.run(method.as_mut(), t, &y, auto && name == "DOP853");
         add(&mut out.stats, method.stats());
+        system.release();
         match finished {
             Finished::Done => return out,
             Finished::Ended(why) => {
@@ -301,18 +302,16 @@ impl Leg<'_> {
         y: &[f64],
         may_change: bool,
     ) -> Finished {
+        let mut switches = Switches::new(self.system, y.len(), self.end - t);
+        switches.start(self.system, t, y);
         if let Err(stop) = method.start(self.system, t, y) {
             return Finished::Ended(Ended::Stop(stop));
         }
-        let n_switches = self.system.n_switches();
-        let mut locator = Locator::new(n_switches);
-        let mut sides = vec![0.0; n_switches];
-        let mut state = y.to_vec();
-        self.system.switches(t, y, &mut sides);
-        locator.begin(&sides);
+        if let Err(stop) = self.begin(method, &mut switches) {
+            return Finished::Ended(Ended::Stop(stop));
+        }
         // end of the next step, when a switch has been located inside the one before
-        let mut switch_at: Option<f64> = None;
-        let mut redone = 0;
+        let mut landing = self.end;
         let mut halved = 0;
         let has_rows = !self.system.scene.rows.is_empty();
         let mut before = vec![0.0; if has_rows { y.len() } else { 0 }];
@@ -322,7 +321,7 @@ impl Leg<'_> {
                 return Finished::Ended(Ended::Interrupted);
             }
             let horizon = self.horizon(method.t(), method.y());
-            let limit = switch_at.take().unwrap_or(self.end).min(horizon);
+            let limit = std::mem::replace(&mut landing, self.end).min(horizon);
             if has_rows {
                 before.copy_from_slice(method.y());
             }
@@ -343,51 +342,23 @@ impl Leg<'_> {
                 if self.choose(step.t0, &before) {
                     return Finished::Rows(before);
                 }
-                if n_switches > 0 {
-                    self.system.switches(step.t0, method.y(), &mut sides);
-                    locator.begin(&sides);
-                }
-                switch_at = Some(step.t0 + 0.5 * (step.t1 - step.t0));
+                landing = step.t0 + 0.5 * (step.t1 - step.t0);
                 continue;
             }
             halved = 0;
-            let mut switched = false;
-            if n_switches > 0 {
-                let system = &mut *self.system;
-                let event = locator.scan(step.t0, step.t1, |t, values| {
-                    if t == step.t1 {
-                        state.copy_from_slice(method.y());
-                    } else {
-                        method.interpolate(system, t, &mut state)?;
-                    }
-                    system.switches(t, &state, values);
-                    Ok::<(), numeric::Failure>(())
-                });
-                match event {
-                    Ok(Some(at)) => {
-                        let near = 1e-12 * self.end.abs().max(step.t1.abs()) + 1e-9 * step.h;
-                        if step.t1 - at > near && redone < 30 {
-                            // repeat the step so that it ends there
-                            method.undo();
-                            self.system.switches(step.t0, method.y(), &mut sides);
-                            locator.begin(&sides);
-                            switch_at = Some(at);
-                            redone += 1;
-                            continue;
-                        }
-                        switched = true;
-                    }
-                    Ok(None) => {}
-                    Err(_) => switched = true,
-                }
+            let verdict = switches.judge(self.system, method, &step);
+            if let Verdict::Redo(at) = verdict {
+                method.undo();
+                landing = at;
+                continue;
             }
-            redone = 0;
             if let Some((t, broken)) = self.broken(method, &step) {
                 self.emit(method, &Step { t1: t, ..step });
                 return Finished::Ended(Ended::Broken { t, broken });
             }
             self.emit(method, &step);
             self.watch.progress(step.t1, step.h, method.stats());
+            let mut switched = verdict == Verdict::Switched;
             if self.system.outside.remembers()
                 && outside::remember(self.system, method, &step).is_err()
             {
@@ -404,12 +375,14 @@ impl Leg<'_> {
             }
             if switched && step.t1 < self.end {
                 self.out.events += 1;
-                state.copy_from_slice(method.y());
-                if let Err(stop) = method.reinitialize(self.system, step.t1, &state) {
+                let state = method.y().to_vec();
+                switches.change(self.system, step.t1, &state);
+                if let Err(stop) = method
+                    .reinitialize(self.system, step.t1, &state)
+                    .and_then(|()| self.begin(method, &mut switches))
+                {
                     return Finished::Ended(Ended::Stop(stop));
                 }
-                self.system.switches(step.t1, &state, &mut sides);
-                locator.begin(&sides);
             }
             if may_change && method.stiff() && method.t() < self.end {
                 return Finished::Stiff;
@@ -542,6 +515,19 @@ impl Leg<'_> {
         }
         self.out.selections.push(chosen);
         true
+    }
+
+    /// Looks ahead where a method begins, and lets it begin again when the branches turn out to be others.
+    fn begin(
+        &mut self,
+        method: &mut dyn Method<System>,
+        switches: &mut Switches,
+    ) -> Result<(), Stop> {
+        let (t, y) = (method.t(), method.y().to_vec());
+        if switches.look_ahead(self.system, t, &y, method.ydot()) {
+            method.reinitialize(self.system, t, &y)?;
+        }
+        Ok(())
     }
 
     /// Output times inside an accepted step, and the turns at its end.

@@ -15,6 +15,7 @@ pub mod script;
 pub mod sensors;
 pub mod session;
 pub mod statics;
+pub mod switches;
 pub mod system;
 mod unknowns;
 pub mod verify;

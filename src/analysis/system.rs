@@ -5,8 +5,8 @@
 //! them in position and velocity.
 
 use crate::diagnostic::Diagnostic;
-use crate::expr::program::{Program, Work};
-use crate::numeric::{Failure, Ode};
+use crate::expr::program::{Builder, Folding, Input, Program, Work};
+use crate::numeric::{Failure, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
 use crate::scene::equations::Equations;
@@ -28,8 +28,12 @@ pub struct System {
     projection: Option<Program>,
     /// values that change sign where a force or a differential equation changes branch
     switching: Option<Switching>,
-    /// unknowns of linear loops, which the switches read after the numbers
+    /// the numbers, then what the switches read after them: unknowns of linear loops, or sides
     switch_numbers: Vec<f64>,
+    /// whether branches are held
+    holding: bool,
+    /// sides of the switches, as the held rate reads them   (n_switches)
+    sides: Vec<f64>,
     /// unknowns of loops that are not linear
     unknowns: Option<Unknowns>,
     /// values of the past, results of closures
@@ -40,11 +44,14 @@ pub struct System {
     unsolved: Option<usize>,
     /// angles whose turns are counted
     counted: Option<Program>,
+    /// derivatives of the rate, of the one with branches held, once they have been asked for
+    gradients: [Option<Gradient>; 2],
     /// what the programs read: t | q | v | x | turns | loops | supplied
     pub numbers: Vec<f64>,
     work: Work,
     project_work: Work,
     switch_work: Work,
+    held_work: Work,
     unknown_work: Work,
     count_work: Work,
     dual_work: Work<Dual<WIDTH>>,
@@ -65,6 +72,49 @@ pub struct System {
     stage: Vec<f64>,
     mover: Mover,
 }
+
+/// Derivatives of all rates with respect to all unknowns, then to time.
+#[derive(Debug)]
+enum Gradient {
+    /// recorded: rate by rate
+    Recorded(Program, Work, Vec<f64>),
+    /// by duals
+    Duals,
+}
+
+/// Most operations of a recorded gradient, and of a program whose gradient is recorded at all, in products with the unknowns.
+const LONGEST_GRADIENT: usize = 60_000;
+
+impl Gradient {
+    /// Of the first `n` outputs of a program, by whichever way takes less.
+    fn new(rate: &Program, n: usize) -> Self {
+        if n * rate.n_operations() > LONGEST_GRADIENT * 4 {
+            return Gradient::Duals;
+        }
+        let mut builder = Builder::new(Folding::Structural);
+        let rates = rate.record(&mut builder);
+        // unknowns are numbers 1 … n of the row, time is number 0
+        let slots = (1..=n).chain([0]);
+        let places: Vec<_> = slots
+            .map(|k| builder.input(Input::Slot(k as u32)))
+            .collect();
+        let mut entries = Vec::with_capacity(n * (n + 1));
+        for &rate in &rates[..n] {
+            entries.extend(builder.gradient(rate, &places));
+        }
+        let program = builder.finish_with_inputs(&entries, rate.inputs());
+        if program.n_operations() > LONGEST_GRADIENT {
+            return Gradient::Duals;
+        }
+        Gradient::Recorded(program, Work::default(), vec![0.0; n * (n + 1)])
+    }
+}
+
+/// Part of the largest angle (or length) that a small one is measured against: measured, chains of 160 links take a fifth fewer
+/// steps and are still a thousand times more exact than asked for.
+const SHARE: f64 = 0.1;
+/// The same for speeds, which may differ more: a wheel on a slow arm.
+const SHARE_OF_SPEED: f64 = 0.02;
 
 /// A model whose equations cannot be written down.
 pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
@@ -148,14 +198,8 @@ fn left_out(scene: &Scene) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnost
     Ok((!rows.is_empty()).then_some((rows, program)))
 }
 
-/// The rates, and how many pivots of the rows were weak.
 fn rate_program(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
-    record(scene, |at| {
-        let mut out = at.rates();
-        out.push(at.solved().weak);
-        out
-    })
-    .map_err(complaints)
+    record(scene, |at| programs::rate(at)).map_err(complaints)
 }
 
 impl System {
@@ -177,6 +221,7 @@ impl System {
         let projection = projection_program(&scene)?;
         let left_out = left_out(&scene)?;
         let switching = programs::switching(&scene).map_err(complaints)?;
+        let n_switches = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
         let unknowns = Unknowns::new(&scene).map_err(complaints)?;
         let outside = Outside::new(&scene, hooks).map_err(complaints)?;
         let sensors = Sensors::new(&scene).map_err(complaints)?;
@@ -203,15 +248,19 @@ impl System {
             projection,
             switching,
             switch_numbers: Vec::new(),
+            holding: false,
+            sides: vec![0.0; n_switches],
             unknowns,
             outside,
             sensors,
             unsolved: None,
             counted,
+            gradients: [None, None],
             numbers,
             work: Work::default(),
             project_work: Work::default(),
             switch_work: Work::default(),
+            held_work: Work::default(),
             unknown_work: Work::default(),
             count_work: Work::default(),
             dual_work: Work::default(),
@@ -260,22 +309,70 @@ impl System {
             .map_or(0, |s| s.switches.n_outputs())
     }
 
-    /// Their values   (n_switches)
+    /// Their values, the branches of others held where branches are held   (n_switches)
     pub fn switches(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.set(t, y);
-        let Some(Switching { switches, unknowns }) = &self.switching else {
-            return;
-        };
-        let Some(unknowns) = unknowns else {
-            switches.run(&self.numbers, &mut self.switch_work, values);
+        let Some(switching) = &self.switching else {
             return;
         };
         let n = self.numbers.len();
         let all = &mut self.switch_numbers;
-        all.resize(n + unknowns.n_outputs(), 0.0);
-        all[..n].copy_from_slice(&self.numbers);
-        unknowns.run(&self.numbers, &mut self.unknown_work, &mut all[n..]);
-        switches.run(all, &mut self.switch_work, values);
+        if let Some(unknowns) = &switching.unknowns {
+            all.resize(n + unknowns.n_outputs(), 0.0);
+            all[..n].copy_from_slice(&self.numbers);
+            unknowns.run(&self.numbers, &mut self.unknown_work, &mut all[n..]);
+        } else if switching.held.is_some() {
+            all.resize(n + values.len(), 0.0);
+            all[..n].copy_from_slice(&self.numbers);
+            all[n..].copy_from_slice(&self.sides);
+        } else {
+            switching
+                .switches
+                .run(&self.numbers, &mut self.switch_work, values);
+            return;
+        }
+        switching.switches.run(all, &mut self.switch_work, values);
+    }
+
+    /// Whether branches can be held.
+    pub fn can_hold(&self) -> bool {
+        self.switching.as_ref().is_some_and(|s| s.held.is_some())
+    }
+
+    /// From now on rates are those of the branches on these sides of the switches (−1, 0, 1), wherever the state goes.
+    pub fn hold(&mut self, sides: &[i8]) {
+        self.sides.clear();
+        self.sides.extend(sides.iter().map(|&s| f64::from(s)));
+        self.holding = self.can_hold();
+    }
+
+    /// From now on rates take the branch that the state says.
+    pub fn release(&mut self) {
+        self.holding = false;
+    }
+
+    /// The rates at the present numbers, and how many pivots were weak.
+    fn run_rate(&mut self) {
+        if let (
+            true,
+            Some(Switching {
+                held: Some(held), ..
+            }),
+        ) = (self.holding, &self.switching)
+        {
+            let n = self.numbers.len();
+            let all = &mut self.switch_numbers;
+            all.resize(n + self.sides.len(), 0.0);
+            all[..n].copy_from_slice(&self.numbers);
+            all[n..].copy_from_slice(&self.sides);
+            held.run(all, &mut self.held_work, &mut self.rates);
+            // beyond its end a branch may have no value
+            if self.rates.iter().map(|x| x * 0.0).sum::<f64>() == 0.0 {
+                return;
+            }
+        }
+        self.rate
+            .run(&self.numbers, &mut self.work, &mut self.rates);
     }
 
     /// Whether rows have nearly been dependent since this was last asked.
@@ -314,6 +411,9 @@ impl System {
         self.projection = projection_program(&scene)?;
         self.left_out = left_out(&scene)?;
         self.switching = programs::switching(&scene).map_err(complaints)?;
+        let n_switches = self.n_switches();
+        self.sides.resize(n_switches, 0.0);
+        self.gradients = [None, None];
         self.unknowns = Unknowns::new(&scene).map_err(complaints)?;
         self.was_weak = false;
         self.scene = scene;
@@ -423,6 +523,62 @@ impl System {
     }
 }
 
+impl System {
+    /// The Jacobian at the present numbers, several columns at a time.
+    fn jacobian_by_duals(
+        &mut self,
+        n: usize,
+        jacobian: &mut [f64],
+        dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.dual_numbers.clear();
+        let sides = if self.holding { &self.sides[..] } else { &[] };
+        let numbers = self.numbers.iter().chain(sides);
+        self.dual_numbers.extend(numbers.map(|&x| Dual {
+            re: x,
+            eps: [0.0; WIDTH],
+        }));
+        self.dual_out.resize(
+            n + 1,
+            Dual {
+                re: 0.0,
+                eps: [0.0; WIDTH],
+            },
+        );
+        // unknowns are numbers 1 … n of the row, time is number 0
+        for first in (0..=n).step_by(WIDTH) {
+            let last = (first + WIDTH).min(n + 1);
+            for k in first..last {
+                self.dual_numbers[k].eps[k - first] = 1.0;
+            }
+            self.follow(first == 0)?;
+            let rate = match &self.switching {
+                Some(Switching {
+                    held: Some(held), ..
+                }) if self.holding => held,
+                _ => &self.rate,
+            };
+            rate.eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
+            for k in first..last {
+                self.dual_numbers[k].eps[k - first] = 0.0;
+                let column = if k == 0 {
+                    &mut *dfdt
+                } else {
+                    &mut jacobian[n * (k - 1)..n * k]
+                };
+                for (entry, out) in column.iter_mut().zip(&self.dual_out) {
+                    *entry = out.eps[k - first];
+                }
+            }
+            self.outside.forget(&mut self.dual_numbers);
+            if let Some(unknowns) = &self.unknowns {
+                unknowns.forget(&mut self.dual_numbers);
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Ode for System {
     fn size(&self) -> usize {
         self.scene.layout.y().len()
@@ -437,8 +593,7 @@ impl Ode for System {
             });
         }
         let n = ydot.len();
-        self.rate
-            .run(&self.numbers, &mut self.work, &mut self.rates);
+        self.run_rate();
         if self.rates[n] > 0.0 && self.projection.is_some() {
             (self.was_weak, self.weak_seen) = (true, true);
             // near a position where rows become dependent, what violates them is magnified: evaluate on the rows
@@ -447,8 +602,7 @@ impl Ode for System {
             stage.extend_from_slice(y);
             if self.project(t, &mut stage).is_ok() {
                 self.set(t, &stage);
-                self.rate
-                    .run(&self.numbers, &mut self.work, &mut self.rates);
+                self.run_rate();
             }
             self.stage = stage;
         }
@@ -546,42 +700,39 @@ impl Ode for System {
     ) -> Result<(), Failure> {
         self.set(t, y);
         let n = y.len();
-        self.dual_numbers.clear();
-        self.dual_numbers.extend(self.numbers.iter().map(|&x| Dual {
-            re: x,
-            eps: [0.0; WIDTH],
-        }));
-        self.dual_out.resize(
-            n + 1,
-            Dual {
-                re: 0.0,
-                eps: [0.0; WIDTH],
-            },
-        );
-        // unknowns are numbers 1 … n of the row, time is number 0
-        for first in (0..=n).step_by(WIDTH) {
-            let last = (first + WIDTH).min(n + 1);
-            for k in first..last {
-                self.dual_numbers[k].eps[k - first] = 1.0;
+        let holding = usize::from(self.holding);
+        let rate = match &self.switching {
+            Some(Switching {
+                held: Some(held), ..
+            }) if self.holding => held,
+            _ => &self.rate,
+        };
+        let gradient = self.gradients[holding].get_or_insert_with(|| {
+            if self.unknowns.is_some() || !self.outside.is_empty() {
+                Gradient::Duals
+            } else {
+                Gradient::new(rate, n)
             }
-            self.follow(first == 0)?;
-            self.rate
-                .eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
-            for k in first..last {
-                self.dual_numbers[k].eps[k - first] = 0.0;
-                let column = if k == 0 {
-                    &mut *dfdt
+        });
+        match gradient {
+            Gradient::Recorded(program, work, entries) => {
+                let numbers = if self.holding {
+                    let all = &mut self.switch_numbers;
+                    all.clear();
+                    all.extend(self.numbers.iter().chain(&self.sides));
+                    &all[..]
                 } else {
-                    &mut jacobian[n * (k - 1)..n * k]
+                    &self.numbers[..]
                 };
-                for (entry, out) in column.iter_mut().zip(&self.dual_out) {
-                    *entry = out.eps[k - first];
+                program.run(numbers, work, entries);
+                for (i, row) in entries.chunks(n + 1).enumerate() {
+                    for (j, &entry) in row[..n].iter().enumerate() {
+                        jacobian[i + n * j] = entry;
+                    }
+                    dfdt[i] = row[n];
                 }
             }
-            self.outside.forget(&mut self.dual_numbers);
-            if let Some(unknowns) = &self.unknowns {
-                unknowns.forget(&mut self.dual_numbers);
-            }
+            Gradient::Duals => self.jacobian_by_duals(n, jacobian, dfdt)?,
         }
         match jacobian.iter().position(|x| !x.is_finite()) {
             Some(e) => Err(Failure {
@@ -603,6 +754,32 @@ impl Ode for System {
                 typical[q] = self.scene.length;
                 typical[l.n_q + v] = self.scene.length;
             }
+        }
+    }
+
+    fn relations(&self, relations: &mut [Relation]) {
+        let l = self.scene.layout;
+        for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
+            let Source::Free { q, v } = c.source else {
+                continue;
+            };
+            let kind = u16::from(c.angular);
+            if !f.in_ball {
+                relations[q] = Relation {
+                    most: if c.angular {
+                        std::f64::consts::PI
+                    } else {
+                        f64::INFINITY
+                    },
+                    group: Some(kind),
+                    share: SHARE,
+                };
+            }
+            relations[l.n_q + v] = Relation {
+                group: Some(2 + kind),
+                share: SHARE_OF_SPEED,
+                ..Relation::default()
+            };
         }
     }
 }

@@ -453,6 +453,8 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
     fn start(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
         self.stats = Stats::default();
         self.weights.reset(|typical| problem.typical(typical));
+        self.weights
+            .relate(|relations| problem.relations(relations));
         self.controlled = Corrector::controlled(&problem.kinds());
         self.corrector.start(problem, self.weights.tolerance());
         self.begin(problem, t, y)

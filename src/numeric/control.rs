@@ -3,7 +3,7 @@
 //! An error is measured per unknown, relative to the magnitude of that unknown, and the worst one counts:
 //!
 //! ```text
-//! Mᵢ = max(|yᵢ| at all steps so far, |yᵢ| at the end of this one, φ typicalᵢ)        φ: Options::floor
+//! Mᵢ = max(|yᵢ| at all steps so far, |yᵢ| at the end of this one, φ typicalᵢ, σᵢ maxⱼ Mⱼ of its group)        φ: Options::floor
 //! ‖e‖ = maxᵢ |eᵢ| / (E Mᵢ)                                                           a step is good when ‖e‖ ≤ 1
 //! ```
 //!
@@ -11,7 +11,7 @@
 //! an oscillation through zero costs nothing there. The worst unknown counts rather than a mean, since a chain of
 //! a thousand links at rest must not hide the one that moves. A number that is not finite makes the norm not finite.
 
-use super::Options;
+use super::{Options, Relation};
 
 /// Least relative error that double precision can control.
 const FINEST: f64 = 1e-14;
@@ -25,6 +25,11 @@ pub struct Weights {
     typical: Vec<f64>,
     /// Mᵢ   (n)
     magnitude: Vec<f64>,
+    relations: Vec<Relation>,
+    /// no magnitude is more than this   (n)
+    most: Vec<f64>,
+    /// largest magnitude in each group
+    largest: Vec<f64>,
 }
 
 impl Weights {
@@ -36,7 +41,21 @@ impl Weights {
             floor: options.floor,
             typical: vec![1.0; n],
             magnitude: vec![options.floor; n],
+            relations: vec![Relation::default(); n],
+            most: vec![f64::INFINITY; n],
+            largest: Vec::new(),
         }
+    }
+
+    /// Asks which unknowns are measured with others.
+    pub fn relate(&mut self, fill: impl FnOnce(&mut [Relation])) {
+        self.relations.fill(Relation::default());
+        fill(&mut self.relations);
+        for (most, r) in self.most.iter_mut().zip(&self.relations) {
+            *most = r.most;
+        }
+        let groups = self.relations.iter().filter_map(|r| r.group);
+        self.largest = vec![0.0; groups.max().map_or(0, |g| usize::from(g) + 1)];
     }
 
     /// Forgets what was seen and asks for the typical magnitudes.
@@ -57,6 +76,21 @@ impl Weights {
         for (m, y) in self.magnitude.iter_mut().zip(y) {
             *m = if y.abs() > *m { y.abs() } else { *m };
         }
+        if self.largest.is_empty() {
+            return;
+        }
+        for (m, r) in self.magnitude.iter_mut().zip(&self.relations) {
+            *m = m.min(r.most);
+            if let Some(g) = r.group {
+                let largest = &mut self.largest[usize::from(g)];
+                *largest = largest.max(*m);
+            }
+        }
+        for (m, r) in self.magnitude.iter_mut().zip(&self.relations) {
+            if let Some(g) = r.group {
+                *m = m.max(r.share * self.largest[usize::from(g)]);
+            }
+        }
     }
 
     /// Typical magnitudes   (n)
@@ -67,6 +101,11 @@ impl Weights {
     /// `Mᵢ`   (n)
     pub fn magnitude(&self) -> &[f64] {
         &self.magnitude
+    }
+
+    /// What no magnitude is more than   (n)
+    pub fn most(&self) -> &[f64] {
+        &self.most
     }
 
     /// E as used: not below what double precision can control.
@@ -81,10 +120,11 @@ impl Weights {
 
     /// `eᵢ / Mᵢ` of a step that ends at `y`.
     pub fn relative<'a>(&'a self, e: &'a [f64], y: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let magnitudes = self.magnitude.iter().zip(&self.most);
         e.iter()
             .zip(y)
-            .zip(&self.magnitude)
-            .map(|((e, y), m)| e / if y.abs() > *m { y.abs() } else { *m })
+            .zip(magnitudes)
+            .map(|((e, y), (m, most))| e / y.abs().min(*most).max(*m))
     }
 }
 

@@ -42,6 +42,8 @@ pub struct Locator {
     direction: Vec<Direction>,
     /// sign last seen, 0 when never clear   (n)
     side: Vec<i8>,
+    /// leaving zero is a crossing
+    zero_counts: bool,
     /// functions that crossed at the last event
     crossed: Vec<usize>,
     /// times and values of the samples of this step, in order   (SAMPLES + DIPS + 2, each n)
@@ -60,6 +62,7 @@ impl Locator {
         Locator {
             direction: vec![Direction::Either; n],
             side: vec![0; n],
+            zero_counts: false,
             crossed: Vec::with_capacity(n),
             times: Vec::with_capacity(room),
             values: vec![vec![0.0; n]; room],
@@ -80,6 +83,19 @@ impl Locator {
         for (side, value) in self.side.iter_mut().zip(values) {
             *side = sign(*value);
         }
+    }
+
+    /// Takes the values and the sides at the start: where a value is rounding, its sign says less than the side it came to.
+    /// From now on a function that is on no side crosses when it leaves zero.
+    pub fn begin_on(&mut self, values: &[f64], sides: &[i8]) {
+        self.values[0].copy_from_slice(values);
+        self.side.copy_from_slice(sides);
+        self.zero_counts = true;
+    }
+
+    /// Takes the values at the end of a step that needs no scan.
+    pub fn skip(&mut self, values: &[f64]) {
+        self.values[0].copy_from_slice(values);
     }
 
     /// The side of each function: +1, −1, or 0 while it has been exactly zero   (n)
@@ -137,7 +153,7 @@ impl Locator {
         // 3 and 4
         let t = self.close_in(i, &mut g)?;
         for k in 0..self.side.len() {
-            if counts(self.direction[k], self.side[k], sign(self.at_b[k])) {
+            if self.counts(k, self.side[k], sign(self.at_b[k])) {
                 self.crossed.push(k);
             }
             if sign(self.at_b[k]) != 0 {
@@ -150,7 +166,7 @@ impl Locator {
 
     /// Whether a crossing that counts is seen at sample `i`.
     fn has_crossed(&self, i: usize) -> bool {
-        any_crossed(&self.direction, &self.side, &self.values[i])
+        self.any_crossed(&self.values[i])
     }
 
     /// Functions that come off zero, or cross where it does not count, take their new side.
@@ -182,7 +198,7 @@ impl Locator {
             added += 1;
             // sides are those at the beginning of the dip, since nothing before it has crossed
             let (before, here) = (&self.values[place - 1], &self.values[place]);
-            let crossed = |k: usize| counts(self.direction[k], sign(before[k]), sign(here[k]));
+            let crossed = |k: usize| self.counts(k, sign(before[k]), sign(here[k]));
             if (0..self.side.len()).any(crossed) {
                 for k in 0..self.side.len() {
                     if sign(self.values[place - 1][k]) != 0 {
@@ -241,7 +257,7 @@ impl Locator {
             let mut x = b;
             for k in 0..self.side.len() {
                 let (fa, fb) = (self.at_a[k], self.at_b[k]);
-                if counts(self.direction[k], self.side[k], sign(fb)) {
+                if self.counts(k, self.side[k], sign(fb)) {
                     x = x.min(a + (b - a) * (fa / (fa - fb)).clamp(0.0, 1.0));
                 }
             }
@@ -261,7 +277,7 @@ impl Locator {
                 break;
             }
             g(x, &mut self.at_x)?;
-            if any_crossed(&self.direction, &self.side, &self.at_x) {
+            if self.any_crossed(&self.at_x) {
                 b = x;
                 std::mem::swap(&mut self.at_b, &mut self.at_x);
             } else {
@@ -278,9 +294,26 @@ impl Locator {
         }
         Ok(b)
     }
+
+    /// Whether going from side to sign is a crossing of function `k` that counts.
+    fn counts(&self, k: usize, side: i8, sign: i8) -> bool {
+        let crosses = side * sign < 0 || self.zero_counts && side == 0 && sign != 0;
+        crosses
+            && match self.direction[k] {
+                Direction::Either => true,
+                Direction::Rising => sign > 0,
+                Direction::Falling => sign < 0,
+            }
+    }
+
+    fn any_crossed(&self, values: &[f64]) -> bool {
+        let mut each = self.side.iter().zip(values).enumerate();
+        each.any(|(k, (side, value))| self.counts(k, *side, sign(*value)))
+    }
 }
 
-fn sign(x: f64) -> i8 {
+/// The side of a value: 0 for zero, and for what is no number.
+pub fn sign(x: f64) -> i8 {
     if x > 0.0 {
         1
     } else if x < 0.0 {
@@ -288,21 +321,6 @@ fn sign(x: f64) -> i8 {
     } else {
         0
     }
-}
-
-/// Whether going from side to sign is a crossing that counts.
-fn counts(direction: Direction, side: i8, sign: i8) -> bool {
-    side * sign < 0
-        && match direction {
-            Direction::Either => true,
-            Direction::Rising => sign > 0,
-            Direction::Falling => sign < 0,
-        }
-}
-
-fn any_crossed(direction: &[Direction], side: &[i8], values: &[f64]) -> bool {
-    let mut each = direction.iter().zip(side).zip(values);
-    each.any(|((d, s), v)| counts(*d, *s, sign(*v)))
 }
 
 #[cfg(test)]

@@ -269,6 +269,8 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
     fn start(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
         self.stats = Stats::default();
         self.weights.reset(|typical| problem.typical(typical));
+        self.weights
+            .relate(|relations| problem.relations(relations));
         let kinds = problem.kinds();
         self.controlled = Corrector::controlled(&kinds);
         let has_rate =

@@ -77,6 +77,8 @@ pub trait Ode {
     ) -> Result<(), Failure>;
     /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)
     fn typical(&self, typical: &mut [f64]);
+    /// How the magnitudes of unknowns hang together   (n)
+    fn relations(&self, _relations: &mut [Relation]) {}
 }
 
 /// An implicit system `F(t, y, ẏ) = 0`.
@@ -119,6 +121,29 @@ pub trait Dae {
     }
     /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)
     fn typical(&self, typical: &mut [f64]);
+    /// How the magnitudes of unknowns hang together   (n)
+    fn relations(&self, _relations: &mut [Relation]) {}
+}
+
+/// How the magnitude that errors of an unknown are measured against hangs together with those of others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relation {
+    /// it is never more than this: an angle is as exact as its fraction of a turn, however many turns there are
+    pub most: f64,
+    /// unknowns of one kind
+    pub group: Option<u16>,
+    /// it is at least this part of the largest in its group: where one angle of many hardly moves, it is the others that are seen
+    pub share: f64,
+}
+
+impl Default for Relation {
+    fn default() -> Self {
+        Relation {
+            most: f64::INFINITY,
+            group: None,
+            share: 0.0,
+        }
+    }
 }
 
 /// What an unknown of a [`Dae`] is.

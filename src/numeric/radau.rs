@@ -12,7 +12,7 @@
 //!
 //! *Newton*: simplified, started from the extrapolated polynomial (5) of the step before. Its rate of convergence Θ is measured; iterations stop when
 //! the next correction is predicted to be small against the tolerance, and are given up as soon as Θ predicts that the permitted
-//! number will not do. The Jacobian is kept while Θ ≤ 1e-3, the factors of (3) also while the step would grow by less than a fifth.
+//! number will not do. The Jacobian is kept while Θ ≤ 0.02, the factors of (3) also while the step would grow by less than a fifth.
 //! *Step*: Gustafsson's predictive control. The estimate (4) is of order 3, below that of the method, so the inner tolerance is a power of the request.
 //! *Failures*: a stage that fails, a singular matrix or a number that is not finite shorten the step; no sensible step left is a [`Stop`].
 //!
@@ -60,7 +60,7 @@ const TI: [[f64; 3]; 3] = [
     [-0.5028726349457868, 2.571926949855605, -0.5960392048282249],
 ];
 /// Convergence rate up to which the Jacobian is kept.
-const KEEP_JACOBIAN: f64 = 1e-3;
+const KEEP_JACOBIAN: f64 = 0.02;
 /// Growth of the step up to which the factors are kept.
 const KEEP_STEP: f64 = 1.2;
 
@@ -477,6 +477,8 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
     fn start(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
         self.stats = Stats::default();
         self.weights.reset(|typical| problem.typical(typical));
+        self.weights
+            .relate(|relations| problem.relations(relations));
         self.begin(problem, t, y)
     }
 

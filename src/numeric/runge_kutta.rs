@@ -201,6 +201,7 @@ impl Dop853 {
 
         let (k1, k6, k7, k8, k9, k10) =
             (&k1[..n], &k6[..n], &k7[..n], &k8[..n], &k9[..n], &k10[..n]);
+        let most = &self.weights.most()[..n];
         let (k11, k12, y1, magnitude) = (
             &k11[..n],
             &k12[..n],
@@ -231,6 +232,7 @@ impl Dop853 {
                 - 0.022058823529411766 * k12[i];
             y1[i] = y[i] + h * slope;
             let size = y1[i].abs();
+            let size = if size < most[i] { size } else { most[i] };
             let w = h / if size > magnitude[i] {
                 size
             } else {
@@ -280,9 +282,10 @@ impl Dop853 {
         if !problem.filter_error(t1, y1, e5) || !problem.filter_error(t1, y1, e3) {
             return f64::INFINITY;
         }
-        let magnitude = self.weights.magnitude();
+        let (magnitude, most) = (self.weights.magnitude(), self.weights.most());
         let size = |e: &[f64]| {
-            let relative = |(i, e): (usize, &f64)| (e / y1[i].abs().max(magnitude[i])).abs();
+            let relative =
+                |(i, e): (usize, &f64)| (e / y1[i].abs().min(most[i]).max(magnitude[i])).abs();
             worst(e.iter().enumerate().map(relative))
         };
         blended(size(e5), size(e3))
@@ -416,6 +419,8 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
     fn start(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
         self.stats = Stats::default();
         self.weights.reset(|typical| problem.typical(typical));
+        self.weights
+            .relate(|relations| problem.relations(relations));
         self.begin(problem, t, y)
     }
 

@@ -38,15 +38,22 @@ pub fn record_more<F>(scene: &Scene, n_more: usize, f: F) -> (Program, Vec<Strin
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
 {
-    recorded(scene, n_more, false, f, |_, values| values)
+    let (mut programs, complaints) = recorded(scene, n_more, false, f, |_, values| vec![values]);
+    (programs.remove(0), complaints)
 }
 
-/// Records what `f` computes, and what `end` makes of the values. The unknowns of linear loops are eliminated, or, where
-/// `known`, read after the numbers of the layout.
-fn recorded<F, E>(scene: &Scene, n_more: usize, known: bool, f: F, end: E) -> (Program, Vec<String>)
+/// Records what `f` computes, and what `end` makes of the values: a program for each of its lists. The unknowns of linear
+/// loops are eliminated, or, where `known`, read after the numbers of the layout.
+fn recorded<F, E>(
+    scene: &Scene,
+    n_more: usize,
+    known: bool,
+    f: F,
+    end: E,
+) -> (Vec<Program>, Vec<String>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
-    E: FnOnce(&mut Builder, Vec<Value>) -> Vec<Value>,
+    E: FnOnce(&mut Builder, Vec<Value>) -> Vec<Vec<Value>>,
 {
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let n = scene.layout.len();
@@ -70,9 +77,9 @@ where
     let out = f(&equations, &numbers[n..]);
     let recorder = &mut *builder.borrow_mut();
     let values: Vec<_> = out.iter().map(|s| s.value(recorder)).collect();
-    let values = end(recorder, values);
-    let program = recorder.finish_with_inputs(&values, &layout);
-    (program, equations.complaints())
+    let lists = end(recorder, values);
+    let finish = |values: &Vec<Value>| recorder.finish_with_inputs(values, &layout);
+    (lists.iter().map(finish).collect(), equations.complaints())
 }
 
 /// Where loads, differential equations and motions change branch.
@@ -82,6 +89,31 @@ pub struct Switching {
     pub switches: Program,
     /// these unknowns
     pub unknowns: Option<Program>,
+    /// the rates with every branch as the sign of its switch says: reads one sign per switch (−1, 0, 1) after the layout's
+    /// numbers. `None` where there are loops
+    pub held: Option<Program>,
+}
+
+/// What loads and differential equations are made of: where these change branch, so do the rates.
+fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S> {
+    let mut sources = at.state_rates();
+    for force in &scene.forces {
+        let action = force.action(at);
+        sources.extend(action.force.0.into_iter().chain(action.torque.0));
+    }
+    sources.extend(at.loop_formulas());
+    for m in 0..scene.motions.len() {
+        let drive = at.prescribed(m);
+        sources.extend([drive.value, drive.first, drive.second]);
+    }
+    sources.extend(scene.sensors.iter().map(|s| at.formula(s.formula)));
+    // a sensor is triggered where what it watches passes its value
+    sources.extend(scene.sensors.iter().map(|s| {
+        let beyond = at.formula(s.formula) - S::constant(s.value);
+        let beyond = if s.angular { beyond.sin() } else { beyond };
+        S::select(beyond.lt(S::zero()), S::zero(), S::one())
+    }));
+    sources
 }
 
 /// Where loads, differential equations and motions change branch. `None`: nowhere.
@@ -92,53 +124,63 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
     let linear = scene.loops_linear && !scene.loops.is_empty();
     let n_more = if linear { scene.loops.len() } else { 0 };
     // unknowns are known here, so that their elimination does not count as a switch
-    let (switches, complaints) = recorded(
+    let (mut switches, complaints) = recorded(
         scene,
         n_more,
         linear,
-        |at, _| {
-            let mut sources = at.state_rates();
-            for force in &scene.forces {
-                let action = force.action(at);
-                sources.extend(action.force.0.into_iter().chain(action.torque.0));
-            }
-            sources.extend(at.loop_formulas());
-            for m in 0..scene.motions.len() {
-                let drive = at.prescribed(m);
-                sources.extend([drive.value, drive.first, drive.second]);
-            }
-            sources.extend(scene.sensors.iter().map(|s| at.formula(s.formula)));
-            // a sensor is triggered where what it watches passes its value
-            sources.extend(scene.sensors.iter().map(|s| {
-                let beyond = at.formula(s.formula) - Sym::Constant(s.value);
-                if s.angular { beyond.sin() } else { beyond }
-            }));
-            sources
-        },
-        |builder, values| {
-            let watched = values[values.len() - scene.sensors.len()..].iter().copied();
-            let mut switches = builder.switching(&values);
-            for value in watched {
-                if builder.constant_of(value).is_none() && !switches.contains(&value) {
-                    switches.push(value);
-                }
-            }
-            switches
-        },
+        |at, _| sources(at, scene),
+        |builder, values| vec![builder.switching(&values)],
     );
     if !complaints.is_empty() {
         return Err(complaints);
     }
+    let switches = switches.remove(0);
     if switches.n_outputs() == 0 {
         return Ok(None);
     }
-    let unknowns = if linear {
-        let count = scene.loops.len();
-        Some(record(scene, |at| at.unknowns(count))?)
-    } else {
-        None
-    };
-    Ok(Some(Switching { switches, unknowns }))
+    if !scene.loops.is_empty() {
+        let unknowns = if linear {
+            let count = scene.loops.len();
+            Some(record(scene, |at| at.unknowns(count))?)
+        } else {
+            None
+        };
+        return Ok(Some(Switching {
+            switches,
+            unknowns,
+            held: None,
+        }));
+    }
+    let n = scene.layout.len();
+    let (mut both, _) = recorded(
+        scene,
+        switches.n_outputs(),
+        false,
+        |at, _| {
+            let mut out = rate(at);
+            out.extend(sources(at, scene));
+            out
+        },
+        |builder, values| {
+            let (rates, sources) = values.split_at(scene.layout.y().len() + 1);
+            let side = |k: usize| Input::Slot((n + k) as u32);
+            let (held, switches) = builder.held(rates, sources, side);
+            vec![held, switches]
+        },
+    );
+    let switches = both.remove(1);
+    Ok(Some(Switching {
+        switches,
+        unknowns: None,
+        held: Some(both.remove(0)),
+    }))
+}
+
+/// The rates, and how many pivots of the rows were weak.
+pub fn rate<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
+    let mut out = at.rates();
+    out.push(at.solved().weak);
+    out
 }
 
 /// Weight of a coordinate's change in a projection: angles count as such, lengths against the size of the mechanism.

@@ -43,6 +43,45 @@ impl Builder {
     }
 }
 
+impl Builder {
+    /// The same operation over the images of its operands.
+    pub(super) fn again(&mut self, v: Value, of: impl Fn(Value) -> Value) -> Value {
+        let node = self.nodes[v.index()];
+        let arguments = |builder: &Self| {
+            let mut arguments = Vec::new();
+            builder.operands(&node, |v| arguments.push(of(v)));
+            arguments
+        };
+        match node {
+            Node::Constant(_) | Node::Input(_) => v,
+            Node::Unary(op, x) => self.unary(op, of(x)),
+            Node::Whole(x, n) => self.powi(of(x), n),
+            Node::Binary(op, a, b) => self.binary(op, of(a), of(b)),
+            Node::Compare(op, a, b) => self.compare(op, of(a), of(b)),
+            Node::Select(c, yes, no) => self.select(of(c), of(yes), of(no)),
+            Node::If(_) => {
+                let of = arguments(self);
+                self.arithmetic_if(of[0], of[1], of[2], of[3])
+            }
+            Node::Lookup { table, order, x } => {
+                let table = self.tables[table as usize].clone();
+                self.lookup(&table, order, of(x))
+            }
+            Node::Call { function, .. } => {
+                let of = arguments(self);
+                self.call(function, &of)
+            }
+            Node::Partial { call, k } => {
+                let Node::Call { function, .. } = self.nodes[call.index()] else {
+                    unreachable!("only calls have partial derivatives as nodes")
+                };
+                let of = arguments(self);
+                self.partial_of(function, &of, k)
+            }
+        }
+    }
+}
+
 impl Expand {
     fn concerns(self, node: &Node) -> bool {
         match node {
@@ -61,23 +100,7 @@ fn image(cell: &RefCell<Builder>, v: Value, images: &[Value], what: Expand) -> V
     let mut arguments = Vec::new();
     builder.operands(&node, |v| arguments.push(of(v)));
     match node {
-        Node::Constant(_) | Node::Input(_) => v,
-        Node::Unary(op, x) => builder.unary(op, of(x)),
-        Node::Whole(x, n) => builder.powi(of(x), n),
-        Node::Binary(op, a, b) => builder.binary(op, of(a), of(b)),
-        Node::Compare(op, a, b) => builder.compare(op, of(a), of(b)),
-        Node::Select(c, yes, no) => builder.select(of(c), of(yes), of(no)),
-        Node::If(_) => {
-            builder.arithmetic_if(arguments[0], arguments[1], arguments[2], arguments[3])
-        }
-        Node::Lookup { table, order, x } => {
-            let table = builder.tables[table as usize].clone();
-            builder.lookup(&table, order, of(x))
-        }
-        Node::Call { function, .. } if what == Expand::Partials => {
-            builder.call(function, &arguments)
-        }
-        Node::Call { function, .. } => {
+        Node::Call { function, .. } if what == Expand::Calls => {
             drop(builder);
             record(cell, &arguments, |args| function.eval(args))
         }
@@ -88,6 +111,7 @@ fn image(cell: &RefCell<Builder>, v: Value, images: &[Value], what: Expand) -> V
             drop(builder);
             record(cell, &arguments, |args| partial(function, args, k as usize))
         }
+        _ => builder.again(v, of),
     }
 }
 

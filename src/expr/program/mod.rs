@@ -15,6 +15,7 @@
 //! ```
 
 mod batch;
+mod breaks;
 mod builder;
 mod display;
 mod expand;
@@ -33,7 +34,7 @@ pub use batch::Batch;
 pub use builder::{Builder, Folding};
 pub use operation::{BinaryOp, Comparison, UnaryOp, Value};
 pub use record::{Condition, Sym};
-pub(crate) use switching::{Break, Levels};
+pub(crate) use breaks::{Break, Levels};
 
 use super::functions::Function;
 use super::measures::Measure;

@@ -1,205 +1,151 @@
-//! Where a program changes branch: the differences whose signs its comparisons and IFs ask for.
+//! Where a program changes branch: the differences whose signs its comparisons and IFs ask for; and the same program with
+//! its branches held.
+//!
+//! A program whose branches are held is smooth as far as its functions are: a method of high order may step across the
+//! place where the branch ends, find that place on its interpolant, and go back there.
 
-use super::expand::Expand;
 use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value};
 use super::{Builder, Input};
-use crate::scalar::Table;
-use std::sync::Arc;
+
+/// The branches of some outputs.
+struct Branches {
+    /// values that change sign where a branch changes, each once, in the order of recording
+    differences: Vec<Value>,
+    /// per node: the difference it asks for, and whether with the contrary sign
+    asked: Vec<Option<(usize, bool)>>,
+}
 
 impl Builder {
     /// Values that change sign where one of the outputs changes branch, each once, in the order of recording.
     ///
     /// For `a < b` and `a ≤ b` that is `a − b`, for IF its selector, for |x| its argument. Comparisons for equality are left
-    /// out: they hold at isolated points only.
+    /// out, and so are those of zero with what is never negative: they hold at isolated points only.
     pub fn switching(&mut self, outputs: &[Value]) -> Vec<Value> {
-        let mut needed = vec![false; self.nodes.len()];
-        for v in outputs {
-            needed[v.index()] = true;
-        }
-        let mut found = Vec::new();
-        for k in (0..self.nodes.len()).rev() {
-            if !needed[k] {
+        self.branches(outputs).differences
+    }
+
+    /// The outputs with the branches of `sources` held, and the values that change sign where these change, with the others held.
+    ///
+    /// What decides a branch is not computed but read: the sign of the `k`-th of these values, as −1, 0 or 1, from the input
+    /// `sign(k)`.
+    pub fn held(
+        &mut self,
+        outputs: &[Value],
+        sources: &[Value],
+        sign: impl Fn(usize) -> Input,
+    ) -> (Vec<Value>, Vec<Value>) {
+        let Branches { differences, asked } = self.branches(sources);
+        let n = self.nodes.len();
+        let mut wanted = outputs.to_vec();
+        wanted.extend(&differences);
+        let needed = self.needed(&wanted, n);
+        let zero = self.constant(0.0);
+        let mut images: Vec<Value> = (0..n as u32).map(Value).collect();
+        for k in (0..n).filter(|&k| needed[k]) {
+            let of = |v: Value| images[v.index()];
+            let Some((which, contrary)) = asked.get(k).copied().flatten() else {
+                images[k] = self.again(Value(k as u32), of);
                 continue;
-            }
-            let node = self.nodes[k];
-            self.operands(&node, |v| needed[v.index()] = true);
-            match node {
-                Node::Compare(Comparison::Lt | Comparison::Le, a, b) => found.push((a, Some(b))),
-                Node::If(first) => found.push((self.arguments[first as usize], None)),
-                Node::Unary(UnaryOp::Abs, x) => found.push((x, None)),
-                _ => {}
-            }
-        }
-        found.reverse();
-        let mut values: Vec<Value> = Vec::new();
-        for (a, b) in found {
-            let difference = match b {
-                Some(b) => self.binary(BinaryOp::Sub, a, b),
-                None => a,
             };
-            if self.constant_of(difference).is_none() && !values.contains(&difference) {
-                values.push(difference);
-            }
-        }
-        values
-    }
-}
-
-/// A value at which a program may stop being smooth.
-#[derive(Clone, Debug)]
-pub(crate) struct Break {
-    /// what must reach a level
-    pub(crate) value: Value,
-    /// the levels
-    pub(crate) levels: Levels,
-}
-
-/// Where a value makes a program break.
-#[derive(Clone, Debug)]
-pub(crate) enum Levels {
-    /// at zero
-    Zero,
-    /// at every whole number
-    Whole,
-    /// halfway between whole numbers
-    Halves,
-    /// where the pieces of a table meet
-    Knots(Arc<dyn Table>),
-}
-
-impl Builder {
-    /// The output with calls expanded into operations, and all values at whose levels it may break: where a comparison turns, at
-    /// steps of roundings, at knots of tables, at poles and at the edges of domains. More than enough: not all of them are breaks.
-    pub(crate) fn breaks(&mut self, output: Value) -> (Value, Vec<Break>) {
-        let output = self.expanded(&[output], Expand::Calls)[0];
-        let mut needed = vec![false; output.index() + 1];
-        needed[output.index()] = true;
-        let mut found = Vec::new();
-        for k in (0..=output.index()).rev() {
-            if !needed[k] {
-                continue;
-            }
             let node = self.nodes[k];
-            self.operands(&node, |v| needed[v.index()] = true);
-            self.breaks_of(&node, &mut found);
-        }
-        found.reverse();
-        let mut breaks: Vec<Break> = Vec::new();
-        for new in found {
-            let constant = self.constant_of(new.value).is_some();
-            if !constant
-                && !breaks
-                    .iter()
-                    .any(|b| b.value == new.value && b.levels.are(&new.levels))
-            {
-                breaks.push(new);
+            let mut arguments = [zero; 4];
+            let mut count = 0;
+            self.operands(&node, |v| {
+                arguments[count] = of(v);
+                count += 1;
+            });
+            let mut side = self.input(sign(which));
+            if contrary {
+                side = self.unary(UnaryOp::Neg, side);
             }
-        }
-        (output, breaks)
-    }
-
-    fn breaks_of(&mut self, node: &Node, found: &mut Vec<Break>) {
-        use UnaryOp::{Abs, Acos, Asin, Floor, Ln, Log10, Round, Sqrt, Tan, Trunc};
-        let mut at = |value: Value, levels: Levels| found.push(Break { value, levels });
-        match *node {
-            Node::Compare(_, a, b) => at(self.binary(BinaryOp::Sub, a, b), Levels::Zero),
-            Node::If(first) => at(self.arguments[first as usize], Levels::Zero),
-            Node::Unary(Abs | Sqrt | Ln | Log10, x) => at(x, Levels::Zero),
-            Node::Unary(Trunc | Floor, x) => at(x, Levels::Whole),
-            Node::Unary(Round, x) => at(x, Levels::Halves),
-            Node::Unary(Tan, x) => {
-                let half_turns = self.constant(std::f64::consts::FRAC_1_PI);
-                at(self.binary(BinaryOp::Mul, x, half_turns), Levels::Halves);
-            }
-            Node::Unary(Asin | Acos, x) => {
-                let one = self.constant(1.0);
-                at(self.binary(BinaryOp::Sub, x, one), Levels::Zero);
-                at(self.binary(BinaryOp::Add, x, one), Levels::Zero);
-            }
-            Node::Binary(BinaryOp::Atan2, y, _) => at(y, Levels::Zero),
-            Node::Binary(BinaryOp::Rem, a, b) => {
-                at(self.binary(BinaryOp::Div, a, b), Levels::Whole)
-            }
-            Node::Binary(BinaryOp::Div, _, b) => at(b, Levels::Zero),
-            Node::Binary(BinaryOp::Pow, a, _) => at(a, Levels::Zero),
-            Node::Whole(x, n) if n < 0 => at(x, Levels::Zero),
-            Node::Lookup { table, x, .. } => {
-                let table = self.tables[table as usize].clone();
-                if !table.knots().is_empty() {
-                    at(x, Levels::Knots(table));
+            images[k] = match node {
+                Node::Compare(op, ..) => self.compare(op, side, zero),
+                Node::If(_) => self.arithmetic_if(side, arguments[1], arguments[2], arguments[3]),
+                _ => {
+                    let negative = self.compare(Comparison::Lt, side, zero);
+                    let minus = self.unary(UnaryOp::Neg, arguments[0]);
+                    self.select(negative, minus, arguments[0])
                 }
-            }
-            _ => {}
+            };
         }
+        let image = |v: &Value| images[v.index()];
+        (
+            outputs.iter().map(image).collect(),
+            differences.iter().map(image).collect(),
+        )
     }
 
-    /// The inputs that values read, in the order of asking.
-    pub(crate) fn inputs_of(&self, values: &[Value]) -> Vec<Input> {
-        let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
+    /// Which of the first `n` nodes some values need.
+    fn needed(&self, values: &[Value], n: usize) -> Vec<bool> {
         let mut needed = vec![false; n];
         for v in values {
             needed[v.index()] = true;
         }
-        let mut read = Vec::new();
         for k in (0..n).rev() {
             if needed[k] {
-                match self.nodes[k] {
-                    Node::Input(input) => read.push(input),
-                    node => self.operands(&node, |v| needed[v.index()] = true),
+                self.operands(&self.nodes[k], |v| needed[v.index()] = true);
+            }
+        }
+        needed
+    }
+
+    fn branches(&mut self, outputs: &[Value]) -> Branches {
+        let n = self.nodes.len();
+        let needed = self.needed(outputs, n);
+        let mut differences: Vec<Value> = Vec::new();
+        let mut places = std::collections::HashMap::new();
+        let mut asked = vec![None; n];
+        for k in (0..n).filter(|&k| needed[k]) {
+            let difference = match self.nodes[k] {
+                Node::Compare(Comparison::Lt | Comparison::Le, a, b) => {
+                    if self.is_bound(a, b) {
+                        continue;
+                    }
+                    self.binary(BinaryOp::Sub, a, b)
                 }
+                Node::If(first) => self.arguments[first as usize],
+                Node::Unary(UnaryOp::Abs, x) => x,
+                _ => continue,
+            };
+            if self.constant_of(difference).is_some() {
+                continue;
             }
+            let (plain, contrary) = match self.nodes[difference.index()] {
+                Node::Unary(UnaryOp::Neg, x) => (x, true),
+                _ => (difference, false),
+            };
+            let which = *places.entry(plain).or_insert_with(|| {
+                differences.push(plain);
+                differences.len() - 1
+            });
+            asked[k] = Some((which, contrary));
         }
-        read.sort_unstable();
-        read.dedup();
-        read.iter().map(|&k| self.inputs[k as usize]).collect()
+        Branches { differences, asked }
     }
-}
 
-impl Levels {
-    fn are(&self, other: &Levels) -> bool {
-        match (self, other) {
-            (Levels::Zero, Levels::Zero)
-            | (Levels::Whole, Levels::Whole)
-            | (Levels::Halves, Levels::Halves) => true,
-            (Levels::Knots(a), Levels::Knots(b)) => a.knots() == b.knots(),
+    /// Whether one of two compared values is zero and the other is never negative, whatever the inputs.
+    fn is_bound(&self, a: Value, b: Value) -> bool {
+        let zero = |v: Value| self.constant_of(v) == Some(0.0);
+        zero(b) && self.never_negative(a, 8) || zero(a) && self.never_negative(b, 8)
+    }
+
+    /// Whether a value is never negative by construction, looking `depth` operations deep.
+    fn never_negative(&self, v: Value, depth: usize) -> bool {
+        if depth == 0 {
+            return false;
+        }
+        match self.nodes[v.index()] {
+            Node::Constant(bits) => f64::from_bits(bits) >= 0.0,
+            Node::Unary(UnaryOp::Abs | UnaryOp::Sqrt | UnaryOp::Exp, _) => true,
+            Node::Whole(_, n) => n % 2 == 0,
+            Node::Binary(BinaryOp::Mul, a, b) if a == b => true,
+            Node::Binary(BinaryOp::Add | BinaryOp::Mul | BinaryOp::Div, a, b) => {
+                self.never_negative(a, depth - 1) && self.never_negative(b, depth - 1)
+            }
+            Node::Select(_, a, b) => {
+                self.never_negative(a, depth - 1) && self.never_negative(b, depth - 1)
+            }
             _ => false,
-        }
-    }
-
-    /// Which place between the levels a number has: odd between two of them, even on one.
-    pub(crate) fn place(&self, x: f64) -> f64 {
-        let whole = |x: f64| 2.0 * x.floor() + f64::from(u8::from(x != x.floor()));
-        match self {
-            _ if x.is_nan() => f64::NAN,
-            Levels::Zero if x == 0.0 => 0.0,
-            Levels::Zero => x.signum(),
-            Levels::Whole => whole(x),
-            Levels::Halves => whole(x - 0.5),
-            Levels::Knots(table) => {
-                let knots = table.knots();
-                let below = knots.partition_point(|&k| k < x);
-                let on = knots.get(below) == Some(&x);
-                2.0 * below as f64 + if on { 0.0 } else { -1.0 }
-            }
-        }
-    }
-
-    /// The nearest level.
-    pub(crate) fn nearest(&self, x: f64) -> f64 {
-        match self {
-            Levels::Zero => 0.0,
-            Levels::Whole => x.round(),
-            Levels::Halves => x.floor() + 0.5,
-            Levels::Knots(table) => {
-                let distance = |k: &f64| (k - x).abs();
-                let near = |a: &&f64, b: &&f64| distance(a).total_cmp(&distance(b));
-                table
-                    .knots()
-                    .iter()
-                    .min_by(near)
-                    .copied()
-                    .unwrap_or(f64::NAN)
-            }
         }
     }
 }

@@ -1,0 +1,268 @@
+//! Watching switches: which branch of each force and differential equation holds, and where in a step it ends.
+//!
+//! ```text
+//! branches held → step → near a switch? → scan the interpolant → undo, step up to the switch → branches change, begin anew
+//! ```
+//!
+//! While branches are held the rates are smooth, also where a step leads beyond the end of a branch: no step is rejected
+//! because of a switch inside it, and the interpolant on which the switch is located is as exact as the method.
+//! Most steps are far from all switches; that is seen from values and slopes at both of their ends, without the interpolant:
+//!
+//! ```text
+//! |g| > h max |ġ|   at both ends        so that g cannot have come to zero
+//! ```
+//!
+//! A function whose branches push each other back (dry friction by SIGN) would switch for ever: after [`BURST`] switches in
+//! hardly any time the branches are let go for [`REST`] steps, and error control finds its way.
+
+use super::system::System;
+use crate::numeric::event::{Locator, sign};
+use crate::numeric::{Failure, Method, Step};
+
+/// Switches in hardly any time that are too many.
+const BURST: usize = 40;
+/// Part of the duration that is hardly any time.
+const HARDLY: f64 = 1e-7;
+/// Steps without watching after a burst.
+const REST: usize = 20;
+
+/// What a step means for the switches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// no branch ended in it
+    Keep,
+    /// a branch ended in it, then: undo it, and step up to there
+    Redo(f64),
+    /// a branch ends at its end: begin anew there, with [`Switches::begin`]
+    Switched,
+}
+
+/// The switches of a system along a run.
+#[derive(Debug)]
+pub struct Switches {
+    locator: Locator,
+    /// sides now held, or to be held from the switch on   (n)
+    sides: Vec<i8>,
+    next: Vec<i8>,
+    /// values and slopes at the beginning and at the end of a step   (n each)
+    g0: Vec<f64>,
+    slope0: Vec<f64>,
+    g1: Vec<f64>,
+    slope1: Vec<f64>,
+    /// a state nearby   (size of the system)
+    probe: Vec<f64>,
+    /// where the step under way is to end
+    landing: Option<f64>,
+    redone: usize,
+    burst: usize,
+    last: f64,
+    rest: usize,
+    duration: f64,
+}
+
+impl Switches {
+    /// For a run of some duration.
+    pub fn new(system: &System, size: usize, duration: f64) -> Self {
+        let n = system.n_switches();
+        Self {
+            locator: Locator::new(n),
+            sides: vec![0; n],
+            next: vec![0; n],
+            g0: vec![0.0; n],
+            slope0: vec![0.0; n],
+            g1: vec![0.0; n],
+            slope1: vec![0.0; n],
+            probe: vec![0.0; size],
+            landing: None,
+            redone: 0,
+            burst: 0,
+            last: f64::NEG_INFINITY,
+            rest: 0,
+            duration,
+        }
+    }
+
+    /// Whether there is nothing to watch.
+    pub fn none(&self) -> bool {
+        self.sides.is_empty()
+    }
+
+    /// Finds the branches at the start of a run and holds them.
+    pub fn start(&mut self, system: &mut System, t: f64, y: &[f64]) {
+        if self.none() {
+            return;
+        }
+        self.rest = 0;
+        self.landing = None;
+        system.hold(&self.sides);
+        self.next.fill(0);
+        self.settle(system, t, y);
+    }
+
+    /// Takes over the branches from a switch on; to be called before the method begins anew there.
+    pub fn change(&mut self, system: &mut System, t: f64, y: &[f64]) {
+        self.landing = None;
+        self.redone = 0;
+        if t - self.last < HARDLY * self.duration {
+            self.burst += 1;
+        } else {
+            self.burst = 0;
+        }
+        self.last = t;
+        if self.burst > BURST {
+            self.burst = 0;
+            self.rest = REST;
+            system.release();
+            return;
+        }
+        self.settle(system, t, y);
+    }
+
+    /// Holds the branches that fit the state: `next` where it says a side, else the sign there.
+    fn settle(&mut self, system: &mut System, t: f64, y: &[f64]) {
+        self.sides.copy_from_slice(&self.next);
+        for _ in 0..10 {
+            system.hold(&self.sides);
+            system.switches(t, y, &mut self.g0);
+            let mut changed = false;
+            for k in 0..self.sides.len() {
+                let side = if self.next[k] == 0 {
+                    sign(self.g0[k])
+                } else {
+                    self.next[k]
+                };
+                changed |= side != self.sides[k];
+                self.sides[k] = side;
+            }
+            if !changed {
+                break;
+            }
+        }
+        system.hold(&self.sides);
+    }
+
+    /// Values on no side take the one they leave to; slopes at the state. True: a side was taken, the rate is another.
+    pub fn look_ahead(&mut self, system: &mut System, t: f64, y: &[f64], ydot: &[f64]) -> bool {
+        if self.none() || self.rest > 0 {
+            return false;
+        }
+        let delta = 1e-9 * self.duration;
+        self.slopes(system, t, y, ydot, delta);
+        self.slope0.copy_from_slice(&self.slope1);
+        system.switches(t, y, &mut self.g0);
+        let mut changed = false;
+        for k in 0..self.sides.len() {
+            if self.sides[k] == 0 {
+                self.sides[k] = sign(self.slope0[k]);
+                changed |= self.sides[k] != 0;
+            }
+        }
+        if changed {
+            system.hold(&self.sides);
+            system.switches(t, y, &mut self.g0);
+        }
+        self.locator.begin_on(&self.g0, &self.sides);
+        changed
+    }
+
+    /// Values at the state into `g1`, slopes into `slope1`.
+    fn slopes(&mut self, system: &mut System, t: f64, y: &[f64], ydot: &[f64], delta: f64) {
+        for ((p, y), f) in self.probe.iter_mut().zip(y).zip(ydot) {
+            *p = y + delta * f;
+        }
+        system.switches(t, y, &mut self.g1);
+        system.switches(t + delta, &self.probe, &mut self.slope1);
+        for (slope, g) in self.slope1.iter_mut().zip(&self.g1) {
+            *slope = (*slope - g) / delta;
+        }
+    }
+
+    /// What the step just taken means.
+    pub fn judge(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        step: &Step,
+    ) -> Verdict {
+        if self.none() {
+            return Verdict::Keep;
+        }
+        if self.rest > 0 {
+            self.rest -= 1;
+            if self.rest == 0 {
+                self.next.fill(0);
+                self.last = step.t1;
+                return Verdict::Switched;
+            }
+            return Verdict::Keep;
+        }
+        let landed = self.landing.take() == Some(step.t1);
+        let (y, ydot) = (method.y(), method.ydot());
+        self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
+        let near = (0..self.sides.len()).any(|k| {
+            if landed && self.next[k] != 0 {
+                return false;
+            }
+            let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
+            let least = self.g0[k].abs().min(self.g1[k].abs());
+            let far = sign(self.g1[k]) == self.sides[k] && least > step.h * steepest;
+            // a value that stays zero is on no side
+            !(far || self.sides[k] == 0 && self.g1[k] == 0.0 && self.slope1[k] == 0.0)
+        });
+        if !near {
+            if landed {
+                return Verdict::Switched;
+            }
+            self.keep();
+            return Verdict::Keep;
+        }
+        let mut state = std::mem::take(&mut self.probe);
+        let event = self.locator.scan(step.t0, step.t1, |t, values| {
+            if t == step.t1 {
+                state.copy_from_slice(method.y());
+            } else {
+                method.interpolate(system, t, &mut state)?;
+            }
+            system.switches(t, &state, values);
+            Ok::<(), Failure>(())
+        });
+        self.probe = state;
+        let at = match event {
+            Ok(Some(at)) => at,
+            Ok(None) if landed => return Verdict::Switched,
+            Ok(None) => {
+                self.sides.copy_from_slice(self.locator.sides());
+                self.keep();
+                return Verdict::Keep;
+            }
+            // the interpolant has no value somewhere: begin anew at the end
+            Err(_) => {
+                self.next.fill(0);
+                return Verdict::Switched;
+            }
+        };
+        let at_end = step.t1 - at <= 1e-14 * step.t1.abs() + 1e-9 * step.h;
+        if !(landed && at_end) {
+            self.next.fill(0);
+        }
+        for &k in self.locator.crossed() {
+            self.next[k] = self.locator.sides()[k];
+        }
+        if at_end || self.redone >= 30 {
+            return Verdict::Switched;
+        }
+        self.redone += 1;
+        self.landing = Some(at);
+        self.locator.begin_on(&self.g0, &self.sides);
+        Verdict::Redo(at)
+    }
+
+    /// The end of a step becomes the beginning of the next.
+    fn keep(&mut self) {
+        self.redone = 0;
+        self.next.fill(0);
+        self.locator.skip(&self.g1);
+        std::mem::swap(&mut self.g0, &mut self.g1);
+        std::mem::swap(&mut self.slope0, &mut self.slope1);
+    }
+}
