@@ -31,10 +31,10 @@ mod switching;
 mod tests;
 
 pub use batch::Batch;
+pub(crate) use breaks::{Break, Levels};
 pub use builder::{Builder, Folding};
 pub use operation::{BinaryOp, Comparison, UnaryOp, Value};
 pub use record::{Condition, Sym};
-pub(crate) use breaks::{Break, Levels};
 
 use super::functions::Function;
 use super::measures::Measure;
