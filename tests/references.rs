@@ -52,6 +52,11 @@ fn distance(reference: &[f64], ours: &[f64]) -> f64 {
 
 /// The true error at a requested error, and the largest residual of a row.
 fn solve(problem: &str, error: f64) -> (f64, f64) {
+    solve_by(problem, error, None)
+}
+
+/// The same by a method of the user's choice.
+fn solve_by(problem: &str, error: f64, method: Option<&str>) -> (f64, f64) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
     let script = Script::read(folder.join(format!("{problem}.acf"))).unwrap();
     let model = Model::read(script.model_file().unwrap()).unwrap();
@@ -60,6 +65,7 @@ fn solve(problem: &str, error: f64) -> (f64, f64) {
     let options = Options {
         error: Some(error),
         columns: asked.clone(),
+        method: method.map(str::to_string),
         ..Options::default()
     };
     let mut session = Session::new(model, problem, options);
@@ -157,4 +163,64 @@ fn chains_of_rods() {
 #[test]
 fn ten_masses_in_a_row() {
     stays_in_proportion("spring_mass_chain", &REQUESTS, 100.0);
+}
+
+/// What contact is asked at.
+const CONTACT_REQUESTS: [f64; 3] = [1e-4, 1e-6, 1e-8];
+
+#[test]
+fn balls_that_bounce() {
+    for problem in ["bounce_k1e5", "bounce_k1e6", "bounce_k1e7", "bounce_k1e8"] {
+        stays_in_proportion(problem, &CONTACT_REQUESTS, 100.0);
+    }
+}
+#[test]
+fn a_slider_between_two_stops() {
+    stays_in_proportion("bistop_slot", &CONTACT_REQUESTS, 100.0);
+}
+#[test]
+fn a_sphere_that_settles() {
+    stays_in_proportion("settle_sphere", &CONTACT_REQUESTS, 100.0);
+}
+#[test]
+fn a_stiff_bushing() {
+    stays_in_proportion("stiff_bushing", &CONTACT_REQUESTS, 100.0);
+}
+#[test]
+fn a_governor_with_a_stiff_spring() {
+    stays_in_proportion("a05_flyball", &CONTACT_REQUESTS, 100.0);
+}
+
+/// Methods of lower order accumulate more of what each step permits.
+fn every_method(problem: &str) {
+    for (method, requests, factor) in [
+        ("DOP853", [1e-4, 1e-6], 100.0),
+        ("RADAU5", [1e-4, 1e-6], 100.0),
+        ("BDF", [1e-4, 1e-6], 1000.0),
+        ("HHT", [1e-3, 1e-5], 1000.0),
+    ] {
+        let mut last = f64::INFINITY;
+        for request in requests {
+            let (error, _) = solve_by(problem, request, Some(method));
+            println!("{problem} by {method}: request {request:e}, true error {error:.1e}");
+            assert!(
+                error < factor * request,
+                "{method} at {request:e}: {error:e}"
+            );
+            assert!(error < 0.3 * last, "{method}: {last:e}, then {error:e}");
+            last = error;
+        }
+    }
+}
+#[test]
+fn a_pendulum_by_every_method() {
+    every_method("a01_pendulum");
+}
+#[test]
+fn a_mechanism_of_loops_by_every_method() {
+    every_method("a03_andrews");
+}
+#[test]
+fn a_top_by_every_method() {
+    every_method("heavy_top");
 }

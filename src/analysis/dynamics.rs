@@ -69,10 +69,11 @@ impl Default for Options {
 
 /// The method that does what an INTEGRATOR name of Adams asks for, or the one so named here.
 ///
-/// GSTIFF, WSTIFF and their kin are stiff methods with fixed error control: RADAU5 is ours. ABAM and RKF45 are explicit.
+/// GSTIFF, WSTIFF and their kin are backward differentiation of low order; what they are taken for, stiff systems with modest requests,
+/// RADAU5 does with fewer steps and without their damping (BDF is there by its own name). ABAM and RKF45 are explicit.
 pub fn method_named(name: &str) -> String {
     match name.to_ascii_uppercase().as_str() {
-        "GSTIFF" | "WSTIFF" | "HASTIFF" | "CONSTANT_BDF" | "HHT" | "NEWMARK" => "RADAU5".into(),
+        "GSTIFF" | "WSTIFF" | "HASTIFF" | "CONSTANT_BDF" => "RADAU5".into(),
         "ABAM" | "RKF45" => "DOP853".into(),
         other => other.to_string(),
     }
@@ -138,7 +139,7 @@ pub fn integrate(
     watch: &mut dyn Watch,
 ) -> Trajectory {
     let mut out = Trajectory::default();
-    let n = system.size();
+    let n = Ode::size(system);
     let t0 = system.numbers[0];
     let mut y = system.numbers[system.scene.layout.y()].to_vec();
     let Some(&end) = outputs.last() else {
@@ -174,7 +175,11 @@ pub fn integrate(
     let mut t = t0;
     let mut restarts = 0;
     loop {
-        let Some(mut method) = numeric::ode_method::<System>(&name, n, &settings) else {
+        let size = system.implicit_size();
+        y.resize(n.max(size), 0.0);
+        let Some(mut method) = numeric::ode_method::<System>(&name, n, &settings)
+            .or_else(|| numeric::dae_method::<System>(&name, size, &settings))
+        else {
             out.ended = Some(Ended::Stop(Stop {
                 reason: Reason::TooManySteps,
                 t,
@@ -192,7 +197,12 @@ pub fn integrate(
             out: &mut out,
             watch,
         };
-        let finished = leg.run(method.as_mut(), t, &y, auto && name == "DOP853");
+        let state = if numeric::is_implicit(&name) {
+            &y[..]
+        } else {
+            &y[..n]
+        };
+        let finished = leg.run(method.as_mut(), t, state, auto && name == "DOP853");
         add(&mut out.stats, method.stats());
         system.release();
         match finished {
@@ -250,14 +260,14 @@ const LARGEST_LOOK: usize = 120;
 ///
 /// Only modes that decay count: an undamped oscillation has to be followed anyway.
 pub fn first_method(system: &mut System, duration: f64) -> &'static str {
-    let n = system.size();
+    let n = Ode::size(system);
     if n == 0 || n > LARGEST_LOOK {
         return "DOP853";
     }
     let t = system.numbers[0];
     let y = system.numbers[system.scene.layout.y()].to_vec();
     let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
-    if system.jacobian(t, &y, &mut jacobian, &mut dfdt).is_err() {
+    if Ode::jacobian(system, t, &y, &mut jacobian, &mut dfdt).is_err() {
         return "DOP853";
     }
     let matrix = nalgebra::DMatrix::from_vec(n, n, jacobian);
@@ -463,7 +473,7 @@ impl Leg<'_> {
         let mut numbers = self.system.numbers.clone();
         let mut at = |t: f64, y: &[f64]| {
             numbers[0] = t;
-            numbers[l.y()].copy_from_slice(y);
+            numbers[l.y()].copy_from_slice(&y[..l.y().len()]);
             numbers.clone()
         };
         let kept = &mut self.out.weak;
@@ -505,7 +515,7 @@ impl Leg<'_> {
     fn choose(&mut self, t: f64, y: &[f64]) -> bool {
         let l = self.system.scene.layout;
         self.system.numbers[0] = t;
-        self.system.numbers[l.y()].copy_from_slice(y);
+        self.system.numbers[l.y()].copy_from_slice(&y[..l.y().len()]);
         let Some(active) = ranks::better_rows(&self.system.scene, &self.system.numbers) else {
             return false;
         };

@@ -4,6 +4,7 @@ pub mod assemble;
 pub mod columns;
 pub mod drives;
 pub mod dynamics;
+pub mod implicit;
 pub mod kinematics;
 pub mod linear;
 pub mod misalignment;

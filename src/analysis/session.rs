@@ -8,6 +8,7 @@ use super::assemble::{self, Assembly};
 use super::columns::{self, Columns};
 use super::drives;
 use super::dynamics::{self, Ended, Trajectory, Watch};
+use super::implicit::Formulation;
 use super::kinematics;
 use super::linear::{self, Linearization};
 use super::misalignment;
@@ -495,6 +496,7 @@ impl Session {
         if settings.method == "AUTO" && kind == Kind::Dynamic {
             settings.first = dynamics::first_method(system, end - start).into();
         }
+        self.prepare_implicit(system, &mut settings);
         let name = self
             .model
             .integrator
@@ -678,6 +680,25 @@ impl Session {
         status
     }
 
+    /// Writes the equations as methods for implicit equations want them, if one is asked for.
+    fn prepare_implicit(&mut self, system: &mut System, settings: &mut dynamics::Options) {
+        if !crate::numeric::is_implicit(&settings.method) {
+            return;
+        }
+        let asked = self.model.integrator.formulation.as_deref();
+        // HHT holds positions alone; BDF and Newmark's rule are better off with velocities too
+        let formulation = match (asked, settings.method.as_str()) {
+            (Some("I3"), _) | (None, "HHT") => Formulation::Index3,
+            _ => Formulation::Stabilized,
+        };
+        if let Err(why) = system.make_implicit(formulation) {
+            for d in why {
+                self.warn(&format!("{}: RADAU5 takes its place", d.message));
+            }
+            settings.method = "RADAU5".into();
+        }
+    }
+
     /// INTEGRATOR, overruled by the options.
     fn integration(&self) -> dynamics::Options {
         let i = &self.model.integrator;
@@ -853,7 +874,7 @@ impl Session {
                 vec![broken.element.clone()],
             ),
             Some(Ended::Stop(stop)) => {
-                let (status, mut sentence, mut worst) = explain(&system.scene, stop);
+                let (status, mut sentence, mut worst) = explain(system, stop);
                 let stands = trajectory.rows.last().unwrap_or(&system.numbers);
                 let rows = !matches!(stop.reason, Reason::TooManySteps | Reason::Singular(_));
                 if let (true, Some(lock)) = (rows, ranks::locked(&system.scene, stands)) {
@@ -980,8 +1001,16 @@ fn counts(stats: &crate::numeric::Stats) -> Counts {
 }
 
 /// A stop in words: status, sentence, and the name of the worst unknown or row.
-fn explain(scene: &Scene, stop: &Stop) -> (Status, String, String) {
-    let names = unknown_names(scene);
+fn explain(system: &System, stop: &Stop) -> (Status, String, String) {
+    let scene = &system.scene;
+    let mut names = unknown_names(scene);
+    // what a method for implicit equations sees after the unknowns
+    let multipliers = system.implicit_size().saturating_sub(names.len());
+    let rows = (0..scene.rows.len()).filter(|&r| scene.active.get(r).copied().unwrap_or(true));
+    let rows: Vec<String> = rows
+        .map(|r| format!("multiplier of {}", row_name(&scene.rows[r])))
+        .collect();
+    names.extend(rows.iter().cycle().take(multipliers).cloned());
     let unknown = |k: usize| match (names.get(k), k.checked_sub(names.len())) {
         (Some(name), _) => name.clone(),
         (None, loops) => loops

@@ -15,6 +15,7 @@ use crate::scene::programs::{self, Switching, record};
 use crate::scene::{Scene, Source};
 
 use super::assemble::Mover;
+use super::implicit::Implicit;
 use super::outside::{Hook, Outside};
 use super::sensors::Sensors;
 use super::unknowns::{Unknowns, WIDTH};
@@ -46,6 +47,8 @@ pub struct System {
     counted: Option<Program>,
     /// derivatives of the rate, of the one with branches held, once they have been asked for
     gradients: [Option<Gradient>; 2],
+    /// the same as an implicit system, when a method asks for it
+    pub(super) implicit: Option<Box<Implicit>>,
     /// what the programs read: t | q | v | x | turns | loops | supplied
     pub numbers: Vec<f64>,
     work: Work,
@@ -256,6 +259,7 @@ impl System {
             unsolved: None,
             counted,
             gradients: [None, None],
+            implicit: None,
             numbers,
             work: Work::default(),
             project_work: Work::default(),
@@ -414,6 +418,7 @@ impl System {
         let n_switches = self.n_switches();
         self.sides.resize(n_switches, 0.0);
         self.gradients = [None, None];
+        self.renew_implicit(&scene)?;
         self.unknowns = Unknowns::new(&scene).map_err(complaints)?;
         self.was_weak = false;
         self.scene = scene;
@@ -469,10 +474,12 @@ impl System {
         self.numbers.clone()
     }
 
+    /// Takes over time and state; multipliers after the state are of no concern.
     pub(super) fn set(&mut self, t: f64, y: &[f64]) {
         self.numbers[Layout::TIME] = t;
         let places = self.scene.layout.y();
-        self.numbers[places].copy_from_slice(y);
+        let n = places.len();
+        self.numbers[places].copy_from_slice(&y[..n]);
         if !self.outside.is_empty() {
             self.outside.evaluate(&mut self.numbers, false);
         }

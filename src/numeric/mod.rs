@@ -353,6 +353,13 @@ pub enum Form {
     Dae,
 }
 
+/// Whether the method of that name wants `F(t, y, ẏ) = 0`.
+pub fn is_implicit(name: &str) -> bool {
+    METHODS
+        .iter()
+        .any(|m| m.name == name && m.form == Form::Dae)
+}
+
 /// Writes the table of methods, and the constructors that read it.
 macro_rules! methods {
     (

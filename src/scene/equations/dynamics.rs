@@ -242,6 +242,30 @@ impl<S: Scalar> Equations<'_, S> {
         f
     }
 
+    /// What is missing for these accelerations and multipliers to be those of the mechanism, along each free coordinate.
+    ///
+    /// ```text
+    /// M v̇ + h(q, v) − f(t, q, v, x) − Gᵀλ        (n_v)
+    /// ```
+    pub fn imbalance(&self, vdot: &[S], multipliers: &[S]) -> Vec<S> {
+        self.solving.set(true);
+        let (mut wrenches, _) = self.loads();
+        self.solving.set(false);
+        let active = (0..self.scene.rows.len()).filter(|&r| self.is_active(r));
+        for (r, &l) in active.zip(multipliers) {
+            for (m, action) in self.row(r).actions {
+                let point = self.marker(m).p_GM;
+                let link = self.scene.markers[m].link;
+                let (force, torque) = (action.force.times(l), action.torque.times(l));
+                sweep::apply(&mut wrenches, &self.links, link, point, force, torque);
+            }
+        }
+        let links = sweep::outward(self.scene, &self.coordinates(vdot));
+        let carried = sweep::inward(self.scene, &links, self.gravity(), &wrenches);
+        let free = self.scene.freedoms.iter().filter(|f| f.v.is_some());
+        free.map(|f| f.component(&carried[f.link])).collect()
+    }
+
     /// The axis of a freedom, ground axes.
     pub fn freedom_axis(&self, f: &sweep::Freedom) -> Vec3<S> {
         let rotation = &self.links[f.link].X_GL.rotation;
@@ -271,6 +295,11 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// `q̇`
     pub fn position_rates(&self) -> Vec<S> {
+        self.position_rates_at(&self.v)
+    }
+
+    /// `q̇` at other velocities of the free coordinates.
+    pub fn position_rates_at(&self, v: &[S]) -> Vec<S> {
         let mut out = vec![S::zero(); self.q.len()];
         for link in &self.scene.links {
             if let LinkMotion::Ball {
@@ -278,15 +307,19 @@ impl<S: Scalar> Equations<'_, S> {
                 quaternion,
             } = link.motion
             {
-                let w = Vec3([0, 1, 2].map(|k| self.coordinate(coordinate + k).first));
+                let speed = |k: usize| match self.scene.coordinates[coordinate + k].source {
+                    Source::Free { v: place, .. } => v[place],
+                    Source::Driven(_) => unreachable!("no motion drives a ball"),
+                };
+                let w = Vec3([0, 1, 2].map(speed));
                 let q = [0, 1, 2, 3].map(|k| self.q[quaternion + k]);
                 out[quaternion..quaternion + 4]
                     .copy_from_slice(&crate::space::rotation::quaternion_rate(q, w));
             }
         }
         for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
-            if let (Source::Free { q, v }, false) = (c.source, f.in_ball) {
-                out[q] = self.v[v];
+            if let (Source::Free { q, v: place }, false) = (c.source, f.in_ball) {
+                out[q] = v[place];
             }
         }
         out
