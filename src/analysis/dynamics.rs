@@ -228,7 +228,9 @@ pub fn integrate(
                     return out;
                 }
                 t = method.t();
-                y.copy_from_slice(&state);
+                // multipliers are found anew
+                y.resize(n, 0.0);
+                y.copy_from_slice(&state[..n]);
             }
             Finished::Stiff => {
                 t = method.t();
