@@ -80,7 +80,7 @@ pub struct System {
 #[derive(Debug)]
 enum Gradient {
     /// recorded: rate by rate
-    Recorded(Program, Work, Vec<f64>),
+    Recorded(Box<Program>, Work, Vec<f64>),
     /// by duals
     Duals,
 }
@@ -109,7 +109,7 @@ impl Gradient {
         if program.n_operations() > LONGEST_GRADIENT {
             return Gradient::Duals;
         }
-        Gradient::Recorded(program, Work::default(), vec![0.0; n * (n + 1)])
+        Gradient::Recorded(Box::new(program), Work::default(), vec![0.0; n * (n + 1)])
     }
 }
 
@@ -201,6 +201,8 @@ fn left_out(scene: &Scene) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnost
     Ok((!rows.is_empty()).then_some((rows, program)))
 }
 
+// a function item would be of one lifetime
+#[allow(clippy::redundant_closure)]
 fn rate_program(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     record(scene, |at| programs::rate(at)).map_err(complaints)
 }
