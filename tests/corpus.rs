@@ -3,6 +3,8 @@
 
 #[path = "corpus/chrono.rs"]
 mod chrono;
+#[path = "corpus/runs.rs"]
+mod runs;
 
 use cognate::dataset;
 use cognate::dataset::command::{Command, Script, Step};

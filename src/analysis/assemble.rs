@@ -129,7 +129,7 @@ fn begin_motions(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) {
 }
 
 /// Whether a row takes what the configuration shows rather than asking anything of it.
-fn is_held(scene: &Scene, r: usize) -> bool {
+pub(super) fn is_held(scene: &Scene, r: usize) -> bool {
     match &scene.rows[r].kind {
         RowKind::Displacements(sum) => sum.held,
         RowKind::Markers {
@@ -194,7 +194,7 @@ fn rank_of(a: &DMatrix<f64>, w: &[f64]) -> Rank {
 }
 
 /// Shortest solution of `A x = b` in the metric W, rows counting by their direction; where they contradict, the best.
-fn least_change(a: &DMatrix<f64>, w: &[f64], b: &DVector<f64>) -> DVector<f64> {
+pub(super) fn least_change(a: &DMatrix<f64>, w: &[f64], b: &DVector<f64>) -> DVector<f64> {
     let mut x = vec![0.0; w.len()];
     rank_of(a, w).least_norm(b.as_slice(), &mut x);
     DVector::from_iterator(w.len(), x.iter().zip(w).map(|(x, w)| x * w.sqrt()))
@@ -579,19 +579,20 @@ fn part_velocities(
             }
         }
     }
-    for c in &scene.coordinates {
-        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else {
+    for (id, gauge, [_, rate]) in super::wishes::of_joints(model) {
+        let joint = &model.joints[&id];
+        let markers = [joint.i, joint.j].map(|m| scene.marker_of.get(&m));
+        let ([Some(&i), Some(&j)], Some(rate)) = (markers, rate) else {
             continue;
         };
-        let rate = if c.angular {
-            joint.ic_rotation[1]
+        let (i, j) = (at.marker(i), at.marker(j));
+        let z = j.R_GM.column(2);
+        values.push(if gauge.is_angle() {
+            (i.w_GM - j.w_GM).dot(z)
         } else {
-            joint.ic_translation[1]
-        };
-        if let (Some(rate), Source::Free { v, .. }) = (rate, c.source) {
-            values.push(at.velocities()[v]);
-            wanted.push((true, rate));
-        }
+            (i.v_GM - j.v_GM).dot(z) + (i.p_GM - j.p_GM).dot(j.w_GM.cross(z))
+        });
+        wanted.push((true, rate));
     }
     (values, wanted)
 }

@@ -20,3 +20,4 @@ pub mod switches;
 pub mod system;
 mod unknowns;
 pub mod verify;
+mod wishes;

@@ -359,6 +359,8 @@ impl Outside {
             if fits {
                 track.past.clone_from(&past[k]);
             }
+            // what was computed beyond the beginning, in an earlier attempt, has not been
+            track.past.pieces.retain(|p| p.t0 < t);
             track.past.start.get_or_insert(t);
         }
     }

@@ -16,6 +16,7 @@ use super::outside;
 use super::ranks;
 use super::statics;
 use super::system::{System, complaints};
+use super::wishes;
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::model::{Model, Orientation};
@@ -228,7 +229,7 @@ impl Session {
                 turns.copy_from_slice(&carried.turns);
             }
         } else {
-            if mode == DYNAMIC || mode == INITIAL_CONDITIONS {
+            if mode != KINEMATIC && mode != STATIC {
                 self.initial_joints(&scene, &mut q);
             }
             for (m, motion) in scene.motions.iter().enumerate() {
@@ -243,7 +244,16 @@ impl Session {
         } else {
             Vec::new()
         };
+        // only what moves by itself has initial conditions
+        let wishes = if first && mode != KINEMATIC && mode != STATIC {
+            wishes::collect(&scene, &self.model)
+        } else {
+            Vec::new()
+        };
+        wishes::approach(&scene, &wishes, t, &mut q, &x);
         let mut assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
+        let unmet = wishes::unmet(&scene, &wishes, t, &q, &x);
+        assembly.warnings.extend(unmet);
         assembly.warnings.splice(0..0, misaligned);
         if first {
             let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
@@ -281,6 +291,9 @@ impl Session {
         system.numbers.copy_from_slice(&row);
         let y = row[l.y()].to_vec();
         system.count_turns(t, &y);
+        if mode != STATIC {
+            system.begin_sensing();
+        }
         Ok((system, assembly))
     }
 

@@ -47,6 +47,11 @@ pub struct Options {
     pub plant_inputs: Vec<u32>,
 }
 
+/// Whether an element of a model has not been switched off.
+pub(crate) fn is_active(model: &Model, keyword: &str, id: u32) -> bool {
+    !model.inactive.contains(&(keyword.to_string(), id))
+}
+
 /// Keeps an element of a model unless it has been switched off.
 pub(super) fn active<'m, T>(
     model: &'m Model,

@@ -19,7 +19,12 @@ impl Builder<'_> {
         for (id, f) in active(model, "FIELD", &model.fields) {
             let name = format!("FIELD/{id}");
             if let Some(user) = &f.function {
-                self.formula(c, &format!("{name} FUNCTION"), user);
+                // a closure computes the force and torque on I, in the axes of J
+                let all = self.user(c, &format!("{name} FUNCTION"), user, 6, &[]);
+                let formulas = std::array::from_fn(|k| Some(all[k]));
+                let rm = c.marker(f.j, &name);
+                let law = ForceLaw::Vector { rm, formulas };
+                self.between(c, "FIELD", id, (f.i, f.j), law);
                 continue;
             }
             let Some(stiffness) = field::by_columns(&f.stiffness) else {

@@ -1,0 +1,341 @@
+//! Whole models of other people, run and compared with what Adams computed for them: rest and motion, free runs, replays of recorded inputs;
+//! and models that need programs which are not there, with what these would compute taken as zero.
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::script::obey;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::dataset::command::{Command, Script, SimulationKind};
+use cognate::model::Model;
+use cognate::results::{self, Run, Status};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+fn corpus() -> Option<PathBuf> {
+    let root = std::env::var_os("COGNATE_CORPUS");
+    if root.is_none() {
+        println!("skipped: COGNATE_CORPUS is not set");
+    }
+    root.map(PathBuf::from)
+}
+
+fn options(error: f64) -> Options {
+    Options {
+        error: Some(error),
+        full: true,
+        ..Options::default()
+    }
+}
+
+/// Obeys a script on a model.
+fn obeyed(model: &Path, script: &Script, options: Options) -> Session {
+    let name = model.file_stem().unwrap().to_string_lossy().into_owned();
+    let model = Model::read(model).unwrap_or_else(|e| panic!("{e}"));
+    let mut session = Session::new(model, &name, options);
+    let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{name}: {}", e[0]));
+    assert_eq!(
+        status,
+        Status::Completed,
+        "{name}: {}",
+        session.run.record.stop_reason
+    );
+    session
+}
+
+/// Columns of the position and the 3-1-3 angles of each part, by its number.
+fn parts(run: &Run) -> BTreeMap<u64, [usize; 6]> {
+    let mut found = BTreeMap::new();
+    for entity in run.entities.iter().filter(|e| e.kind == "Part") {
+        let column = |name: &str| {
+            let c = entity.components.iter().find(|c| c.name == name);
+            c.map(|c| c.column)
+        };
+        let all = ["X", "Y", "Z", "PSI", "THETA", "PHI"].map(column);
+        if all.iter().all(Option::is_some) {
+            found.insert(entity.id, all.map(Option::unwrap));
+        }
+    }
+    found
+}
+
+/// Rz(ψ) Rx(θ) Rz(φ)
+fn rotation([psi, theta, phi]: [f64; 3]) -> [[f64; 3]; 3] {
+    let ((s1, c1), (s2, c2), (s3, c3)) = (psi.sin_cos(), theta.sin_cos(), phi.sin_cos());
+    [
+        [c1 * c3 - s1 * c2 * s3, -c1 * s3 - s1 * c2 * c3, s1 * s2],
+        [s1 * c3 + c1 * c2 * s3, -s1 * s3 + c1 * c2 * c3, -c1 * s2],
+        [s2 * s3, s2 * c3, c2],
+    ]
+}
+
+/// Largest distance of a part's frame, and largest element of the difference of its rotations, over all rows of theirs that have one of
+/// ours at the same time; how many rows these are.
+fn apart(ours: &Run, theirs: &Run) -> (f64, f64, usize) {
+    let (a, b) = (parts(ours), parts(theirs));
+    assert!(!b.is_empty() && b.keys().all(|id| a.contains_key(id)));
+    let time = &ours.columns[0].values;
+    let (mut place, mut turn, mut rows) = (0.0_f64, 0.0_f64, 0);
+    for (row, &t) in theirs.columns[0].values.iter().enumerate() {
+        // commands repeat the time at which they begin: the later row is the newer one
+        let Some(own) = time
+            .iter()
+            .rposition(|x| (x - t).abs() <= 1e-6 * t.abs().max(1e-3))
+        else {
+            continue;
+        };
+        rows += 1;
+        for (id, columns) in &b {
+            let of = |run: &Run, columns: &[usize; 6], row: usize| {
+                columns.map(|c| run.columns[c].values[row])
+            };
+            let (x, y) = (of(ours, &a[id], own), of(theirs, columns, row));
+            for k in 0..3 {
+                place = place.max((x[k] - y[k]).abs());
+            }
+            let (r, s) = (rotation([x[3], x[4], x[5]]), rotation([y[3], y[4], y[5]]));
+            for i in 0..3 {
+                for j in 0..3 {
+                    turn = turn.max((r[i][j] - s[i][j]).abs());
+                }
+            }
+        }
+    }
+    (place, turn, rows)
+}
+
+#[test]
+fn a_pendulum_comes_to_rest_and_stays_there_as_in_adams() {
+    let Some(root) = corpus() else { return };
+    let file = root.join("bthornton191__adams_rescale/models/rescale_analysis.acf");
+    let script = Script::read(&file).unwrap();
+    let session = obeyed(&script.model_file().unwrap(), &script, options(1e-8));
+    let theirs = results::read(&file.with_extension("res")).unwrap();
+    let ours = &session.run;
+    // the last row of statics, and the last of all
+    let static_row = |run: &Run| {
+        let all = run.sequences.iter().find(|s| s.name == "static_001");
+        all.unwrap().rows.end - 1
+    };
+    for (a, b) in [
+        (static_row(ours), static_row(&theirs)),
+        (ours.rows() - 1, theirs.rows() - 1),
+    ] {
+        for name in [
+            "PART_2_XFORM.X",
+            "PART_2_XFORM.Y",
+            "PART_2_XFORM.PSI",
+            "PART_3_XFORM.X",
+            "PART_3_XFORM.PSI",
+            "JOINT_1.FX",
+            "JOINT_1.FY",
+            "JOINT_2.FY",
+            "JOINT_2.TZ",
+        ] {
+            let (x, y) = (
+                ours.column(name).unwrap()[a],
+                theirs.column(name).unwrap()[b],
+            );
+            println!("{name} {x} {y}");
+            // EQUILIBRIUM leaves an imbalance of 1e-4, here against weights of 67
+            assert!(
+                (x - y).abs() < 2e-6 * y.abs().max(10.0),
+                "{name}: {x} and {y}"
+            );
+        }
+    }
+    // −0.43240777557 rad and the weights that the corpus describes
+    let psi = ours.column("PART_2_XFORM.PSI").unwrap().last().unwrap();
+    assert!((psi + 0.432_407_775_57).abs() < 1e-7, "{psi}");
+}
+
+#[test]
+fn a_cart_with_a_pendulum_moves_by_itself_as_in_adams() {
+    let Some(root) = corpus() else { return };
+    let file = root.join("yriyazi__Adams_Simulink-Reverse_Pendulum/validation/Matlab.adm");
+    let mut session = Session::new(Model::read(&file).unwrap(), "cart", options(1e-9));
+    let status = session
+        .simulate(Analysis::Dynamic, 10.0, 2000, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed);
+    let theirs = results::read(&file.with_extension("res")).unwrap();
+    let (place, turn, rows) = apart(&session.run, &theirs);
+    println!("cart and pendulum: {place:.2e} mm, {turn:.2e} over {rows} rows");
+    // an independent integration found 2.8e-3 mm of a travel of 272 mm, and 2.1e-5 rad
+    assert!(rows > 2000 && place < 5e-3 && turn < 5e-5);
+}
+
+/// A recorded run obeyed again: how far its parts are from the recorded ones.
+fn replay(log: &str, error: f64, until: usize) -> Option<(f64, f64, usize)> {
+    let log = corpus()?.join(log);
+    let mut script = Script::from_message_log(&log).unwrap_or_else(|e| panic!("{e}"));
+    let simulations =
+        |s: &cognate::dataset::command::Step| matches!(s.command, Command::Simulate(_));
+    let mut seen = 0;
+    script.steps.retain(|s| {
+        seen += usize::from(simulations(s));
+        seen <= until
+    });
+    let clock = std::time::Instant::now();
+    let session = obeyed(&log.with_extension("adm"), &script, options(error));
+    let theirs = results::read(&log.with_extension("gra")).unwrap_or_else(|e| panic!("{e}"));
+    let (place, turn, rows) = apart(&session.run, &theirs);
+    println!(
+        "{}: {place:.2e} length, {turn:.2e} over {rows} rows in {:.1} s",
+        log.display(),
+        clock.elapsed().as_secs_f64()
+    );
+    assert!(rows > 20, "{rows}");
+    Some((place, turn, rows))
+}
+
+#[test]
+fn a_robot_arm_driven_by_recorded_torques_moves_as_in_adams() {
+    // metres; the log has six digits
+    let Some((place, turn, _)) = replay(
+        "zzy5510__adams_simulink_robotarm/Controls_Plant_1.msg",
+        1e-7,
+        301,
+    ) else {
+        return;
+    };
+    assert!(place < 1e-4 && turn < 1e-4, "{place} {turn}");
+}
+
+/// Command files of wind turbines whose loads come from a program that is not there.
+fn turbines() -> Option<Vec<PathBuf>> {
+    let folder = corpus()?.join("old-NWTC__FAST/CertTest/Old_Adams_files");
+    let entries = std::fs::read_dir(folder).expect("the corpus holds them");
+    let mut all: Vec<PathBuf> = entries
+        .map(|e| e.unwrap().path())
+        .filter(|p| p.extension().is_some_and(|e| e == "acf"))
+        .collect();
+    all.sort();
+    Some(all)
+}
+
+/// Obeys a turbine's commands with USER taken as zero, and its simulations over time replaced by their first instant.
+fn released(file: &Path, statics: bool) -> Session {
+    let mut script = Script::read(file).unwrap_or_else(|e| panic!("{e}"));
+    script.steps.retain_mut(|step| match &mut step.command {
+        Command::Simulate(s) => {
+            let settles = s.kind == SimulationKind::Static;
+            if !settles {
+                s.kind = SimulationKind::InitialConditions;
+            }
+            statics || !settles
+        }
+        Command::Linear(_) => false,
+        _ => true,
+    });
+    let options = Options {
+        zero_user: true,
+        ..options(1e-4)
+    };
+    obeyed(&script.model_file().unwrap(), &script, options)
+}
+
+#[test]
+fn wind_turbines_assemble_and_count_their_freedom() {
+    for file in turbines().unwrap_or_default() {
+        let session = released(&file, false);
+        let record = &session.run.record;
+        let name = file.file_stem().unwrap().to_string_lossy();
+        println!(
+            "{name}: freedom {}, dependent {}",
+            record.freedom,
+            record.redundant.len()
+        );
+        // joints that lock the towers and blades have been switched off: each piece has its six freedoms
+        let pieces = session.model.fields.len() as i64;
+        assert!(record.redundant.is_empty(), "{:?}", record.redundant);
+        assert!(
+            record.freedom > 5 * pieces && record.freedom < 6 * (pieces + 20),
+            "{}",
+            record.freedom
+        );
+    }
+}
+
+#[test]
+fn a_wind_turbine_settles_under_its_weight() {
+    let Some(files) = turbines() else { return };
+    let file = files.iter().find(|f| f.ends_with("Test14_ADAMS_LIN.acf"));
+    let session = released(file.expect("it settles"), true);
+    println!(
+        "{:?} {}",
+        session.run.record.counts, session.run.record.method
+    );
+    assert!(
+        session.run.record.method.contains("stable"),
+        "{}",
+        session.run.record.method
+    );
+    assert!(session.run.sequences.iter().any(|s| s.name == "static_001"));
+}
+
+/// Models that need nothing but what is here, or programs whose results are taken as zero, and run a little while.
+#[test]
+fn models_of_many_people_run() {
+    let Some(root) = corpus() else { return };
+    for (file, end, freedom) in [
+        (
+            "takuma1122__quarter-car-adams-simulink-cosim/adams/Controls_Plant.adm",
+            0.1,
+            None,
+        ),
+        (
+            "Radka208677__RL_with_Continuous_Action_Space/pendulum.adm",
+            0.5,
+            Some(1),
+        ),
+        (
+            "yriyazi__Adams_Simulink-Reverse_Pendulum/Simulink and adams/Controls_Plant_1.adm",
+            0.5,
+            Some(2),
+        ),
+        (
+            "Dinh-Hao-Nguyen__MSCAdams_Wiper_Project/ControlSimulink/Controls_Plant_5.adm",
+            0.05,
+            None,
+        ),
+        (
+            "bthornton191__adamspy/test/files/analysis_with_spikes/test_analysis_with_spikes.adm",
+            0.1,
+            None,
+        ),
+        (
+            "bthornton191__aview_hpc/test/_test_installed/test.adm",
+            1.0,
+            Some(1),
+        ),
+        (
+            "zzy5510__adams_simulink_robotarm/Controls_Plant_1.adm",
+            0.05,
+            Some(7),
+        ),
+    ] {
+        let model = Model::read(root.join(file)).unwrap_or_else(|e| panic!("{e}"));
+        let options = Options {
+            zero_user: true,
+            ..options(1e-6)
+        };
+        let mut session = Session::new(model, "run", options);
+        let status = session
+            .simulate(Analysis::Transient, end, 5, &mut Unwatched)
+            .unwrap_or_else(|e| panic!("{file}: {}", e[0]));
+        let record = &session.run.record;
+        println!(
+            "{file}: freedom {}, {} steps",
+            record.freedom, record.counts.steps
+        );
+        assert_eq!(status, Status::Completed, "{file}: {}", record.stop_reason);
+        assert!(
+            freedom.is_none_or(|f| f == record.freedom),
+            "{file}: {}",
+            record.freedom
+        );
+        let finite = |c: &results::Column| c.values.iter().all(|x| x.is_finite());
+        let lost = session.run.columns.iter().find(|c| !finite(c));
+        assert!(lost.is_none(), "{file}: {}", lost.unwrap().name);
+    }
+}

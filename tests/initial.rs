@@ -1,0 +1,170 @@
+//! Initial conditions of joints and parts: where and how fast a dynamic simulation begins; kinematics and statics do not ask for them.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::model::Model;
+use cognate::results::Status;
+
+const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+
+/// The values of columns at the beginning, and the warnings.
+fn start(text: &str, columns: &[&str], analysis: Analysis) -> (Vec<f64>, Vec<String>) {
+    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        ..Options::default()
+    };
+    let mut s = Session::new(model, "test", options);
+    let status = s
+        .simulate(analysis, 0.001, 1, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let values = columns.iter().map(|c| s.run.column(c).unwrap()[0]);
+    (values.collect(), s.run.record.warnings.clone())
+}
+
+fn near(found: &[f64], expected: &[f64]) {
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() < 1e-9, "{found:?} instead of {expected:?}");
+    }
+}
+
+/// A four-bar of links 1, 2, 2 on a base of 2, drawn as a square with the crank up; JOINT/4 closes the loop.
+fn four_bar(ic: &str) -> String {
+    format!(
+        "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2, QP=0,0.5,0\nMARKER/21, PART=2\nMARKER/22, PART=2, QP=0,1,0\n\
+         PART/3, MASS=1, CM=3, IP=1,1,1, QG=0,1,0\nMARKER/3, PART=3, QP=1,0,0\nMARKER/31, PART=3\nMARKER/32, PART=3, QP=2,0,0\n\
+         PART/4, MASS=1, CM=4, IP=1,1,1, QG=2,1,0\nMARKER/4, PART=4, QP=0,-0.5,0\nMARKER/41, PART=4\nMARKER/42, PART=4, QP=0,-1,0\n\
+         MARKER/11, PART=1, QP=2,0,0\n\
+         JOINT/1, REVOLUTE, I=21, J=1{ic}\nJOINT/2, REVOLUTE, I=31, J=22\nJOINT/3, REVOLUTE, I=41, J=32\n\
+         JOINT/4, REVOLUTE, I=42, J=11"
+    )
+}
+
+#[test]
+fn a_pendulum_begins_at_the_angle_and_rate_of_its_joint() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2, QP=0,-1,0\nMARKER/3, PART=2\n\
+                JOINT/1, REVOLUTE, I=3, J=1, IC=30D,2\nACCGRAV/JGRAV=-9.81\n";
+    let columns = ["AZ(3,1)", "WZ(3,1,1)", "DX(2,1)"];
+    let (found, warnings) = start(text, &columns, Analysis::Dynamic);
+    near(&found, &[30f64.to_radians(), 2.0, 0.5]);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let (found, _) = start(text, &columns, Analysis::Static);
+    near(&found, &[0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_cylindrical_joint_begins_where_both_its_conditions_say() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, CYLINDRICAL, I=2, J=1, ICTRAN=0.3,-1, ICROT=-20D,4\n";
+    let columns = ["DZ(2,1)", "VZ(2,1)", "AZ(2,1)", "WZ(2,1)"];
+    let (found, _) = start(text, &columns, Analysis::Dynamic);
+    near(&found, &[0.3, -1.0, -20f64.to_radians(), 4.0]);
+}
+
+#[test]
+fn a_joint_that_closes_a_loop_is_brought_to_its_angle_as_well() {
+    for (ic, joint4) in [(", IC=10D,3", ""), ("", ", IC=10D,3")] {
+        let text = format!("{}{joint4}\n", four_bar(ic));
+        let columns = [
+            "AZ(21,1)",
+            "WZ(21,1,1)",
+            "AZ(42,11)",
+            "WZ(42,11,11)",
+            "DM(42,11)",
+            "DM(22,1)",
+        ];
+        let (found, warnings) = start(&text, &columns, Analysis::Dynamic);
+        // a parallelogram: both cranks turn alike
+        let angle = 10f64.to_radians();
+        near(&found, &[angle, 3.0, angle, 3.0, 0.0, 1.0]);
+        assert!(warnings.iter().all(|w| !w.contains("IC")), "{warnings:?}");
+    }
+}
+
+#[test]
+fn wishes_that_contradict_the_constraints_are_told() {
+    let text = format!("{}, IC=25D,0\n", four_bar(", IC=10D,0"));
+    let columns = ["AZ(21,1)", "AZ(42,11)"];
+    let (found, warnings) = start(&text, &columns, Analysis::Dynamic);
+    assert!((found[0] - found[1]).abs() < 1e-9);
+    assert!(
+        warnings
+            .iter()
+            .any(|w| w.contains("JOINT/1 IC") || w.contains("JOINT/4 IC")),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn exact_coordinates_stay_while_the_others_give_way() {
+    // a rod of length 1 drawn with its end 0.2 away from the hinge: usually all of it moves
+    let rod = |exact: &str| {
+        format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1, QG=0.2,0,0{exact}\nMARKER/2, PART=2, QP=1,0,0\nMARKER/3, PART=2\n\
+             JPRIM/1, ATPOINT, I=3, J=1\nJPRIM/2, INPLANE, I=2, J=5\nMARKER/5, PART=1, QP=0,0.5,0, REULER=0,90D,0\n"
+        )
+    };
+    // the free end is to lie in the plane y = 0.5, its hinge at the origin: X must give way, unless something else may
+    let columns = ["DX(3,1)", "DY(2,1)", "PHI(3,1)+PSI(3,1)"];
+    let (found, _) = start(&rod(""), &columns, Analysis::Dynamic);
+    near(&found, &[0.0, 0.5, 30f64.to_radians()]);
+    let (_, warnings) = start(&rod(", EXACT=X"), &columns, Analysis::Dynamic);
+    assert!(
+        warnings.iter().any(|w| w.contains("PART/2 EXACT X")),
+        "{warnings:?}"
+    );
+    // two parts tied together: the exact one stays
+    let two = |exact: [&str; 2]| {
+        format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1, QG=1,0,0{}\nMARKER/2, PART=2\nPART/3, MASS=1, CM=3, IP=1,1,1, QG=2,0,0{}\n\
+             MARKER/3, PART=3\nJPRIM/1, ATPOINT, I=2, J=3\n",
+            exact[0], exact[1]
+        )
+    };
+    let all = ", EXACT=X:Y:Z:PSI:THETA:PHI";
+    for (exact, x) in [(["", ""], 1.5), ([all, ""], 1.0), (["", all], 2.0)] {
+        let (found, warnings) = start(&two(exact), &["DX(2,1)", "DX(3,1)"], Analysis::Dynamic);
+        near(&found, &[x, x]);
+        assert!(
+            warnings.iter().all(|w| !w.contains("EXACT")),
+            "{warnings:?}"
+        );
+    }
+}
+
+#[test]
+fn parts_begin_with_their_velocities_along_the_axes_of_their_markers() {
+    let part = "PART/2, MASS=1, CM=2, IP=1,1,1, REULER=90D,0,0, VX=1, VY=2, WZ=3";
+    let text = format!("{part}\nMARKER/2, PART=2, REULER=0,90D,0\n");
+    let columns = ["VX(2,1)", "VY(2,1)", "WX(2,1)", "WY(2,1)", "WZ(2,1)"];
+    let (found, _) = start(&text, &columns, Analysis::Dynamic);
+    // the axes of CM are turned by 90° about z, then about its x: its z is ground's x
+    near(&found, &[1.0, 2.0, 3.0, 0.0, 0.0]);
+    let text = format!(
+        "{part}, VM=7, WM=8\nMARKER/2, PART=2\nMARKER/7, PART=1, REULER=90D,0,0\nMARKER/8, PART=1, REULER=0,90D,0\n"
+    );
+    let (found, _) = start(&text, &columns, Analysis::Dynamic);
+    near(&found, &[-2.0, 1.0, 0.0, -3.0, 0.0]);
+}
+
+#[test]
+fn velocities_of_the_dataset_are_zero_in_statics_and_come_back_afterwards() {
+    let text = format!(
+        "{GROUND}PART/2, MASS=1, CM=2, VX=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
+         JOINT/1, TRANSLATIONAL, I=2, J=3\nSPRINGDAMPER/1, TRANSLATION, I=2, J=4, K=10, LENGTH=1\nMARKER/4, PART=1, QP=-3,0,0\nEND\n"
+    );
+    let options = Options {
+        columns: vec!["VX(2,1)".into(), "DX(2,1)".into()],
+        ..Options::default()
+    };
+    let mut s = Session::new(Model::from_text(&text).unwrap(), "test", options);
+    s.simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
+        .unwrap();
+    assert_eq!(*s.run.column("VX(2,1)").unwrap().last().unwrap(), 0.0);
+    s.simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
+        .unwrap();
+    let x = *s.run.column("DX(2,1)").unwrap().last().unwrap();
+    let omega = 10f64.sqrt();
+    assert!((x - (-2.0 + 2.0 / omega * omega.sin())).abs() < 1e-5, "{x}");
+}
