@@ -358,11 +358,11 @@ meaning. What is defined stands for its whole expression: after `:let w = 1+1`, 
         summary: "the function of a MOTION reads something that is no function of time",
         explanation: "\
 A MOTION prescribes what a joint or a marker does, whatever force that takes. Its rate and acceleration are those of its
-function, so the function may read TIME, MODE, numbers of an ARRAY, splines of these, and VARIABLEs of these; nothing that
-moves.
+function, so the function may read TIME, MODE, numbers of an ARRAY, splines of these, VARIABLEs of these, and states
+(DIF, ARYVAL) whose rates read nothing else; nothing that moves.
 
     MOTION/1, JOINT=1, FUNCTION=0.5*DX(4,5)      write a COUPLER, or GCON/1, FUNCTION=AZ(2,3)-0.5*DX(4,5)
-    MOTION/1, JOINT=1, FUNCTION=DIF(3)           a controller exerts a force: write an SFORCE that follows DIF(3)",
+    MOTION/1, JOINT=1, FUNCTION=DIF(3)           where DIFF/3 reads places: write an SFORCE that follows DIF(3)",
     },
     Code {
         name: "gcon_reads",
@@ -421,6 +421,33 @@ message names the times. Join the pieces by a function that is smooth, such as S
 
 `--piecewise` runs it all the same, from piece to piece; the record of the run then lists the jumps. Where the acceleration
 jumps it runs, with a warning, and forces jump.",
+        name: "user_routine",
+        summary: "USER stands for a routine that is not part of the dataset",
+        explanation: "\
+FUNCTION=USER(...) calls a compiled routine that only its author has. There are three ways on:
+
+    --zero-user                              what it would compute is zero: structure, weights and stiffness can be looked at
+    session.register(\"SFORCE/3\", ...)       a closure of yours computes it, in a program that uses cognate as a library
+    DEACTIVATE/SFORCE, ID=3                  in the command file: without the element
+
+A closure is found by the element's name, by the text of its ROUTINE, or by the first number of USER.",
+    },
+    Code {
+        name: "loop",
+        summary: "a function depends on itself and no value solves that",
+        explanation: "\
+VARIABLEs that read each other, forces that read accelerations or reactions, and inputs that a system feeds through are
+solved together. That needs a solution, and one near where the search begins: the IC of a VARIABLE, else its last value.
+
+    VARIABLE/1, FUNCTION=VARVAL(1)+1         has no solution
+    VARIABLE/1, FUNCTION=VARVAL(1)**2-2      has two: IC=3 leads to 2, IC=-3 to -1",
+    },
+    Code {
+        name: "linear",
+        summary: "the model cannot be linearized in this state",
+        explanation: "\
+LINEAR needs finite derivatives of everything that moves: a force along the line between two markers has none where they
+coincide, a square root none at zero. Settle the model first (SIMULATE/STATIC, `cognate linear --static`), or move it.",
     },
     Code {
         name: "usage",
