@@ -421,6 +421,8 @@ message names the times. Join the pieces by a function that is smooth, such as S
 
 `--piecewise` runs it all the same, from piece to piece; the record of the run then lists the jumps. Where the acceleration
 jumps it runs, with a warning, and forces jump.",
+    },
+    Code {
         name: "user_routine",
         summary: "USER stands for a routine that is not part of the dataset",
         explanation: "\
