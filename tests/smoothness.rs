@@ -3,8 +3,13 @@
 use cognate::expr::Expr;
 use cognate::expr::functions::Continuity::{self, C0, C1, C2, Jump, Smooth};
 use cognate::expr::interpolation::{Bindings, Spline};
+use cognate::expr::program::{Input, Work};
 use cognate::expr::smoothness::Smoothness;
 use cognate::expr::spline::{Ends, Extrapolation};
+use cognate::expr::walk::Host;
+use cognate::scalar::{Germ, Jet, Scalar};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::sync::Arc;
 
 /// Spline 1: knots 0, 1, 2, 3, 5, not a parabola anywhere.
@@ -150,6 +155,7 @@ fn crossings_are_found_where_the_argument_bends_too() {
     assert_eq!(found.breakpoints.len(), 2, "{found:?}");
     assert!((found.breakpoints[1].at - 1.0001).abs() < 1e-12);
     // touching is no crossing
+    assert_breaks("AINT(SIN(0.3*TIME))", Smooth, &[]);
     assert_breaks("ABS((TIME-1)**2)", Smooth, &[]);
     let many = of("SIGN(1,SIN(5*PI*TIME))");
     assert_eq!(many.breakpoints.len(), 99);
@@ -174,4 +180,164 @@ fn other_inputs_break_on_surfaces() {
     assert_eq!(switches, ["DX(1, 2) - 0.5", "1 - DX(1, 2)"]);
     assert_eq!(found.breakpoints.len(), 2);
     assert_eq!(found.class, C1);
+}
+
+/// Texts of one variable, gentle enough for differences: kinks and jumps of all kinds, nested and combined.
+fn gentle() -> impl Strategy<Value = String> {
+    let number = (-20i32..20).prop_map(|k| format!("({})", f64::from(k) / 8.0));
+    let line = (1i32..6, -12i32..12, any::<bool>()).prop_map(|(a, b, down)| {
+        let sign = if down { "-" } else { "" };
+        format!(
+            "({sign}{}*TIME+({}))",
+            f64::from(a) / 2.0,
+            f64::from(b) / 7.0
+        )
+    });
+    let leaf = prop_oneof![3 => line, 1 => number, 1 => Just("TIME".to_string())];
+    leaf.prop_recursive(4, 24, 3, |inner| {
+        let one = inner.clone().prop_flat_map(|x| {
+            prop::sample::select(vec![
+                "1.1*SIN(#)",
+                "1.1*COS(#)",
+                "ABS(#)",
+                "MAX(#,0.3)",
+                "MIN(#,1)",
+                "DIM(#,0.5)",
+                "SIGN(1,#)",
+                "AINT(#)",
+                "ANINT(#)",
+                "MOD(#,1.5)",
+                "STEP(#,-0.5,0,1,1)",
+                "STEP5(#,0.25,1,1.5,2)",
+                "HAVSIN(#,0,-1,2,1)",
+                "ATAN(#)",
+                "EXP(SIN(#))",
+                "IMPACT(#,-1,0.5,2,1.5,1,0.25)",
+                "BISTOP(#,1,-1,1,2,1.2,0.5,0.5)",
+                "CUBSPL(#,0,1,0)",
+                "AKISPL(#,0,1,0)",
+                "INTERP(#,1,1)",
+                "POLY(#,0.5,1,-0.5,0.25)",
+                "CHEBY(SIN(#),0,1,2,0.4)",
+                "FORCOS(#,0,1,1,0.5,0.25)",
+                "IF(#:-1,0,1)",
+                "IF(#-0.7:#,0.7,1.4-(#))",
+                "SWEEP(#,1.1,0.5,0.3,1.5,0.6,0.4)",
+                "ABS(#)**2.5",
+                "(#)**2",
+                "SQRT(1+(#)**2)",
+            ])
+            .prop_map(move |form| form.replace('#', &x))
+        });
+        let two = (inner.clone(), inner, 0..4usize).prop_map(|(a, b, op)| match op {
+            0 => format!("({a}+{b})"),
+            1 => format!("({a}-{b})"),
+            2 => format!("1.1*SIN({a})*COS({b})"),
+            _ => format!("MAX({a},{b})"),
+        });
+        prop_oneof![3 => one, 2 => two]
+    })
+}
+
+proptest! {
+    // always the same texts: where a function touches a level to fourth order, differences drown in rounding
+    #![proptest_config(ProptestConfig { cases: 250, failure_persistence: None, rng_seed: RngSeed::Fixed(5), ..ProptestConfig::default() })]
+
+    /// At every breakpoint differences see the jump that is told; between them value and slope are the integrals of slope and
+    /// curvature, so that nothing jumps there.
+    #[test]
+    fn differences_see_the_breaks_that_are_told_and_no_others(text in gentle()) {
+        let f = Expr::parse(&text).unwrap();
+        let found = f.smoothness(&bindings(), -2.0..=2.0).unwrap();
+        let program = f.compile(&bindings()).unwrap();
+        let mut work = Work::default();
+        let mut at = |t: f64| {
+            let mut out = [Jet::constant(0.0)];
+            let inputs = [Jet::variable(t)];
+            program.eval(&inputs[..program.inputs().len()], &mut work, &mut out);
+            (out[0].value, out[0].first, out[0].second)
+        };
+        prop_assert!(found.complete);
+        for b in &found.breakpoints {
+            // what jumps, just before and just after; the next derivative says how far it moves on the way
+            let h = 1e-6;
+            let mut seen_at = |h: f64| {
+                let (before, after) = (at(b.at - h), at(b.at + h));
+                [after.0 - before.0, after.1 - before.1, after.2 - before.2]
+            };
+            let (wide, narrow) = (seen_at(h), seen_at(h / 1e3));
+            for k in 0..=b.order.min(2) {
+                let seen = wide[k];
+                let told = b.jump(k);
+                if !told.is_finite() {
+                    // where the argument only touches the end of a step, differences do not reach that far
+                    prop_assert!(k == b.order, "{text}: at {} {told} and {seen}", b.at);
+                    continue;
+                }
+                let next = [b.before[k + 1], b.after[k + 1]].map(f64::abs);
+                let size = b.before[k].abs().max(b.after[k].abs()).max(1.0);
+                let off = (seen - told).abs();
+                if next[0].is_finite() && next[1].is_finite() {
+                    let steep = next[0].max(next[1]) * h;
+                    prop_assert!(off < 4.0 * steep + 1e-5 * size, "{text}: at {} order {k}: {told}, seen {seen}", b.at);
+                } else {
+                    // `p**1.2` has a slope that goes to zero like `p**0.2`
+                    let closer = (narrow[k] - told).abs();
+                    prop_assert!(closer < 0.6 * off + 1e-6 * size, "{text}: at {} order {k}: {told}, seen {seen}, closer {}", b.at, narrow[k]);
+                }
+            }
+        }
+        let cells = 800;
+        let width = 4.0 / f64::from(cells);
+        for k in 0..cells {
+            let (a, b) = (-2.0 + width * f64::from(k), -2.0 + width * f64::from(k + 1));
+            // breaks at the ends spoil derivatives there
+            if found.breakpoints.iter().any(|p| a - 1e-9 < p.at && p.at < b + 1e-9) || k == 0 || k == cells - 1 {
+                continue;
+            }
+            let samples: Vec<_> = (0..=8).map(|j| at(a + width * f64::from(j) / 8.0)).collect();
+            // the rule of Boole over eight intervals
+            let weights = [7.0, 32.0, 12.0, 32.0, 14.0, 32.0, 12.0, 32.0, 7.0];
+            let integral = |part: fn(&(f64, f64, f64)) -> f64| {
+                samples.iter().zip(weights).map(|(s, w)| part(s) * w).sum::<f64>() * width / 8.0 * 2.0 / 45.0
+            };
+            let (value, slope) = (integral(|s| s.1), integral(|s| s.2));
+            let bend = samples.iter().map(|s| s.1.abs() + s.2.abs()).fold(1.0, f64::max);
+            let jumps = [samples[8].0 - samples[0].0 - value, samples[8].1 - samples[0].1 - slope];
+            prop_assert!(jumps[0].abs() < 1e-7 * bend, "{text}: the value jumps by {} in {a}..{b}: {found:?}", jumps[0]);
+            prop_assert!(jumps[1].abs() < 1e-4 * bend, "{text}: the slope jumps by {} in {a}..{b}: {found:?}", jumps[1]);
+        }
+    }
+
+    /// One-sided derivatives from germs are those of differences of the walker.
+    #[test]
+    fn just_beside_any_point_the_germ_is_what_differences_see(text in gentle(), t in -2.0..2.0) {
+        let f = Expr::parse(&text).unwrap();
+        let value = |t: f64| f.eval_with(&At(t, bindings())).unwrap();
+        let program = f.compile(&bindings()).unwrap();
+        let mut out = [Germ::constant(0.0)];
+        let inputs = [Germ::line(t, 1.0)];
+        program.eval(&inputs[..program.inputs().len()], &mut Work::default(), &mut out);
+        let h = 1e-4;
+        let d = |k| out[0].derivative_at(k).0;
+        prop_assert!((d(0) - value(t)).abs() < 1e-9 * (1.0 + d(0).abs()));
+        // without a break on the way, what is left of the Taylor series is small
+        let found = f.smoothness(&bindings(), t - h..=t + 2.0 * h).unwrap();
+        if found.breakpoints.is_empty() {
+            let taylor = d(0) + h * (d(1) + h / 2.0 * (d(2) + h / 3.0 * d(3)));
+            let size = 1.0 + (0..5).map(|k| d(k).abs()).sum::<f64>();
+            prop_assert!((value(t + h) - taylor).abs() < 1e-11 * size, "{text} at {t}: {taylor}, {}", value(t + h));
+        }
+    }
+}
+
+struct At(f64, Bindings);
+
+impl Host for At {
+    fn input(&self, input: Input) -> Option<f64> {
+        (input == Input::Time).then_some(self.0)
+    }
+    fn bindings(&self) -> Option<&Bindings> {
+        Some(&self.1)
+    }
 }

@@ -4,7 +4,7 @@ use crate::expr::Symbol;
 use crate::expr::ast::{Callee, Constant, Dialect};
 use crate::expr::functions::Continuity;
 use crate::expr::measures;
-use crate::expr::signature::Kind;
+use crate::expr::signature::{Argument, Kind};
 use crate::expr::{Profile, names, symbol};
 use serde_json::{Value, json};
 
@@ -123,25 +123,25 @@ fn constant(c: Constant) -> &'static str {
 }
 
 fn of_callee(callee: Callee, empty: Card) -> Card {
+    let argument = |a: &Argument| {
+        let default = a
+            .default
+            .map_or(String::new(), |d| format!("; {d} when left out"));
+        (a.name.to_owned(), kind(a.kind) + &default)
+    };
     let card = Card {
         signature: callee.signature(),
+        arguments: callee.arguments().iter().map(argument).collect(),
         needs_history: callee.needs_history(),
         ..empty
     };
     match callee {
         Callee::Function(f) => {
             let row = f.row();
-            let kind = |k: usize| kind(callee.argument(k));
-            let parameters = row
-                .parameters
-                .iter()
-                .enumerate()
-                .map(|(k, p)| (p.name.to_owned(), optional(kind(k), p.optional)));
             Card {
                 group: row.family.title(),
                 doc: paragraphs(row.doc),
                 equation: row.equation.to_owned(),
-                arguments: parameters.collect(),
                 continuity: Some(row.continuity),
                 examples: row
                     .examples
@@ -153,37 +153,21 @@ fn of_callee(callee: Callee, empty: Card) -> Card {
         }
         Callee::Interpolation(f) => {
             let row = f.row();
-            let parameters = row.parameters.iter().enumerate();
             Card {
                 group: GROUPS[4],
                 doc: paragraphs(row.doc),
                 equation: row.equation.to_owned(),
-                arguments: parameters
-                    .map(|(k, p)| {
-                        (
-                            p.name.to_owned(),
-                            optional(kind(callee.argument(k)), p.optional),
-                        )
-                    })
-                    .collect(),
                 continuity: Some(row.continuity),
                 ..card
             }
         }
         Callee::Measure(m) => {
             let row = m.row();
-            let argument = |a: &crate::expr::signature::Argument| {
-                let default = a
-                    .default
-                    .map_or(String::new(), |d| format!("; {d} when left out"));
-                (a.name.to_owned(), kind(a.kind) + &default)
-            };
             Card {
                 group: group(row.family),
                 doc: paragraphs(row.doc),
                 equation: row.formula.to_owned(),
                 unit: row.unit.to_owned(),
-                arguments: row.arguments.iter().map(argument).collect(),
                 ..card
             }
         }
@@ -198,14 +182,6 @@ fn group(family: measures::Family) -> &'static str {
         measures::Family::GenericForce => GROUPS[8],
         measures::Family::ElementForce => GROUPS[9],
         measures::Family::System => GROUPS[10],
-    }
-}
-
-fn optional(text: String, optional: bool) -> String {
-    if optional {
-        text + "; may be left out"
-    } else {
-        text
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::formula::{Formula, Setting, derivative_names, give, times};
 use super::render::{Sources, as_json};
-use super::{Exit, Failure, Outcome, plot, say};
+use super::{Exit, Failure, Outcome, anatomy, plot, say};
 use crate::diagnostic::Diagnostic;
 use crate::expr::Profile;
 use crate::expr::ast::Dialect;
@@ -23,6 +23,7 @@ Examples:
   cognate eval 'IMPACT(TIME,-1,1,100,1.5,25,0.1)' --time 0:2:0.01 --plot impact.svg
   cognate eval '180*sin(360*t)' --dialect expression --time 0.1
   cognate eval 'DX(12,21)+VARVAL(3)' --markers markers.json --set 'VARVAL(3)=2.5'
+  cognate eval 'STEP(TIME,1,0,2,1)' --explain
   echo 'AKISPL(TIME,0,1)' | cognate eval - --time 1.25 --splines splines.json")]
 pub struct Args {
     /// The expression; - reads it from standard input
@@ -55,6 +56,9 @@ pub struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Show the tree with values, inputs, switching functions, continuity class and breakpoints (within the range of --time)
+    #[arg(long, conflicts_with_all = ["plot", "json"])]
+    explain: bool,
 }
 
 /// The language, as it is chosen by name.
@@ -110,6 +114,18 @@ fn evaluate(args: &Args, text: &str) -> Outcome {
         ..Failure::from(d)
     };
     let mut formula = Formula::new(text, &setting).map_err(in_text)?;
+    if args.explain {
+        let (at, interval) = match &time {
+            Time::Not => (None, anatomy::INTERVAL),
+            Time::At(t) => (Some(*t), anatomy::INTERVAL),
+            Time::Over(times) => match (times.first(), times.last()) {
+                (Some(&first), Some(&last)) => (None, first..=last),
+                _ => (None, anatomy::INTERVAL),
+            },
+        };
+        say(&anatomy::explain(&formula, at, interval, &setting.data));
+        return Ok(Exit::Done);
+    }
     let order = usize::from(args.derivative);
     let over = match time {
         Time::Over(times) => times,

@@ -4,7 +4,7 @@ use super::functions;
 use super::verify::model_of;
 use super::{Exit, Failure, Outcome, say};
 use crate::analysis::outline::{Outline, outline};
-use crate::diagnostic::codes::{CODES, code};
+use crate::diagnostic::codes::{all, code};
 use crate::diagnostic::{Diagnostic, near_names};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -43,9 +43,8 @@ pub fn run(args: &Args) -> Outcome {
 }
 
 fn list() -> String {
-    let width = CODES.iter().map(|c| c.name.len()).max().unwrap_or(0);
-    CODES
-        .iter()
+    let width = all().map(|c| c.name.len()).max().unwrap_or(0);
+    all()
         .map(|c| format!("{:width$}  {}\n", c.name, c.summary))
         .collect()
 }
@@ -65,7 +64,7 @@ fn explained(what: &str) -> Result<String, Diagnostic> {
     functions::of_name(what)
         .map(|cards| functions::text(&cards))
         .map_err(|of_names| {
-            let near = near_names(what, CODES.iter().map(|c| c.name));
+            let near = near_names(what, all().map(|c| c.name));
             let unknown = Diagnostic::error(
                 "unknown_name",
                 format!("`{what}` is no code, and the language has no such name"),

@@ -3,6 +3,7 @@
 //! A verb collects what it has to say and returns how it ended; only this file knows exit codes and streams. What was asked for goes
 //! to standard output, everything about it (mistakes, warnings, progress) to standard error.
 
+mod anatomy;
 pub mod card;
 mod check;
 mod convert;

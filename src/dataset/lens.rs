@@ -150,6 +150,14 @@ pub fn put_unit_system(units: &mut Option<Units>, value: Value) -> Done {
     Ok(())
 }
 
+/// SYSTEM=NONE where nothing else is said.
+pub fn no_units(units: &Option<Units>) -> Option<Value> {
+    let u = units.as_ref()?;
+    let named = [&u.force, &u.mass, &u.length, &u.time];
+    let nothing = named.iter().all(|w| w.is_empty()) && stated_ucf(units).is_none();
+    nothing.then(|| Value::Word("NONE".to_owned()))
+}
+
 /// Sets the factor itself; without named units.
 pub fn put_ucf(units: &mut Option<Units>, value: Value) -> Done {
     let ucf = real(value)?;
@@ -509,6 +517,14 @@ pub fn coupler_form(coupler: &mut Coupler) -> Done {
 
 // ------------------------------------------------------------------------------------------------------------ forces
 
+/// A routine computes the law of a contact only where FUNCTION says so.
+pub fn contact_form(contact: &mut Contact) -> Done {
+    if contact.law != ContactLaw::User && contact.function.is_some() {
+        return Err("ROUTINE needs FUNCTION = USER(...)".to_owned());
+    }
+    Ok(())
+}
+
 /// K, C, FORCE, LENGTH belong to TRANSLATIONAL, KT, CT, TORQUE, ANGLE to ROTATIONAL.
 pub fn put_spring(
     spring: &mut SpringDamper,
@@ -649,7 +665,8 @@ pub fn matrix_order(matrix: &Matrix) -> Option<Value> {
         MatrixLayout::ByColumns => "CORDER",
         MatrixLayout::Sparse { .. } => return None,
     };
-    (matrix.file.is_none()).then(|| Value::Word(word.into()))
+    let told = matrix.file.is_none() || matrix.layout == MatrixLayout::ByColumns;
+    told.then(|| Value::Word(word.into()))
 }
 
 // ------------------------------------------------------------------------------------------------ requests, graphics

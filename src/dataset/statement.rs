@@ -270,7 +270,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
             own "MASS" (Kind::Word(units::MASSES), |u, v| put_unit(u, v, |u| &mut u.mass), |u| unit(u, |u| &u.mass));
             own "LENGTH" (Kind::Word(units::LENGTHS), |u, v| put_unit(u, v, |u| &mut u.length), |u| unit(u, |u| &u.length));
             own "TIME" (Kind::Word(units::TIMES), |u, v| put_unit(u, v, |u| &mut u.time), |u| unit(u, |u| &u.time));
-            own "SYSTEM" (Kind::Word(units::SYSTEMS), put_unit_system, |_| None);
+            own "SYSTEM" (Kind::Word(units::SYSTEMS), put_unit_system, no_units);
             own "UCF" (REAL, put_ucf, stated_ucf);
         ),
         open: false,
@@ -598,7 +598,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "CMATRIX" (damping);
         field "CRATIO" (damping_ratio);
     }),
-    numbered!("CONTACT", contacts: Contact, nothing, {
+    numbered!("CONTACT", contacts: Contact, contact_form, {
         lens "TYPE" (Word, kind);
         field "IGEOM" (i_geometry).required();
         field "JGEOM" (j_geometry).required();
@@ -620,7 +620,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "IFLIP" (flip[0]);
         field "JFLIP" (flip[1]);
         field "AUGMENTED_LAGRANGIAN_FORMULATION" (augmented_lagrangian);
-        own "FUNCTION" (Kind::Formula, |c, v| { c.law = ContactLaw::User; c.function.put(v) }, |c| c.function.written());
+        own "FUNCTION" (Kind::Formula, |c, v| { c.law = ContactLaw::User; c.function.put(v) }, |c| c.function.written()).group("law");
         lens "ROUTINE" (Routine, function);
     }),
     numbered!("FRICTION", frictions: Friction, nothing, {

@@ -2,6 +2,10 @@
 //!
 //! A code never changes its meaning. Rows stand in the order in which a text is read; then those about files and commands.
 
+mod model;
+
+pub use model::MODEL_CODES;
+
 /// What a code means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code {
@@ -15,12 +19,15 @@ pub struct Code {
 
 /// The row of a code.
 pub fn code(name: &str) -> Option<&'static Code> {
-    CODES
-        .iter()
-        .find(|code| code.name.eq_ignore_ascii_case(name))
+    all().find(|code| code.name.eq_ignore_ascii_case(name))
 }
 
-/// All codes, in the order in which a text is read.
+/// All codes: those of the language and of files, then those of models.
+pub fn all() -> impl Iterator<Item = &'static Code> {
+    CODES.iter().chain(MODEL_CODES)
+}
+
+/// The codes of the language, in the order in which a text is read; then those of files and commands.
 pub static CODES: &[Code] = &[
     Code {
         name: "bad_char",

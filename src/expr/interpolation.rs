@@ -4,18 +4,34 @@
 //! curve and evaluates over any number; walker and compiler both go through it.
 
 use super::ast::Dialect;
-use super::functions::{Continuity, Parameter, ParameterKind};
+use super::functions::Continuity;
+use super::signature::{self, Argument, Choice, Element, Kind};
 use super::spline::{Ends, Extrapolation, Piecewise, UnfitData, check};
 use crate::diagnostic::Diagnostic;
 use crate::scalar::{Scalar, Table};
-use ParameterKind::{Integer, Number, OneOf};
+use Kind::Number;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
-/// Identifiers that may be given.
-const ID: ParameterKind = Integer(1, u32::MAX);
+/// The number of a spline.
+const ID: Kind = identifier(Element::Spline);
+/// The number of a curve.
+const CURVE: Kind = identifier(Element::Curve);
+/// Order of a derivative.
+const ORDER: Kind = Kind::Selector(Choice::Range(0, 2));
+
+const fn identifier(element: Element) -> Kind {
+    Kind::Identifier {
+        element,
+        zero: false,
+    }
+}
+
+const fn one_of(list: &'static [u32]) -> Kind {
+    Kind::Selector(Choice::OneOf(list))
+}
 
 /// Generates the enum and the rows from the table.
 macro_rules! interpolations {
@@ -39,8 +55,8 @@ macro_rules! interpolations {
                     interpolation: Interpolation::$variant,
                     name: $name,
                     parameters: &[
-                        $(Parameter { name: stringify!($arg), kind: $kind, optional: false },)+
-                        $(Parameter { name: stringify!($optional), kind: $optional_kind, optional: true },)?
+                        $(Argument { name: stringify!($arg), kind: $kind, default: None },)+
+                        $(Argument { name: stringify!($optional), kind: $optional_kind, default: Some("0") },)?
                     ],
                     continuity: Continuity::$continuity,
                     doc: concat!($($doc, "\n"),+),
@@ -59,8 +75,8 @@ pub struct InterpolationRow {
     pub interpolation: Interpolation,
     /// name as users write it
     pub name: &'static str,
-    /// its parameters; `ParameterKind` tells which are literals
-    pub parameters: &'static [Parameter],
+    /// its parameters
+    pub parameters: &'static [Argument],
     /// how smooth the function is in its first argument
     pub continuity: Continuity,
     /// sentence that says what it is, then remarks
@@ -73,27 +89,27 @@ interpolations! {
     /// Akima spline through the points of spline `id`, or its derivative of order `iord`.
     ///
     /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind that takes an order.
-    Akispl "AKISPL" (x: Number, z: Number, id: ID; iord: Integer(0, 2)) C1
+    Akispl "AKISPL" (x: Number, z: Number, id: ID; iord: ORDER) C1
     "cubics with slopes weighted by the neighbouring changes of slope (Akima 1970)"
 
     /// Cubic spline through the points of spline `id`, or its derivative of order `iord`.
     ///
     /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind that takes an order.
-    Cubspl "CUBSPL" (x: Number, z: Number, id: ID; iord: Integer(0, 2)) C2
+    Cubspl "CUBSPL" (x: Number, z: Number, id: ID; iord: ORDER) C2
     "cubics with continuous curvature, zero at the ends"
 
     /// Time series: linear (method 1) or cubic (method 3) interpolation of spline `id`, or its derivative of order `iord`.
-    Interp "INTERP" (x: Number, method: OneOf(&[1, 3]), id: ID; iord: Integer(0, 2)) C0
+    Interp "INTERP" (x: Number, method: one_of(&[1, 3]), id: ID; iord: ORDER) C0
     "straight lines, or the curve of CUBSPL"
 
     /// Component (1 x, 2 y, 3 z) of curve `id` at parameter `alpha`, or its derivative of order `iord`.
-    Curve "CURVE" (alpha: Number, iord: Integer(0, 2), comp: Integer(1, 3), id: ID) C2
+    Curve "CURVE" (alpha: Number, iord: ORDER, comp: Kind::Selector(Choice::Range(1, 3)), id: CURVE) C2
     "cubic B-spline through the points of the curve, alpha from -1 to 1"
 
     /// Random signal whose power spectral density is spline `id`, between the frequencies f0 and f1.
     ///
     /// The same seed gives the same signal. All arguments but x must be constant.
-    Invpsd "INVPSD" (x: Number, id: ID, f0: Number, f1: Number, nf: Number, linlog: OneOf(&[0, 1]), seed: Number) Smooth
+    Invpsd "INVPSD" (x: Number, id: ID, f0: Number, f1: Number, nf: Number, linlog: one_of(&[0, 1]), seed: Number) Smooth
     "sum sqrt(2 PSD(f_i) df_i) sin(2 pi f_i x + phi_i) over nf frequencies"
 }
 
@@ -117,27 +133,12 @@ impl Interpolation {
     }
     /// How many arguments may be written.
     pub fn arity(self) -> RangeInclusive<usize> {
-        let parameters = self.row().parameters;
-        parameters.iter().filter(|p| !p.optional).count()..=parameters.len()
-    }
-    /// What the `k`-th argument may be (`k` from 0).
-    pub fn parameter_kind(self, k: usize) -> ParameterKind {
-        self.row().parameters.get(k).map_or(Number, |p| p.kind)
+        let (least, most) = signature::arity(self.row().parameters);
+        least..=most
     }
     /// The signature as help shows it.
     pub fn signature(self) -> String {
-        let names: Vec<String> = self
-            .row()
-            .parameters
-            .iter()
-            .enumerate()
-            .map(|(k, p)| match (k, p.optional) {
-                (0, _) => p.name.to_string(),
-                (_, false) => format!(", {}", p.name),
-                (_, true) => format!("[, {}]", p.name),
-            })
-            .collect();
-        format!("{}({})", self.name(), names.concat())
+        signature::signature(self.name(), self.row().parameters)
     }
 }
 
@@ -629,7 +630,6 @@ mod tests {
         );
         assert_eq!(Interpolation::Akispl.arity(), 3..=4);
         assert_eq!(Interpolation::Curve.arity(), 4..=4);
-        assert_eq!(Interpolation::Curve.parameter_kind(2), Integer(1, 3));
         assert_eq!(
             Interpolation::from_name("akima", Dialect::Function),
             Some(Interpolation::Akispl)

@@ -15,6 +15,7 @@ use super::interpolation::Bindings;
 use super::program::{Break, Builder, Folding, Input, Levels, Program, Value, Work};
 use crate::diagnostic::Diagnostic;
 use crate::scalar::{Germ, ORDERS};
+use std::fmt;
 use std::ops::RangeInclusive;
 
 /// How smooth an expression is.
@@ -38,6 +39,8 @@ pub struct Smoothness {
     pub breakpoints: Vec<Breakpoint>,
     /// where it breaks in the space of its other inputs
     pub surfaces: Vec<Surface>,
+    /// all switching functions with their levels, breaks or not
+    pub switches: Vec<String>,
     /// false when there are more breakpoints than are told
     pub complete: bool,
 }
@@ -74,10 +77,57 @@ impl Breakpoint {
 pub struct Surface {
     /// the switching function
     pub switch: String,
+    /// where it switches, in words (` at whole numbers`); empty for at zero
+    pub levels: String,
     /// what it reads
     pub inputs: Vec<Input>,
     /// the lowest derivative across the surface that jumps
     pub order: usize,
+}
+
+/// What breaks: `value`, `slope`, `curvature`, `third derivative`, …
+pub fn derivative_name(order: usize) -> &'static str {
+    const NAMES: [&str; ORDERS] = [
+        "value",
+        "slope",
+        "curvature",
+        "third derivative",
+        "fourth derivative",
+        "fifth derivative",
+    ];
+    NAMES.get(order).unwrap_or(&"a higher derivative")
+}
+
+/// `slope jumps from -1 to 1`
+impl fmt::Display for Breakpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = derivative_name(self.order);
+        match (self.before.get(self.order), self.after.get(self.order)) {
+            (Some(before), Some(after)) if before == after || before.is_nan() && after.is_nan() => {
+                write!(f, "{name} has no value")
+            }
+            (Some(before), Some(after)) => {
+                let side = |x: &f64| match x {
+                    x if x.is_nan() => "no value".to_string(),
+                    x => format!("{x}").replace("inf", "infinity"),
+                };
+                write!(f, "{name} jumps from {} to {}", side(before), side(after))
+            }
+            _ => write!(f, "{name} jumps"),
+        }
+    }
+}
+
+/// `DX(1, 2) - 0.5 = 0: slope jumps`
+impl fmt::Display for Surface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let levels = match self.levels.as_str() {
+            "" => " = 0",
+            levels => levels,
+        };
+        let name = derivative_name(self.order);
+        write!(f, "{}{levels}: {name} jumps", self.switch)
+    }
 }
 
 /// The class of what first jumps in the derivative of this order.
@@ -116,6 +166,8 @@ pub const MOST_BREAKPOINTS: usize = 1000;
 const CELLS: usize = 1024;
 /// Places from which surfaces are sought, and draws of other inputs at a breakpoint.
 const DRAWS: usize = 12;
+/// How near the two ends of a touch lie, and how well its jumps cancel.
+const TOUCH: f64 = 1e-6;
 /// Jumps below this part of what jumps are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
@@ -138,6 +190,10 @@ pub fn smoothness(
         program: builder.finish_with_inputs(&[value], &inputs),
         inputs,
     };
+    let switches = breaks
+        .iter()
+        .map(|b| format!("{}{}", builder.text(b.value), b.levels))
+        .collect();
     let (timed, others): (Vec<Break>, Vec<Break>) = breaks
         .into_iter()
         .partition(|b| builder.inputs_of(&[b.value]) == [variable]);
@@ -150,6 +206,7 @@ pub fn smoothness(
         .into_iter()
         .filter_map(|t| whole.at(t))
         .collect();
+    without_touches(&mut breakpoints);
     let complete = candidates.complete && breakpoints.len() <= MOST_BREAKPOINTS;
     breakpoints.truncate(MOST_BREAKPOINTS);
     let surfaces: Vec<Surface> = others
@@ -167,8 +224,32 @@ pub fn smoothness(
         class: worst.map_or(Continuity::Smooth, class),
         breakpoints,
         surfaces,
+        switches,
         complete,
     }
+}
+
+/// Takes away jumps that the next one takes back at once. Where a value only touches a level, as SIN does at 1, rounding
+/// keeps it there for about the root of the machine's precision; nothing crosses.
+fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
+    let mut kept: Vec<Breakpoint> = Vec::with_capacity(breakpoints.len());
+    let mut rest = breakpoints.drain(..).peekable();
+    while let Some(first) = rest.next() {
+        let mut group = vec![first];
+        while let Some(next) = rest.next_if(|b| {
+            let last = &group[group.len() - 1];
+            b.order == 0 && last.order == 0 && b.at - last.at <= TOUCH * b.at.abs().max(1.0)
+        }) {
+            group.push(next);
+        }
+        let (before, after) = (group[0].before[0], group[group.len() - 1].after[0]);
+        let cancel = (before - after).abs() <= TOUCH * before.abs();
+        if group.len() < 2 || !cancel {
+            kept.append(&mut group);
+        }
+    }
+    drop(rest);
+    *breakpoints = kept;
 }
 
 /// Roots of switching functions of one variable.
@@ -377,6 +458,7 @@ impl Whole {
         }
         Some(Surface {
             switch: builder.text(b.value),
+            levels: b.levels.to_string(),
             inputs: own,
             order: order?,
         })

@@ -1,10 +1,10 @@
 //! What names mean: one table of constants, functions, measures and interpolations per language, made from their rows.
 
 use super::ast::{Callee, Constant, Dialect};
-use super::functions::{Function, ParameterKind};
+use super::functions::Function;
 use super::interpolation::Interpolation;
 use super::measures;
-use super::signature::{self, Choice, Element, Kind};
+use super::signature::{self, Argument, Kind};
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
@@ -129,25 +129,21 @@ impl Callee {
         };
         (*range.start(), *range.end())
     }
+    /// Its arguments that have names of their own.
+    pub fn arguments(self) -> &'static [Argument] {
+        match self {
+            Callee::Function(f) => f.row().parameters,
+            Callee::Measure(m) => m.row().arguments,
+            Callee::Interpolation(f) => f.row().parameters,
+        }
+    }
     /// What the `k`-th argument may be (`k` from 0).
     pub fn argument(self, k: usize) -> Kind {
-        match self {
-            Callee::Function(f) => kind_of(f.parameter_kind(k), Element::Array),
-            Callee::Interpolation(f @ Interpolation::Curve) => {
-                kind_of(f.parameter_kind(k), Element::Curve)
-            }
-            Callee::Interpolation(f) => kind_of(f.parameter_kind(k), Element::Spline),
-            Callee::Measure(m) => m.row().arguments.get(k).map_or(Kind::Number, |a| a.kind),
-        }
+        self.arguments().get(k).map_or(Kind::Number, |a| a.kind)
     }
     /// What the `k`-th argument is called (`k` from 0).
     pub fn argument_name(self, k: usize) -> &'static str {
-        let name = match self {
-            Callee::Function(f) => f.row().parameters.get(k).map(|p| p.name),
-            Callee::Measure(m) => m.row().arguments.get(k).map(|a| a.name),
-            Callee::Interpolation(f) => f.row().parameters.get(k).map(|p| p.name),
-        };
-        name.unwrap_or("the argument")
+        self.arguments().get(k).map_or("the argument", |a| a.name)
     }
     /// `NAME(i[, j])`
     pub fn signature(self) -> String {
@@ -164,19 +160,6 @@ impl Callee {
             Callee::Measure(m) => m.needs_history(),
             Callee::Interpolation(_) => false,
         }
-    }
-}
-
-/// A parameter of a function of numbers or of data in the terms of a signature.
-fn kind_of(kind: ParameterKind, element: Element) -> Kind {
-    match kind {
-        ParameterKind::Number => Kind::Number,
-        ParameterKind::Integer(first, u32::MAX) => Kind::Identifier {
-            element,
-            zero: first == 0,
-        },
-        ParameterKind::Integer(first, last) => Kind::Selector(Choice::Range(first, last)),
-        ParameterKind::OneOf(list) => Kind::Selector(Choice::OneOf(list)),
     }
 }
 

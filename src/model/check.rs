@@ -7,9 +7,7 @@ use super::reference::Target;
 use super::*;
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::expr::Expr;
-use crate::expr::ast::{Callee, Node};
-use crate::expr::functions::ParameterKind;
-use crate::expr::interpolation::Interpolation;
+use crate::expr::ast::Node;
 use crate::expr::signature;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
@@ -1081,19 +1079,8 @@ fn named(expr: &Expr) -> Vec<(usize, Target, u32)> {
             continue;
         };
         for (k, &arg) in args.iter().enumerate() {
-            let element = match callee {
-                Callee::Measure(m) => match m.row().arguments.get(k).map(|a| a.kind) {
-                    Some(signature::Kind::Identifier { element, .. }) => element,
-                    _ => continue,
-                },
-                Callee::Interpolation(f) => match (f.row().parameters.get(k), f) {
-                    (Some(p), Interpolation::Curve) if is_identifier(p.name, p.kind) => {
-                        signature::Element::Curve
-                    }
-                    (Some(p), _) if is_identifier(p.name, p.kind) => signature::Element::Spline,
-                    _ => continue,
-                },
-                Callee::Function(_) => continue,
+            let signature::Kind::Identifier { element, .. } = callee.argument(k) else {
+                continue;
             };
             if let Node::Number { literal, .. } = ast.node(arg)
                 && *literal >= 1.0
@@ -1105,9 +1092,4 @@ fn named(expr: &Expr) -> Vec<(usize, Target, u32)> {
         }
     }
     all
-}
-
-/// The parameter of a function over data that names the data.
-fn is_identifier(name: &str, kind: ParameterKind) -> bool {
-    name == "id" && matches!(kind, ParameterKind::Integer(..))
 }

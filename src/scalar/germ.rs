@@ -123,7 +123,7 @@ impl Germ {
         let below = self.below;
         self.len = self.terms().partition_point(|t| t.exponent < below - SAME);
         for term in &mut self.terms[..self.len] {
-            if !term.coefficient.is_finite() {
+            if !term.coefficient.is_finite() || !term.noise.is_finite() {
                 return Self::undefined();
             }
             if term.coefficient.abs() <= SURELY * term.noise {
@@ -384,6 +384,11 @@ impl Germ {
         slope(self).product(rate).integral(value(at), noise)
     }
 
+    /// Whether the absolute value is at most 1 beside the point.
+    fn is_cosine(self) -> bool {
+        (Self::one() - self * self).sign().is_some_and(|s| s >= 0.0)
+    }
+
     /// The limit as a whole number, if it is one as far as known, and the sign of what is left.
     fn whole(&self) -> (f64, Option<f64>) {
         let (c, noise) = self.constant_term();
@@ -507,12 +512,18 @@ impl Scalar for Germ {
         self.sin() / self.cos()
     }
     fn asin(self) -> Self {
+        if !self.is_cosine() {
+            return Self::undefined();
+        }
         self.through_derivative(
             |x| x.clamp(-1.0, 1.0).asin(),
             |x| (Self::one() - x * x).power(-0.5),
         )
     }
     fn acos(self) -> Self {
+        if !self.is_cosine() {
+            return Self::undefined();
+        }
         self.through_derivative(
             |x| x.clamp(-1.0, 1.0).acos(),
             |x| -(Self::one() - x * x).power(-0.5),

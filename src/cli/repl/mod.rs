@@ -4,7 +4,6 @@
 //! editor; piped in, they are read as they are, nothing but results is printed, and the exit code tells whether all went well.
 
 mod editor;
-mod explain;
 mod session;
 
 use super::render::{self, Sources};

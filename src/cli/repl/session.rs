@@ -1,6 +1,6 @@
 //! What a line at the prompt does: an expression is evaluated, a command (`:name`) changes or shows something.
 
-use super::explain::explain;
+use crate::cli::anatomy;
 use crate::cli::eval::DialectName;
 use crate::cli::formula::{Formula, Setting, derivative_names, give, times};
 use crate::cli::{card, functions, plot};
@@ -56,8 +56,8 @@ pub const COMMANDS: [(&str, &str, &str); 12] = [
     ),
     (
         ":explain",
-        "EXPRESSION",
-        "its tree with values, its inputs and its program",
+        "EXPRESSION [FIRST LAST]",
+        "its tree with values, inputs, switches, class, breakpoints and program",
     ),
     (":dialect", "[function|expression]", "change the language"),
     (":quit", "", "end the session"),
@@ -331,19 +331,11 @@ impl Session {
             }
             _ => (text, None),
         };
-        let last_word = |text: &str| {
-            text.rsplit_once(char::is_whitespace)
-                .and_then(|(rest, word)| {
-                    Some((rest.trim_end().to_owned(), word.parse::<f64>().ok()?))
-                })
-        };
-        let Some((expression, first, last)) = last_word(text)
-            .and_then(|(rest, last)| last_word(&rest).map(|(e, first)| (e, first, last)))
-        else {
+        let Some((expression, first, last)) = range_at_the_end(text) else {
             return Reply::Mistake(Box::new(usage(":plot")), text.to_owned());
         };
-        let expanded = self.expanded(&expression);
-        let picture = self.picture(&expanded, &expression, first, last);
+        let expanded = self.expanded(expression);
+        let picture = self.picture(&expanded, expression, first, last);
         let shown = picture.and_then(|picture| match file {
             Some(file) => {
                 write_text(Path::new(file), &svg(&picture)?).map(|()| format!("plot in {file}\n"))
@@ -386,10 +378,20 @@ impl Session {
         })
     }
 
+    /// `EXPRESSION [FIRST LAST]`
     fn explain(&self, text: &str) -> Reply {
+        let (text, interval) = match range_at_the_end(text) {
+            Some((rest, first, last)) => (rest, first..=last),
+            None => (text, anatomy::INTERVAL),
+        };
         let expanded = self.expanded(text);
         match Formula::new(&expanded, &self.setting) {
-            Ok(formula) => Reply::Text(explain(&formula, Some(self.time), &self.setting.data)),
+            Ok(formula) => Reply::Text(anatomy::explain(
+                &formula,
+                Some(self.time),
+                interval,
+                &self.setting.data,
+            )),
             Err(d) => Reply::Mistake(Box::new(d), expanded),
         }
     }
@@ -410,6 +412,17 @@ impl Session {
         }
         out
     }
+}
+
+/// An expression and the two numbers behind it.
+fn range_at_the_end(text: &str) -> Option<(&str, f64, f64)> {
+    let last_word = |text: &'_ str| -> Option<(usize, f64)> {
+        let (rest, word) = text.rsplit_once(char::is_whitespace)?;
+        Some((rest.trim_end().len(), word.parse().ok()?))
+    };
+    let (end, last) = last_word(text)?;
+    let (end, first) = last_word(&text[..end])?;
+    Some((&text[..end], first, last))
 }
 
 /// The text in pieces: words that begin with a letter, numbers with exponent and suffix, and what is between them.

@@ -12,6 +12,7 @@ mod table;
 pub use table::Function;
 
 use super::ast::Dialect;
+use super::signature::{self, Argument};
 use std::ops::RangeInclusive;
 
 /// What kind of function it is; help and documentation are grouped by it.
@@ -51,26 +52,17 @@ pub enum Continuity {
     Smooth,
 }
 
-/// What may stand as an argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ParameterKind {
-    /// an expression
-    Number,
-    /// an unsigned integer literal in this range: an identifier or a selector
-    Integer(u32, u32),
-    /// an unsigned integer literal, one of these
-    OneOf(&'static [u32]),
-}
-
-/// One parameter of a function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Parameter {
-    /// name in the signature
-    pub name: &'static str,
-    /// what may stand there
-    pub kind: ParameterKind,
-    /// whether it may be left out
-    pub optional: bool,
+impl Continuity {
+    /// `C1: the slope is continuous, the curvature is not`
+    pub fn describe(self) -> &'static str {
+        match self {
+            Continuity::Jump => "none: the value jumps",
+            Continuity::C0 => "C0: the value is continuous, the slope is not",
+            Continuity::C1 => "C1: the slope is continuous, the curvature is not",
+            Continuity::C2 => "C2: the curvature is continuous, a higher derivative is not",
+            Continuity::Smooth => "smooth: all derivatives are continuous",
+        }
+    }
 }
 
 /// An example of a row: a source text without variables, and its value.
@@ -94,7 +86,7 @@ pub struct Row {
     /// group in help
     pub family: Family,
     /// parameters that have a name
-    pub parameters: &'static [Parameter],
+    pub parameters: &'static [Argument],
     /// how many further arguments of the last kind may follow: name, least, most
     pub further: Option<(&'static str, usize, usize)>,
     /// how smooth the function is in its arguments
@@ -110,11 +102,11 @@ pub struct Row {
 impl Row {
     /// How many arguments may be written.
     pub fn arity(&self) -> RangeInclusive<usize> {
-        let required = self.parameters.iter().filter(|p| !p.optional).count();
+        let (required, named) = signature::arity(self.parameters);
         let (least, most) = self
             .further
             .map_or((0, 0), |(_, least, most)| (least, most));
-        required + least..=self.parameters.len() + most
+        required + least..=named + most
     }
 
     /// The signature as help shows it: `STEP(x, x0, h0, x1, h1)`, `MAX(a, b[, …])`.
@@ -122,7 +114,7 @@ impl Row {
         let mut text = format!("{}(", self.name);
         for (k, parameter) in self.parameters.iter().enumerate() {
             let comma = if k == 0 { "" } else { ", " };
-            if parameter.optional {
+            if parameter.default.is_some() {
                 text += &format!("[{comma}{}]", parameter.name);
             } else {
                 text += &format!("{comma}{}", parameter.name);
@@ -158,13 +150,6 @@ impl Function {
     /// The signature as help shows it.
     pub fn signature(self) -> String {
         self.row().signature()
-    }
-    /// What the `k`-th argument may be (`k` from 0).
-    pub fn parameter_kind(self, k: usize) -> ParameterKind {
-        self.row()
-            .parameters
-            .get(k)
-            .map_or(ParameterKind::Number, |p| p.kind)
     }
 }
 

@@ -5,11 +5,12 @@
 
 use super::step::{cubic, haversine, quintic, step, sweep_turns};
 use super::{
-    Continuity, Example, Family, Parameter, ParameterKind, Row,
+    Continuity, Example, Family, Row,
     contact::{bistop, impact},
     series,
 };
 use crate::expr::ast::Dialect;
+use crate::expr::signature::{Argument, Element};
 use crate::scalar::{Mask, Scalar};
 use std::f64::consts::{LN_10, PI};
 
@@ -19,18 +20,10 @@ const ENDLESS: usize = usize::MAX - 2;
 /// A parameter that is an expression, or what the row says in parentheses.
 macro_rules! parameter {
     ($name:ident) => {
-        Parameter {
-            name: stringify!($name),
-            kind: ParameterKind::Number,
-            optional: false,
-        }
+        Argument::number(stringify!($name))
     };
     ($name:ident id) => {
-        Parameter {
-            name: stringify!($name),
-            kind: ParameterKind::Integer(1, u32::MAX),
-            optional: true,
-        }
+        Argument::identifier(stringify!($name), Element::Array).or("none")
     };
 }
 

@@ -1,17 +1,33 @@
-//! `:explain`: what the machine sees in an expression: its tree with values, what it reads, and what was left to compute.
+//! What the machine sees in an expression: its tree with values, what it reads, where it switches and how smooth it is, and
+//! what was left to compute. `:explain` and `eval --explain` show it.
 
 use crate::cli::data::Data;
 use crate::cli::formula::{Formula, TimedData};
+use crate::expr::ast::Dialect;
 use crate::expr::ast::{Ast, Node, NodeIx};
+use crate::expr::program::Input;
+use crate::expr::smoothness::smoothness;
 use crate::expr::walk;
 use crate::results::digits;
+use std::ops::RangeInclusive;
 
 /// Deepest level of a tree that is shown, and most lines.
 const DEEPEST: usize = 40;
 const MOST_LINES: usize = 200;
 
-/// The explanation as text.
-pub fn explain(formula: &Formula, time: Option<f64>, data: &Data) -> String {
+/// Most breakpoints and switching functions that are shown.
+const MOST_BREAKS: usize = 12;
+
+/// Where breakpoints are sought unless the user says so.
+pub const INTERVAL: RangeInclusive<f64> = -100.0..=100.0;
+
+/// The explanation as text; breakpoints are sought in the interval.
+pub fn explain(
+    formula: &Formula,
+    time: Option<f64>,
+    interval: RangeInclusive<f64>,
+    data: &Data,
+) -> String {
     let ast = formula.expr.ast();
     let values = walk::values(ast, &TimedData { data, time }).unwrap_or_default();
     let mut text = format!("{}\n\n", formula.expr);
@@ -37,6 +53,7 @@ pub fn explain(formula: &Formula, time: Option<f64>, data: &Data) -> String {
             history.join("  ")
         );
     }
+    text += &breaks(formula, interval);
     text += &match formula.program.constant_outputs().as_deref() {
         Some([value]) => format!("program    folded to the constant {}\n", digits(*value)),
         _ => format!(
@@ -45,6 +62,44 @@ pub fn explain(formula: &Formula, time: Option<f64>, data: &Data) -> String {
             formula.program.work_size()
         ),
     };
+    text
+}
+
+/// Switching functions, class and breakpoints, a line each.
+fn breaks(formula: &Formula, interval: RangeInclusive<f64>) -> String {
+    let found = smoothness(&formula.program, 0, Input::Time, interval.clone());
+    let time = match formula.expr.ast().dialect {
+        Dialect::Function => "TIME",
+        Dialect::Expression => "t",
+    };
+    let mut text = block("switches", found.switches.into_iter());
+    text += &format!("class      {}\n", found.class.describe());
+    let points = found
+        .breakpoints
+        .iter()
+        .map(|b| format!("{time} = {}: {b}", digits(b.at)));
+    let surfaces = found.surfaces.iter().map(|s| s.to_string());
+    text += &block("breaks", points.chain(surfaces));
+    if !found.complete {
+        text += &format!(
+            "           and more between {} and {}\n",
+            digits(*interval.start()),
+            digits(*interval.end())
+        );
+    }
+    text.replace("TIME", time)
+}
+
+/// A name and lines beside it; nothing if there are none.
+fn block(name: &str, lines: impl Iterator<Item = String>) -> String {
+    let lines: Vec<String> = lines.collect();
+    let shown = lines.iter().take(MOST_BREAKS).enumerate();
+    let mut text: String = shown
+        .map(|(k, line)| format!("{:9}  {line}\n", if k == 0 { name } else { "" }))
+        .collect();
+    if lines.len() > MOST_BREAKS {
+        text += &format!("           … {} more\n", lines.len() - MOST_BREAKS);
+    }
     text
 }
 

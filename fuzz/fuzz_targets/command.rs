@@ -1,0 +1,9 @@
+//! Any bytes, taken as a command file, and as commands by the table.
+
+#![no_main]
+
+#[allow(dead_code)]
+#[path = "../../tests/common/models.rs"]
+mod models;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| models::fuzz_command(bytes));

@@ -1,0 +1,9 @@
+//! Any bytes, taken as a dataset.
+
+#![no_main]
+
+#[allow(dead_code)]
+#[path = "../../tests/common/models.rs"]
+mod models;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| models::fuzz_dataset(bytes));

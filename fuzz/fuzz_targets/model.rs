@@ -1,0 +1,9 @@
+//! Random statements by the table: read, written, read again.
+
+#![no_main]
+
+#[allow(dead_code)]
+#[path = "../../tests/common/models.rs"]
+mod models;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| models::fuzz_model(bytes));

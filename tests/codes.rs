@@ -1,0 +1,114 @@
+//! `cognate explain CODE` knows every code that a diagnostic of the program can carry.
+
+use cognate::diagnostic::codes::all;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Functions and methods whose first text is a code.
+const GIVERS: [&str; 10] = [
+    "Diagnostic::error(",
+    "Diagnostic::warning(",
+    "Fault::new(",
+    "Problem::new(",
+    "error(",
+    "warning(",
+    "warn(",
+    "fail(",
+    "refuse(",
+    "trouble(",
+];
+
+/// The codes that a source text names, each with what stands before it.
+fn codes_in(source: &str) -> Vec<String> {
+    // the tests at the end of a file name codes that they make up
+    let source = source
+        .split("#[cfg(test)]\nmod tests")
+        .next()
+        .unwrap_or(source);
+    let mut found = Vec::new();
+    for (at, _) in source.match_indices("code: \"") {
+        found.extend(word(&source[at + 6..]));
+    }
+    for giver in GIVERS {
+        for (at, _) in source.match_indices(giver) {
+            let mut rest = source[at + giver.len()..].trim_start();
+            // arguments before the code: names of variables
+            while let Some((first, more)) = rest.split_once(',')
+                && !first.is_empty()
+                && first
+                    .chars()
+                    .all(|c| c.is_ascii_lowercase() || "_.&".contains(c))
+            {
+                rest = more.trim_start();
+            }
+            found.extend(word(rest));
+        }
+    }
+    found
+}
+
+/// A text in quotes that looks like a code.
+fn word(rest: &str) -> Option<String> {
+    let (word, _) = rest.strip_prefix('"')?.split_once('"')?;
+    let looks_so = !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+    looks_so.then(|| word.to_owned())
+}
+
+fn sources(folder: &Path, all: &mut Vec<std::path::PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            sources(&path, all);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            all.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_code_in_the_sources_is_explained() {
+    let mut files = Vec::new();
+    sources(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
+        &mut files,
+    );
+    let explained: BTreeSet<&str> = all().map(|c| c.name).collect();
+    let mut missing: BTreeMap<String, String> = BTreeMap::new();
+    let mut named = BTreeSet::new();
+    for file in files {
+        for code in codes_in(&std::fs::read_to_string(&file).unwrap()) {
+            if !explained.contains(code.as_str()) {
+                missing.insert(code.clone(), file.display().to_string());
+            }
+            named.insert(code);
+        }
+    }
+    assert!(
+        missing.is_empty(),
+        "give these a text in src/diagnostic/codes: {missing:#?}"
+    );
+    // the search itself works: it meets most of the table
+    assert!(
+        2 * named.len() > explained.len(),
+        "only {} codes found",
+        named.len()
+    );
+}
+
+#[test]
+fn codes_are_explained_once_and_in_full_sentences() {
+    let mut names = BTreeSet::new();
+    for code in all() {
+        assert!(names.insert(code.name), "{} stands twice", code.name);
+        assert!(
+            !code.summary.is_empty() && !code.explanation.is_empty(),
+            "{}",
+            code.name
+        );
+        assert!(
+            code.explanation.lines().all(|l| l.chars().count() <= 160),
+            "{}",
+            code.name
+        );
+    }
+}
