@@ -352,4 +352,18 @@ much: parts may start too far away, or two constraints contradict each other.",
         summary: "something asked for that cannot be computed here",
         explanation: "The message names the function or column; the run goes on without it where that is possible.",
     },
+    Code {
+        name: "implicit_loop",
+        summary: "a function that methods for implicit equations cannot take",
+        explanation: "\
+BDF, HHT and the like need derivatives of all equations. Closures of the host, delayed values and functions that read accelerations
+or forces which depend on them have none: choose an explicit method or RADAU5.",
+    },
+    Code {
+        name: "linear",
+        summary: "the equations cannot be linearized in this state",
+        explanation: "\
+LINEAR needs finite derivatives of every force and function in the state where it is asked for, and an eigenvalue iteration that
+ends. Look for a function at the edge of its domain there, such as SQRT of zero.",
+    },
 ];
