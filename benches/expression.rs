@@ -643,7 +643,7 @@ fn compiling(cases: &[Case]) {
     texts.push(("1000 terms", long(1000)));
     texts.push(("10000 terms", long(10_000)));
     for (name, text) in &texts {
-        let mut parse = || parse(text, Dialect::Function, Profile::Adams).expect("parsed before");
+        let parse = || parse(text, Dialect::Function, Profile::Adams).expect("parsed before");
         let ast = parse();
         let mut compile = || {
             let bindings = Bindings::default();

@@ -164,3 +164,15 @@ impl Levels {
         }
     }
 }
+
+/// What stands behind the switching function: nothing for zero.
+impl std::fmt::Display for Levels {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Levels::Zero => "",
+            Levels::Whole => " at whole numbers",
+            Levels::Halves => " halfway between whole numbers",
+            Levels::Knots(_) => " at the knots of a table",
+        })
+    }
+}
