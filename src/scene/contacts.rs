@@ -100,8 +100,14 @@ impl Builder<'_> {
         let model = self.model;
         for (id, contact) in active(model, "CONTACT", &model.contacts) {
             let name = format!("CONTACT/{id}");
-            if let (ContactLaw::User, Some(user)) = (contact.law, &contact.function) {
-                self.formula(c, &format!("{name} FUNCTION"), user);
+            if let (ContactLaw::User, Some(_)) = (contact.law, &contact.function) {
+                // a routine of contacts is called for incidents that only its own solver finds
+                if !self.zero_user {
+                    let d = Diagnostic::error("user_routine", "a CONTACT by USER is not solved");
+                    c.errors.push(d.element(name).help(
+                        "give it an IMPACT or POISSON law, or take what USER would compute as zero (--zero-user)",
+                    ));
+                }
                 continue;
             }
             let law = match self.law(&name, contact) {
