@@ -324,18 +324,6 @@ Every statement of a dataset is read, checked and written. Those that cannot be 
         explanation: "The result is that of the model without it.",
     },
     Code {
-        name: "user_routine",
-        summary: "USER(...) needs a routine that is not part of the dataset",
-        explanation: "Register a closure for it through the library, or write the function as an expression.",
-    },
-    Code {
-        name: "loop",
-        summary: "a function that depends on its own value",
-        explanation: "\
-VARIABLE and force functions may read each other, even in a circle, as long as some values satisfy all of them. Here none were
-found; an IC near the solution may help, or the circle is not meant.",
-    },
-    Code {
         name: "assembly",
         summary: "the constraints cannot all be satisfied",
         explanation: "\
@@ -358,12 +346,5 @@ much: parts may start too far away, or two constraints contradict each other.",
         explanation: "\
 BDF, HHT and the like need derivatives of all equations. Closures of the host, delayed values and functions that read accelerations
 or forces which depend on them have none: choose an explicit method or RADAU5.",
-    },
-    Code {
-        name: "linear",
-        summary: "the equations cannot be linearized in this state",
-        explanation: "\
-LINEAR needs finite derivatives of every force and function in the state where it is asked for, and an eigenvalue iteration that
-ends. Look for a function at the edge of its domain there, such as SQRT of zero.",
     },
 ];
