@@ -138,8 +138,9 @@ fn a_motion_reads_time_alone() {
         "VARIABLE/1, FUNCTION=TIME*VARVAL(2)\nVARIABLE/2, FUNCTION=VX(20)\n",
     ));
     assert!(what.contains("VX(20) (in VARIABLE/2)"), "{what}");
-    let (_, what) = refused(&driven("DIF(1)", "DIFF/1, IC=1, FUNCTION=-DIF(1)\n"));
-    assert!(what.contains("DIF(1)") && what.contains("state"), "{what}");
+    // a state is a function of time where its equation reads nothing else
+    let (_, what) = refused(&driven("DIF(1)", "DIFF/1, IC=1, FUNCTION=-DIF(1)+DZ(20,1)\n"));
+    assert!(what.contains("DZ(20,1)"), "{what}");
     // VARIABLEs of time, numbers of arrays and splines are functions of time
     let s = run(
         &driven(

@@ -25,6 +25,8 @@ enum What {
     },
     /// a component of a REQUEST that a closure computes, from 0
     Request { id: u32, component: usize },
+    /// a variable of a joint
+    JointVariable { joint: u32, variable: &'static str },
     /// a component of the action of an element on its I marker, ground axes: 0–2 force, 3–5 torque
     Action {
         keyword: &'static str,
@@ -196,6 +198,35 @@ impl Columns {
                 "Single_Component_Force",
             )
         }));
+        for (&id, joint) in &model.joints {
+            let entity = format!("{}_VARIABLES", name_of(&joint.place, "JOINT", id));
+            let mut components = Vec::new();
+            for &(variable, gauge) in crate::physics::joint::variables(joint.kind) {
+                let unit = if gauge.is_angle() {
+                    u.angle.clone()
+                } else {
+                    u.length.clone()
+                };
+                let name = format!("{entity}.{variable}");
+                let what = What::JointVariable {
+                    joint: id,
+                    variable,
+                };
+                let column = self.push(run, name, unit, what);
+                let name = variable.into();
+                components.push(Component { name, column });
+            }
+            if !components.is_empty() {
+                let kind = "Joint_Variables".to_string();
+                run.entities.push(Entity {
+                    name: entity.clone(),
+                    entity,
+                    kind,
+                    id: u64::from(id),
+                    components,
+                });
+            }
+        }
         for (keyword, id, entity, kind) in all {
             let mut components = Vec::new();
             for (c, component) in ["FX", "FY", "FZ", "TX", "TY", "TZ"].iter().enumerate() {
@@ -396,6 +427,11 @@ impl Columns {
                 Some(formulas) => at.formula(formulas[*component]),
                 None => S::constant(f64::NAN),
             },
+            What::JointVariable { joint, variable } => {
+                let mut all = scene.joint_variables.iter();
+                let found = all.position(|v| v.joint == *joint && v.name == *variable);
+                found.map_or_else(S::zero, |k| at.joint_variable(k))
+            }
             What::Action {
                 keyword,
                 id,

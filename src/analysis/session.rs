@@ -175,6 +175,7 @@ impl Session {
         let options = build::Options {
             mode,
             extra: self.columns.extra.clone(),
+            variables: self.options.full,
             skip: self.options.skip.clone(),
             hooks: self.hooks.iter().map(outside::Hook::as_name).collect(),
             zero_user: self.options.zero_user,

@@ -36,6 +36,15 @@ pub enum Gauge {
     Distance,
     /// of x of I about an axis of J, 0 x, 1 y, 2 z (2)
     Angle(usize),
+    /// along x (0) or y (1) of J: a variable of PLANAR
+    Across(usize),
+    /// turn about a pin of a universal joint
+    Pin {
+        /// HOOKE (pins x of I and y of J), else UNIVERSAL (pins z of I and z of J)
+        hooke: bool,
+        /// the pin of I, about which it turns after that of J
+        second: bool,
+    },
 }
 
 impl Gauge {
@@ -49,12 +58,24 @@ impl Gauge {
                 let along = x_i.dot(j.rotation.column((about + 1) % 3));
                 across.atan2(along)
             }
+            Gauge::Across(axis) => (i.position - j.position).dot(j.rotation.column(axis)),
+            Gauge::Pin { hooke, second } => {
+                // R_JI = Ry(a) Rx(b) of HOOKE, Rz(a) Q Rz(b) of UNIVERSAL, Q a quarter turn about x
+                let dot =
+                    |of_i: usize, of_j: usize| i.rotation.column(of_i).dot(j.rotation.column(of_j));
+                match (hooke, second) {
+                    (true, false) => (-dot(0, 2)).atan2(dot(0, 0)),
+                    (true, true) => (-dot(2, 1)).atan2(dot(1, 1)),
+                    (false, false) => dot(2, 0).atan2(-dot(2, 1)),
+                    (false, true) => dot(0, 2).atan2(dot(1, 2)),
+                }
+            }
         }
     }
 
     /// Whether it is an angle.
     pub fn is_angle(self) -> bool {
-        matches!(self, Gauge::Angle(_))
+        matches!(self, Gauge::Angle(_) | Gauge::Pin { .. })
     }
 }
 

@@ -4,6 +4,7 @@
 //! for a joint that carries a part of the forest. *Rows*: the joint as scalar equations between the two marker frames,
 //! for a joint that closes a loop. A property test moves every joint by random motions and finds its rows zero.
 
+use super::coupler::Gauge;
 use super::row::Law;
 use crate::model::{JointKind, PrimitiveKind};
 use crate::space::{Mat3, rotation};
@@ -98,6 +99,34 @@ impl Tie {
             Tie::Joint(JointKind::Rackpin | JointKind::Screw) => 1,
             _ => self.rows().len(),
         }
+    }
+}
+
+/// Variables of a joint: names, and what they measure of I against J; lengths along axes of J, angles right-handed in rad, turns
+/// counted. Joints in space have none that would be numbers of their own (SPHERICAL, CONVEL), FIXED none at all.
+pub fn variables(kind: JointKind) -> &'static [(&'static str, Gauge)] {
+    const DISTANCE: (&str, Gauge) = ("DISTANCE", Gauge::Distance);
+    const ANGLE: (&str, Gauge) = ("ANGLE", Gauge::Angle(2));
+    const fn pins(hooke: bool) -> [(&'static str, Gauge); 2] {
+        let first = Gauge::Pin {
+            hooke,
+            second: false,
+        };
+        let second = Gauge::Pin {
+            hooke,
+            second: true,
+        };
+        [("ANGLE_1", first), ("ANGLE_2", second)]
+    }
+    match kind {
+        JointKind::Revolute => &[ANGLE],
+        JointKind::Translational => &[DISTANCE],
+        JointKind::Cylindrical | JointKind::Screw => &[DISTANCE, ANGLE],
+        JointKind::Rackpin => &[DISTANCE, ("ANGLE", Gauge::Angle(0))],
+        JointKind::Planar => &[("X", Gauge::Across(0)), ("Y", Gauge::Across(1)), ANGLE],
+        JointKind::Hooke => const { &pins(true) },
+        JointKind::Universal => const { &pins(false) },
+        JointKind::Fixed | JointKind::Spherical | JointKind::Convel => &[],
     }
 }
 

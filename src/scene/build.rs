@@ -19,7 +19,6 @@ use crate::model::{
     VectorForce,
 };
 use crate::physics::bushing::Bushing;
-use crate::physics::coupler::Gauge;
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
 use crate::physics::spring_damper::SpringDamper;
@@ -35,6 +34,8 @@ pub struct Options {
     pub mode: u32,
     /// COUPLER, SCREW, RACKPIN: the sum of displacements is zero, as in the manuals, rather than what the assembled configuration shows
     pub strict: bool,
+    /// variables of joints are to be shown
+    pub variables: bool,
     /// expressions to be evaluated beside those of the model: (name, text)
     pub extra: Vec<(String, String)>,
     /// keywords of statements that are left out where they are not solved
@@ -100,6 +101,9 @@ impl Scene {
         b.driven_rows(&mut c, &drives);
         b.links(&mut c);
         b.couplers(&mut c, options.strict);
+        if options.variables {
+            b.joint_variables(&mut c);
+        }
         b.forces(&mut c);
         b.contacts(&mut c, &options.skip);
         b.systems(&mut c);
@@ -730,15 +734,16 @@ impl<'m> Builder<'m> {
             let ids = [id(f.i), f.j.map_or(0, id), 0, 0];
             found.extend(f.law.angles().iter().map(|&m| Counted::Measure(m, ids)));
         }
-        for row in &self.scene.rows {
-            let RowKind::Displacements(sum) = &row.kind else {
-                continue;
-            };
-            for (_, d) in &sum.terms {
-                if let (Gauge::Angle(about), None) = (d.gauge, &d.coordinates) {
-                    let (i, j) = (d.i, d.j);
-                    found.insert(Counted::Angle { about, i, j });
-                }
+        let sums = self.scene.rows.iter().filter_map(|row| match &row.kind {
+            RowKind::Displacements(sum) => Some(&sum.terms),
+            _ => None,
+        });
+        let in_rows = sums.flatten().map(|(_, d)| d);
+        let shown = self.scene.joint_variables.iter().map(|v| &v.displacement);
+        for d in in_rows.chain(shown) {
+            if d.gauge.is_angle() && d.coordinates.is_none() {
+                let (gauge, i, j) = (d.gauge, d.i, d.j);
+                found.insert(Counted::Angle { gauge, i, j });
             }
         }
         self.scene.counted = found.into_iter().collect();

@@ -9,7 +9,7 @@ use super::build::{Builder, active};
 use super::compile::Compiler;
 use super::sweep::{self, Coordinates, LinkState};
 use super::{
-    ConstraintElement, Displacement, LinkMotion, MarkerOnLink, Row, RowKind, Scene, Source, Sum,
+    ConstraintElement, Displacement, JointVariable, LinkMotion, MarkerOnLink, Row, RowKind, Scene, Source, Sum,
 };
 use crate::model::{Joint, JointKind, MarkerOwner};
 use crate::physics::coupler::{Gauge, GearedJoint, gear_factors};
@@ -52,6 +52,29 @@ impl Builder<'_> {
         }
         for (id, gear) in active(model, "GEAR", &model.gears) {
             self.gear(c, id, gear.joints, gear.cv);
+        }
+    }
+
+    /// What joints measure, for those who ask to see it.
+    pub(super) fn joint_variables(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, joint) in active(model, "JOINT", &model.joints) {
+            let name = format!("JOINT/{id}");
+            let variables = crate::physics::joint::variables(joint.kind);
+            if variables.is_empty() {
+                continue;
+            }
+            let (Some(i), Some(j)) = (c.marker(joint.i, &name), c.marker(joint.j, &name)) else {
+                continue;
+            };
+            for &(name, gauge) in variables {
+                let displacement = displacement(&self.scene, gauge, i, j);
+                self.scene.joint_variables.push(JointVariable {
+                    joint: id,
+                    name,
+                    displacement,
+                });
+            }
         }
     }
 
@@ -303,7 +326,7 @@ fn as_coordinates(
         let (value, gradient) = other.gradient(scene, gauge, i, j);
         let mut rest = value - start;
         for (&(k, g), (_, h)) in terms.iter().zip(&gradient) {
-            let scale = if scene.freedoms[k].turn && gauge == Gauge::Distance {
+            let scale = if scene.freedoms[k].turn && !gauge.is_angle() {
                 scene.length
             } else {
                 1.0

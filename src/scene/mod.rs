@@ -225,15 +225,26 @@ pub struct Displacement {
     pub coordinates: Option<(Vec<(usize, f64)>, f64)>,
 }
 
+/// A variable of a joint that is shown among the results.
+#[derive(Clone, Debug)]
+pub struct JointVariable {
+    /// user's number of the JOINT
+    pub joint: u32,
+    /// ANGLE, DISTANCE …
+    pub name: &'static str,
+    /// what it is
+    pub displacement: Displacement,
+}
+
 /// An angle whose turns are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Counted {
     /// a measure with its arguments
     Measure(Measure, [u32; 4]),
-    /// of marker `i` about an axis of marker `j` (indices in [`Scene::markers`])
+    /// of marker `i` against marker `j` (indices in [`Scene::markers`])
     Angle {
-        /// 0 x, 1 y, 2 z
-        about: usize,
+        /// which angle
+        gauge: Gauge,
         /// I marker
         i: usize,
         /// J marker
@@ -385,6 +396,8 @@ pub struct Scene {
     pub counted: Vec<Counted>,
     /// the values these angles have before the first step; empty: within half a turn   (n_turns)
     pub turns: Vec<f64>,
+    /// variables of joints, where somebody wants to see them
+    pub joint_variables: Vec<JointVariable>,
     /// what functions read too early: unknowns of their own
     pub loops: Vec<loops::Unknown>,
     /// their equations are linear, so that programs eliminate them

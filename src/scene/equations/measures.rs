@@ -2,7 +2,6 @@
 
 use super::Equations;
 use crate::expr::measures::{Family, Measure};
-use crate::physics::coupler::Gauge;
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
 use crate::scene::outside::Supplied;
@@ -74,13 +73,19 @@ impl<S: Scalar> Equations<'_, S> {
         principal + turns.scale(turn)
     }
 
+    /// Value of a variable of a joint: its index in [`Scene::joint_variables`](crate::scene::Scene::joint_variables).
+    pub fn joint_variable(&self, k: usize) -> S {
+        let variable = &self.scene.joint_variables[k];
+        self.displacement(&variable.displacement).value
+    }
+
     /// Value of an angle whose turns are counted.
     pub fn counted(&self, angle: Counted) -> S {
         match angle {
             Counted::Measure(measure, ids) => self.measure(measure, ids, measure.name()),
-            Counted::Angle { about, i, j } => {
+            Counted::Angle { gauge, i, j } => {
                 let frame = |m: usize| sweep::marker_frame(&self.scene.markers[m], &self.links);
-                self.turned(angle, Gauge::Angle(about).value(&frame(i), &frame(j)))
+                self.turned(angle, gauge.value(&frame(i), &frame(j)))
             }
         }
     }

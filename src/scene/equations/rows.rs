@@ -2,7 +2,6 @@
 
 use super::Equations;
 use crate::physics::action::Action;
-use crate::physics::coupler::Gauge;
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::scene::{Counted, Displacement, Row, RowKind, Source, Sum};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
@@ -143,16 +142,11 @@ impl<S: Scalar> Equations<'_, S> {
         }
         let rates = d.gauge.value(&moving(&I), &moving(&J));
         let gradient = self.gradient_of(&actions);
-        let value = match d.gauge {
-            Gauge::Distance => seeded.re,
-            Gauge::Angle(about) => {
-                let angle = Counted::Angle {
-                    about,
-                    i: d.i,
-                    j: d.j,
-                };
-                self.turned(angle, seeded.re)
-            }
+        let value = if d.gauge.is_angle() {
+            let (gauge, i, j) = (d.gauge, d.i, d.j);
+            self.turned(Counted::Angle { gauge, i, j }, seeded.re)
+        } else {
+            seeded.re
         };
         RowValue {
             value,
