@@ -150,7 +150,11 @@ fn usual_pivots(scene: &mut Scene) {
     }
     let mut numbers = vec![0.0; scene.layout.len()];
     numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
-    let at = Equations::new(scene, &numbers);
+    // contacts on curves are sought there
+    let mut there = scene.clone();
+    there.cams.iter_mut().for_each(|c| c.begun = false);
+    cams::track(&mut there, &numbers);
+    let at = Equations::new(&there, &numbers);
     let diagonal = at.solved().diagonal.clone();
     // rows that happen to vanish there are taken to be like the others
     let largest = diagonal
