@@ -139,7 +139,10 @@ fn a_motion_reads_time_alone() {
     ));
     assert!(what.contains("VX(20) (in VARIABLE/2)"), "{what}");
     // a state is a function of time where its equation reads nothing else
-    let (_, what) = refused(&driven("DIF(1)", "DIFF/1, IC=1, FUNCTION=-DIF(1)+DZ(20,1)\n"));
+    let (_, what) = refused(&driven(
+        "DIF(1)",
+        "DIFF/1, IC=1, FUNCTION=-DIF(1)+DZ(20,1)\n",
+    ));
     assert!(what.contains("DZ(20,1)"), "{what}");
     // VARIABLEs of time, numbers of arrays and splines are functions of time
     let s = run(

@@ -9,7 +9,8 @@ use super::build::{Builder, active};
 use super::compile::Compiler;
 use super::sweep::{self, Coordinates, LinkState};
 use super::{
-    ConstraintElement, Displacement, JointVariable, LinkMotion, MarkerOnLink, Row, RowKind, Scene, Source, Sum,
+    ConstraintElement, Displacement, JointVariable, LinkMotion, MarkerOnLink, Row, RowKind, Scene,
+    Source, Sum,
 };
 use crate::model::{Joint, JointKind, MarkerOwner};
 use crate::physics::coupler::{Gauge, GearedJoint, gear_factors};
