@@ -256,3 +256,116 @@ fn statics_solves_loops_too() {
         "{x} {v}"
     );
 }
+
+/// A body in space with mass 2 and inertia 3, 4, 5, and a force of every form against its own acceleration.
+const SPACE: &str =
+    "PART/2, MASS=2, CM=2, IP=3,4,5\nMARKER/2, PART=2\nMARKER/9, PART=1, FLOATING\n";
+
+#[test]
+fn every_form_of_force_may_read_the_accelerations_it_makes() {
+    // added mass 0.5, 1, 2 along the axes, added inertia 1, 1, 1 about them
+    let vector = "FX=3-0.5*ACCX(2)\\ FY=2-ACCY(2)\\ FZ=1-2*ACCZ(2)";
+    let torque = "TX=4-WDTX(2)\\ TY=3-WDTY(2)\\ TZ=2-WDTZ(2)";
+    let exact = [
+        ("ACCX(2)", 3.0 / 2.5),
+        ("ACCY(2)", 2.0 / 3.0),
+        ("ACCZ(2)", 1.0 / 4.0),
+        ("WDTX(2)", 4.0 / 4.0),
+        ("WDTY(2)", 3.0 / 5.0),
+        ("WDTZ(2)", 2.0 / 6.0),
+    ];
+    let separate = format!(
+        "VFORCE/1, I=2, JFLOAT=9, RM=1, {vector}\nVTORQUE/1, I=2, JFLOAT=9, RM=1, {torque}\n"
+    );
+    let together = format!("GFORCE/1, I=2, JFLOAT=9, RM=1, {vector}\\ {torque}\n");
+    // SFORCE along and about z of a marker, for the z axes alone
+    let single = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=1-2*ACCZ(2)\n\
+                  SFORCE/2, ROTATION, I=2, J=1, FUNCTION=2-WDTZ(2)\n";
+    for (text, checked) in [
+        (separate.as_str(), &exact[..]),
+        (together.as_str(), &exact[..]),
+        (single, &[exact[2], exact[5]][..]),
+    ] {
+        let columns: Vec<&str> = checked.iter().map(|c| c.0).collect();
+        let s = run(&format!("{SPACE}{text}"), &columns, "AUTO", 0.1);
+        for (column, e) in checked {
+            // at the start nothing turns yet
+            let x = values(&s, column)[0];
+            assert!((x - e).abs() < 1e-12, "{column} = {x}: {text}");
+        }
+    }
+}
+
+#[test]
+fn circles_through_all_forms_of_force_are_solved() {
+    // f = 1 + g/2, g = f − g/2: f = 1.5, g = 1, round forces and round torques
+    let text = format!(
+        "{SPACE}VFORCE/1, I=2, JFLOAT=9, RM=1, FX=1+0.5*GFORCE(1,0,2,0)\\ FY=0\\ FZ=0\n\
+         GFORCE/1, I=2, JFLOAT=9, RM=1, FX=VFORCE(1,0,2,0)-0.5*GFORCE(1,0,2,0)\\ TZ=VTORQ(1,0,8,0)-0.5*GFORCE(1,0,8,0)\n\
+         VTORQUE/1, I=2, JFLOAT=9, RM=1, TX=0\\ TY=0\\ TZ=1+0.5*SFORCE(2,0,8,0)\n\
+         SFORCE/2, ROTATION, ACTIONONLY, I=2, J=1, FUNCTION=GFORCE(1,0,8,0)\n"
+    );
+    let exact = [
+        ("VFORCE(1,0,2,0)", 1.5),
+        ("GFORCE(1,0,2,0)", 1.0),
+        ("VTORQ(1,0,8,0)", 1.5),
+        ("GFORCE(1,0,8,0)", 1.0),
+        ("SFORCE(2,0,8,0)", 1.0),
+        ("ACCX(2)", 1.25),
+        ("WDTZ(2)", 3.5 / 5.0),
+    ];
+    let columns: Vec<&str> = exact.iter().map(|c| c.0).collect();
+    let s = run(&text, &columns, "AUTO", 0.1);
+    for (column, e) in exact {
+        let x = values(&s, column)[0];
+        assert!((x - e).abs() < 1e-12, "{column} = {x}");
+    }
+}
+
+#[test]
+fn every_form_of_force_may_read_reactions() {
+    // a block on a guide along x under its weight: each form of friction takes 0.2 of what presses, 0.2 m g
+    let guide = "PART/2, MASS=2, CM=2, IP=1,1,1, VX=5\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
+                 MARKER/9, PART=1, FLOATING\nJOINT/1, TRANSLATIONAL, I=2, J=3\nACCGRAV/KGRAV=-10\n";
+    for force in [
+        "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=-0.2*JOINT(1,0,4,0)",
+        "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=-0.2*FZ(2,3)",
+        "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=0.2*FZ(3,2)",
+        "VFORCE/1, I=2, JFLOAT=9, RM=1, FX=-0.2*JOINT(1,0,4,0)\\ FY=0\\ FZ=0",
+        "VFORCE/1, I=2, JFLOAT=9, RM=3, FX=0\\ FY=0\\ FZ=0.2*JOINT(1,1,4,0)",
+        "GFORCE/1, I=2, JFLOAT=9, RM=1, FX=-0.2*JOINT(1,0,1,0)\\ TX=JOINT(1,0,6,0)*0.5",
+    ] {
+        let s = run(
+            &format!("{guide}{force}\n"),
+            &["ACCX(2)", "JOINT(1,0,4,0)"],
+            "AUTO",
+            0.1,
+        );
+        assert!(
+            values(&s, "ACCX(2)")
+                .iter()
+                .all(|a| (a + 2.0).abs() < 1e-11),
+            "{force}"
+        );
+        assert!(
+            values(&s, "JOINT(1,0,4,0)")
+                .iter()
+                .all(|f| (f - 20.0).abs() < 1e-10),
+            "{force}"
+        );
+    }
+    // a wheel driven by a motion: a torque that doubles half of what the motion must give
+    let wheel = "PART/2, MASS=2, CM=2, IP=3,3,3\nMARKER/2, PART=2\nMARKER/9, PART=1, FLOATING\nJOINT/1, REVOLUTE, I=2, J=1\n\
+                 MOTION/1, JOINT=1, FUNCTION=TIME**2\nVTORQUE/1, I=2, JFLOAT=9, RM=1, TX=0\\ TY=0\\ TZ=0.5*MOTION(1,0,8,0)\n";
+    let s = run(wheel, &["MOTION(1,0,8,0)", "VTORQ(1,0,8,0)"], "AUTO", 0.1);
+    assert!(
+        values(&s, "MOTION(1,0,8,0)")
+            .iter()
+            .all(|t| (t - 4.0).abs() < 1e-12)
+    );
+    assert!(
+        values(&s, "VTORQ(1,0,8,0)")
+            .iter()
+            .all(|t| (t - 2.0).abs() < 1e-12)
+    );
+}

@@ -133,7 +133,10 @@ impl Unknowns {
                 // no better number: rounding, or no solution
                 self.evaluate(numbers);
                 let z = &numbers[self.places.clone()];
-                let rounding = |(z, d): (&f64, &f64)| d.abs() <= 1e-9 * z.abs().max(1e-300);
+                let largest = z.iter().fold(1e-300, |m: f64, z| m.max(z.abs()));
+                // a number that is zero but for rounding is as exact as the others make it
+                let rounding =
+                    |(z, d): (&f64, &f64)| d.abs() <= 1e-9 * z.abs() || d.abs() <= 1e-13 * largest;
                 if z.iter().zip(&self.step).all(rounding) {
                     return Ok(());
                 }

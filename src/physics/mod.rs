@@ -8,6 +8,7 @@ pub mod cam;
 pub mod contact;
 pub mod coupler;
 pub mod field;
+pub mod friction;
 pub mod joint;
 pub mod nodal_force;
 pub mod row;

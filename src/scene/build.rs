@@ -106,6 +106,7 @@ impl Scene {
         }
         b.forces(&mut c);
         b.contacts(&mut c, &options.skip);
+        b.frictions(&mut c);
         b.systems(&mut c);
         b.plant_inputs(&mut c, &options.plant_inputs);
         b.timed(&mut c);

@@ -7,9 +7,11 @@ use crate::physics::action::{self, Action};
 use crate::physics::bushing::{self, Bushing};
 use crate::physics::contact;
 use crate::physics::field::Field;
+use crate::physics::friction::{Friction, Slip};
 use crate::physics::nodal_force::NodalForce;
 use crate::physics::spring_damper::SpringDamper;
 use crate::scalar::Scalar;
+use crate::space::Vec3;
 use std::sync::Arc;
 
 /// A force between markers.
@@ -58,6 +60,13 @@ pub enum ForceLaw {
     Field(Box<Field>),
     /// two solids of a CONTACT, and what they do where they touch
     Contact(Box<(contact::Pair, contact::Law)>),
+    /// FRICTION in a joint
+    Friction {
+        /// its numbers
+        law: Box<Friction>,
+        /// the joint's number
+        joint: u32,
+    },
     /// one marker of an NFORCE
     Nodal {
         /// its numbers, shared by all its markers
@@ -80,7 +89,8 @@ impl ForceLaw {
             ForceLaw::Single { .. }
             | ForceLaw::Vector { .. }
             | ForceLaw::SpringDamper(_)
-            | ForceLaw::Contact(_) => &[],
+            | ForceLaw::Contact(_)
+            | ForceLaw::Friction { .. } => &[],
         }
     }
 }
@@ -112,6 +122,9 @@ impl ForceElement {
                 let (pair, law) = contact.as_ref();
                 contact::action(&pair.touches(&i, &j), law, &i, &j)
             }
+            ForceLaw::Friction { law, joint } => {
+                law.slip(&i, &j, &self.pressing(at, law, *joint)).action
+            }
             ForceLaw::Nodal {
                 law,
                 markers,
@@ -128,5 +141,33 @@ impl ForceElement {
                 law.action(*place, &j, &x, &rate)
             }
         }
+    }
+
+    /// The joint's reaction on I as far as friction in it depends on it: unknowns, as it depends on the friction in turn.
+    fn pressing<S: Scalar>(&self, at: &Equations<'_, S>, law: &Friction, joint: u32) -> Action<S> {
+        let name = format!("FRICTION/{}", self.id);
+        let part = |first: u32, needed: bool| {
+            Vec3([0, 1, 2].map(|k| {
+                if needed {
+                    at.measure(Measure::Joint, [joint, 0, first + k, 0], &name)
+                } else {
+                    S::zero()
+                }
+            }))
+        };
+        let [force, moment] = law.reads();
+        Action {
+            force: part(2, force),
+            torque: part(6, moment),
+        }
+    }
+
+    /// What slips in the joint, for FRICTION; `None` for other elements.
+    pub fn slip<S: Scalar>(&self, at: &Equations<'_, S>) -> Option<Slip<S>> {
+        let (ForceLaw::Friction { law, joint }, Some(j)) = (&self.law, self.j) else {
+            return None;
+        };
+        let (i, j) = (at.marker(self.i), at.marker(j));
+        Some(law.slip(&i, &j, &self.pressing(at, law, *joint)))
     }
 }

@@ -14,6 +14,7 @@ pub mod equations;
 pub mod forces;
 pub mod forest;
 mod formula;
+mod frictions;
 mod general;
 pub mod layout;
 pub mod loops;

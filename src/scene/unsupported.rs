@@ -7,14 +7,6 @@ use std::collections::BTreeSet;
 /// Elements of a model that are not solved, by keyword and number; inactive ones do not count.
 fn unsolved(model: &Model) -> Vec<(&'static str, u32)> {
     let mut found: Vec<(&'static str, u32)> = Vec::new();
-    macro_rules! kinds {
-        ($($keyword:literal $field:ident),* $(,)?) => { $(
-            found.extend(model.$field.keys().map(|&id| ($keyword, id)));
-        )* };
-    }
-    kinds!(
-        "FRICTION" frictions,
-    );
     const FLEXIBLE: [&str; 9] = [
         "FLEX_BODY",
         "FE_PART",

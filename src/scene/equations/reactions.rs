@@ -170,6 +170,29 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
+    /// FRICTION(id, index), in the axes of the joint's J marker.
+    fn friction(&self, id: u32, index: u32, asked_by: &str) -> S {
+        let scene = self.scene;
+        let mut all = scene.forces.iter();
+        let found = all.find(|f| f.keyword == "FRICTION" && f.id == id);
+        let Some((slip, j)) = found.and_then(|f| Some((f.slip(self)?, f.j?))) else {
+            return self.complain(format!(
+                "{asked_by}: FRICTION/{id} does not exist or is not active"
+            ));
+        };
+        let axes = self.marker(j).R_GM;
+        let k = index as usize;
+        match index {
+            1..=3 => axes.column(k - 1).dot(slip.action.force),
+            4..=6 => axes.column(k - 4).dot(slip.action.torque),
+            14..=16 => axes.column(k - 14).dot(slip.velocity),
+            17..=19 => axes.column(k - 17).dot(slip.spin),
+            _ => self.complain(format!(
+                "{asked_by}: component {index} of FRICTION is not solved: there are force (1 to 3), torque (4 to 6), sliding velocity (14 to 16) and angular velocity (17 to 19)"
+            )),
+        }
+    }
+
     pub(super) fn element_force(
         &self,
         measure: Measure,
@@ -178,6 +201,9 @@ impl<S: Scalar> Equations<'_, S> {
     ) -> S {
         if measure == Measure::Nforce {
             return self.nodal_force([id, jflag, comp, rm], asked_by);
+        }
+        if measure == Measure::Friction {
+            return self.friction(id, jflag, asked_by);
         }
         let Some(keyword) = keyword_of(measure) else {
             return self.complain(format!("{asked_by}: {} is not solved yet", measure.name()));

@@ -1,0 +1,128 @@
+//! FRICTION statements: a force element in the joint, which reads the joint's own reaction.
+//!
+//! The reaction depends on the friction and the friction on the reaction: an algebraic loop like any other (`loops.rs`), whose
+//! unknowns are the components of `JOINT(id, 0, …)` that the law reads.
+
+use super::build::{Builder, active};
+use super::compile::Compiler;
+use super::forces::ForceLaw;
+use crate::diagnostic::Diagnostic;
+use crate::model::{self, JointKind};
+use crate::physics::contact::law::Coulomb;
+use crate::physics::friction::{Friction, Kind, Overlap};
+
+/// Beyond this multiple of the stiction velocity friction is dynamic.
+const DYNAMIC: f64 = 1.5;
+
+impl Builder<'_> {
+    pub(super) fn frictions(&mut self, c: &mut Compiler) {
+        let model = self.model;
+        for (id, f) in active(model, "FRICTION", &model.frictions) {
+            let name = format!("FRICTION/{id}");
+            let Some(joint) = model.joints.get(&f.joint) else {
+                c.error(&name, format!("JOINT/{} does not exist", f.joint));
+                continue;
+            };
+            if model.inactive.contains(&("JOINT".to_string(), f.joint)) {
+                continue;
+            }
+            let kind = match joint.kind {
+                JointKind::Revolute => Kind::Revolute,
+                JointKind::Translational => Kind::Translational,
+                JointKind::Cylindrical => Kind::Cylindrical,
+                JointKind::Spherical => Kind::Spherical,
+                // the pins of the cross: see the joint's rows
+                JointKind::Hooke => Kind::Pins { i: 0, j: 1 },
+                JointKind::Universal => Kind::Pins { i: 2, j: 2 },
+                _ => {
+                    c.error(
+                        &name,
+                        format!("JOINT/{}: there is no friction law for its kind", f.joint),
+                    );
+                    continue;
+                }
+            };
+            match friction(f, kind) {
+                Ok(law) => {
+                    let what = "what should stick creeps below the stiction velocity, and at rest there is no friction";
+                    let warning = Diagnostic::warning("approximate", what).element(&name);
+                    self.scene.warnings.push(warning);
+                    let law = ForceLaw::Friction {
+                        law: Box::new(law),
+                        joint: f.joint,
+                    };
+                    self.between(c, "FRICTION", id, (joint.i, joint.j), law);
+                }
+                Err(why) => c.error(&name, why),
+            }
+        }
+    }
+}
+
+/// The numbers of a statement, with the documented defaults.
+fn friction(f: &model::Friction, kind: Kind) -> Result<Friction, String> {
+    let positive = |what: &str, x: Option<f64>, default: f64| {
+        let x = x.unwrap_or(default);
+        if x > 0.0 && x.is_finite() {
+            Ok(x)
+        } else {
+            Err(format!("{what} must be positive"))
+        }
+    };
+    let not_negative = |what: &str, x: f64| {
+        if x >= 0.0 && x.is_finite() {
+            Ok(x)
+        } else {
+            Err(format!("{what} must not be negative"))
+        }
+    };
+    let vs = positive(
+        "STICTION_TRANSITION_VELOCITY",
+        f.stiction_transition_velocity,
+        0.1,
+    )?;
+    let mut law = Coulomb {
+        mu_static: not_negative("MU_STATIC", f.mu_static)?,
+        mu_dynamic: not_negative("MU_DYNAMIC", f.mu_dynamic)?,
+        stiction_velocity: vs,
+        friction_velocity: DYNAMIC * vs,
+    };
+    match f.effect.as_deref() {
+        // only what acts below the stiction velocity, only what acts beyond it
+        Some("STICTION") => law.mu_dynamic = 0.0,
+        Some("SLIDING") => law.mu_static = law.mu_dynamic,
+        _ => {}
+    }
+    let all = f.inputs.is_empty() || f.inputs.iter().any(|i| i == "ALL");
+    let takes = |what: &str| all || f.inputs.iter().any(|i| i == what);
+    let preload = |what: &str, x: Option<f64>| {
+        let x = if takes("PRELOAD") {
+            x.unwrap_or(0.0)
+        } else {
+            0.0
+        };
+        not_negative(what, x)
+    };
+    let radius = if kind == Kind::Spherical {
+        positive("BALL_RADIUS", f.ball_radius, 1.0)?
+    } else {
+        positive("PIN_RADIUS", f.pin_radius, 1.0)?
+    };
+    Ok(Friction {
+        kind,
+        law,
+        takes: ["REACTION_FORCE", "BENDING_MOMENT", "TORSIONAL_MOMENT"].map(takes),
+        force_preload: preload("FRICTION_FORCE_PRELOAD", f.force_preload)?,
+        torque_preload: preload("FRICTION_TORQUE_PRELOAD", f.torque_preload)?,
+        friction_arm: not_negative("FRICTION_ARM", f.friction_arm.unwrap_or(1.0))?,
+        bending_arm: positive("BENDING_REACTION_ARM", f.bending_reaction_arm, 1.0)?,
+        radius,
+        reaction_arm: positive("REACTION_ARM", f.reaction_arm, 1.0)?,
+        overlap: positive("INITIAL_OVERLAP", f.initial_overlap, 1000.0)?,
+        overlap_change: match f.overlap_delta.as_deref() {
+            Some("INCREASE") => Overlap::Increases,
+            Some("DECREASE") => Overlap::Decreases,
+            _ => Overlap::Constant,
+        },
+    })
+}

@@ -1,0 +1,169 @@
+//! Models of spheres and boxes in contact, for us and for rapier, with their closed forms.
+#![allow(dead_code)] // each program uses its own part
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::model::Model;
+use cognate::results::Status;
+use rapier3d_f64::prelude::*;
+
+pub const G: f64 = 9.81;
+/// rapier's step
+pub const DT: f64 = 1e-3;
+
+pub fn run(text: &str, columns: &[&str], end: f64, steps: u32, error: f64) -> Session {
+    let text =
+        format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\nGRAPHICS/1, PLANE, RM=1\n{text}END\n");
+    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        error: Some(error),
+        ..Options::default()
+    };
+    let mut s = Session::new(model, "test", options);
+    let status = s
+        .simulate(Analysis::Dynamic, end, steps as usize, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    s
+}
+
+pub fn last(s: &Session, column: &str) -> f64 {
+    *s.run.column(column).unwrap().last().unwrap()
+}
+
+/// A ball of dataset number `n` (part, marker, graphics), mass `m`, radius `r`.
+pub fn ball(n: u32, m: f64, r: f64, at: [f64; 3], more: &str) -> String {
+    let [x, y, z] = at;
+    let (i, d) = (0.4 * m * r * r, 2.0 * r);
+    format!(
+        "PART/{n}, MASS={m:?}, CM={n}, IP={i:?},{i:?},{i:?}, QG={x:?},{y:?},{z:?}{more}\nMARKER/{n}, PART={n}\n\
+         GRAPHICS/{n}, ELLIPSOID, CM={n}, XSCALE={d:?}, YSCALE={d:?}, ZSCALE={d:?}\n"
+    )
+}
+
+/// A linear contact: stiffness k, damper c that is fully there at once.
+pub fn contact(n: u32, i: u32, j: u32, k: f64, c: f64, more: &str) -> String {
+    format!(
+        "CONTACT/{n}, IGEOM={i}, JGEOM={j}, IMPACT, STIFFNESS={k:?}, EXPONENT=1, DAMPING={c:?}, DMAX=1E-12{more}\n"
+    )
+}
+
+/// Coulomb friction with one coefficient and a stiction velocity.
+pub fn friction(mu: f64, v: f64) -> String {
+    format!(
+        "\n, COULOMB_FRICTION=ON, MU_STATIC={mu:?}, MU_DYNAMIC={mu:?}, STICTION_TRANSITION_VELOCITY={v:?}\n\
+         , FRICTION_TRANSITION_VELOCITY={:?}",
+        2.0 * v
+    )
+}
+
+/// Restitution of a spring with a damper that never pulls, at damping ratio ζ.
+///
+/// x = v/ω e^(−βt) sin ωt with β = ζω₀, ω² = ω₀² − β² until the force, and with it ẍ, vanishes:
+/// tan ωt = 2βω/(β² − ω²); beyond ζ = 1 the same with hyperbolic functions.
+pub fn restitution(zeta: f64) -> f64 {
+    if zeta < 1.0 {
+        let w = (1.0 - zeta * zeta).sqrt();
+        let a = (2.0 * zeta * w).atan2(zeta * zeta - w * w);
+        (-zeta * a / w).exp() * (zeta / w * a.sin() - a.cos())
+    } else {
+        let s = (zeta * zeta - 1.0).sqrt();
+        let a = (2.0 * zeta * s / (zeta * zeta + s * s)).atanh();
+        (-zeta * a / s).exp() * (zeta / s * a.sinh() - a.cosh())
+    }
+}
+
+/// The damping ratio of a restitution between 0.02 and 1.
+pub fn damping_ratio(e: f64) -> f64 {
+    if e == 1.0 {
+        return 0.0;
+    }
+    let (mut low, mut high) = (1e-9, 8.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if (middle - 1.0f64).abs() < 1e-12 || restitution(middle) > e {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// c of a linear contact of stiffness k and effective mass m with restitution e.
+pub fn damper(e: f64, k: f64, m: f64) -> f64 {
+    2.0 * damping_ratio(e) * (k * m).sqrt()
+}
+
+/// A world without ground, z up.
+pub fn world(gravity: [f64; 3]) -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::new(gravity[0], gravity[1], gravity[2]);
+    world.integration_parameters.dt = DT;
+    world
+}
+
+pub fn ground(world: &mut PhysicsWorld, e: f64, mu: f64) {
+    world.insert(
+        RigidBodyBuilder::fixed().translation(Vector::new(0.0, 0.0, -1.0)),
+        ColliderBuilder::cuboid(100.0, 100.0, 1.0)
+            .restitution(e)
+            .friction(mu),
+    );
+}
+
+pub fn steps(world: &mut PhysicsWorld, end: f64) {
+    for _ in 0..(end / DT).round() as usize {
+        world.step();
+    }
+}
+
+pub fn rigid_ball(
+    world: &mut PhysicsWorld,
+    m: f64,
+    r: f64,
+    at: [f64; 3],
+    v: [f64; 3],
+    e: f64,
+    mu: f64,
+) -> RigidBodyHandle {
+    let body = RigidBodyBuilder::dynamic()
+        .translation(Vector::new(at[0], at[1], at[2]))
+        .linvel(Vector::new(v[0], v[1], v[2]))
+        .can_sleep(false);
+    world
+        .insert(
+            body,
+            ColliderBuilder::ball(r).mass(m).restitution(e).friction(mu),
+        )
+        .0
+}
+
+/// Gravity of a plane tilted by θ about y, in the plane's own axes.
+pub fn tilted(theta: f64) -> [f64; 3] {
+    [G * theta.sin(), 0.0, -G * theta.cos()]
+}
+
+/// A box with edges 2a, 2b, 2c about its centre of mass at `at`, turned by `angle` about y.
+pub fn cuboid(half: [f64; 3], at: [f64; 3], angle: f64) -> String {
+    let [a, b, c] = half;
+    let i = [b * b + c * c, a * a + c * c, a * a + b * b].map(|x| x / 3.0);
+    // REULER 90, angle, −90: a turn about y
+    format!(
+        "PART/2, MASS=1, CM=2, IP={:?},{:?},{:?}, QG={:?},{:?},{:?}, REULER=90D,{angle:?},-90D\nMARKER/2, PART=2\n\
+         MARKER/3, PART=2, QP={:?},{:?},{:?}\nGRAPHICS/2, BOX, CORNER=3, X={:?}, Y={:?}, Z={:?}\n",
+        i[0],
+        i[1],
+        i[2],
+        at[0],
+        at[1],
+        at[2],
+        -a,
+        -b,
+        -c,
+        2.0 * a,
+        2.0 * b,
+        2.0 * c
+    )
+}
