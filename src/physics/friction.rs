@@ -195,7 +195,7 @@ impl Friction {
                 let mut torque = Vec3::zero();
                 for axis in [i.R_GM.column(on_i), j.R_GM.column(on_j)] {
                     let t = self.about_pin(axis, w.dot(axis), force, Vec3::zero());
-                    torque = torque + axis.times(t);
+                    torque += axis.times(t);
                 }
                 (none, torque, none, w)
             }

@@ -11,7 +11,20 @@ pub const G: f64 = 9.81;
 /// rapier's step
 pub const DT: f64 = 1e-3;
 
+/// A dynamic run over a plane at height 0.
 pub fn run(text: &str, columns: &[&str], end: f64, steps: u32, error: f64) -> Session {
+    solve(text, columns, Analysis::Dynamic, end, steps, error)
+}
+
+/// A simulation over a plane at height 0.
+pub fn solve(
+    text: &str,
+    columns: &[&str],
+    analysis: Analysis,
+    end: f64,
+    steps: u32,
+    error: f64,
+) -> Session {
     let text =
         format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\nGRAPHICS/1, PLANE, RM=1\n{text}END\n");
     let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
@@ -22,7 +35,7 @@ pub fn run(text: &str, columns: &[&str], end: f64, steps: u32, error: f64) -> Se
     };
     let mut s = Session::new(model, "test", options);
     let status = s
-        .simulate(Analysis::Dynamic, end, steps as usize, &mut Unwatched)
+        .simulate(analysis, end, steps as usize, &mut Unwatched)
         .unwrap_or_else(|e| panic!("{e:?}"));
     assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
     s
