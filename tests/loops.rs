@@ -258,8 +258,7 @@ fn statics_solves_loops_too() {
 }
 
 /// A body in space with mass 2 and inertia 3, 4, 5, and a force of every form against its own acceleration.
-const SPACE: &str =
-    "PART/2, MASS=2, CM=2, IP=3,4,5\nMARKER/2, PART=2\nMARKER/9, PART=1, FLOATING\n";
+const SPACE: &str = "PART/2, MASS=2, CM=2, IP=3,4,5\nMARKER/2, PART=2\nMARKER/7, PART=1, FLOATING\nMARKER/8, PART=1, FLOATING\nMARKER/9, PART=1, FLOATING\n";
 
 #[test]
 fn every_form_of_force_may_read_the_accelerations_it_makes() {
@@ -275,7 +274,7 @@ fn every_form_of_force_may_read_the_accelerations_it_makes() {
         ("WDTZ(2)", 2.0 / 6.0),
     ];
     let separate = format!(
-        "VFORCE/1, I=2, JFLOAT=9, RM=1, {vector}\nVTORQUE/1, I=2, JFLOAT=9, RM=1, {torque}\n"
+        "VFORCE/1, I=2, JFLOAT=9, RM=1, {vector}\nVTORQUE/1, I=2, JFLOAT=8, RM=1, {torque}\n"
     );
     let together = format!("GFORCE/1, I=2, JFLOAT=9, RM=1, {vector}\\ {torque}\n");
     // SFORCE along and about z of a marker, for the z axes alone
@@ -301,8 +300,8 @@ fn circles_through_all_forms_of_force_are_solved() {
     // f = 1 + g/2, g = f − g/2: f = 1.5, g = 1, round forces and round torques
     let text = format!(
         "{SPACE}VFORCE/1, I=2, JFLOAT=9, RM=1, FX=1+0.5*GFORCE(1,0,2,0)\\ FY=0\\ FZ=0\n\
-         GFORCE/1, I=2, JFLOAT=9, RM=1, FX=VFORCE(1,0,2,0)-0.5*GFORCE(1,0,2,0)\\ TZ=VTORQ(1,0,8,0)-0.5*GFORCE(1,0,8,0)\n\
-         VTORQUE/1, I=2, JFLOAT=9, RM=1, TX=0\\ TY=0\\ TZ=1+0.5*SFORCE(2,0,8,0)\n\
+         GFORCE/1, I=2, JFLOAT=8, RM=1, FX=VFORCE(1,0,2,0)-0.5*GFORCE(1,0,2,0)\\ TZ=VTORQ(1,0,8,0)-0.5*GFORCE(1,0,8,0)\n\
+         VTORQUE/1, I=2, JFLOAT=7, RM=1, TX=0\\ TY=0\\ TZ=1+0.5*SFORCE(2,0,8,0)\n\
          SFORCE/2, ROTATION, ACTIONONLY, I=2, J=1, FUNCTION=GFORCE(1,0,8,0)\n"
     );
     let exact = [
