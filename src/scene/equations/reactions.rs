@@ -12,7 +12,9 @@ use crate::space::{Mat3, Vec3};
 impl<S: Scalar> Equations<'_, S> {
     /// Action of a force element on its I marker.
     pub(super) fn force_action(&self, f: usize) -> Action<S> {
-        if self.solving.get() || self.discovering {
+        // within a function: the function may be a load, which the accelerations wait for
+        let within = !self.open.borrow().is_empty();
+        if self.solving.get() || self.discovering || within {
             self.scene.forces[f].action(self)
         } else {
             self.solved().actions[f]
