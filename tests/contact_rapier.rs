@@ -176,7 +176,7 @@ fn two_spheres_meet_obliquely_along_the_line_of_their_centres() {
     let (r, e, offset) = (0.1, 0.6, 0.12);
     // where they touch the line of centres has the slope offset / √(4r² − offset²)
     let n = [
-        ((4.0 * r * r - offset * offset) as f64).sqrt() / (2.0 * r),
+        f64::sqrt(4.0 * r * r - offset * offset) / (2.0 * r),
         offset / (2.0 * r),
     ];
     // the moving one loses half of (1 + e) of its speed along that line
@@ -283,7 +283,7 @@ fn the_last_of_five_spheres_leaves_with_the_speed_of_the_first() {
 #[test]
 fn a_sphere_rolls_below_seven_halves_of_friction_and_slides_above() {
     let (r, mu) = (0.1, 0.2);
-    let limit = (3.5 * mu as f64).atan();
+    let limit = f64::atan(3.5 * mu);
     let end = 0.5;
     for theta in [0.5 * limit, 0.95 * limit, 1.2 * limit] {
         let g = tilted(theta);
