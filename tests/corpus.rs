@@ -310,3 +310,167 @@ fn hand_made_files_are_formatted_without_harm() {
         same(&text, &again.dataset.formatted(), "formatting again", path);
     }
 }
+
+/// (dataset, Gruebler count, freedom, why): what `verify` finds in real models.
+const FREEDOMS: &[(&str, i64, usize, &str)] = &[
+    (
+        "analysis_with_spikes/test_analysis_with_spikes.adm",
+        -1,
+        0,
+        "one redundant row, as the log of Adams says",
+    ),
+    (
+        "T_MSC_ADAMS/RD3.adm",
+        3,
+        9,
+        "three pairs of planar joints on one plane: six redundant rows, as the log of Adams says",
+    ),
+    (
+        "ControlSimulink/Controls_Plant_5.adm",
+        -21,
+        1,
+        "a planar linkage of hinges: 22 redundant rows, as the log of Adams says",
+    ),
+    (
+        "fitestv1/Fkinev1.adm",
+        -27,
+        1,
+        "3-RPR between planes, two drives: 28 redundant rows, as the log of Adams says",
+    ),
+    (
+        "bachelor-diploma/Only_AGV.adm",
+        8,
+        10,
+        "two loops of hinges with parallel axes fix a translation twice",
+    ),
+    ("bachelor-diploma/Only_AGV_3.adm", 8, 10, "as Only_AGV"),
+    (
+        "models/rescale_analysis.adm",
+        1,
+        1,
+        "a pendulum of two welded parts",
+    ),
+    (
+        "matlab & adams/Controls_Plant_10.adm",
+        8,
+        8,
+        "an open chain on a free body",
+    ),
+    (
+        "pd-control/Controls_Plant_1.adm",
+        2,
+        2,
+        "two legs of hinges",
+    ),
+    (
+        "adams_simulink_robotarm/Controls_Plant_1.adm",
+        7,
+        7,
+        "an arm of seven hinges",
+    ),
+    ("validation/Matlab.adm", 2, 2, "cart and pendulum"),
+    (
+        "Simulink and adams/Controls_Plant_1.adm",
+        2,
+        2,
+        "cart and pendulum",
+    ),
+    ("Continuous_Action_Space/pendulum.adm", 1, 1, "a pendulum"),
+    (
+        "adams_models/test_Cylindrical_Case01.adm",
+        2,
+        2,
+        "one cylindrical joint",
+    ),
+    (
+        "adams_models/test_Distance_Case01.adm",
+        5,
+        5,
+        "one distance by GCON",
+    ),
+    ("adams_models/test_Prismatic_Case01.adm", 1, 1, "one slide"),
+    (
+        "adams_models/test_RackPinion_Case01.adm",
+        1,
+        1,
+        "hinge, slide and rack",
+    ),
+    ("adams_models/test_Revolute_Case01.adm", 1, 1, "one hinge"),
+    ("adams_models/test_Spherical_Case01.adm", 3, 3, "one ball"),
+    (
+        "adams_models/test_TransSpring_Case01.adm",
+        6,
+        6,
+        "a free body on a spring",
+    ),
+    (
+        "adams_models/test_Universal_Case01.adm",
+        2,
+        2,
+        "one Hooke joint",
+    ),
+];
+
+#[test]
+fn real_models_assemble_and_count_their_freedoms() {
+    let Some(files) = corpus("adm") else { return };
+    let mut checked = 0;
+    for path in &files {
+        let name = path.display().to_string();
+        let Some((_, gruebler, freedom, why)) = FREEDOMS.iter().find(|f| name.ends_with(f.0))
+        else {
+            continue;
+        };
+        let model = Model::read(path).unwrap_or_else(|e| panic!("{e}"));
+        let found =
+            cognate::analysis::verify::verify(&model).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        assert!(
+            found.inconsistent.is_empty(),
+            "{name}: {:?}",
+            found.inconsistent
+        );
+        assert_eq!(
+            (found.gruebler, found.freedom),
+            (*gruebler, Some(*freedom)),
+            "{name}: {why}"
+        );
+        let redundant = found.dependent.len() as i64;
+        assert_eq!(
+            *freedom as i64 - redundant,
+            *gruebler,
+            "{name}: {:?}",
+            found.redundant()
+        );
+        checked += 1;
+    }
+    println!("{checked} models counted");
+    assert!(checked >= 20, "{checked}");
+}
+
+/// Rows that Adams leaves out of a model, by its log: as many as are found here.
+#[test]
+fn as_many_rows_are_redundant_as_the_logs_of_adams_say() {
+    let Some(files) = corpus("msg") else { return };
+    let mut checked = 0;
+    for path in &files {
+        let text =
+            String::from_utf8_lossy(&std::fs::read(path).expect("a readable log")).into_owned();
+        let Some(told) = text
+            .split("analysis identified redundant constraints")
+            .nth(1)
+        else {
+            continue;
+        };
+        let n = told.matches("deactivating constraint equation").count();
+        let adm = path.with_extension("adm");
+        if !adm.exists() {
+            continue;
+        }
+        let model = Model::read(&adm).unwrap_or_else(|e| panic!("{e}"));
+        let found = cognate::analysis::verify::verify(&model)
+            .unwrap_or_else(|e| panic!("{}: {e:?}", adm.display()));
+        assert_eq!(found.dependent.len(), n, "{}", adm.display());
+        checked += 1;
+    }
+    assert!(checked >= 3, "{checked}");
+}

@@ -265,3 +265,89 @@ fn reactions_that_are_not_unique_are_the_smallest_set() {
         approx::assert_relative_eq!(value(5), -value(2), max_relative = 1e-10);
     }
 }
+
+/// Two sliders on one line whose distance is drawn as 3 and asked to be 2.
+fn sliders(first: &str, joint: &str) -> String {
+    format!(
+        "SLIDERS\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1{first}\nPART/3, MASS=1, CM=30, IP=1,1,1, QG=3,0,0\n\
+         MARKER/20, PART=2, REULER=90D,90D,0\nMARKER/30, PART=3, REULER=90D,90D,0\nMARKER/10, PART=1, REULER=90D,90D,0\n\
+         MARKER/21, PART=2, QP=1,0,0, REULER=90D,90D,0\nMARKER/31, PART=3, QP=-1,0,0, REULER=90D,90D,0\n\
+         JOINT/1, TRANSLATIONAL, I=20, J=10{joint}\nJOINT/2, TRANSLATIONAL, I=30, J=10\nJPRIM/1, INPLANE, I=21, J=31\nEND\n"
+    )
+}
+
+/// Where the two sliders are when they are assembled.
+fn assembled(text: &str) -> [f64; 2] {
+    let columns = ["DX(20,10)", "DX(30,10)"].map(str::to_string);
+    let options = Options {
+        columns: columns.to_vec(),
+        ..Options::default()
+    };
+    let mut session = Session::new(model(text), "sliders", options);
+    session
+        .simulate(Analysis::InitialConditions, 0.0, 0, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    columns.map(|c| session.run.column(&c).unwrap()[0])
+}
+
+/// Parts move as little as may be; those that EXACT holds, and joints that say where they begin, do not move for others.
+#[test]
+fn assembly_moves_what_may_move() {
+    let close = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-6;
+    let free = assembled(&sliders("", ""));
+    assert!(close(free, [0.5, 2.5]), "{free:?}");
+    let exact = assembled(&sliders(", EXACT=X", ""));
+    assert!(close(exact, [0.0, 2.0]), "{exact:?}");
+    let joint = assembled(&sliders("", ", IC=0.2,0"));
+    assert!(close(joint, [0.2, 2.2]), "{joint:?}");
+}
+
+/// The joint that closes the loop may say where it begins, as well as one that carries a part.
+#[test]
+fn any_joint_of_a_loop_may_say_where_it_begins() {
+    let points = [[0.0, 0.0], [0.0, 1.0], [3.0, 1.0], [3.0, 0.0]];
+    for joint in 1..=4 {
+        let text = four_bar(points, "");
+        let line = text
+            .lines()
+            .find(|l| l.starts_with(&format!("JOINT/{joint},")))
+            .unwrap()
+            .to_string();
+        let text = text.replace(&line, &format!("{line}, IC=0.1,0"));
+        let (i, j) = match joint {
+            1 => (21, 11),
+            2 => (32, 22),
+            3 => (43, 33),
+            _ => (44, 14),
+        };
+        let column = format!("AZ({i},{j})");
+        let options = Options {
+            columns: vec![column.clone()],
+            ..Options::default()
+        };
+        let mut session = Session::new(model(&text), "ic", options);
+        session
+            .simulate(Analysis::InitialConditions, 0.0, 0, &mut Unwatched)
+            .unwrap_or_else(|e| panic!("{e:?}"));
+        let angle = session.run.column(&column).unwrap()[0];
+        // held with weight 10¹⁰ against parts that would rather stay
+        assert!((angle - 0.1).abs() < 1e-6, "JOINT/{joint}: {angle}");
+    }
+}
+
+#[test]
+fn what_routines_compute_is_taken_to_stand_still() {
+    let text = four_bar(
+        [[0.0, 0.0], [0.0, 1.0], [3.0, 1.0], [3.0, 0.0]],
+        "VARIABLE/7, FUNCTION=USER(1)\nMOTION/1, JOINT=1, ROTATION, FUNCTION=2*VARVAL(7)\nSFORCE/1, ROTATIONAL, I=21, J=11, FUNCTION=USER(3)\n",
+    );
+    let v = verified(&text);
+    assert_eq!((v.gruebler, v.freedom), (-3, Some(0)));
+    assert!(
+        v.warnings
+            .iter()
+            .any(|w| w.starts_with("MOTION/1") && w.contains("stand still")),
+        "{:?}",
+        v.warnings
+    );
+}

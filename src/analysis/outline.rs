@@ -49,8 +49,22 @@ pub struct Outline {
 }
 
 /// Statements of forces and systems that may be read without being solved.
-const FORCES: [&str; 9] = [
-    "FIELD", "BEAM", "NFORCE", "CONTACT", "FRICTION", "LSE", "GSE", "TFSISO", "SENSOR",
+pub(super) const FORCES: [&str; 15] = [
+    "FIELD",
+    "BEAM",
+    "NFORCE",
+    "CONTACT",
+    "FRICTION",
+    "LSE",
+    "GSE",
+    "TFSISO",
+    "SENSOR",
+    "FLEX_BODY",
+    "FE_PART",
+    "FE_LOAD",
+    "MFORCE",
+    "TIRE",
+    "WHEEL",
 ];
 
 /// Compiles and assembles a model, and tells what came out.
@@ -77,6 +91,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     }
     let mut q = scene.initial_q.clone();
     let x = start(&scene, model, &mut q);
+    super::placement::settle(&scene, model, 0.0, &mut q, &x, true);
     let assembly = assemble::positions(&mut scene, 0.0, &mut q, &x)?;
     out.warnings.extend(assembly.warnings.iter().cloned());
     for r in &assembly.redundant {

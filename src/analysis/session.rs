@@ -13,6 +13,7 @@ use super::kinematics;
 use super::linear::{self, Linearization};
 use super::misalignment;
 use super::outside;
+use super::placement;
 use super::ranks;
 use super::statics;
 use super::system::{System, complaints};
@@ -245,6 +246,10 @@ impl Session {
         } else {
             Vec::new()
         };
+        if first {
+            let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
+            placement::settle(&scene, &self.model, t, &mut q, &x, joints);
+        }
         // only what moves by itself has initial conditions
         let wishes = if first && mode != KINEMATIC && mode != STATIC {
             wishes::collect(&scene, &self.model)

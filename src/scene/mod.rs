@@ -469,6 +469,28 @@ impl Scene {
         scene
     }
 
+    /// The same scene with motions beside its own that drive nothing yet and stand still at these displacements.
+    #[must_use]
+    pub fn with_further_motions_at(&self, displacements: &[f64]) -> Scene {
+        let mut scene = self.clone();
+        for &value in displacements {
+            let formula = scene.formulas.len();
+            scene
+                .formulas
+                .extend(formula::constant(value).or_else(|| formula::constant(0.0)));
+            scene.motions.push(SceneMotion {
+                id: 0,
+                level: Level::Displacement,
+                formula,
+                state: None,
+                coordinate: None,
+                held: false,
+                offset: 0.0,
+            });
+        }
+        scene
+    }
+
     /// Where the results of a closure of the user's stand among the numbers from outside, when a formula is one of them: for a MOTION
     /// the value and its two derivatives in time.
     pub fn computed(&self, formula: usize) -> Option<usize> {

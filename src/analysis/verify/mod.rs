@@ -17,15 +17,15 @@ pub use words::axis;
 pub(super) use words::direction;
 
 use super::assemble::{self, Assembly};
-use super::misalignment;
 use super::nearby::Place;
+use super::{misalignment, outline, placement};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Level, Model};
 use crate::physics::joint::Tie;
 use crate::scene::build::Options;
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::{Scene, Source};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Stress in an element, relative to the largest in the state, below which it takes no part.
 const NONE: f64 = 1e-7;
@@ -122,6 +122,49 @@ fn skeleton(model: &Model) -> Model {
     model
 }
 
+/// What routines compute is not known: their variables are zero, and motions that depend on them keep the place that the dataset shows.
+fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
+    let mut unknown: BTreeSet<u32> = BTreeSet::new();
+    for (&id, variable) in &mut model.variables {
+        if matches!(variable.function, Formula::User { .. }) {
+            variable.function = Formula::text("0");
+            unknown.insert(id);
+        }
+    }
+    let reads = |function: &Formula, unknown: &BTreeSet<u32>| match function {
+        Formula::User { .. } => true,
+        Formula::Expression { text, .. } => {
+            let text = text.to_ascii_uppercase().replace(' ', "");
+            let mut calls = text.split("VARVAL(").skip(1);
+            calls.any(|rest| {
+                let id: String = rest.chars().take_while(char::is_ascii_digit).collect();
+                id.parse().is_ok_and(|id| unknown.contains(&id))
+            })
+        }
+    };
+    // variables of such variables
+    loop {
+        let more: Vec<u32> = (model.variables.iter())
+            .filter(|(id, v)| !unknown.contains(id) && reads(&v.function, &unknown))
+            .map(|(id, _)| *id)
+            .collect();
+        if more.is_empty() {
+            break;
+        }
+        unknown.extend(more);
+    }
+    for (id, motion) in &mut model.motions {
+        if reads(&motion.function, &unknown) {
+            motion.function = Formula::text("0");
+            motion.level = Level::Velocity;
+            (motion.ic_displacement, motion.ic_velocity) = (None, None);
+            warnings.push(format!(
+                "MOTION/{id} is computed by a routine: it is taken to stand still"
+            ));
+        }
+    }
+}
+
 /// Equations of the constraints of a model: (what, how many elements, equations of all).
 fn counted(model: &Model) -> Vec<(String, usize, usize)> {
     let mut found: BTreeMap<String, (usize, usize)> = BTreeMap::new();
@@ -161,21 +204,17 @@ fn counted(model: &Model) -> Vec<(String, usize, usize)> {
 pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     let mut model = skeleton(model);
     let mut warnings = Vec::new();
-    // what routines prescribe is not known: such motions keep the place that the dataset shows
-    for (id, motion) in &mut model.motions {
-        if matches!(motion.function, Formula::User { .. }) {
-            motion.function = Formula::text("0");
-            motion.level = Level::Velocity;
-            warnings.push(format!(
-                "MOTION/{id}: its USER function is taken to stand still"
-            ));
-        }
-    }
+    stand_still(&mut model, &mut warnings);
     let options = Options {
         mode: 4,
+        skip: outline::FORCES.map(str::to_string).into_iter().collect(),
         ..Options::default()
     };
     let mut scene = Scene::compile(&model, &options)?;
+    for d in &scene.warnings {
+        let element = d.element.clone().unwrap_or_default();
+        warnings.push(format!("{element} {}", d.message));
+    }
     let counted = counted(&model);
     let moving = |parts: &BTreeMap<u32, crate::model::Part>, keyword: &str| {
         let on = |id: &u32| !model.inactive.contains(&(keyword.to_string(), *id));
@@ -199,6 +238,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         .extend(misalignment::misaligned(&scene, &model));
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
+    placement::settle(&scene, &model, 0.0, &mut q, &x, true);
     let assembly = match assemble::positions(&mut scene, 0.0, &mut q, &x) {
         Ok(assembly) => assembly,
         Err(contradictions) => {

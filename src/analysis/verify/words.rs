@@ -45,7 +45,7 @@ pub fn axis(direction: Vec3<f64>, frames: &[(String, Mat3<f64>)]) -> String {
 pub(super) fn point(p: Vec3<f64>) -> String {
     let largest = p.0.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let number = |x: f64| {
-        let x = if x.abs() < 1e-9 * largest { 0.0 } else { x };
+        let x = if x.abs() < 1e-6 * largest { 0.0 } else { x };
         let text = format!("{x:.4}");
         if text.trim_start_matches(['-', '0', '.']).is_empty() && x != 0.0 {
             return format!("{x:.3e}");
