@@ -171,9 +171,9 @@ fn wishes(
         let exact = data.map_or([false; 6], |d| d.exact);
         let firm = |exact: bool| if exact { FIRM } else { 1.0 };
         let off = now.p_GM - part.initial.position;
-        for k in 0..3 {
-            weight.push(firm(exact[k]) / scene.length);
-            residual.push(off.0[k]);
+        for (exact, off) in exact.into_iter().zip(off.0) {
+            weight.push(firm(exact) / scene.length);
+            residual.push(off);
         }
         let turned = log(&(now.R_GM * part.initial.rotation.transpose()));
         for k in 0..3 {
