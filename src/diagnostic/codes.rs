@@ -419,8 +419,8 @@ CVCV does not turn parts to make them so: that is up to joints, such as PLANAR, 
         name: "motion_jumps",
         summary: "what a MOTION prescribes, or its velocity, jumps within the run",
         explanation: "\
-A displacement that jumps takes an infinite velocity, a velocity that jumps an infinite force: there is no motion between. The
-message names the times. Join the pieces by a function that is smooth, such as STEP5.
+A displacement that jumps takes an infinite velocity, a velocity that jumps an infinite force: there is no motion
+between. The message names the times. Join the pieces by a function that is smooth, such as STEP5.
 
     IF(TIME-1: 0, 0, 1)                 jumps: STEP5(TIME, 1, 0, 1.1, 1)
     MAX(0, TIME-1)                      its velocity jumps: POLY(STEP5(TIME,1,0,1.2,0.1), 0, 1)+MAX(0, TIME-1.2), or the like

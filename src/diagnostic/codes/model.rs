@@ -60,8 +60,8 @@ statement before it; without the comma it begins a new one, so a lost comma make
         name: "unknown_argument",
         summary: "an argument that this statement does not have",
         explanation: "\
-The message names near words where there are any. Arguments may be shortened as long as they stay unique. A statement goes on in the
-next line only when that line begins with a comma.",
+The message names near words where there are any. Arguments may be shortened as long as they stay unique. A statement
+goes on in the next line only when that line begins with a comma.",
     },
     Code {
         name: "ambiguous_argument",
@@ -198,8 +198,8 @@ The text of a function goes on to the end of the statement. Where another argume
         name: "impossible_inertia",
         summary: "moments of inertia that no distribution of mass has",
         explanation: "\
-Each principal moment is at most the sum of the two others, and none is negative. IP is xx, yy, zz, xy, xz, yz, where products
-are the integrals of x y dm with positive sign; a tensor with negated products fails here.",
+Each principal moment is at most the sum of the two others, and none is negative. IP is xx, yy, zz, xy, xz, yz, where
+products are the integrals of x y dm with positive sign; a tensor with negated products fails here.",
     },
     Code {
         name: "marker_of_another_part",
@@ -344,7 +344,7 @@ much: parts may start too far away, or two constraints contradict each other.",
         name: "implicit_loop",
         summary: "a function that methods for implicit equations cannot take",
         explanation: "\
-BDF, HHT and the like need derivatives of all equations. Closures of the host, delayed values and functions that read accelerations
-or forces which depend on them have none: choose an explicit method or RADAU5.",
+BDF, HHT and the like need derivatives of all equations. Closures of the host, delayed values and functions that read
+accelerations or forces which depend on them have none: choose an explicit method or RADAU5.",
     },
 ];
