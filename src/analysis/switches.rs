@@ -12,8 +12,8 @@
 //! |g| > h max |ġ|   at both ends        so that g cannot have come to zero
 //! ```
 //!
-//! A function whose branches push each other back (dry friction by SIGN) would switch for ever: after [`BURST`] switches in
-//! hardly any time the branches are let go for [`REST`] steps, and error control finds its way.
+//! A function whose branches push each other back (dry friction by SIGN) would switch for ever: after forty switches in
+//! hardly any time the branches are let go for twenty steps, and error control finds its way.
 
 use super::system::System;
 use crate::numeric::event::{Locator, sign};
@@ -33,7 +33,7 @@ pub enum Verdict {
     Keep,
     /// a branch ended in it, then: undo it, and step up to there
     Redo(f64),
-    /// a branch ends at its end: begin anew there, with [`Switches::begin`]
+    /// a branch ends at its end: begin anew there, with [`Switches::change`]
     Switched,
 }
 
