@@ -194,6 +194,7 @@ pub fn integrate(
             system,
             outputs: &mut outputs,
             end,
+            most: options.max_steps,
             out: &mut out,
             watch,
         };
@@ -302,6 +303,8 @@ struct Leg<'a> {
     system: &'a mut System,
     outputs: &'a mut Vec<f64>,
     end: f64,
+    /// attempted steps permitted
+    most: usize,
     out: &'a mut Trajectory,
     watch: &'a mut dyn Watch,
 }
@@ -339,7 +342,16 @@ impl Leg<'_> {
             }
             let step = match method.step(self.system, limit) {
                 Ok(step) => step,
-                Err(stop) => return Finished::Ended(Ended::Stop(stop)),
+                Err(stop) => {
+                    let spent = method.stats().steps + method.stats().rejected;
+                    if spent < self.most && switches.let_go(self.system) {
+                        let state = method.y().to_vec();
+                        if method.reinitialize(self.system, stop.t, &state).is_ok() {
+                            continue;
+                        }
+                    }
+                    return Finished::Ended(Ended::Stop(stop));
+                }
             };
             let off = self.system.worst_left_out(step.t1, method.y());
             let off = off.filter(|off| off.1.is_nan() || off.1 > FOLLOWS);

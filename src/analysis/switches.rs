@@ -13,7 +13,8 @@
 //! ```
 //!
 //! A function whose branches push each other back (dry friction by SIGN) would switch for ever: after forty switches in
-//! hardly any time the branches are let go for twenty steps, and error control finds its way.
+//! hardly any time the branches are let go for twenty steps, and error control finds its way. The same is done where no step
+//! is possible while they are held.
 
 use super::system::System;
 use crate::numeric::event::{Locator, sign};
@@ -116,6 +117,19 @@ impl Switches {
             return;
         }
         self.settle(system, t, y);
+    }
+
+    /// Lets the branches go for a while where no step is possible while they are held: beyond its end a branch may grow without
+    /// bound (a ramp much shorter than any step). False: they were not held.
+    pub fn let_go(&mut self, system: &mut System) -> bool {
+        if self.none() || self.rest > 0 || !system.can_hold() {
+            return false;
+        }
+        self.landing = None;
+        self.redone = 0;
+        self.rest = REST;
+        system.release();
+        true
     }
 
     /// Holds the branches that fit the state: `next` where it says a side, else the sign there.

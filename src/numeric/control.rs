@@ -240,30 +240,37 @@ impl Starter<'_> {
         let typical = self.weights.typical();
         let scale = |i: usize| y[i].abs().max(typical[i]);
         let speed = worst((0..y.len()).map(|i| f[i] / scale(i)));
-        let probe = if speed > 1e-8 {
+        let mut probe = if speed > 1e-8 {
             0.01 / speed
         } else {
             1e-6 * t.abs().max(1.0)
         }
         .min(self.options.h_max);
-        for i in 0..y.len() {
-            y_probe[i] = y[i] + probe * f[i];
+        loop {
+            for i in 0..y.len() {
+                y_probe[i] = y[i] + probe * f[i];
+            }
+            let bend = match rate(t + probe, y_probe, f_probe) {
+                Ok(()) => worst((0..y.len()).map(|i| (f_probe[i] - f[i]) / scale(i))) / probe,
+                Err(_) => 0.0,
+            };
+            let haste = if bend.is_finite() {
+                speed.max(bend.sqrt())
+            } else {
+                speed
+            };
+            let h = if haste > 1e-8 {
+                (0.01 * self.weights.tolerance()).powf(1.0 / self.order as f64) / haste
+            } else {
+                1e3 * probe
+            };
+            // a rate that is quite another so far away says nothing about a step so short
+            if h < 1e-5 * probe && probe > 1e-12 * t.abs().max(1e-6) {
+                probe *= 1e-2;
+                continue;
+            }
+            return h.min(self.options.h_max);
         }
-        let bend = match rate(t + probe, y_probe, f_probe) {
-            Ok(()) => worst((0..y.len()).map(|i| (f_probe[i] - f[i]) / scale(i))) / probe,
-            Err(_) => 0.0,
-        };
-        let haste = if bend.is_finite() {
-            speed.max(bend.sqrt())
-        } else {
-            speed
-        };
-        let h = if haste > 1e-8 {
-            (0.01 * self.weights.tolerance()).powf(1.0 / self.order as f64) / haste
-        } else {
-            1e3 * probe
-        };
-        h.min(self.options.h_max)
     }
 }
 

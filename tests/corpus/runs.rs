@@ -249,8 +249,12 @@ fn wind_turbines_assemble_and_count_their_freedom() {
         let pieces = session.model.fields.len() as i64;
         assert!(record.redundant.is_empty(), "{:?}", record.redundant);
         if record.freedom == 0 {
-            // one turbine is parked: nothing is switched off
-            assert_eq!(name, "Test10_ADAMS");
+            // one turbine is parked: nothing is switched off; one command file has but the statics that are left out here
+            // and run by the next test
+            assert!(
+                ["Test10_ADAMS", "Test14_ADAMS_LIN"].contains(&&*name),
+                "{name}"
+            );
             continue;
         }
         assert!(
