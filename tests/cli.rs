@@ -391,6 +391,10 @@ fn the_example_runs_from_its_files_to_table_record_log_and_picture() {
     assert_eq!((run.rows(), run.column("time").unwrap()[400]), (401, 2.0));
     // at rest in line, the slider is as far from the crank pin as the rod is long
     assert!((run.column("DX(41,22)+1").unwrap()[0] - 151.0).abs() < 1e-9);
+    // the motor that has been taken away exerts nothing
+    let torque = run.column("crank.TORQUE").unwrap();
+    assert!(torque[100].abs() > 1.0 && torque[400] == 0.0, "{torque:?}");
+    assert!(!done.err.contains("warning"), "{}", done.err);
     let unit = |name: &str| run.columns[run.find(name).unwrap()].unit.as_str();
     assert_eq!(
         [unit("slider.ACCX"), unit("slider.FX"), unit("crank.TORQUE")],
@@ -418,6 +422,19 @@ fn the_example_runs_from_its_files_to_table_record_log_and_picture() {
     assert_eq!(
         (quiet.code, quiet.out.as_str(), quiet.err.as_str()),
         (0, "", "")
+    );
+}
+
+#[test]
+fn a_method_that_does_not_exist_is_a_mistake_and_the_others_are_named() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("no_method");
+    let done = cognate(&["run", example, "--method", "RUNGE", "--out", path(&dir)]);
+    assert_eq!(done.code, 4, "{}", done.err);
+    assert!(
+        done.err.contains("no method `RUNGE`") && done.err.contains("RADAU5"),
+        "{}",
+        done.err
     );
 }
 

@@ -26,12 +26,20 @@ const LARGEST: usize = 300;
 /// Change below which a place is one.
 const ARRIVED: f64 = 1e-11;
 
-/// Moves `q` to the positions nearest to the dataset. `joints`: IC of joints count.
-pub fn settle(scene: &Scene, model: &Model, t: f64, q: &mut [f64], x: &[f64], joints: bool) {
+/// Moves `q` to the positions nearest to the dataset. `joints`: IC of joints count. False: the mechanism is not one that is placed
+/// like this, or no step led anywhere.
+pub fn settle(
+    scene: &Scene,
+    model: &Model,
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+    joints: bool,
+) -> bool {
     let l = scene.layout;
     // contacts of curves go where their bodies are: coordinates decide
     if l.n_v == 0 || l.n_v > LARGEST || !scene.cams.is_empty() {
-        return;
+        return false;
     }
     let (asked, wanted) = asked(scene, model, joints);
     let w = weights(scene);
@@ -39,7 +47,7 @@ pub fn settle(scene: &Scene, model: &Model, t: f64, q: &mut [f64], x: &[f64], jo
     let mut here = q.to_vec();
     for k in 0..40 {
         let Some((residual, slopes)) = wishes(scene, model, t, &here, x, (&asked, &wanted)) else {
-            return;
+            return false;
         };
         let (mut g, mut gradient, _) = assemble::rows_at(scene, t, &here, x);
         for r in (0..g.len()).filter(|&r| assemble::is_held(scene, r)) {
@@ -50,7 +58,7 @@ pub fn settle(scene: &Scene, model: &Model, t: f64, q: &mut [f64], x: &[f64], jo
             m.max((g[r] / assemble::natural(scene, r)).abs())
         });
         if k == 0 && off < 1e-9 && residual.amax() < 1e-9 {
-            return;
+            return true;
         }
         // in coordinates scaled by √w
         let rows = assemble::scaled_rows(&gradient, &w);
@@ -76,7 +84,7 @@ pub fn settle(scene: &Scene, model: &Model, t: f64, q: &mut [f64], x: &[f64], jo
         }
         let longest = step.amax();
         if !longest.is_finite() {
-            return;
+            return false;
         }
         let damping = (0.5 / longest).min(1.0);
         let change: Vec<f64> = step
@@ -90,6 +98,7 @@ pub fn settle(scene: &Scene, model: &Model, t: f64, q: &mut [f64], x: &[f64], jo
         }
     }
     q.copy_from_slice(&here);
+    true
 }
 
 /// The scene with a row for each IC of a joint that carries nothing, and coordinates with the values that are asked of them.

@@ -246,17 +246,18 @@ impl Session {
         } else {
             Vec::new()
         };
-        if first {
-            let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
-            placement::settle(&scene, &self.model, t, &mut q, &x, joints);
-        }
+        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
+        let placed = first && placement::settle(&scene, &self.model, t, &mut q, &x, joints);
         // only what moves by itself has initial conditions
         let wishes = if first && mode != KINEMATIC && mode != STATIC {
             wishes::collect(&scene, &self.model)
         } else {
             Vec::new()
         };
-        wishes::approach(&scene, &wishes, t, &mut q, &x);
+        // where parts are too many to be weighed, or on curves, coordinates move as little as may be
+        if !(placed && joints) {
+            wishes::approach(&scene, &wishes, t, &mut q, &x);
+        }
         let mut assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
         let unmet = wishes::unmet(&scene, &wishes, t, &q, &x);
         assembly.warnings.extend(unmet);
@@ -412,6 +413,15 @@ impl Session {
             Analysis::Static => STATIC,
             Analysis::Dynamic | Analysis::Transient => DYNAMIC,
         };
+        let method = self.integration().method;
+        let known = crate::numeric::METHODS.iter().map(|m| m.name);
+        if method != "AUTO" && !known.clone().any(|name| name == method) {
+            let names: Vec<&str> = known.chain(["AUTO"]).collect();
+            return Err(vec![
+                Diagnostic::error("method", format!("there is no method `{method}`"))
+                    .help(format!("the methods are {}", names.join(", "))),
+            ]);
+        }
         let (mut system, assembly) = self.prepare(mode, &[])?;
         let mut analysis = analysis;
         if analysis == Analysis::Transient {

@@ -42,7 +42,8 @@ pub fn table(run: &Run) -> String {
         text += &line(&|c| number(run.columns[c].values[row]));
     }
     if more > 0 {
-        text += &format!("… and {more} more columns\n");
+        let columns = if more == 1 { "column" } else { "columns" };
+        text += &format!("… and {more} more {columns}\n");
     }
     text
 }
@@ -103,7 +104,7 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
 }
 
 /// Most panels of the picture.
-const PANELS: usize = 6;
+const PANELS: usize = 12;
 
 /// Draws the table over time, a panel per unit, to `DIR/<base>.svg`; the file, if there is anything to draw.
 pub fn picture(run: &Run, dir: &Path) -> Option<PathBuf> {

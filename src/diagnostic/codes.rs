@@ -430,6 +430,13 @@ between. The message names the times. Join the pieces by a function that is smoo
 jumps it runs, with a warning, and forces jump.",
     },
     Code {
+        name: "method",
+        summary: "the method of integration has a name that is not known",
+        explanation: "\
+`--method` and INTEGRATOR/… name a method: AUTO (the program chooses), DOP853, RADAU5, BDF, HHT, NEWMARK. The names of Adams are
+understood too: GSTIFF, WSTIFF, HASTIFF and CONSTANT_BDF are done by RADAU5, ABAM and RKF45 by DOP853.",
+    },
+    Code {
         name: "user_routine",
         summary: "USER stands for a routine that is not part of the dataset",
         explanation: "\

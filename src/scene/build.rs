@@ -88,6 +88,7 @@ impl Scene {
         }
         c.frames();
         b.scene.mode = f64::from(options.mode);
+        b.scene.inactive.clone_from(&model.inactive);
         b.data();
         let drives = b.motions(&mut c);
         let ties = ties(model);

@@ -34,7 +34,7 @@ use crate::physics::row::Law;
 use crate::space::{Frame, Mat3, Vec3};
 use forces::ForceElement;
 use layout::Layout;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use sweep::Freedom;
 
 /// Index of a link in [`Scene::links`]; `None` is ground.
@@ -393,6 +393,8 @@ pub struct Scene {
     pub formulas: Vec<Formula>,
     /// of these, the ones asked for beside those of the model
     pub extra: Vec<usize>,
+    /// elements that are switched off, by keyword and number: they exert nothing
+    pub inactive: BTreeSet<(String, u32)>,
     /// angles whose turns are counted, in the order of their places in the layout
     pub counted: Vec<Counted>,
     /// the values these angles have before the first step; empty: within half a turn   (n_turns)

@@ -71,7 +71,7 @@ impl Mode {
     /// −Re λ/|λ|
     pub fn damping_ratio(&self) -> f64 {
         let size = self.re.hypot(self.im);
-        if size == 0.0 { 0.0 } else { -self.re / size }
+        if self.re == 0.0 { 0.0 } else { -self.re / size }
     }
 }
 

@@ -201,6 +201,11 @@ impl<S: Scalar> Equations<'_, S> {
         [id, jflag, comp, rm]: [u32; 4],
         asked_by: &str,
     ) -> S {
+        // what is switched off exerts nothing
+        let inactive = |keyword: &str| self.scene.inactive.contains(&(keyword.to_string(), id));
+        if keyword_of(measure).is_some_and(inactive) {
+            return S::zero();
+        }
         if measure == Measure::Nforce {
             return self.nodal_force([id, jflag, comp, rm], asked_by);
         }
@@ -372,6 +377,8 @@ fn keyword_of(measure: Measure) -> Option<&'static str> {
         M::Ptcv => "PTCV",
         M::Cvcv => "CVCV",
         M::Contact => "CONTACT",
+        M::Nforce => "NFORCE",
+        M::Friction => "FRICTION",
         _ => return None,
     })
 }
