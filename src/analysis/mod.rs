@@ -16,6 +16,7 @@ pub mod ranks;
 pub mod script;
 pub mod sensors;
 pub mod session;
+mod slopes;
 pub mod statics;
 pub mod switches;
 pub mod system;

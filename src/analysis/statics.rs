@@ -16,6 +16,7 @@
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the model stood there from the start.
 
 use super::dynamics::Watch;
+use super::slopes::{Direction, along};
 use super::system::System;
 use super::unknowns::WIDTH;
 use crate::expr::program::{Program, Work};
@@ -251,46 +252,17 @@ impl<'a> Settler<'a> {
     fn jacobian(&mut self, p: &Point) -> DMatrix<f64> {
         let (n, m, d) = (self.n_v(), self.rows.len(), self.states.len());
         let l = self.system.scene.layout;
-        let lift = |x: f64| Dual {
-            re: x,
-            eps: [0.0; WIDTH],
-        };
-        let mut input: Vec<Dual<WIDTH>> = p.numbers.iter().copied().map(lift).collect();
-        input.extend(p.lambda.iter().copied().map(lift));
-        let seeds = self
-            .system
-            .mover()
-            .tangents(&p.numbers[l.q()])
-            .into_iter()
-            .map(|(v, place, slope)| (v, l.q().start + place, slope));
-        let states = self.states.iter().enumerate();
-        let states = states.map(|(k, &x)| (n + k, l.x().start + x, 1.0));
-        let mut seeds: Vec<(usize, usize, f64)> = seeds.chain(states).collect();
-        seeds.sort_by_key(|s| s.0);
-        let mut out = vec![lift(0.0); self.program.n_outputs()];
-        let mut jacobian = DMatrix::zeros(n + d, n + d);
-        for first in (0..n + d).step_by(WIDTH) {
-            let range = first..(first + WIDTH).min(n + d);
-            for &(k, place, slope) in seeds.iter().filter(|s| range.contains(&s.0)) {
-                input[place].eps[k - first] = slope;
-            }
-            if self.system.follow_along(&mut input, first == 0).is_err() {
-                break;
-            }
-            self.program.eval(&input, &mut self.dual_work, &mut out);
-            for k in range {
-                for i in 0..n {
-                    jacobian[(i, k)] = out[i].eps[k - first];
-                }
-                for i in 0..d {
-                    jacobian[(n + i, k)] = out[n + m + i].eps[k - first];
-                }
-            }
-            for x in &mut input {
-                x.eps = [0.0; WIDTH];
-            }
+        let mut directions = vec![Direction::new(); n];
+        for (v, place, slope) in self.system.mover().tangents(&p.numbers[l.q()]) {
+            directions[v].push((l.q().start + place, slope));
         }
-        jacobian
+        directions.extend(self.states.iter().map(|&x| vec![(l.x().start + x, 1.0)]));
+        let all = p.numbers.iter().chain(p.lambda.iter()).copied();
+        let follow = |numbers: &mut [_], first| self.system.follow_along(numbers, first);
+        let slopes = along(&self.program, &mut self.dual_work, all, &directions, follow)
+            // a loop that nothing determines stops the search elsewhere: here nothing is known
+            .unwrap_or_else(|_| DMatrix::zeros(n + m + d, n + d));
+        slopes.remove_rows(n, m)
     }
 
     /// The step of length `h` in the fall's own time: changes of coordinates and states; `None` where it would not go down.

@@ -10,18 +10,20 @@
 //! that is told. Only dynamic simulations ask for wishes: kinematics and statics find their own configuration.
 
 use super::assemble::{self, Mover, least_change, rows_at};
-use super::unknowns::WIDTH;
+use super::slopes::{Direction, along};
 use crate::expr::measures::Measure;
+use crate::expr::program::{Program, Work};
 use crate::model::{JointKind, Model};
 use crate::physics::coupler::Gauge;
-use crate::scalar::{Dual, Scalar};
+use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::build::is_active;
 use crate::scene::equations::Equations;
-use crate::scene::programs::weights;
+use crate::scene::programs::{record_with_complaints, weights};
 use crate::space::kinematic::kinematic;
 use crate::space::{Frame, MarkerState};
 use nalgebra::{DMatrix, DVector};
+use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 /// Iterations towards rows and wishes together.
@@ -195,37 +197,28 @@ impl Wish {
     }
 }
 
-/// Residuals of wishes and their derivatives along the velocities; wishes without finite ones are left out (zero).
+/// Residuals of wishes and their derivatives along the velocities, from the program of their quantities; wishes without finite
+/// ones are left out (zero).
 fn equations(
     scene: &Scene,
     wishes: &[Wish],
+    quantities: &Program,
     numbers: &[f64],
     mover: &Mover,
 ) -> (DVector<f64>, DMatrix<f64>) {
     let l = scene.layout;
-    let at = Equations::new(scene, numbers);
-    let residual = wishes.iter().map(|w| w.residual(w.quantity(scene, &at)));
+    let mut found = vec![0.0; wishes.len()];
+    quantities.run(numbers, &mut Work::default(), &mut found);
+    let residual = wishes.iter().zip(&found).map(|(w, &x)| w.residual(x));
     let mut residual = DVector::from_iterator(wishes.len(), residual);
-    let mut gradient = DMatrix::zeros(wishes.len(), l.n_v);
-    let tangents = mover.tangents(&numbers[l.q()]);
-    let lift = |x: &f64| Dual {
-        re: *x,
-        eps: [0.0; WIDTH],
-    };
-    for first in (0..l.n_v).step_by(WIDTH) {
-        let range = first..(first + WIDTH).min(l.n_v);
-        let mut seeded: Vec<Dual<WIDTH>> = numbers.iter().map(lift).collect();
-        for &(v, place, slope) in tangents.iter().filter(|t| range.contains(&t.0)) {
-            seeded[l.q().start + place].eps[v - first] += slope;
-        }
-        let at = Equations::new(scene, &seeded);
-        for (w, wish) in wishes.iter().enumerate() {
-            let quantity = wish.quantity(scene, &at);
-            for v in range.clone() {
-                gradient[(w, v)] = quantity.eps[v - first];
-            }
-        }
+    let mut directions = vec![Direction::new(); l.n_v];
+    for (v, place, slope) in mover.tangents(&numbers[l.q()]) {
+        directions[v].push((l.q().start + place, slope));
     }
+    let all = numbers.iter().copied();
+    let nothing = |_: &mut [_], _| Ok(());
+    let Ok::<_, Infallible>(mut gradient) =
+        along(quantities, &mut Work::default(), all, &directions, nothing);
     for w in 0..wishes.len() {
         let bad = !residual[w].is_finite() || gradient.row(w).iter().any(|x| !x.is_finite());
         if bad {
@@ -244,6 +237,9 @@ pub fn approach(scene: &Scene, wishes: &[Wish], t: f64, q: &mut [f64], x: &[f64]
     let w = weights(scene);
     let mover = Mover::new(scene);
     let still = vec![0.0; scene.layout.n_v];
+    let (quantities, _) = record_with_complaints(scene, |at| {
+        wishes.iter().map(|w| w.quantity(scene, at)).collect()
+    });
     for _ in 0..ITERATIONS {
         let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
         for r in (0..g.len()).filter(|&r| assemble::is_held(scene, r)) {
@@ -253,6 +249,7 @@ pub fn approach(scene: &Scene, wishes: &[Wish], t: f64, q: &mut [f64], x: &[f64]
         let (off, slopes) = equations(
             scene,
             wishes,
+            &quantities,
             &assemble::numbers(scene, t, q, &still, x),
             &mover,
         );

@@ -433,8 +433,8 @@ jumps it runs, with a warning, and forces jump.",
         name: "method",
         summary: "the method of integration has a name that is not known",
         explanation: "\
-`--method` and INTEGRATOR/… name a method: AUTO (the program chooses), DOP853, RADAU5, BDF, HHT, NEWMARK. The names of Adams are
-understood too: GSTIFF, WSTIFF, HASTIFF and CONSTANT_BDF are done by RADAU5, ABAM and RKF45 by DOP853.",
+`--method` and INTEGRATOR/… name a method: AUTO (the program chooses), DOP853, RADAU5, BDF, HHT, NEWMARK. The names
+of Adams are understood too: GSTIFF, WSTIFF, HASTIFF and CONSTANT_BDF are done by RADAU5, ABAM and RKF45 by DOP853.",
     },
     Code {
         name: "user_routine",

@@ -14,12 +14,11 @@ mod modes;
 mod write;
 
 use super::assemble;
+use super::slopes::{self, Direction};
 use super::system::{System, complaints};
-use super::unknowns::WIDTH;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::model::Model;
-use crate::scalar::Dual;
 use crate::scene::equations::Equations;
 use crate::scene::outside::Supplied;
 use crate::scene::programs::record;
@@ -125,39 +124,21 @@ pub fn inputs(model: &Model, wanted: &Wanted) -> Result<Vec<u32>, Diagnostic> {
     variables(model, false, wanted.inputs)
 }
 
-/// Derivatives of a program along some directions: each is a list of (place in the numbers, slope).
+/// Derivatives of a program along some directions; the unknowns of the system follow.
 fn along(
     system: &mut System,
     program: &Program,
-    directions: &[Vec<(usize, f64)>],
+    directions: &[Direction],
 ) -> Result<DMatrix<f64>, usize> {
-    let lift = |x: &f64| Dual {
-        re: *x,
-        eps: [0.0; WIDTH],
-    };
-    let mut numbers: Vec<Dual<WIDTH>> = system.numbers.iter().map(lift).collect();
-    let mut out = vec![lift(&0.0); program.n_outputs()];
-    let mut work: Work<Dual<WIDTH>> = Work::default();
-    let mut slopes = DMatrix::zeros(program.n_outputs(), directions.len());
-    for first in (0..directions.len()).step_by(WIDTH) {
-        let last = (first + WIDTH).min(directions.len());
-        for (k, direction) in directions[first..last].iter().enumerate() {
-            for &(place, slope) in direction {
-                numbers[place].eps[k] += slope;
-            }
-        }
-        system.follow_along(&mut numbers, first == 0)?;
-        program.eval(&numbers, &mut work, &mut out);
-        for k in first..last {
-            for (i, x) in out.iter().enumerate() {
-                slopes[(i, k)] = x.eps[k - first];
-            }
-        }
-        for x in &mut numbers {
-            x.eps = [0.0; WIDTH];
-        }
-    }
-    Ok(slopes)
+    let all = system.numbers.clone();
+    let follow = |numbers: &mut [_], first| system.follow_along(numbers, first);
+    slopes::along(
+        program,
+        &mut Work::default(),
+        all.into_iter(),
+        directions,
+        follow,
+    )
 }
 
 fn rows(m: &DMatrix<f64>) -> Vec<Vec<f64>> {

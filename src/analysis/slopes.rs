@@ -1,0 +1,44 @@
+//! Derivatives of recorded programs along directions, several directions at a time.
+
+use super::unknowns::WIDTH;
+use crate::expr::program::{Program, Work};
+use crate::scalar::{Dual, Scalar};
+use nalgebra::DMatrix;
+
+/// A direction: places in the row of numbers, each with the slope of its number.
+pub type Direction = Vec<(usize, f64)>;
+
+/// ∂out/∂direction of a program at `numbers`   (outputs × directions). `follow` puts into the marked numbers what depends on
+/// them without being part of a direction; its second argument says that the numbers are new.
+///
+/// # Errors
+/// Those of `follow`.
+pub fn along<E>(
+    program: &Program,
+    work: &mut Work<Dual<WIDTH>>,
+    numbers: impl Iterator<Item = f64>,
+    directions: &[Direction],
+    mut follow: impl FnMut(&mut [Dual<WIDTH>], bool) -> Result<(), E>,
+) -> Result<DMatrix<f64>, E> {
+    let mut numbers: Vec<Dual<WIDTH>> = numbers.map(Dual::constant).collect();
+    let mut out = vec![Dual::constant(0.0); program.n_outputs()];
+    let mut slopes = DMatrix::zeros(program.n_outputs(), directions.len());
+    for (chunk, some) in directions.chunks(WIDTH).enumerate() {
+        for (k, direction) in some.iter().enumerate() {
+            for &(place, slope) in direction {
+                numbers[place].eps[k] += slope;
+            }
+        }
+        follow(&mut numbers, chunk == 0)?;
+        program.eval(&numbers, work, &mut out);
+        for k in 0..some.len() {
+            for (i, x) in out.iter().enumerate() {
+                slopes[(i, chunk * WIDTH + k)] = x.eps[k];
+            }
+        }
+        for x in &mut numbers {
+            x.eps = [0.0; WIDTH];
+        }
+    }
+    Ok(slopes)
+}
