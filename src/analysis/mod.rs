@@ -11,6 +11,7 @@ pub mod misalignment;
 pub mod nearby;
 pub mod outline;
 pub mod outside;
+mod passage;
 pub mod placement;
 pub mod ranks;
 pub mod script;

@@ -12,11 +12,13 @@ use crate::scene::cams::{self, Broken, Cam};
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, Switching, record};
+use crate::scene::solve::WEAK;
 use crate::scene::{Scene, Source};
 
 use super::assemble::Mover;
 use super::implicit::Implicit;
 use super::outside::{Hook, Outside};
+use super::passage::Passage;
 use super::sensors::Sensors;
 use super::unknowns::{Unknowns, WIDTH};
 
@@ -63,12 +65,14 @@ pub struct System {
     change: Vec<f64>,
     /// places in x of contacts on curves
     contacts: Vec<usize>,
-    /// rates and weakness   (n + 1)
+    /// rates and the strength of the rows   (n + 1)
     rates: Vec<f64>,
     /// rows have nearly been dependent since the last accepted step
     was_weak: bool,
     /// the same, since somebody last asked
     weak_seen: bool,
+    /// instants near which rows were dependent in the present step
+    passage: Passage,
     /// rows that are left out and may not follow from the others wherever the mechanism goes, and their values
     left_out: Option<(Vec<usize>, Program)>,
     /// a stage of a method on the rows   (n)
@@ -281,6 +285,7 @@ impl System {
             was_weak: false,
             contacts: contact_states(&scene),
             weak_seen: false,
+            passage: Passage::default(),
             left_out,
             stage: Vec::with_capacity(l.y().len()),
             mover,
@@ -361,7 +366,7 @@ impl System {
         self.holding = false;
     }
 
-    /// The rates at the present numbers, and how many pivots were weak.
+    /// The rates at the present numbers, and how strong the rows are.
     fn run_rate(&mut self) {
         if let (
             true,
@@ -607,7 +612,7 @@ impl Ode for System {
         }
         let n = ydot.len();
         self.run_rate();
-        if self.rates[n] > 0.0 && self.projection.is_some() {
+        if self.rates[n] < WEAK && self.projection.is_some() {
             (self.was_weak, self.weak_seen) = (true, true);
             // near a position where rows become dependent, what violates them is magnified: evaluate on the rows
             let mut stage = std::mem::take(&mut self.stage);
@@ -618,6 +623,7 @@ impl Ode for System {
                 self.run_rate();
             }
             self.stage = stage;
+            self.passage.see(t, self.rates[n]);
         }
         ydot.copy_from_slice(&self.rates[..n]);
         // a sum is finite only if all its terms are
@@ -702,6 +708,10 @@ impl Ode for System {
             error[l.n_q + k] += of_v[k] - none[k];
         }
         true
+    }
+
+    fn place_step(&mut self, t: f64, h: f64, gap: [f64; 2]) -> Option<f64> {
+        self.passage.place(t, h, gap)
     }
 
     fn jacobian(

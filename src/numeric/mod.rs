@@ -64,6 +64,13 @@ pub trait Ode {
     fn filter_error(&mut self, _t: f64, _y: &[f64], _error: &mut [f64]) -> bool {
         false
     }
+    /// A better length for a step that was attempted from `t` with `h`, or `None`. `gap`: the part of a step within which the
+    /// method does not evaluate.
+    ///
+    /// Where `f` is a quotient of numbers that vanish together at an instant, evaluations should keep away from it.
+    fn place_step(&mut self, _t: f64, _h: f64, _gap: [f64; 2]) -> Option<f64> {
+        None
+    }
     /// `jacobian[i + n·j] = ∂fᵢ/∂yⱼ` (by columns), `dfdt[i] = ∂fᵢ/∂t`. Explicit methods never ask for it.
     ///
     /// # Errors

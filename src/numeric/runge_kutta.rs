@@ -77,6 +77,8 @@ pub struct Dop853 {
     stage: Vec<f64>,
     /// k₂ … k₁₂   (11 × n)
     k: [Vec<f64>; 11],
+    /// how often the present step has been placed anew
+    placed: usize,
     /// whether `dense` belongs to the last step
     dense_ready: bool,
     /// r₁ … r₇ of (4)   (7 × n)
@@ -86,8 +88,16 @@ pub struct Dop853 {
 /// Why an attempt came to nothing.
 enum Trouble {
     Error(f64),
+    /// another length is better
+    Place(f64),
     Reason(Reason, bool),
 }
+
+/// The part of a step between whose ends there is no evaluation.
+const GAP: [f64; 2] = [1.0 / 3.0, 0.6];
+
+/// How often a step is placed anew at most.
+const PLACINGS: usize = 4;
 
 /// Errors smaller than this are rounding where invariants are nearly dependent; a request below it is not pressed there.
 const NOISE: f64 = 3e-10;
@@ -126,6 +136,7 @@ impl Dop853 {
             f1: zeros(),
             stage: zeros(),
             k: std::array::from_fn(|_| zeros()),
+            placed: 0,
             dense_ready: false,
             dense: std::array::from_fn(|_| zeros()),
         }
@@ -300,6 +311,10 @@ impl Dop853 {
     ) -> Result<f64, Trouble> {
         let evaluation = |f: Failure| Trouble::Reason(Reason::Evaluation(f), f.recoverable);
         let error = self.attempt(problem, h).map_err(evaluation)?;
+        let better = problem.place_step(self.t0, h, GAP);
+        if let Some(better) = better.filter(|_| self.placed < PLACINGS) {
+            return Err(Trouble::Place(better));
+        }
         if error.is_nan() {
             // the first bad number in the order of evaluation; later ones are its children
             let bad = |row: &Vec<f64>| row.iter().position(|x| !x.is_finite());
@@ -468,6 +483,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
                         h * factor
                     };
                     (self.calm, self.first) = (false, false);
+                    self.placed = 0;
                     self.t1 = t1;
                     self.advanced = true;
                     self.weights.see(&self.y1);
@@ -484,6 +500,13 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
                 Err(Trouble::Error(error)) => {
                     self.h_next = h * self.control.rejected(error);
                     cause = Reason::ErrorTest(self.worst_unknown());
+                }
+                Err(Trouble::Place(better)) => {
+                    self.h_next = better;
+                    self.placed += 1;
+                    rejected += 1;
+                    self.stats.rejected += 1;
+                    continue;
                 }
                 Err(Trouble::Reason(reason, recoverable)) => {
                     cause = reason;

@@ -176,10 +176,10 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
     }))
 }
 
-/// The rates, and how many pivots of the rows were weak.
+/// The rates, and how strong the weakest pivot of the rows is.
 pub fn rate<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
     let mut out = at.rates();
-    out.push(at.solved().weak);
+    out.push(at.solved().strength);
     out
 }
 

@@ -183,21 +183,21 @@ fn sparse_dot<S: Scalar>(a: &[(usize, S)], b: &[(usize, S)]) -> S {
     sum
 }
 
-/// A solution, and how many pivots were weak: had lost so much that errors are magnified noticeably.
+/// A solution, and how weak the weakest pivot was: errors are magnified by as much as it has lost.
 pub struct Solution<S> {
     /// x
     pub x: Vec<S>,
-    /// number of weak pivots
-    pub weak: S,
+    /// least pivot as a part of what it usually is; 1: none is smaller   (the square of the distance from dependence)
+    pub strength: S,
     /// diagonal of A
     pub diagonal: Vec<S>,
 }
 
-/// Pivots smaller than this times the diagonal they started from count as weak.
+/// Pivots smaller than this times what they usually are count as weak.
 pub const WEAK: f64 = 0.03;
 
 /// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ` in the given order;
-/// what depends on earlier rows gets the value zero. `reference`: what each pivot is compared with to call it weak; empty:
+/// what depends on earlier rows gets the value zero. `reference`: what each pivot is compared with; empty:
 /// its own diagonal.
 pub fn solve_symmetric<S: Scalar>(
     mut a: Vec<Vec<S>>,
@@ -205,7 +205,7 @@ pub fn solve_symmetric<S: Scalar>(
     reference: &[f64],
 ) -> Solution<S> {
     let n = b.len();
-    let mut weak = S::zero();
+    let mut strength = S::one();
     let diagonal = (0..n).map(|i| a[i][i]).collect();
     let mut inverse = vec![S::zero(); n];
     let mut dependent = Vec::with_capacity(n);
@@ -232,8 +232,11 @@ pub fn solve_symmetric<S: Scalar>(
             a[i][k] = l;
         }
         let tiny = d.le(start.scale(RANK_TOLERANCE));
-        let usual = reference.get(i).map_or(start, |&r| S::constant(r));
-        weak += S::select(d.lt(usual.scale(WEAK)), S::one(), S::zero());
+        let part = match reference.get(i) {
+            Some(&usual) => d.scale(1.0 / usual),
+            None => d / start,
+        };
+        strength = S::select(part.lt(strength), part, strength);
         inverse[i] = S::choose(tiny, S::zero, || S::one() / d);
         dependent.push(tiny);
     }
@@ -248,7 +251,7 @@ pub fn solve_symmetric<S: Scalar>(
     }
     Solution {
         x: b,
-        weak,
+        strength,
         diagonal,
     }
 }

@@ -120,7 +120,7 @@ impl<S: Scalar> Equations<'_, S> {
         Solved {
             vdot: f,
             lambda,
-            weak: multipliers.weak,
+            strength: multipliers.strength,
             diagonal: multipliers.diagonal,
             links,
             carried,
@@ -383,8 +383,8 @@ pub struct Solved<S> {
     pub vdot: Vec<S>,
     /// multipliers of the rows; 0 for rows that do not take part   (n_rows)
     pub lambda: Vec<S>,
-    /// how many pivots of the rows were weak: near a position where rows become dependent
-    pub weak: S,
+    /// least pivot of the rows as a part of what it usually is: small near a position where rows become dependent
+    pub strength: S,
     /// diagonal of `G M⁻¹ Gᵀ` over the rows that take part
     pub diagonal: Vec<S>,
     /// links with all accelerations
