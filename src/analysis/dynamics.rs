@@ -7,6 +7,7 @@
 //! A step over a switch is never kept: it is undone and repeated so that it ends where the branch changes, from where the
 //! method begins anew. Accuracy therefore does not fall when a kink lies inside a step. [`switches`](super::switches) knows how.
 
+use super::output::Output;
 use super::outside;
 use super::ranks;
 use super::switches::{Switches, Verdict};
@@ -376,6 +377,11 @@ impl Leg<'_> {
                 landing = at;
                 continue;
             }
+            if let Some(t) = self.unreadable(method, &step) {
+                method.undo();
+                landing = t;
+                continue;
+            }
             if let Some((t, broken)) = self.broken(method, &step) {
                 self.emit(method, &Step { t1: t, ..step });
                 return Finished::Ended(Ended::Broken { t, broken });
@@ -441,15 +447,23 @@ impl Leg<'_> {
         }
         if let Some(dt) = sensor.dt {
             self.outputs.truncate(self.out.t.len());
-            let n = (((self.end - t) / dt) - 1e-9).ceil().clamp(1.0, 1e8) as usize;
-            let end = self.end;
-            self.outputs
-                .extend((1..=n).map(|k| (t + k as f64 * dt).min(end)));
+            self.outputs.extend(Output::Every(dt).times(t, self.end));
         }
         if let Some(h) = sensor.stepsize {
             method.propose(h);
         }
         sensor.restart || sensor.stepsize.is_some() || sensor.evaluate.is_some()
+    }
+
+    /// The first output time inside an accepted step at which the method cannot say what the state was: a step has to end there.
+    fn unreadable(&mut self, method: &mut dyn Method<System>, step: &Step) -> Option<f64> {
+        let t = *self
+            .outputs
+            .get(self.out.t.len())
+            .filter(|&&t| t < step.t1)?;
+        let mut state = method.y().to_vec();
+        let failed = method.interpolate(self.system, t, &mut state).is_err();
+        (failed && t > step.t0).then_some(t)
     }
 
     /// When in an accepted step a contact of curves ends, and which.
@@ -582,6 +596,7 @@ impl Leg<'_> {
             if t == step.t1 {
                 state.copy_from_slice(method.y());
             } else if method.interpolate(self.system, t, &mut state).is_err() {
+                // tried before the step was accepted: a method that could say it once can say it again
                 state.fill(f64::NAN);
             }
             if counts {

@@ -10,6 +10,7 @@ pub mod linear;
 pub mod misalignment;
 pub mod nearby;
 pub mod outline;
+pub mod output;
 pub mod outside;
 mod passage;
 pub mod placement;

@@ -2,6 +2,7 @@
 
 use super::dynamics::Watch;
 use super::linear::Wanted;
+use super::output::Output;
 use super::session::{Analysis, Session};
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::Diagnostic;
@@ -11,11 +12,11 @@ use crate::results::{Event, Status};
 pub const DEFAULT_STEPS: usize = 50;
 
 impl Simulate {
-    /// Kind, end and number of output steps, when the clock shows `now`.
+    /// Kind, end and output steps, when the clock shows `now`.
     ///
     /// # Errors
     /// When a simulation over time has no end, or no time to go.
-    pub fn resolved(&self, now: f64) -> Result<(Analysis, f64, usize), Diagnostic> {
+    pub fn resolved(&self, now: f64) -> Result<(Analysis, f64, Output), Diagnostic> {
         let analysis = match self.kind {
             SimulationKind::Kinematic => Analysis::Kinematic,
             SimulationKind::Dynamic => Analysis::Dynamic,
@@ -30,21 +31,19 @@ impl Simulate {
                 let d = Diagnostic::error("no_end", "the simulation has no end");
                 return Err(d.help("give END, the time at which it ends, or DURATION"));
             }
-            return Ok((analysis, now, 0));
+            return Ok((analysis, now, Output::Steps(1)));
         };
         if over_time && (end <= now || !end.is_finite()) {
             let message = format!("the simulation should end at {end}, but the clock shows {now}");
             return Err(Diagnostic::error("no_end", message)
                 .help("END is absolute time; DURATION counts from here"));
         }
-        let steps = match (self.steps, self.dtout) {
-            (Some(steps), _) => steps.max(1) as usize,
-            (None, Some(dt)) if dt > 0.0 => {
-                (((end - now) / dt) - 1e-9).ceil().clamp(1.0, 1e8) as usize
-            }
-            _ => DEFAULT_STEPS,
+        let output = match (self.steps, self.dtout) {
+            (Some(steps), _) => Output::Steps(steps.max(1) as usize),
+            (None, Some(dt)) if dt > 0.0 => Output::Every(dt),
+            _ => Output::Steps(DEFAULT_STEPS),
         };
-        Ok((analysis, end, steps))
+        Ok((analysis, end, output))
     }
 }
 
@@ -69,11 +68,11 @@ pub fn obey(
         };
         match &step.command {
             Command::Simulate(simulate) => {
-                let (analysis, end, n) = simulate
+                let (analysis, end, output) = simulate
                     .resolved(session.time())
                     .map_err(|d| vec![located(d)])?;
                 before(session.time(), end);
-                status = session.simulate(analysis, end, n, watch)?;
+                status = session.simulate_with(analysis, end, output, watch)?;
                 if status != Status::Completed || session.halted() {
                     return Ok(status);
                 }

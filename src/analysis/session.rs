@@ -12,6 +12,7 @@ use super::implicit::Formulation;
 use super::kinematics;
 use super::linear::{self, Linearization};
 use super::misalignment;
+use super::output::{self, Output};
 use super::outside;
 use super::placement;
 use super::ranks;
@@ -407,6 +408,20 @@ impl Session {
         steps: usize,
         watch: &mut dyn Watch,
     ) -> Result<Status, Vec<Diagnostic>> {
+        self.simulate_with(analysis, end, Output::Steps(steps), watch)
+    }
+
+    /// As [`simulate`](Self::simulate), with output steps as they are asked for.
+    ///
+    /// # Errors
+    /// What is wrong in the model.
+    pub fn simulate_with(
+        &mut self,
+        analysis: Analysis,
+        end: f64,
+        output: Output,
+        watch: &mut dyn Watch,
+    ) -> Result<Status, Vec<Diagnostic>> {
         let mode = match analysis {
             Analysis::Kinematic => KINEMATIC,
             Analysis::InitialConditions => INITIAL_CONDITIONS,
@@ -420,6 +435,13 @@ impl Session {
             return Err(vec![
                 Diagnostic::error("method", format!("there is no method `{method}`"))
                     .help(format!("the methods are {}", names.join(", "))),
+            ]);
+        }
+        let asked = output.count(self.time(), end);
+        if asked > output::MOST {
+            return Err(vec![
+                Diagnostic::error("unfit_value", format!("{asked} output steps are too many"))
+                    .help(format!("a simulation has {} at most", output::MOST)),
             ]);
         }
         let (mut system, assembly) = self.prepare(mode, &[])?;
@@ -497,8 +519,8 @@ impl Session {
         }
         let status = match analysis {
             Analysis::InitialConditions => Status::Completed,
-            Analysis::Static => self.at_rest(&mut system, (start, end, steps), &program, watch),
-            _ => self.over_time(&mut system, analysis, (start, end, steps), &program, watch),
+            Analysis::Static => self.at_rest(&mut system, (start, end, output), &program, watch),
+            _ => self.over_time(&mut system, analysis, (start, end, output), &program, watch),
         };
         if matches!(analysis, Analysis::InitialConditions) {
             self.keep(&system, first);
@@ -511,7 +533,7 @@ impl Session {
         &mut self,
         system: &mut System,
         analysis: Analysis,
-        (start, end, steps): (f64, f64, usize),
+        (start, end, output): (f64, f64, Output),
         program: &crate::expr::program::Program,
         watch: &mut dyn Watch,
     ) -> Status {
@@ -520,7 +542,7 @@ impl Session {
         } else {
             Kind::Dynamic
         };
-        let outputs = output_times(start, end, steps);
+        let outputs = output.times(start, end);
         let mut settings = self.integration();
         if settings.method == "AUTO" && kind == Kind::Dynamic {
             settings.first = dynamics::first_method(system, end - start).into();
@@ -618,16 +640,16 @@ impl Session {
         status
     }
 
-    /// An equilibrium now, or one at each of `steps` times up to an `end` that is still to come.
+    /// An equilibrium now, or one at each output time up to an `end` that is still to come.
     fn at_rest(
         &mut self,
         system: &mut System,
-        (start, end, steps): (f64, f64, usize),
+        (start, end, output): (f64, f64, Output),
         program: &crate::expr::program::Program,
         watch: &mut dyn Watch,
     ) -> Status {
         let (kind, times) = if end > start {
-            (Kind::QuasiStatic, output_times(start, end, steps))
+            (Kind::QuasiStatic, output.times(start, end))
         } else {
             (Kind::Static, vec![start])
         };
@@ -1003,20 +1025,6 @@ fn moved(model: &Model, carried: &Carried) -> Model {
         (part.velocity, part.angular_velocity) = (v_cm.0.map(Some), w_cm.0.map(Some));
     }
     model
-}
-
-/// `steps` times at equal distances after `start`, the last of them `end`.
-fn output_times(start: f64, end: f64, steps: usize) -> Vec<f64> {
-    let steps = steps.max(1);
-    (1..=steps)
-        .map(|k| {
-            if k == steps {
-                end
-            } else {
-                start + (end - start) * k as f64 / steps as f64
-            }
-        })
-        .collect()
 }
 
 fn counts(stats: &crate::numeric::Stats) -> Counts {
