@@ -278,7 +278,7 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
     match code {
         Code::Binary(BinaryOp::Add) => each!(r, to = |x = a, y = b| x + y),
         Code::Binary(BinaryOp::Sub) => each!(r, to = |x = a, y = b| x - y),
-        Code::Binary(BinaryOp::Mul) => each!(r, to = |x = a, y = b| x * y),
+        Code::Binary(BinaryOp::Mul) | Code::HalfPower(_) => each!(r, to = |x = a, y = b| x * y),
         Code::Binary(BinaryOp::Div) => each!(r, to = |x = a, y = b| x / y),
         Code::Unary(UnaryOp::Neg) => each!(r, to = |x = a| -x),
         Code::Unary(UnaryOp::Abs) => each!(r, to = |x = a| Scalar::abs(x)),

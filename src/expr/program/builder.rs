@@ -240,6 +240,25 @@ impl Builder {
         }
     }
 
+    /// Base and `n ≥ 1` of a product that is `xⁿ √x`. At x = 0 the root has no finite derivative, the product has.
+    pub(super) fn half_power(&self, node: &Node) -> Option<(Value, i32)> {
+        let Node::Binary(BinaryOp::Mul, a, b) = *node else {
+            return None;
+        };
+        let of_factors = |whole: Value, root: Value| {
+            let Node::Unary(UnaryOp::Sqrt, x) = self.nodes[root.index()] else {
+                return None;
+            };
+            match self.nodes[whole.index()] {
+                _ if whole == x => Some((x, 1)),
+                Node::Binary(BinaryOp::Mul, y, z) if y == x && z == x => Some((x, 2)),
+                Node::Whole(y, n) if y == x && n > 0 => Some((x, n)),
+                _ => None,
+            }
+        };
+        of_factors(a, b).or_else(|| of_factors(b, a))
+    }
+
     /// A comparison, as a condition: 1 or 0.
     pub fn compare(&mut self, comparison: Comparison, a: Value, b: Value) -> Value {
         if let (Some(x), Some(y)) = (self.constant_of(a), self.constant_of(b)) {

@@ -16,6 +16,7 @@ impl fmt::Display for Program {
                 Code::Unary(op) => write!(f, "{op:?} {}", name(a))?,
                 Code::Whole(n) => write!(f, "{}**{n}", name(a))?,
                 Code::Binary(op) => write!(f, "{op:?} {}, {}", name(a), name(b))?,
+                Code::HalfPower(_) => write!(f, "Mul {}, {}", name(a), name(b))?,
                 Code::Compare(op) => write!(f, "{op:?} {}, {}", name(a), name(b))?,
                 Code::Select => write!(f, "{} ? {} : {}", name(a), name(b), name(c))?,
                 Code::CompareSelect(op) => {

@@ -115,7 +115,17 @@ impl<'b> Adjoint<'b> {
                     self.add(x, here, part);
                 }
             }
-            Node::Binary(op, a, b) => self.binary(op, a, b, v, bar),
+            node @ Node::Binary(op, a, b) => match self.builder.half_power(&node) {
+                Some((x, n)) if self.active[x.index()] => {
+                    let whole = self.builder.powi(x, n - 1);
+                    let root = self.builder.unary(UnaryOp::Sqrt, x);
+                    let slope = self.op(Mul, whole, root);
+                    let slope = self.times(slope, f64::from(n) + 0.5);
+                    let part = self.op(Mul, bar, slope);
+                    self.add(x, here, part);
+                }
+                _ => self.binary(op, a, b, v, bar),
+            },
             Node::Select(_, yes, no) => {
                 for (side, x) in [(0, yes), (1, no)] {
                     self.add(x, self.guards.side(v, side), bar);

@@ -65,6 +65,8 @@ enum Code {
     /// power with a whole exponent
     Whole(i32),
     Binary(BinaryOp),
+    /// a·b = cⁿ √c, whose derivative at c = 0 is not the sum of those of its factors
+    HalfPower(i32),
     Compare(Comparison),
     /// a: condition, b: where it holds, c: where not
     Select,
@@ -236,6 +238,7 @@ impl Program {
                 Code::Unary(op) => builder.unary(op, r(a)),
                 Code::Whole(n) => builder.powi(r(a), n),
                 Code::Binary(op) => builder.binary(op, r(a), r(b)),
+                Code::HalfPower(_) => builder.binary(BinaryOp::Mul, r(a), r(b)),
                 Code::Compare(op) => builder.compare(op, r(a), r(b)),
                 Code::Select => builder.select(r(a), r(b), r(c)),
                 Code::CompareSelect(op) => {
@@ -398,6 +401,7 @@ impl Core {
             Code::Unary(op) => op.apply(r(a)),
             Code::Whole(n) => r(a).powi(n),
             Code::Binary(op) => op.apply(r(a), r(b)),
+            Code::HalfPower(n) => r(c).powf(S::constant(f64::from(n) + 0.5)),
             Code::Compare(op) => from_mask(op.apply(r(a), r(b))),
             Code::Select => S::select(truth(r(a)), r(b), r(c)),
             Code::CompareSelect(op) => S::select(op.apply(r(a), r(b)), r(c), r(d)),

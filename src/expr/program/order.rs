@@ -79,7 +79,8 @@ impl Order {
         }
     }
 
-    /// Calls `f` with the operands of a node; those of an inlined comparison in place of it.
+    /// Calls `f` with the operands of a node; those of an inlined comparison in place of it, and the base of a power behind
+    /// its factors.
     pub(super) fn operands(&self, builder: &Builder, node: &Node, mut f: impl FnMut(Value)) {
         if let Node::Select(condition, yes, no) = *node
             && let (true, Node::Compare(_, a, b)) = (
@@ -91,6 +92,9 @@ impl Order {
             return;
         }
         builder.operands(node, &mut f);
+        if let Some((base, _)) = builder.half_power(node) {
+            f(base);
+        }
     }
 }
 

@@ -134,7 +134,10 @@ impl Schedule<'_> {
         match *node {
             Node::Unary(op, _) => Code::Unary(op),
             Node::Whole(_, n) => Code::Whole(n),
-            Node::Binary(op, ..) => Code::Binary(op),
+            Node::Binary(op, ..) => match self.builder.half_power(node) {
+                Some((_, n)) => Code::HalfPower(n),
+                None => Code::Binary(op),
+            },
             Node::Compare(op, ..) => Code::Compare(op),
             Node::Select(condition, ..) => match self.builder.nodes[condition.index()] {
                 Node::Compare(op, ..) if self.order.inlined[condition.index()] => {
