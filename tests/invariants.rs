@@ -52,11 +52,14 @@ fn value(text: &str) -> f64 {
 
 /// Places from some lengths before the first to some after the last of these, the given ones and their neighbours among them.
 fn places(marks: &[f64], parts: &[f64]) -> Vec<f64> {
-    let (least, most) = marks.iter().fold((f64::MAX, f64::MIN), |(a, b), &x| {
-        (a.min(x), b.max(x))
-    });
+    let (least, most) = marks
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
     let length = most - least;
-    let mut all: Vec<f64> = parts.iter().map(|p| least + (3.0 * p - 1.0) * length).collect();
+    let mut all: Vec<f64> = parts
+        .iter()
+        .map(|p| least + (3.0 * p - 1.0) * length)
+        .collect();
     all.extend(marks.iter().flat_map(|&x| [x.next_down(), x, x.next_up()]));
     all.sort_by(f64::total_cmp);
     all
@@ -331,11 +334,25 @@ fn powers_have_their_derivatives_at_zero() {
         let (jet, swept) = rates(text, 0.0);
         assert_eq!((jet[1], jet[2], swept), (first, second, first), "{text}");
         // and nearby they are what the rule says
-        if let Some(b) = text.strip_prefix("TIME**").and_then(|b| b.parse::<f64>().ok()) {
+        if let Some(b) = text
+            .strip_prefix("TIME**")
+            .and_then(|b| b.parse::<f64>().ok())
+        {
             let (jet, swept) = rates(text, 0.3);
-            let want = [0.3f64.powf(b), b * 0.3f64.powf(b - 1.0), b * (b - 1.0) * 0.3f64.powf(b - 2.0)];
-            for (got, want) in jet.into_iter().chain([swept]).zip(want.into_iter().chain([want[1]])) {
-                assert!((got - want).abs() <= 4.0 * f64::EPSILON * want.abs(), "{text}: {got}, {want}");
+            let want = [
+                0.3f64.powf(b),
+                b * 0.3f64.powf(b - 1.0),
+                b * (b - 1.0) * 0.3f64.powf(b - 2.0),
+            ];
+            for (got, want) in jet
+                .into_iter()
+                .chain([swept])
+                .zip(want.into_iter().chain([want[1]]))
+            {
+                assert!(
+                    (got - want).abs() <= 4.0 * f64::EPSILON * want.abs(),
+                    "{text}: {got}, {want}"
+                );
             }
         }
     }
