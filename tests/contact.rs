@@ -337,3 +337,14 @@ fn what_cannot_be_solved_is_named_with_its_reason() {
         "{errors:?}"
     );
 }
+
+#[cfg(not(feature = "geometry"))]
+#[test]
+fn boxes_on_boxes_name_the_feature_they_need() {
+    let text = over_plane(0.6, "0,0,0", "", "BOX, CORNER=2, X=1, Y=1, Z=1")
+        .replace("PLANE, RM=1", "BOX, CORNER=1, X=1, Y=1, Z=1");
+    let errors = session(&text, &[], 1e-6)
+        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
+        .expect_err("it was built without");
+    assert!(errors[0].message.contains("feature geometry"), "{errors:?}");
+}

@@ -111,7 +111,7 @@ impl Implicit {
         if scene.layout.n_supplied > 0 {
             return Err(vec![Diagnostic::error(
                 "implicit_loop",
-                "closures and values of the past: methods for implicit equations do not know their derivatives",
+                "closures, values of the past and contacts that are found by queries: methods for implicit equations do not know their derivatives",
             )
             .help("leave the method to the program, or ask for RADAU5")]);
         }

@@ -1,4 +1,5 @@
-//! Numbers that the programs read but do not compute: values of the past (DELAY) and results of the user's closures (USER).
+//! Numbers that the programs read but do not compute: values of the past (DELAY), results of the user's closures (USER), places
+//! where solids touch that no formula finds.
 //!
 //! The past is kept step by step, as polynomials through the interpolant of each accepted step:
 //!
@@ -16,7 +17,7 @@ use crate::numeric::{Failure, Method, Step};
 use crate::scalar::Dual;
 use crate::scene::Scene;
 use crate::scene::layout::Layout;
-use crate::scene::outside::{HookName, Supplied};
+use crate::scene::outside::{HookKind, HookName, Supplied};
 use crate::scene::programs::record;
 use std::fmt;
 use std::ops::Range;
@@ -121,9 +122,38 @@ struct Track {
     past: Past,
 }
 
+/// What is called.
+#[derive(Clone)]
+struct Callable(Arc<Law>);
+
+impl fmt::Debug for Callable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Law")
+    }
+}
+
+/// What computes the numbers of a hook.
+fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<String>> {
+    match kind {
+        HookKind::User { closure, .. } => Ok(Callable(hooks[*closure].law.clone())),
+        #[cfg(feature = "geometry")]
+        HookKind::Touches { solids, .. } => {
+            let query = crate::physics::contact::query::Query::new(&solids[0], &solids[1]);
+            let query = query.ok_or_else(|| vec![format!("{element}: its points have no hull")])?;
+            Ok(Callable(Arc::new(
+                move |call: &Call<'_>, out: &mut [f64]| {
+                    query.ask(call.values, out);
+                },
+            )))
+        }
+        #[cfg(not(feature = "geometry"))]
+        HookKind::Touches { .. } => Err(vec![format!("{element}: needs the feature geometry")]),
+    }
+}
+
 #[derive(Debug)]
 struct Bound {
-    hook: Hook,
+    law: Callable,
     element: String,
     constants: Vec<f64>,
     places: Range<usize>,
@@ -155,7 +185,7 @@ impl Bound {
             constants: &self.constants,
             values: &self.values,
         };
-        (self.hook.law)(&call, &mut self.results);
+        (self.law.0)(&call, &mut self.results);
     }
 
     /// Differences of the results along each value, at the present ones.
@@ -206,8 +236,17 @@ impl Outside {
                 }
                 Supplied::Hook(k, 0) => {
                     let hook = &scene.hooks[k];
-                    let inputs = record(scene, |at| {
-                        hook.inputs.iter().map(|&f| at.formula(f)).collect()
+                    let inputs = record(scene, |at| match &hook.kind {
+                        HookKind::User { inputs, .. } => {
+                            inputs.iter().map(|&f| at.formula(f)).collect()
+                        }
+                        HookKind::Touches { markers, .. } => {
+                            let [i, j] = markers.map(|m| at.marker(m));
+                            let place = j.R_GM.apply_transposed(i.p_GM - j.p_GM);
+                            let axes = [0, 1, 2].map(|k| j.R_GM.apply_transposed(i.R_GM.column(k)));
+                            let all = [place, axes[0], axes[1], axes[2]];
+                            all.iter().flat_map(|v| v.0).collect()
+                        }
                     })?;
                     let places = first + hook.place..first + hook.place + hook.n;
                     if places.clone().any(|place| inputs.reads(place)) {
@@ -217,7 +256,7 @@ impl Outside {
                         )]);
                     }
                     this.hooks.push(Bound {
-                        hook: hooks[hook.closure].clone(),
+                        law: law(&hook.kind, &hook.element, hooks)?,
                         element: hook.element.clone(),
                         constants: hook.constants.clone(),
                         values: vec![0.0; inputs.n_outputs()],

@@ -4,7 +4,7 @@ use super::compile::{Compiler, NamedTie, part_name};
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
 use super::loops::{self, Key};
-use super::outside::{HookName, SceneDelay, SceneHook, Supplied};
+use super::outside::{HookKind, HookName, SceneDelay, SceneHook, Supplied};
 use super::reads::{Allowed, offence};
 use super::sweep::Freedom;
 use super::{
@@ -303,11 +303,10 @@ impl<'m> Builder<'m> {
             .map(|k| self.supply(Supplied::Hook(hook, k)))
             .collect();
         self.scene.hooks.push(SceneHook {
-            closure,
+            kind: HookKind::User { closure, inputs },
             output_only: element.starts_with("REQUEST/"),
             element,
             constants: constants.clone(),
-            inputs,
             n,
             place: places[0],
         });

@@ -2,11 +2,12 @@
 
 use super::build::{Builder, active};
 use super::compile::Compiler;
-use super::forces::ForceLaw;
+use super::forces::{ForceLaw, Touching};
+use super::outside::{HookKind, SceneHook, Supplied};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Contact, ContactLaw, CoulombFriction, Shape};
 use crate::physics::contact::law::{Coulomb, Law, Normal};
-use crate::physics::contact::{Pair, Solid};
+use crate::physics::contact::{Pair, Solid, TOUCH_NUMBERS, TOUCHES};
 use std::collections::BTreeSet;
 
 /// Small speed that makes POISSON smooth, as a part of the speed of a fall through the mechanism's own size.
@@ -119,8 +120,11 @@ impl Builder<'_> {
             };
             match self.pairs(contact) {
                 Ok(pairs) => {
-                    for (i, j, pair) in pairs {
-                        let law = ForceLaw::Contact(Box::new((pair, law)));
+                    for (i, j, solids) in pairs {
+                        let Some(touching) = self.touching(c, &name, (i, j), solids) else {
+                            continue;
+                        };
+                        let law = ForceLaw::Contact(Box::new((touching, law)));
                         self.between(c, "CONTACT", id, (i, j), law);
                     }
                 }
@@ -138,8 +142,38 @@ impl Builder<'_> {
         }
     }
 
+    /// How the touches of a pair are found: by a formula, else by a query; `None`: a marker is missing, which has been said.
+    fn touching(
+        &mut self,
+        c: &mut Compiler,
+        name: &str,
+        markers: (u32, u32),
+        solids: [Solid; 2],
+    ) -> Option<Touching> {
+        if let Some(pair) = Pair::of(&solids[0], &solids[1]) {
+            return Some(Touching::Formula(pair));
+        }
+        let markers = [c.marker(markers.0, name)?, c.marker(markers.1, name)?];
+        let (hook, n) = (self.scene.hooks.len(), TOUCHES * TOUCH_NUMBERS);
+        let places: Vec<usize> = (0..n)
+            .map(|k| self.supply(Supplied::Hook(hook, k)))
+            .collect();
+        self.scene.hooks.push(SceneHook {
+            kind: HookKind::Touches {
+                solids: Box::new(solids),
+                markers,
+            },
+            element: name.to_string(),
+            constants: Vec::new(),
+            n,
+            place: places[0],
+            output_only: false,
+        });
+        Some(Touching::Query(places[0]))
+    }
+
     /// The pairs of a contact with the markers of their solids.
-    fn pairs(&self, contact: &Contact) -> Result<Vec<(u32, u32, Pair)>, String> {
+    fn pairs(&self, contact: &Contact) -> Result<Vec<(u32, u32, [Solid; 2])>, String> {
         if contact.flip != [false; 2] {
             return Err("IFLIP and JFLIP, which turn a solid inside out, are not solved".into());
         }
@@ -160,14 +194,22 @@ impl Builder<'_> {
         let mut out = Vec::new();
         for (gi, i) in &all_i {
             for (gj, j) in &all_j {
-                let pair = Pair::of(&i.solid, &j.solid).ok_or_else(|| {
-                    format!(
-                        "there is no contact between a {} (GRAPHICS/{gi}) and a {} (GRAPHICS/{gj})",
+                let queried = i.solid.can_be_queried() && j.solid.can_be_queried();
+                let solved = Pair::of(&i.solid, &j.solid).is_some()
+                    || (queried && cfg!(feature = "geometry"));
+                if !solved {
+                    let why = if queried {
+                        " in this program: it was built without the feature geometry"
+                    } else {
+                        ""
+                    };
+                    return Err(format!(
+                        "there is no contact between a {} (GRAPHICS/{gi}) and a {} (GRAPHICS/{gj}){why}",
                         i.solid.name(),
                         j.solid.name()
-                    )
-                })?;
-                out.push((i.marker, j.marker, pair));
+                    ));
+                }
+                out.push((i.marker, j.marker, [i.solid.clone(), j.solid.clone()]));
             }
         }
         Ok(out)

@@ -33,6 +33,15 @@ pub struct ForceElement {
     pub law: ForceLaw,
 }
 
+/// How the touches of two solids are found.
+#[derive(Clone, Debug)]
+pub enum Touching {
+    /// by a formula of the two frames
+    Formula(contact::Pair),
+    /// by a query: place of the first of its numbers among those from outside
+    Query(usize),
+}
+
 /// The laws.
 #[derive(Clone, Debug)]
 pub enum ForceLaw {
@@ -59,7 +68,7 @@ pub enum ForceLaw {
     /// FIELD, BEAM
     Field(Box<Field>),
     /// two solids of a CONTACT, and what they do where they touch
-    Contact(Box<(contact::Pair, contact::Law)>),
+    Contact(Box<(Touching, contact::Law)>),
     /// FRICTION in a joint
     Friction {
         /// its numbers
@@ -119,8 +128,15 @@ impl ForceElement {
             ForceLaw::Bushing(law) => law.action(&i, &j, angles()),
             ForceLaw::Field(law) => law.action(&i, &j, angles()),
             ForceLaw::Contact(contact) => {
-                let (pair, law) = contact.as_ref();
-                contact::action(&pair.touches(&i, &j), law, &i, &j)
+                let (touching, law) = contact.as_ref();
+                let touches = match touching {
+                    Touching::Formula(pair) => pair.touches(&i, &j),
+                    Touching::Query(first) => {
+                        let n = contact::TOUCHES * contact::TOUCH_NUMBERS;
+                        contact::found(at.supplied(*first..*first + n), &i, &j)
+                    }
+                };
+                contact::action(&touches, law, &i, &j)
             }
             ForceLaw::Friction { law, joint } => {
                 law.slip(&i, &j, &self.pressing(at, law, *joint)).action

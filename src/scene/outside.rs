@@ -4,6 +4,7 @@
 //! before them, so that the programs need not know where they come from.
 
 use crate::model::{Comparison, Formula};
+use crate::physics::contact::Solid;
 
 /// One number from outside, in the order of the places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,17 +84,35 @@ impl HookName {
     }
 }
 
+/// What computes numbers from outside, and what it is given.
+#[derive(Clone, Debug)]
+pub enum HookKind {
+    /// a closure of the user's
+    User {
+        /// which: index in [`Options::hooks`](super::build::Options::hooks)
+        closure: usize,
+        /// what it reads: indices in the formulas
+        inputs: Vec<usize>,
+    },
+    /// where two solids touch: [`TOUCHES`](crate::physics::contact::TOUCHES) times
+    /// [`TOUCH_NUMBERS`](crate::physics::contact::TOUCH_NUMBERS)
+    Touches {
+        /// of I and J
+        solids: Box<[Solid; 2]>,
+        /// in whose frames they stand: indices in [`Scene::markers`](super::Scene::markers)
+        markers: [usize; 2],
+    },
+}
+
 /// A call of a closure, for one element.
 #[derive(Clone, Debug)]
 pub struct SceneHook {
-    /// which closure: index in [`Options::hooks`](super::build::Options::hooks)
-    pub closure: usize,
+    /// what is called
+    pub kind: HookKind,
     /// the element: "SFORCE/3"
     pub element: String,
     /// the numbers of USER
     pub constants: Vec<f64>,
-    /// what it reads: indices in the formulas
-    pub inputs: Vec<usize>,
     /// how many numbers it yields
     pub n: usize,
     /// place of the first

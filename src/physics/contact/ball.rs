@@ -27,6 +27,7 @@ pub(super) fn touch<S: Scalar>(
         depth,
         normal,
         point,
+        share: S::one(),
     }
 }
 

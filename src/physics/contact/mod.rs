@@ -13,10 +13,13 @@
 //! | plane – torus | the same four of its ring |
 //! | plane – ellipsoid | 1, the deepest |
 //! | point | a ball without radius |
+//! | box, cylinder, frustum, ellipsoid, hull with each other | up to 8, found by queries (`query.rs`, feature `geometry`) |
 
 pub mod ball;
 pub mod law;
 pub mod plane;
+#[cfg(feature = "geometry")]
+pub mod query;
 
 use super::action::Action;
 use crate::scalar::Scalar;
@@ -69,6 +72,17 @@ pub enum Solid {
 }
 
 impl Solid {
+    /// Whether it is convex and of finite size, so that queries can be made for it.
+    pub fn can_be_queried(&self) -> bool {
+        match self {
+            Solid::Ball { radius } => *radius > 0.0,
+            Solid::Box { .. }
+            | Solid::Frustum { .. }
+            | Solid::Ellipsoid { .. }
+            | Solid::Hull(_) => true,
+            Solid::Plane { .. } | Solid::Torus { .. } => false,
+        }
+    }
     /// What it is called.
     pub fn name(&self) -> &'static str {
         match self {
@@ -94,6 +108,31 @@ pub struct Touch<S> {
     pub normal: Vec3<S>,
     /// where they act on each other, in ground
     pub point: Vec3<S>,
+    /// part of the law's force that acts here: 1, less where several points stand for one place
+    pub share: S,
+}
+
+/// Most touches that a query finds.
+pub const TOUCHES: usize = 8;
+/// Numbers of one: its point on I's solid and on J's, each in the frame of its marker, the direction from J's solid to I's in
+/// the frame of J's marker, what is taken off the depth (of touches that are not there), its share.
+pub const TOUCH_NUMBERS: usize = 11;
+
+/// The touches that a query found, as formulas of the two frames: the points stay on their solids.
+pub fn found<S: Scalar>(numbers: &[S], i: &MarkerState<S>, j: &MarkerState<S>) -> Vec<Touch<S>> {
+    let one = |touch: &[S]| {
+        let vector = |k: usize| Vec3([touch[k], touch[k + 1], touch[k + 2]]);
+        let p_i = i.p_GM + i.R_GM.apply(vector(0));
+        let p_j = j.p_GM + j.R_GM.apply(vector(3));
+        let normal = j.R_GM.apply(vector(6));
+        Touch {
+            depth: (p_j - p_i).dot(normal) - touch[9],
+            normal,
+            point: (p_i + p_j).times(S::constant(0.5)),
+            share: touch[10],
+        }
+    };
+    numbers.chunks(TOUCH_NUMBERS).map(one).collect()
 }
 
 impl<S: Scalar> Touch<S> {
@@ -195,6 +234,7 @@ pub fn action<S: Scalar>(
         let (to_i, to_j) = (touch.point - i.p_GM, touch.point - j.p_GM);
         let velocity = i.v_GM + i.w_GM.cross(to_i) - j.v_GM - j.w_GM.cross(to_j);
         let force = law.force(touch.depth, touch.normal, velocity);
+        let force = force.times(touch.share);
         sum = sum.plus(&Action {
             force,
             torque: to_i.cross(force),

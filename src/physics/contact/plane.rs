@@ -47,6 +47,7 @@ pub(super) fn touches<S: Scalar>(
             depth,
             normal,
             point: p - normal.times(z.scale(0.5)),
+            share: S::one(),
         });
     }
     out

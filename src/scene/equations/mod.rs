@@ -32,6 +32,7 @@ use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
 use crate::space::MarkerState;
 use std::cell::{Cell, OnceCell, RefCell};
+use std::ops::Range;
 
 /// Value of MODE in a kinematic analysis.
 const KINEMATIC: f64 = 1.0;
@@ -328,6 +329,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
             Some(place) => self.supplied[place],
             None => S::zero(),
         }
+    }
+
+    /// Numbers from outside: places among these.
+    pub fn supplied(&self, places: Range<usize>) -> &[S] {
+        &self.supplied[places]
     }
 
     /// A number from outside; at rest the past is like the present.
