@@ -414,7 +414,7 @@ impl Query {
             let (du, dv) = ((gx * kk - kx * gk) / det, (gg * kx - gk * gx) / det);
             (u, v) = (u - du, v - dv);
             // far away is another place
-            if !(u.abs().max(v.abs()) < POLISH) {
+            if (u + v).is_nan() || u.abs().max(v.abs()) >= POLISH {
                 break;
             }
         }
