@@ -5,6 +5,10 @@ use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::model::Model;
 use cognate::results::Status;
+use curves::{circle, curve};
+
+#[path = "common/curves.rs"]
+mod curves;
 
 const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
 
@@ -255,31 +259,6 @@ fn a_driven_joint_is_a_driven_pair_of_markers() {
             assert!((a - b).abs() < 1e-7 * (1.0 + a.abs()), "{other}: {a} {b}");
         }
     }
-}
-
-/// A MATRIX and a CURVE through its points.
-fn curve(id: u32, kind: &str, points: &[[f64; 2]]) -> String {
-    let mut text = format!(
-        "MATRIX/{id}, FULL=RORDER, ROWS={}, COLUMNS=3, VALUES=",
-        points.len()
-    );
-    for (k, p) in points.iter().enumerate() {
-        let comma = if k == 0 { "" } else { "," };
-        text += &format!("{comma}\n, {:.17},{:.17},0", p[0], p[1]);
-    }
-    text + &format!("\nCURVE/{id}, {kind}, MATRIX={id}, CURVE_POINTS\n")
-}
-
-/// Points of a circle, the last like the first. The spline through n of them is off by R (2π/n)⁴/384: 2e-9 R for 200.
-fn circle(radius: f64, n: usize) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = (0..n)
-        .map(|k| {
-            let angle = std::f64::consts::TAU * k as f64 / n as f64;
-            [radius * angle.cos(), radius * angle.sin()]
-        })
-        .collect();
-    points.push(points[0]);
-    points
 }
 
 const R: f64 = 0.05;

@@ -440,7 +440,7 @@ pub fn velocities(
         ]);
     }
     let mut v = v0;
-    let wishes = [&wishes.given, &wishes.rest];
+    let wishes = [&wishes.firm, &wishes.given, &wishes.rest];
     if wishes.iter().all(|(a, b)| (b - a * &v).amax() == 0.0) {
         return Ok(v.iter().copied().collect());
     }
@@ -450,7 +450,13 @@ pub fn velocities(
         if space.ncols() == 0 || a.nrows() == 0 {
             continue;
         }
-        let reduced = a * &space;
+        let mut reduced = a * &space;
+        // a wish square to all that is free is not to be had: what rounding leaves of it says nothing
+        for r in 0..reduced.nrows() {
+            if reduced.row(r).norm() <= EMPTY * a.row(r).norm() {
+                reduced.row_mut(r).fill(0.0);
+            }
+        }
         let rank = rank_of(&reduced, &vec![1.0; space.ncols()]);
         let mut z = vec![0.0; space.ncols()];
         rank.least_squares((b - a * &v).as_slice(), &mut z);
@@ -492,10 +498,26 @@ fn directions(rank: &Rank, n: usize) -> DMatrix<f64> {
 /// Linear equations that velocities should satisfy: (matrix, right side).
 type Equation = (DMatrix<f64>, DVector<f64>);
 
-/// Wishes of the dataset: those given, and zero for all that is not.
+/// Wishes of the dataset: those of constraints (IC of joints, VEL of contacts), which go before those of parts, and zero for all that is
+/// not given.
 struct Wishes {
+    firm: Equation,
     given: Equation,
     rest: Equation,
+}
+
+/// Who wishes for a velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Level {
+    Constraint,
+    Part,
+    Rest,
+}
+
+impl Level {
+    fn of(given: Option<f64>) -> (Self, f64) {
+        given.map_or((Self::Rest, 0.0), |x| (Self::Part, x))
+    }
 }
 
 impl Wishes {
@@ -503,7 +525,7 @@ impl Wishes {
         let n = scene.layout.n_v;
         // velocities are linear in v: one evaluation per coordinate, and one for what motions prescribe
         let mut columns: Vec<Vec<f64>> = Vec::with_capacity(n + 1);
-        let mut targets: Vec<(bool, f64)> = Vec::new();
+        let mut targets: Vec<(Level, f64)> = Vec::new();
         for k in 0..=n {
             let mut v = vec![0.0; n];
             if k > 0 {
@@ -519,9 +541,9 @@ impl Wishes {
             columns.push(column);
             targets = wanted;
         }
-        let level = |given: bool| {
+        let level = |level: Level| {
             let rows: Vec<usize> = (0..targets.len())
-                .filter(|&r| targets[r].0 == given)
+                .filter(|&r| targets[r].0 == level)
                 .collect();
             let a = DMatrix::from_fn(rows.len(), n, |i, j| columns[j + 1][rows[i]]);
             let b = DVector::from_iterator(
@@ -531,18 +553,19 @@ impl Wishes {
             (a, b)
         };
         Self {
-            given: level(true),
-            rest: level(false),
+            firm: level(Level::Constraint),
+            given: level(Level::Part),
+            rest: level(Level::Rest),
         }
     }
 }
 
-/// Velocity components of all parts as the dataset would give them, and (given, value) of what it gives; then joint rates.
+/// Velocity components of all parts as the dataset would give them, and (by whom, value) of what it gives; then joint rates.
 fn part_velocities(
     scene: &Scene,
     model: &Model,
     at: &Equations<'_, f64>,
-) -> (Vec<f64>, Vec<(bool, f64)>) {
+) -> (Vec<f64>, Vec<(Level, f64)>) {
     let mut values = Vec::new();
     let mut wanted = Vec::new();
     for part in &scene.parts {
@@ -561,21 +584,18 @@ fn part_velocities(
         let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
         for k in 0..3 {
             values.push(axes_v.column(k).dot(cm.v_GM));
-            wanted.push((data.velocity[k].is_some(), data.velocity[k].unwrap_or(0.0)));
+            wanted.push(Level::of(data.velocity[k]));
         }
         for k in 0..3 {
             values.push(axes_w.column(k).dot(cm.w_GM));
-            wanted.push((
-                data.angular_velocity[k].is_some(),
-                data.angular_velocity[k].unwrap_or(0.0),
-            ));
+            wanted.push(Level::of(data.angular_velocity[k]));
         }
     }
     for (c, cam) in scene.cams.iter().enumerate() {
         for (k, along) in at.cam_speeds(c).into_iter().enumerate() {
             if let Some(given) = cam.velocity[k] {
                 values.push(along);
-                wanted.push((true, given));
+                wanted.push((Level::Constraint, given));
             }
         }
     }
@@ -592,7 +612,7 @@ fn part_velocities(
         } else {
             (i.v_GM - j.v_GM).dot(z) + (i.p_GM - j.p_GM).dot(j.w_GM.cross(z))
         });
-        wanted.push((true, rate));
+        wanted.push((Level::Constraint, rate));
     }
     (values, wanted)
 }

@@ -91,7 +91,9 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     }
     let mut q = scene.initial_q.clone();
     let x = start(&scene, model, &mut q);
-    super::placement::settle(&scene, model, 0.0, &mut q, &x, true);
+    if !super::placement::settle(&scene, model, 0.0, &mut q, &x, true) {
+        super::wishes::approach(&mut scene, &[], 0.0, &mut q, &x);
+    }
     let assembly = assemble::positions(&mut scene, 0.0, &mut q, &x)?;
     out.warnings.extend(assembly.warnings.iter().cloned());
     for r in &assembly.redundant {

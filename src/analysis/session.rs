@@ -256,11 +256,13 @@ impl Session {
             Vec::new()
         };
         // where parts are too many to be weighed, or on curves, coordinates move as little as may be
-        if !(placed && joints) {
-            wishes::approach(&scene, &wishes, t, &mut q, &x);
-        }
+        let starts = if first && !(placed && joints) {
+            wishes::approach(&mut scene, &wishes, t, &mut q, &x)
+        } else {
+            Vec::new()
+        };
         let mut assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
-        let unmet = wishes::unmet(&scene, &wishes, t, &q, &x);
+        let unmet = wishes::unmet(&scene, &wishes, &starts, t, &q, &x);
         assembly.warnings.extend(unmet);
         assembly.warnings.splice(0..0, misaligned);
         if first {

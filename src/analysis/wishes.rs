@@ -4,19 +4,23 @@
 //!
 //! ```text
 //! d.z_J = ICTRAN,  angle of x_I about z_J = ICROT      part frame: X, Y, Z, ψ, θ, φ as in the dataset
+//! PTCV: I at the point of the curve next to DISP        CVCV: the curves touch next to IDISP and JDISP
 //! ```
 //!
 //! First rows and wishes together, by least changes; then the rows alone, exactly. So rows win where they contradict wishes, and
-//! that is told. Only dynamic simulations ask for wishes: kinematics and statics find their own configuration.
+//! that is told. Only dynamic simulations ask for wishes of joints and parts: kinematics and statics find their own configuration.
+//! Where contacts begin is asked for always: that chooses among the ways in which the parts can be put together.
 
 use super::assemble::{self, Mover, least_change, rows_at};
 use super::slopes::{Direction, along};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
 use crate::model::{JointKind, Model};
+use crate::physics::cam::Contact;
 use crate::physics::coupler::Gauge;
 use crate::scalar::Scalar;
-use crate::scene::Scene;
+use crate::scene::cams::{self, Start};
+use crate::scene::{RowKind, Scene};
 use crate::scene::build::is_active;
 use crate::scene::equations::Equations;
 use crate::scene::programs::{record_with_complaints, weights};
@@ -229,10 +233,21 @@ fn equations(
     (residual, gradient)
 }
 
-/// Moves positions towards rows and wishes together.
-pub fn approach(scene: &Scene, wishes: &[Wish], t: f64, q: &mut [f64], x: &[f64]) {
-    if wishes.is_empty() || scene.layout.n_v == 0 {
-        return;
+/// Moves positions towards rows and wishes together; contacts that are asked to begin somewhere are taken to be there, and
+/// returned.
+pub fn approach(
+    scene: &mut Scene,
+    wishes: &[Wish],
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+) -> Vec<Start> {
+    let starts = cams::starts(
+        scene,
+        &assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x),
+    );
+    if wishes.is_empty() && starts.is_empty() || scene.layout.n_v == 0 {
+        return starts;
     }
     let w = weights(scene);
     let mover = Mover::new(scene);
@@ -240,36 +255,59 @@ pub fn approach(scene: &Scene, wishes: &[Wish], t: f64, q: &mut [f64], x: &[f64]
     let (quantities, _) = record_with_complaints(scene, |at| {
         wishes.iter().map(|w| w.quantity(scene, at)).collect()
     });
+    // contacts that are asked to be somewhere are equations of their own
+    let asked = |scene: &Scene, r: usize| match scene.rows[r].kind {
+        RowKind::Cam { cam, .. } => starts.iter().any(|s| s.cam == cam),
+        _ => assemble::is_held(scene, r),
+    };
     for _ in 0..ITERATIONS {
+        let here = assemble::numbers(scene, t, q, &still, x);
+        cams::track(scene, &here);
+        cams::place(scene, &starts, &here);
         let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
-        for r in (0..g.len()).filter(|&r| assemble::is_held(scene, r)) {
+        for r in (0..g.len()).filter(|&r| asked(scene, r)) {
             g[r] = 0.0;
             gradient.row_mut(r).fill(0.0);
         }
-        let (off, slopes) = equations(
-            scene,
-            wishes,
-            &quantities,
-            &assemble::numbers(scene, t, q, &still, x),
-            &mover,
-        );
+        let at = Equations::<f64>::new(scene, &here);
+        let places: Vec<(f64, Vec<(usize, f64)>)> = (starts.iter())
+            .flat_map(|s| at.cam_start(s.cam, s.given))
+            .filter(|(value, _)| value.is_finite())
+            .collect();
+        let (off, slopes) = equations(scene, wishes, &quantities, &here, &mover);
         let (m, n) = (g.len(), wishes.len());
-        let mut a = DMatrix::zeros(m + n, w.len());
+        let mut a = DMatrix::zeros(m + n + places.len(), w.len());
         a.rows_mut(0, m).copy_from(&gradient);
         a.rows_mut(m, n).copy_from(&slopes);
-        let b = DVector::from_iterator(m + n, g.iter().chain(off.iter()).map(|x| -x));
+        for (k, (_, slopes)) in places.iter().enumerate() {
+            for &(v, slope) in slopes {
+                a[(m + n + k, v)] += slope;
+            }
+        }
+        let all = g.iter().chain(off.iter()).chain(places.iter().map(|p| &p.0));
+        let b = DVector::from_iterator(m + n + places.len(), all.map(|x| -x));
         let step = least_change(&a, &w, &b);
         let size = |v: usize| step[v].abs() / w[v].sqrt();
         let longest = (0..w.len()).map(size).fold(0.0, f64::max);
         if !longest.is_finite() || longest < 1e-14 {
-            return;
+            break;
         }
         mover.displace(q, (&step * (0.5 / longest).min(1.0)).as_slice());
     }
+    let reached = assemble::numbers(scene, t, q, &still, x);
+    cams::place(scene, &starts, &reached);
+    starts
 }
 
 /// Wishes that an assembled configuration does not meet, in words.
-pub fn unmet(scene: &Scene, wishes: &[Wish], t: f64, q: &[f64], x: &[f64]) -> Vec<String> {
+pub fn unmet(
+    scene: &Scene,
+    wishes: &[Wish],
+    starts: &[Start],
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> Vec<String> {
     let numbers = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
     let at = Equations::new(scene, &numbers);
     let told = wishes.iter().filter_map(|wish| {
@@ -283,5 +321,29 @@ pub fn unmet(scene: &Scene, wishes: &[Wish], t: f64, q: &[f64], x: &[f64]) -> Ve
             )
         })
     });
-    told.collect()
+    let mut told: Vec<String> = told.collect();
+    for start in starts {
+        let cam = &scene.cams[start.cam];
+        let names: &[&str] = match cam.contact {
+            Contact::Point(_) => &["DISP"],
+            Contact::Curves(..) => &["IDISP", "JDISP"],
+        };
+        let reached = at.cam_parameters(start.cam);
+        for (k, path) in cam.contact.paths().iter().enumerate() {
+            let Some(given) = start.given[k] else {
+                continue;
+            };
+            let off = (path.at::<f64>(reached[k], 0) - path.at(given, 0)).norm();
+            if off > MET * scene.length {
+                let off = super::misalignment::length(off, &scene.length_unit);
+                told.push(format!(
+                    "{} {} cannot be met: the constraints put the contact {off} away from the point of CURVE/{} next to it",
+                    cam.name(),
+                    names[k],
+                    cam.curves[k]
+                ));
+            }
+        }
+    }
+    told
 }

@@ -9,6 +9,8 @@
 //!         n₁ · (p − c) = 0,  n₂ · (p − c) = 0        n₁ ∥ c' × r,  n₂ = c'/|c'| × n₁         (2)
 //! CVCV    0 = D · T_I,   0 = (T_I × T_J) · z_I       s_I, s_J: tangents are parallel         (3)
 //!         D · n = 0,  D · z_I = 0                    n = z_I × T_I/|T_I|                     (4)
+//! floating markers: x = T/|T|, y of PTCV away from the centre of curvature (5), of CVCV z × x with the z of its curve (6)
+//! asked to be at s₀:  PTCV  p − c(s₀) = 0 (7),  CVCV  D = 0 with parallel tangents (8)
 //! ```
 //!
 //! r is a fixed direction that no tangent of the curve comes near (z for a curve in the x–y plane), so that the normals are smooth all
@@ -17,7 +19,7 @@
 
 use crate::expr::interpolation::Curve;
 use crate::scalar::{Scalar, Table};
-use crate::space::{Frame, Vec3};
+use crate::space::{Frame, Mat3, Vec3};
 use std::sync::Arc;
 
 /// A curve that can be followed beyond its ends.
@@ -143,6 +145,25 @@ impl Path {
             .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
             .unwrap_or(0.0)
     }
+
+    /// The parameter of the point nearest to `p`, on an open curve one of its own.
+    pub fn foot(&self, p: Vec3<f64>) -> f64 {
+        let start = self.nearest(p);
+        let mut s = start;
+        for _ in 0..20 {
+            let [c, t, bend] = [0, 1, 2].map(|k| self.at::<f64>(s, k));
+            let d = p - c;
+            let step = d.dot(t) / (t.dot(t) - d.dot(bend));
+            s += step;
+            if step.abs() < 1e-15 {
+                break;
+            }
+        }
+        // it is no farther than between the samples beside the nearest
+        let near = (s - start).abs() <= 2.0 / SAMPLES as f64;
+        let s = if near { s } else { start };
+        if self.closed { s } else { s.clamp(-1.0, 1.0) }
+    }
 }
 
 /// Parameters at which a curve is looked at.
@@ -262,6 +283,88 @@ impl Contact {
                 let (d, z) = (p_i - p_j, i.rotation.column(2));
                 let n = z.cross(t_i);
                 [d.dot(n) * n.norm2().sqrt().recip(), d.dot(z)]
+            }
+        }
+    }
+
+    /// The floating marker of a curve: origin where it touches, x along the tangent (5)(6).
+    ///
+    /// `side`: which of [`Contact::paths`].
+    pub fn floating<S: Scalar>(
+        &self,
+        side: usize,
+        i: &Frame<S>,
+        j: &Frame<S>,
+        s: [S; 2],
+    ) -> Frame<S> {
+        let unit = |v: Vec3<S>| v.times(v.norm2().sqrt().recip());
+        let (path, marker, s) = match self {
+            Contact::Point(path) => (path, j, s[0]),
+            Contact::Curves(path, _) if side == 0 => (path, i, s[0]),
+            Contact::Curves(_, path) => (path, j, s[1]),
+        };
+        let t: Vec3<S> = path.at(s, 1);
+        let x = unit(t);
+        let y = match self {
+            Contact::Curves(..) => Vec3::axis(2).cross(x),
+            Contact::Point(_) => {
+                let bend: Vec3<S> = path.at(s, 2);
+                let inward = bend - x.times(bend.dot(x));
+                let (n2, t2) = (inward.norm2(), t.norm2());
+                // curvature · length: there is no centre of curvature on a straight piece
+                let straight = (n2.scale(path.length * path.length)).le((t2 * t2).scale(1e-18));
+                let beside = t.cross(Vec3::constant(path.away));
+                unit(Vec3(std::array::from_fn(|k| {
+                    S::select(straight, beside.0[k], -inward.0[k])
+                })))
+            }
+        };
+        let axes = Mat3::from_columns(x, y, x.cross(y));
+        Frame {
+            rotation: marker.rotation * axes,
+            position: marker.point(path.at(s, 0)),
+        }
+    }
+
+    /// What must vanish for the contact to be at places given: per curve a parameter, or `None` where it is free (7)(8).
+    ///
+    /// `near`: parameters of curves whose place is free, near the point next to that of the other.
+    pub fn placed<S: Scalar>(
+        &self,
+        i: &Frame<S>,
+        j: &Frame<S>,
+        given: [Option<f64>; 2],
+        near: [f64; 2],
+    ) -> Vec<S> {
+        match self {
+            Contact::Point(path) => {
+                let Some(s) = given[0] else { return Vec::new() };
+                let p = j.rotation.apply_transposed(i.position - j.position);
+                (p - Vec3::constant(path.at(s, 0))).0.to_vec()
+            }
+            Contact::Curves(path_i, path_j) => {
+                let z = i.rotation.column(2);
+                let mut s = [0, 1].map(|k| S::constant(given[k].unwrap_or(near[k])));
+                // a curve without a place touches with the point next to that of the other
+                for _ in 0..2 {
+                    let [p_i, t_i, b_i] = in_ground(path_i, i, s[0]);
+                    let [p_j, t_j, b_j] = in_ground(path_j, j, s[1]);
+                    let d = p_i - p_j;
+                    match given {
+                        [Some(_), None] => s[1] += d.dot(t_j) / (t_j.norm2() - d.dot(b_j)),
+                        [None, Some(_)] => s[0] -= d.dot(t_i) / (t_i.norm2() + d.dot(b_i)),
+                        _ => {}
+                    }
+                }
+                let [p_i, t_i, _] = in_ground(path_i, i, s[0]);
+                let [p_j, t_j, _] = in_ground(path_j, j, s[1]);
+                if given == [None; 2] {
+                    return Vec::new();
+                }
+                let size = (t_i.norm2() * t_j.norm2()).sqrt();
+                let mut all = (p_i - p_j).0.to_vec();
+                all.push(t_i.cross(t_j).dot(z).scale(path_i.length) / size);
+                all
             }
         }
     }

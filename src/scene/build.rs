@@ -111,9 +111,9 @@ impl Scene {
         b.systems(&mut c);
         b.plant_inputs(&mut c, &options.plant_inputs);
         b.timed(&mut c);
-        b.general(&mut c);
         b.user_requests(&mut c);
         b.cams(&mut c);
+        b.general(&mut c);
         for (name, text) in &options.extra {
             let f = b.formula(&mut c, name, &ModelFormula::text(text.clone()));
             b.scene.extra.push(f);

@@ -143,6 +143,12 @@ impl Builder<'_> {
         let state = self.scene.layout.n_x;
         self.scene.layout.n_x += n;
         let (cam, first) = (self.scene.cams.len(), self.scene.rows.len());
+        for (k, side) in sides.iter().enumerate() {
+            let floating = |m: &u32| self.model.markers.get(m).is_some_and(|m| m.floating);
+            if let Some(marker) = side.float.filter(floating) {
+                self.scene.floating.insert(marker, (cam, k));
+            }
+        }
         self.scene.cams.push(Cam {
             keyword,
             id,
@@ -221,6 +227,75 @@ pub fn track(scene: &mut Scene, numbers: &[f64]) {
     }
 }
 
+/// Where a contact is asked to begin: of which, and the parameter on each curve that has a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// index in [`Scene::cams`]
+    pub cam: usize,
+    /// parameters of the points next to DISP, or to IDISP and JDISP
+    pub given: [Option<f64>; 2],
+}
+
+/// All contacts that are asked to begin somewhere. ICM markers count where they are at this instant.
+pub fn starts(scene: &Scene, numbers: &[f64]) -> Vec<Start> {
+    if scene.cams.iter().all(|c| c.start.iter().all(Option::is_none)) {
+        return Vec::new();
+    }
+    let at = Equations::<f64>::new(scene, numbers);
+    let mut found = Vec::new();
+    for (c, cam) in scene.cams.iter().enumerate() {
+        let frames = match cam.contact {
+            Contact::Point(_) => vec![at.frame(cam.j)],
+            Contact::Curves(..) => vec![at.frame(cam.i), at.frame(cam.j)],
+        };
+        let mut given = [None; 2];
+        for (k, path) in cam.contact.paths().iter().enumerate() {
+            given[k] = cam.start[k].map(|(point, marker)| {
+                let ground = at.frame(marker).point(point);
+                path.foot(frames[k].inverse().point(ground))
+            });
+        }
+        if given != [None; 2] {
+            found.push(Start { cam: c, given });
+        }
+    }
+    found
+}
+
+/// Takes contacts to be where they are asked to begin; where one curve has no place, with its point next to that of the other.
+pub fn place(scene: &mut Scene, starts: &[Start], numbers: &[f64]) {
+    if starts.is_empty() {
+        return;
+    }
+    let x = numbers[scene.layout.x()].to_vec();
+    let at = Equations::<f64>::new(scene, numbers);
+    let found: Vec<[f64; 2]> = (starts.iter())
+        .map(|start| {
+            let cam = &scene.cams[start.cam];
+            let (i, j) = (at.frame(cam.i), at.frame(cam.j));
+            let own = parameters(cam, &x);
+            match (&cam.contact, start.given) {
+                (Contact::Curves(path_i, path_j), [Some(s), None]) => {
+                    let ground = i.point(path_i.at(s, 0));
+                    [s, path_j.foot(j.inverse().point(ground))]
+                }
+                (Contact::Curves(path_i, path_j), [None, Some(s)]) => {
+                    let ground = j.point(path_j.at(s, 0));
+                    [path_i.foot(i.inverse().point(ground)), s]
+                }
+                (_, [a, b]) => [a.unwrap_or(own[0]), b.unwrap_or(own[1])],
+            }
+        })
+        .collect();
+    for (start, s) in starts.iter().zip(found) {
+        let cam = &mut scene.cams[start.cam];
+        for (k, s) in s.iter().enumerate().take(cam.contact.n_parameters()) {
+            cam.offset[k] = s - x.get(cam.state + k).copied().unwrap_or(0.0);
+        }
+        cam.begun = true;
+    }
+}
+
 /// Newton's iteration from parameters near; `None`: it does not converge.
 fn follow(contact: &Contact, i: &Frame<f64>, j: &Frame<f64>, s: [f64; 2]) -> Option<[f64; 2]> {
     let mut s = s;
@@ -260,7 +335,8 @@ fn search(cam: &Cam, i: &Frame<f64>, j: &Frame<f64>, at: &Equations<'_, f64>) ->
             {
                 return Some(s);
             }
-            closest_pair(&cam.contact, (path_i, near_i), (path_j, near_j), i, j)
+            let (a, b) = ((path_i, near_i), (path_j, near_j));
+            closest_pair(&cam.contact, a, b, i, j)
         }
     }
 }

@@ -369,6 +369,8 @@ pub struct Scene {
     pub motions: Vec<SceneMotion>,
     /// points on curves and curves on curves
     pub cams: Vec<cams::Cam>,
+    /// user's number of a floating marker of these → (which, side of its contact)
+    pub floating: BTreeMap<u32, (usize, usize)>,
     /// differential equations
     pub differentials: Vec<SceneDifferential>,
     /// user's VARIABLE number → formula

@@ -132,6 +132,12 @@ fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<&'static str
         Input::Delayed(_) => return Some("a delayed value has no rates"),
         Input::Slot(_) => return Some("it is no function of the model"),
     };
+    if let (Input::Measure(m, ids), Allowed::Places) = (input, allowed) {
+        let first = if m == Measure::Orient { 2 } else { 0 };
+        if ids[first..].iter().any(|id| scene.floating.contains_key(id)) {
+            return Some("it depends on a floating marker, whose place other constraints find");
+        }
+    }
     Some(match (measure.row().family, allowed) {
         (Family::Displacement, Allowed::Places) => return None,
         (Family::Displacement, Allowed::Time) => "it depends on where the parts are",

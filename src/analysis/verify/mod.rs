@@ -18,7 +18,7 @@ pub(super) use words::direction;
 
 use super::assemble::{self, Assembly};
 use super::nearby::Place;
-use super::{misalignment, outline, placement};
+use super::{misalignment, outline, placement, wishes};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Level, Model};
 use crate::physics::joint::Tie;
@@ -238,7 +238,11 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         .extend(misalignment::misaligned(&scene, &model));
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
-    placement::settle(&scene, &model, 0.0, &mut q, &x, true);
+    let starts = if placement::settle(&scene, &model, 0.0, &mut q, &x, true) {
+        Vec::new()
+    } else {
+        wishes::approach(&mut scene, &[], 0.0, &mut q, &x)
+    };
     let assembly = match assemble::positions(&mut scene, 0.0, &mut q, &x) {
         Ok(assembly) => assembly,
         Err(contradictions) => {
@@ -253,6 +257,8 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     found.freedom = Some(assembly.freedom_here);
     found.freedom_nearby = Some(assembly.freedom);
     found.warnings.extend(assembly.warnings.iter().cloned());
+    let unmet = wishes::unmet(&scene, &[], &starts, 0.0, &q, &x);
+    found.warnings.extend(unmet);
     let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
     let turned = misalignment::turned(&scene, &model, &numbers);
     found.warnings.extend(turned);

@@ -5,7 +5,7 @@ use super::{Equations, RowValue};
 use crate::physics::cam::Path;
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::scene::ConstraintElement;
-use crate::space::{Frame, Vec3};
+use crate::space::{Frame, MarkerState, Mat3, Vec3};
 
 /// Newton's steps that bring a parameter from its state to where it is: from 1e-4 beyond rounding.
 const STEPS: usize = 2;
@@ -31,7 +31,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// Parameters of a contact.
-    pub(in crate::scene) fn cam_parameters(&self, c: usize) -> [S; 2] {
+    pub fn cam_parameters(&self, c: usize) -> [S; 2] {
         let cam = &self.scene.cams[c];
         let (i, j) = (self.frame(cam.i), self.frame(cam.j));
         cam.contact.refined(&i, &j, self.cam_states(c), STEPS)
@@ -45,6 +45,66 @@ impl<S: Scalar> Equations<'_, S> {
         // each step of Newton's iteration makes one more derivative right
         let s = self.cam_parameters(c).map(still);
         cam.contact.refined(&i, &j, s, 2)
+    }
+
+    /// The floating marker of a contact on its curve `side`, as it moves along: with accelerations when asked for.
+    pub(super) fn floating_marker(
+        &self,
+        (c, side): (usize, usize),
+        accelerated: bool,
+    ) -> MarkerState<S> {
+        let cam = &self.scene.cams[c];
+        let state = |m: usize| {
+            if accelerated {
+                self.accelerated_marker(m)
+            } else {
+                self.marker(m)
+            }
+        };
+        let (i, j) = (moving(&state(cam.i)), moving(&state(cam.j)));
+        let still = |x: S| Jet::new(x, S::zero(), S::zero());
+        let s = cam
+            .contact
+            .refined(&i, &j, self.cam_parameters(c).map(still), 2);
+        let frame = cam.contact.floating(side, &i, &j, s);
+        let point = |part: fn(&Jet<S>) -> S| Vec3(std::array::from_fn(|k| part(&frame.position.0[k])));
+        let axes = |part: fn(&Jet<S>) -> S| {
+            Mat3(std::array::from_fn(|r| {
+                std::array::from_fn(|k| part(&frame.rotation.0[r][k]))
+            }))
+        };
+        let (R, R1, R2) = (axes(|x| x.value), axes(|x| x.first), axes(|x| x.second));
+        // Ṙ Rᵀ is ω as a matrix; R̈ Rᵀ is that of α with ω ω, which is symmetric
+        let skew = |m: Mat3<S>| {
+            let entry = |a: usize, b: usize| (m.0[b][a] - m.0[a][b]).scale(0.5);
+            Vec3([entry(1, 2), entry(2, 0), entry(0, 1)])
+        };
+        MarkerState {
+            R_GM: R,
+            p_GM: point(|x| x.value),
+            w_GM: skew(R1 * R.transpose()),
+            v_GM: point(|x| x.first),
+            alpha_GM: skew(R2 * R.transpose()),
+            a_GM: point(|x| x.second),
+        }
+    }
+
+    /// What must vanish for a contact to be where it is asked to begin, with gradients.
+    pub fn cam_start(&self, c: usize, given: [Option<f64>; 2]) -> Vec<(S, Vec<(usize, S)>)> {
+        let cam = &self.scene.cams[c];
+        let (I, J) = (self.marker(cam.i), self.marker(cam.j));
+        let seeded = (cam.contact).placed(
+            &seed::<12, S>(&I, 0),
+            &seed::<12, S>(&J, 6),
+            given,
+            cam.offset,
+        );
+        (seeded.iter())
+            .map(|e| {
+                let actions = [(cam.i, twist(e, 0)), (cam.j, twist(e, 6))];
+                (e.re, self.gradient_of(&actions))
+            })
+            .collect()
     }
 
     /// How fast a contact moves along its curves, by curves.

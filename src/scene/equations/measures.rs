@@ -20,7 +20,7 @@ impl<S: Scalar> Equations<'_, S> {
         let row = measure.row();
         match row.family {
             Family::Displacement | Family::Velocity => {
-                let state = |id: u32| self.scene.marker_of.get(&id).map(|&m| self.marker(m));
+                let state = |id: u32| self.marker_by_id(id, false);
                 match kinematic::kinematic_of(measure, ids, state) {
                     Some(value) if measure.needs_history() => {
                         self.turned(Counted::Measure(measure, ids), value)
@@ -44,12 +44,7 @@ impl<S: Scalar> Equations<'_, S> {
                 if self.discovering {
                     return S::zero();
                 }
-                let state = |id: u32| {
-                    self.scene
-                        .marker_of
-                        .get(&id)
-                        .map(|&m| self.accelerated_marker(m))
-                };
+                let state = |id: u32| self.marker_by_id(id, true);
                 kinematic::kinematic_of(measure, ids, state).unwrap_or_else(|| {
                     self.complain(format!(
                         "{asked_by}: {} names a marker that does not exist",

@@ -284,6 +284,19 @@ impl<'s, S: Scalar> Equations<'s, S> {
         sweep::marker_state(&self.scene.markers[m], &self.solved().links)
     }
 
+    /// A marker by the user's number, also a floating one of a contact; with accelerations when asked for.
+    fn marker_by_id(&self, id: u32, accelerated: bool) -> Option<MarkerState<S>> {
+        if let Some(&m) = self.scene.marker_of.get(&id) {
+            return Some(if accelerated {
+                self.accelerated_marker(m)
+            } else {
+                self.marker(m)
+            });
+        }
+        let &floating = self.scene.floating.get(&id)?;
+        Some(self.floating_marker(floating, accelerated))
+    }
+
     /// Value of a formula.
     pub fn formula(&self, f: usize) -> S {
         if let Some(value) = self.unknown(Key::Formula(f)) {

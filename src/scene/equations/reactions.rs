@@ -247,8 +247,8 @@ impl<S: Scalar> Equations<'_, S> {
         let axes = if rm == 0 {
             Mat3::identity()
         } else {
-            match self.scene.marker_of.get(&rm) {
-                Some(&m) => self.marker(m).R_GM,
+            match self.marker_by_id(rm, false) {
+                Some(m) => m.R_GM,
                 None => return self.complain(format!("{asked_by}: MARKER/{rm} does not exist")),
             }
         };

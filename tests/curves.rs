@@ -1,0 +1,296 @@
+//! Where contacts of curves begin, and the floating markers that go with them.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::model::Model;
+use cognate::results::Status;
+use curves::{circle, curve, line};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+#[path = "common/curves.rs"]
+mod curves;
+
+const R: f64 = 0.5;
+/// The spline through 200 points of a circle is off by R (2π/200)⁴/384 in places,
+const PLACE: f64 = 1e-8;
+/// and its curvature by (2π/200)²/12 = 8.2e-5 of itself: speeds of contacts, and how far a disc rolls.
+const ROLLING: f64 = 5e-4;
+
+fn run(text: &str, columns: &[&str], analysis: Analysis, end: f64) -> Session {
+    let text = format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{text}END\n");
+    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        error: Some(1e-10),
+        ..Options::default()
+    };
+    let mut s = Session::new(model, "test", options);
+    let status = s
+        .simulate(analysis, end, 20, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    s
+}
+
+fn column<'s>(s: &'s Session, name: &str) -> &'s [f64] {
+    s.run.column(name).expect("the column")
+}
+
+/// What columns begin with.
+fn first(text: &str, columns: &[&str], analysis: Analysis) -> (Vec<f64>, Vec<String>) {
+    let s = run(text, columns, analysis, 0.01);
+    let values = columns.iter().map(|c| column(&s, c)[0]).collect();
+    (values, s.run.record.warnings.clone())
+}
+
+fn near(found: &[f64], expected: &[f64], tolerance: f64) {
+    assert!(
+        (found.iter().zip(expected)).all(|(a, b)| (a - b).abs() < tolerance)
+            && found.len() == expected.len(),
+        "{found:?} {expected:?}"
+    );
+}
+
+/// A bead on a ring about ground, which stands at (x, y) in the dataset and does not turn.
+fn bead(place: [f64; 2], more: &str) -> String {
+    format!(
+        "PART/3, MASS=0.5, CM=30, IP=1,1,1, QG={},{},0, VY=2\nMARKER/30, PART=3\n\
+         MARKER/12, PART=1, FLOATING\nMARKER/13, PART=1, QP=1,0,0, REULER=90D,0,0\n\
+         JPRIM/1, ORIENTATION, I=30, J=1\nPTCV/1, CURVE=1, I=30, RM=1, JFLOAT=12{more}\n{}",
+        place[0],
+        place[1],
+        curve(1, "CLOSED", &circle(R, 200))
+    )
+}
+
+#[test]
+fn a_bead_begins_at_the_point_next_to_disp() {
+    let columns = ["DX(30,1)", "DY(30,1)"];
+    for analysis in [Analysis::Dynamic, Analysis::InitialConditions] {
+        for (place, more, expected) in [
+            // nothing said: the point of the ring next to the bead
+            ([0.7, 0.0], "", [R, 0.0]),
+            // a quarter turn away; the other side of the ring
+            ([0.5, 0.0], ", DISP=0,0.5,0", [0.0, R]),
+            ([0.5, 0.0], ", DISP=-0.5,0,0", [-R, 0.0]),
+            // beside the ring: the point of it next to that
+            ([0.5, 0.0], ", DISP=0.6,0.8,0.3", [0.3, 0.4]),
+            // in coordinates of a marker at (1, 0) with x along ground y: (1 − 1, 0 + 1)
+            ([0.5, 0.0], ", DISP=1,1,0, ICM=13", [0.0, R]),
+            ([0.02, -0.01], ", DISP=0.3,-0.4,0", [0.3, -0.4]),
+        ] {
+            let (found, warnings) = first(&bead(place, more), &columns, analysis);
+            near(&found, &expected, PLACE);
+            assert!(warnings.iter().all(|w| !w.contains("DISP")), "{warnings:?}");
+        }
+    }
+}
+
+/// The curve runs counterclockwise; VEL is along it, and goes before the velocities of parts.
+#[test]
+fn a_bead_begins_with_its_velocity_along_the_curve() {
+    let columns = ["VX(30,1)", "VY(30,1)"];
+    // the part's own VY = 2, square to the ring at the top
+    let begins = |more: &str| first(&bead([R, 0.0], more), &columns, Analysis::Dynamic).0;
+    near(&begins(""), &[0.0, 2.0], 1e-6);
+    near(&begins(", VEL=3"), &[0.0, 3.0], 1e-6);
+    near(&begins(", VEL=-3, DISP=0,0.5,0"), &[3.0, 0.0], 1e-6);
+    near(&begins(", DISP=0,0.5,0"), &[0.0, 0.0], 1e-6);
+}
+
+/// An eccentric disc under a follower above its axis: the disc is turned until the point asked for is under the follower.
+fn cam(more: &str, ties: &str) -> String {
+    format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=0.2,0,0\n\
+         MARKER/22, PART=2, FLOATING\nMARKER/23, PART=3, FLOATING\n\
+         PART/3, MASS=0.5, CM=30, IP=1,1,1, QG=0,0.4,0\nMARKER/30, PART=3\n\
+         MARKER/31, PART=3, REULER=0,-90D,0\nMARKER/11, PART=1, REULER=0,-90D,0\n\
+         JOINT/1, REVOLUTE, I=20, J=1{more}\nJOINT/2, TRANSLATIONAL, I=31, J=11\n{ties}{}",
+        curve(1, "CLOSED", &circle(R, 200))
+    )
+}
+
+#[test]
+fn a_disc_is_turned_to_where_its_follower_is_to_begin() {
+    let columns = ["DX(30,21,21)", "DY(30,21,21)", "DX(30,1)", "DX(22,21,21)"];
+    for analysis in [Analysis::Dynamic, Analysis::InitialConditions, Analysis::Static] {
+        for angle in [-0.7_f64, 0.3, 1.2, 2.0] {
+            let (x, y) = (R * angle.cos(), R * angle.sin());
+            let tie = format!("PTCV/1, CURVE=1, I=30, RM=21, JFLOAT=22, DISP={x},{y},0\n");
+            // where nothing loads it, an equilibrium is where it begins
+            let (found, _) = first(&cam("", &tie), &columns, analysis);
+            near(&found, &[x, y, 0.0, x], PLACE);
+        }
+    }
+}
+
+/// What the constraints do not permit is told, with the distance.
+#[test]
+fn a_beginning_that_constraints_forbid_is_told() {
+    let tie = "MOTION/1, JOINT=1, FUNCTION=TIME\nPTCV/1, CURVE=1, I=30, RM=21, DISP=0,0.5,0\n";
+    let (found, warnings) = first(&cam("", tie), &["DY(30,1)"], Analysis::Kinematic);
+    let above = (R * R - 0.04).sqrt();
+    near(&found, &[above], PLACE);
+    // from (0, 0.5) to (−0.2, above) of the disc
+    let off = 0.2_f64.hypot(0.5 - above);
+    let told = warnings.iter().find(|w| w.contains("PTCV/1 DISP cannot be met"));
+    let told = told.unwrap_or_else(|| panic!("{warnings:?}"));
+    assert!(told.contains(&format!("{off:.4}")) && told.contains("CURVE/1"), "{told} {off}");
+}
+
+/// A disc in the plane on a line along ground x.
+fn disc(more: &str) -> String {
+    format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1, QG=0,0.8,0\nMARKER/20, PART=2\nMARKER/22, PART=2, FLOATING\n\
+         MARKER/12, PART=1, FLOATING\nJOINT/1, PLANAR, I=20, J=1\n\
+         CVCV/1, ICURVE=1, IRM=20, IFLOAT=22, JCURVE=2, JRM=1, JFLOAT=12{more}\n{}{}",
+        curve(1, "CLOSED", &circle(R, 200)),
+        curve(2, "OPEN", &line(-3.0, 3.0))
+    )
+}
+
+#[test]
+fn two_curves_begin_to_touch_where_idisp_and_jdisp_say() {
+    let columns = ["DX(20,1)", "DY(20,1)", "AZ(20,1)", "DX(22,1)", "DY(12,1)"];
+    let begins = |more: &str| first(&disc(more), &columns, Analysis::Dynamic).0;
+    // the lowest point of the disc, where the line is next to it
+    near(&begins(""), &[0.0, R, 0.0, 0.0, 0.0], PLACE);
+    let there = begins(", JDISP=1.2,0,0");
+    near(&there, &[1.2, R, 0.0, 1.2, 0.0], ROLLING);
+    near(&there[3..], &[1.2, 0.0], PLACE);
+    // (0.5, 0) of the disc comes down by a quarter turn backwards; least changes of a turn alone
+    let down = begins(", IDISP=0.5,0,0");
+    near(&[down[1], down[2], down[4]], &[R, -FRAC_PI_2, 0.0], PLACE);
+    near(
+        &begins(", IDISP=-0.5,0,0, JDISP=-0.7,0,0"),
+        &[-0.7, R, FRAC_PI_2, -0.7, 0.0],
+        PLACE,
+    );
+}
+
+/// Places at which the curves touch move along the disc with IVEL and along the line with JVEL.
+#[test]
+fn two_curves_begin_with_ivel_and_jvel() {
+    let columns = ["VX(20,1)", "VY(20,1)", "WZ(20,1)", "VX(12,1)", "VX(22,1)"];
+    let begins = |more: &str| first(&disc(more), &columns, Analysis::Dynamic).0;
+    // the contact runs forward along the line, and counterclockwise along the disc: the disc turns backwards by IVEL/R
+    near(&begins(", IVEL=1, JVEL=2"), &[2.0, 0.0, -2.0, 2.0, 2.0], ROLLING);
+    // rolling without sliding: both run alike
+    near(&begins(", IVEL=2, JVEL=2"), &[2.0, 0.0, -4.0, 2.0, 2.0], ROLLING);
+}
+
+/// On a ring at the angle φ: origin on the bead, x along the ring, y outwards, and what turns with them.
+#[test]
+fn the_floating_marker_goes_with_the_bead() {
+    let columns = [
+        "AZ(12,1)",
+        "DX(12,30)",
+        "DY(12,30)",
+        "WZ(12,1)",
+        "WDTZ(12,1)",
+        "VX(12,1)-VX(30,1)",
+        "VY(12,1)-VY(30,1)",
+        "ACCX(12,1)-ACCX(30,1)",
+        "ACCY(12,1)-ACCY(30,1)",
+        "PTCV(1,0,2,12)",
+        "PTCV(1,0,3,12)",
+        "DX(30,1)",
+        "DY(30,1)",
+        "VX(30,1,12)",
+        "FY(30,12,12)",
+        "DX(1,12,12)",
+        "DY(1,12,12)",
+    ];
+    let text = format!("{}ACCGRAV/JGRAV=-9.81\n", bead([R, 0.0], ""));
+    let s = run(&text, &columns, Analysis::Dynamic, 1.0);
+    for k in 0..21 {
+        let at = |c: &str| column(&s, c)[k];
+        let (x, y) = (at("DX(30,1)"), at("DY(30,1)"));
+        let phi = y.atan2(x);
+        // tangent counterclockwise: φ + 90°; y outwards is then to the right of it, so that z is against ground z
+        let speed = at("VX(30,1,12)");
+        near(&[at("DX(12,30)"), at("DY(12,30)")], &[0.0, 0.0], 1e-9);
+        for rate in &columns[5..9] {
+            near(&[at(rate)], &[0.0], 1e-6 * (1.0 + speed * speed));
+        }
+        // the curvature of the spline wavers by (2π/200)²/12 of itself
+        near(&[at("WZ(12,1)")], &[speed / R], 1e-3 * (1.0 + speed.abs()));
+        near(&[at("DX(1,12,12)"), at("DY(1,12,12)")], &[0.0, -R], 1e-6);
+        let push = -0.5 * (speed * speed / R) + 0.5 * 9.81 * phi.sin();
+        near(&[at("PTCV(1,0,2,12)")], &[0.0], 1e-9);
+        near(&[at("PTCV(1,0,3,12)"), at("FY(30,12,12)")], &[push, push], 2e-2);
+    }
+}
+
+/// Floating markers of two curves lie on each other with a common tangent; what they exert is along their normal.
+#[test]
+fn floating_markers_of_two_curves_touch() {
+    let ties = format!(
+        "MOTION/1, JOINT=1, FUNCTION=TIME\nACCGRAV/JGRAV=-9.81\n\
+         CVCV/1, ICURVE=2, IRM=30, IFLOAT=23, JCURVE=1, JRM=21, JFLOAT=22\n{}",
+        curve(2, "OPEN", &line(-1.0, 1.0))
+    );
+    let columns = [
+        "DM(23,22)",
+        "DX(23,1)",
+        "DY(23,1)",
+        "VX(23,1)",
+        "AZ(23,1)",
+        "WZ(22,1)",
+        "CVCV(1,0,2,23)",
+        "CVCV(1,0,3,23)",
+        "CVCV(1,0,3,0)",
+    ];
+    let s = run(&cam("", &ties), &columns, Analysis::Kinematic, 2.0);
+    for (k, &t) in column(&s, "time").iter().enumerate() {
+        let at = |c: &str| column(&s, c)[k];
+        // under the centre of the disc, which runs on a circle of 0.2; tangents of the spline are off by some 1e-7
+        near(&[at("DM(23,22)")], &[0.0], 1e-9);
+        near(
+            &[at("DX(23,1)"), at("DY(23,1)"), at("AZ(23,1)")],
+            &[0.2 * t.cos(), R + 0.2 * t.sin(), 0.0],
+            1e-6,
+        );
+        near(&[at("VX(23,1)")], &[-0.2 * t.sin()], ROLLING);
+        // the tangent of the disc stays level while the disc turns
+        near(&[at("WZ(22,1)"), at("CVCV(1,0,2,23)")], &[0.0, 0.0], 1e-9);
+        near(&[at("CVCV(1,0,3,23)")], &[at("CVCV(1,0,3,0)")], 1e-9);
+    }
+}
+
+/// On a straight piece there is no centre of curvature: the normal is square to the tangent all the same.
+#[test]
+fn a_floating_marker_has_axes_on_a_straight_curve() {
+    let text = format!(
+        "PART/3, MASS=1, CM=30, IP=1,1,1, VX=0.2\nMARKER/30, PART=3\nMARKER/12, PART=1, FLOATING\n\
+         JPRIM/1, ORIENTATION, I=30, J=1\nPTCV/1, CURVE=1, I=30, RM=1, JFLOAT=12\n{}",
+        curve(1, "OPEN", &line(-1.0, 1.0))
+    );
+    let columns = ["DX(12,1)", "VX(12,1)", "WM(12,1)", "INCANG(12,1,30)", "AZ(12,1)", "AX(12,1)"];
+    let s = run(&text, &columns[..3], Analysis::Dynamic, 1.0);
+    for (k, &t) in column(&s, "time").iter().enumerate() {
+        let at = |c: &str| column(&s, c)[k];
+        near(&[at("DX(12,1)"), at("VX(12,1)"), at("WM(12,1)")], &[0.2 * t, 0.2, 0.0], 1e-9);
+    }
+    let s = run(&text, &columns[4..], Analysis::Dynamic, 0.1);
+    // y to the right of the tangent, so that z points against ground z
+    near(&[column(&s, "AZ(12,1)")[0]], &[0.0], 1e-12);
+    near(&[column(&s, "AX(12,1)")[0].abs()], &[PI], 1e-12);
+}
+
+/// What a floating marker is depends on constraints: a GCON may not read it.
+#[test]
+fn a_gcon_may_not_read_a_floating_marker() {
+    let text = format!(
+        "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{}GCON/1, I=30, FUNCTION=DX(12,1)\nEND\n",
+        bead([R, 0.0], "")
+    );
+    let model = Model::from_text(&text).unwrap();
+    let mut s = Session::new(model, "test", Options::default());
+    let errors = s
+        .simulate(Analysis::Dynamic, 1.0, 2, &mut Unwatched)
+        .expect_err("a mistake");
+    assert_eq!(errors[0].code, "gcon_reads");
+    assert!(errors[0].message.contains("DX(12,1)") && errors[0].message.contains("floating"));
+}
