@@ -114,7 +114,11 @@ fn cam(more: &str, ties: &str) -> String {
 #[test]
 fn a_disc_is_turned_to_where_its_follower_is_to_begin() {
     let columns = ["DX(30,21,21)", "DY(30,21,21)", "DX(30,1)", "DX(22,21,21)"];
-    for analysis in [Analysis::Dynamic, Analysis::InitialConditions, Analysis::Static] {
+    for analysis in [
+        Analysis::Dynamic,
+        Analysis::InitialConditions,
+        Analysis::Static,
+    ] {
         for angle in [-0.7_f64, 0.3, 1.2, 2.0] {
             let (x, y) = (R * angle.cos(), R * angle.sin());
             let tie = format!("PTCV/1, CURVE=1, I=30, RM=21, JFLOAT=22, DISP={x},{y},0\n");
@@ -134,9 +138,14 @@ fn a_beginning_that_constraints_forbid_is_told() {
     near(&found, &[above], PLACE);
     // from (0, 0.5) to (−0.2, above) of the disc
     let off = 0.2_f64.hypot(0.5 - above);
-    let told = warnings.iter().find(|w| w.contains("PTCV/1 DISP cannot be met"));
+    let told = warnings
+        .iter()
+        .find(|w| w.contains("PTCV/1 DISP cannot be met"));
     let told = told.unwrap_or_else(|| panic!("{warnings:?}"));
-    assert!(told.contains(&format!("{off:.4}")) && told.contains("CURVE/1"), "{told} {off}");
+    assert!(
+        told.contains(&format!("{off:.4}")) && told.contains("CURVE/1"),
+        "{told} {off}"
+    );
 }
 
 /// A disc in the plane on a line along ground x.
@@ -175,9 +184,17 @@ fn two_curves_begin_with_ivel_and_jvel() {
     let columns = ["VX(20,1)", "VY(20,1)", "WZ(20,1)", "VX(12,1)", "VX(22,1)"];
     let begins = |more: &str| first(&disc(more), &columns, Analysis::Dynamic).0;
     // the contact runs forward along the line, and counterclockwise along the disc: the disc turns backwards by IVEL/R
-    near(&begins(", IVEL=1, JVEL=2"), &[2.0, 0.0, -2.0, 2.0, 2.0], ROLLING);
+    near(
+        &begins(", IVEL=1, JVEL=2"),
+        &[2.0, 0.0, -2.0, 2.0, 2.0],
+        ROLLING,
+    );
     // rolling without sliding: both run alike
-    near(&begins(", IVEL=2, JVEL=2"), &[2.0, 0.0, -4.0, 2.0, 2.0], ROLLING);
+    near(
+        &begins(", IVEL=2, JVEL=2"),
+        &[2.0, 0.0, -4.0, 2.0, 2.0],
+        ROLLING,
+    );
 }
 
 /// On a ring at the angle φ: origin on the bead, x along the ring, y outwards, and what turns with them.
@@ -219,7 +236,11 @@ fn the_floating_marker_goes_with_the_bead() {
         near(&[at("DX(1,12,12)"), at("DY(1,12,12)")], &[0.0, -R], 1e-6);
         let push = -0.5 * (speed * speed / R) + 0.5 * 9.81 * phi.sin();
         near(&[at("PTCV(1,0,2,12)")], &[0.0], 1e-9);
-        near(&[at("PTCV(1,0,3,12)"), at("FY(30,12,12)")], &[push, push], 2e-2);
+        near(
+            &[at("PTCV(1,0,3,12)"), at("FY(30,12,12)")],
+            &[push, push],
+            2e-2,
+        );
     }
 }
 
@@ -267,11 +288,22 @@ fn a_floating_marker_has_axes_on_a_straight_curve() {
          JPRIM/1, ORIENTATION, I=30, J=1\nPTCV/1, CURVE=1, I=30, RM=1, JFLOAT=12\n{}",
         curve(1, "OPEN", &line(-1.0, 1.0))
     );
-    let columns = ["DX(12,1)", "VX(12,1)", "WM(12,1)", "INCANG(12,1,30)", "AZ(12,1)", "AX(12,1)"];
+    let columns = [
+        "DX(12,1)",
+        "VX(12,1)",
+        "WM(12,1)",
+        "INCANG(12,1,30)",
+        "AZ(12,1)",
+        "AX(12,1)",
+    ];
     let s = run(&text, &columns[..3], Analysis::Dynamic, 1.0);
     for (k, &t) in column(&s, "time").iter().enumerate() {
         let at = |c: &str| column(&s, c)[k];
-        near(&[at("DX(12,1)"), at("VX(12,1)"), at("WM(12,1)")], &[0.2 * t, 0.2, 0.0], 1e-9);
+        near(
+            &[at("DX(12,1)"), at("VX(12,1)"), at("WM(12,1)")],
+            &[0.2 * t, 0.2, 0.0],
+            1e-9,
+        );
     }
     let s = run(&text, &columns[4..], Analysis::Dynamic, 0.1);
     // y to the right of the tangent, so that z points against ground z

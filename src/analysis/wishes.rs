@@ -19,11 +19,11 @@ use crate::model::{JointKind, Model};
 use crate::physics::cam::Contact;
 use crate::physics::coupler::Gauge;
 use crate::scalar::Scalar;
-use crate::scene::cams::{self, Start};
-use crate::scene::{RowKind, Scene};
 use crate::scene::build::is_active;
+use crate::scene::cams::{self, Start};
 use crate::scene::equations::Equations;
 use crate::scene::programs::{record_with_complaints, weights};
+use crate::scene::{RowKind, Scene};
 use crate::space::kinematic::kinematic;
 use crate::space::{Frame, MarkerState};
 use nalgebra::{DMatrix, DVector};
@@ -284,7 +284,10 @@ pub fn approach(
                 a[(m + n + k, v)] += slope;
             }
         }
-        let all = g.iter().chain(off.iter()).chain(places.iter().map(|p| &p.0));
+        let all = g
+            .iter()
+            .chain(off.iter())
+            .chain(places.iter().map(|p| &p.0));
         let b = DVector::from_iterator(m + n + places.len(), all.map(|x| -x));
         let step = least_change(&a, &w, &b);
         let size = |v: usize| step[v].abs() / w[v].sqrt();

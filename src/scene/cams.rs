@@ -238,7 +238,11 @@ pub struct Start {
 
 /// All contacts that are asked to begin somewhere. ICM markers count where they are at this instant.
 pub fn starts(scene: &Scene, numbers: &[f64]) -> Vec<Start> {
-    if scene.cams.iter().all(|c| c.start.iter().all(Option::is_none)) {
+    if scene
+        .cams
+        .iter()
+        .all(|c| c.start.iter().all(Option::is_none))
+    {
         return Vec::new();
     }
     let at = Equations::<f64>::new(scene, numbers);

@@ -134,7 +134,10 @@ fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<&'static str
     };
     if let (Input::Measure(m, ids), Allowed::Places) = (input, allowed) {
         let first = if m == Measure::Orient { 2 } else { 0 };
-        if ids[first..].iter().any(|id| scene.floating.contains_key(id)) {
+        if ids[first..]
+            .iter()
+            .any(|id| scene.floating.contains_key(id))
+        {
             return Some("it depends on a floating marker, whose place other constraints find");
         }
     }

@@ -67,7 +67,8 @@ impl<S: Scalar> Equations<'_, S> {
             .contact
             .refined(&i, &j, self.cam_parameters(c).map(still), 2);
         let frame = cam.contact.floating(side, &i, &j, s);
-        let point = |part: fn(&Jet<S>) -> S| Vec3(std::array::from_fn(|k| part(&frame.position.0[k])));
+        let point =
+            |part: fn(&Jet<S>) -> S| Vec3(std::array::from_fn(|k| part(&frame.position.0[k])));
         let axes = |part: fn(&Jet<S>) -> S| {
             Mat3(std::array::from_fn(|r| {
                 std::array::from_fn(|k| part(&frame.rotation.0[r][k]))
