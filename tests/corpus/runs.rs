@@ -164,8 +164,8 @@ fn a_cart_with_a_pendulum_moves_by_itself_as_in_adams() {
     assert!(rows > 2000 && place < 5e-3 && turn < 5e-5);
 }
 
-/// A recorded run obeyed again: how far its parts are from the recorded ones.
-fn replay(log: &str, error: f64, until: usize) -> Option<(f64, f64, usize)> {
+/// A recorded run obeyed again up to a number of simulations: ours and theirs.
+fn replay(log: &str, error: f64, until: usize) -> Option<(Run, Run)> {
     let log = corpus()?.join(log);
     let mut script = Script::from_message_log(&log).unwrap_or_else(|e| panic!("{e}"));
     let simulations =
@@ -178,27 +178,32 @@ fn replay(log: &str, error: f64, until: usize) -> Option<(f64, f64, usize)> {
     let clock = std::time::Instant::now();
     let session = obeyed(&log.with_extension("adm"), &script, options(error));
     let theirs = results::read(&log.with_extension("gra")).unwrap_or_else(|e| panic!("{e}"));
-    let (place, turn, rows) = apart(&session.run, &theirs);
-    println!(
-        "{}: {place:.2e} length, {turn:.2e} over {rows} rows in {:.1} s",
-        log.display(),
-        clock.elapsed().as_secs_f64()
-    );
-    assert!(rows > 20, "{rows}");
-    Some((place, turn, rows))
+    println!("{}: {:.1} s", log.display(), clock.elapsed().as_secs_f64());
+    Some((session.run, theirs))
 }
 
 #[test]
 fn a_robot_arm_driven_by_recorded_torques_moves_as_in_adams() {
-    // metres of an arm of about one; Adams integrated with its nominal error of 1e-3
-    let Some((place, turn, _)) = replay(
-        "zzy5510__adams_simulink_robotarm/Controls_Plant_1.msg",
-        1e-7,
-        301,
-    ) else {
+    let log = "zzy5510__adams_simulink_robotarm/Controls_Plant_1.msg";
+    let Some((mut ours, theirs)) = replay(log, 1e-7, 302) else {
         return;
     };
-    assert!(place < 1e-3 && turn < 1e-3, "{place} {turn}");
+    let (place, turn, rows) = apart(&ours, &theirs);
+    println!("as it is: {place:.2e} m, {turn:.2e} over {rows} rows");
+    assert!(rows > 300 && place < 1e-3 && turn < 1e-3);
+    // Its log shows why: each exchange interval h is a single step of order 1, backward Euler, which under a constant acceleration a
+    // arrives at a n (n + 1) h²/2, the mean of the exact places at its two ends less a h²/4 (a about 0.5 m/s², h = 5 ms: 3e-6 m)
+    for column in &mut ours.columns[1..] {
+        for k in 0..column.values.len() - 1 {
+            column.values[k] = 0.5 * (column.values[k] + column.values[k + 1]);
+        }
+    }
+    // the last row has no next one
+    let last = ours.rows() - 1;
+    ours.columns[0].values[last] = f64::INFINITY;
+    let (place, turn, _) = apart(&ours, &theirs);
+    println!("as backward Euler: {place:.2e} m, {turn:.2e}");
+    assert!(place < 1e-5 && turn < 1e-5, "{place} {turn}");
 }
 
 /// Command files of wind turbines whose loads come from a program that is not there.
