@@ -431,9 +431,11 @@ fn a_box_tips_over_when_its_weight_is_beyond_the_edge() {
 fn ten_spheres_in_a_tube_carry_each_other() {
     let (r, n) = (0.1, 10);
     let mut differences = Vec::new();
-    // dynamically while they are soft; hard ones in statics, which the dynamic run agrees with
+    // dynamically until nothing moves any more, and in statics
     for (k, analysis, end) in [
         (1e4, Analysis::Dynamic, 4.0),
+        (1e6, Analysis::Dynamic, 1.0),
+        (1e8, Analysis::Dynamic, 0.2),
         (1e4, Analysis::Static, 0.0),
         (1e6, Analysis::Static, 0.0),
     ] {
@@ -459,13 +461,13 @@ fn ten_spheres_in_a_tube_carry_each_other() {
             let z = last(&s, column);
             let rigid = r + 2.0 * r * b as f64;
             assert!(
-                (z - (rigid - pressed)).abs() < 2e-6,
+                (z - (rigid - pressed)).abs() < 2e-2 / k + 2e-9,
                 "{k} {b}: {z} {}",
                 rigid - pressed
             );
             worst = (z - rigid).abs().max(worst);
         }
-        if analysis == Analysis::Static {
+        if analysis == Analysis::Dynamic {
             differences.push(worst);
         }
     }

@@ -27,11 +27,7 @@ pub fn impact<S: Scalar>(
     if free.known() == Some(true) {
         return S::zero();
     }
-    S::select(
-        free,
-        S::zero(),
-        contact(x1 - x, -x_dot, k, cmax, d, per_depth, power),
-    )
+    pushing(free, contact(x1 - x, -x_dot, k, cmax, d, per_depth, power))
 }
 
 /// `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
@@ -56,11 +52,20 @@ pub fn bistop<S: Scalar>(
     let low = x.lt(x1);
     let p = S::select(low, x1 - x, x - x2);
     let p_dot = S::select(low, -x_dot, x_dot);
-    let force = contact(p, p_dot, k, cmax, d, per_depth, power);
-    S::select(free, S::zero(), S::select(low, force, S::zero() - force))
+    let force = pushing(free, contact(p, p_dot, k, cmax, d, per_depth, power));
+    S::select(low, force, S::zero() - force)
 }
 
-/// Force at penetration `p > 0` and penetration rate `p_dot`; never attractive. `power` is `pᵉ`.
+/// A force that never attracts, and is none where bodies are apart.
+///
+/// In this order: whoever watches comparisons sees a zero while bodies are apart, not the sign of what the force would be there.
+#[inline(always)]
+fn pushing<S: Scalar>(free: S::Mask, force: S) -> S {
+    let force = S::select(free, S::zero(), force);
+    S::select(force.le(S::zero()), S::zero(), force)
+}
+
+/// Elastic and damping force at penetration `p > 0` and penetration rate `p_dot`. `power` is `pᵉ`.
 #[inline(always)]
 fn contact<S: Scalar>(
     p: S,
@@ -73,6 +78,5 @@ fn contact<S: Scalar>(
 ) -> S {
     let elastic = k * power(p);
     let c = S::choose(d.le(p), || cmax, || cmax * cubic(p * per_depth));
-    let force = elastic + c * p_dot;
-    S::select(force.le(S::zero()), S::zero(), force)
+    elastic + c * p_dot
 }

@@ -95,8 +95,10 @@ impl Normal {
                 restitution: r,
                 smoothing: v,
             } => {
-                let factor = step(rate, c(-v), c(r * r), c(v), S::one(), cubic);
                 let touching = S::zero().lt(depth);
+                // while apart no branch of the rate matters
+                let rate = S::select(touching, rate, S::zero());
+                let factor = step(rate, c(-v), c(r * r), c(v), S::one(), cubic);
                 S::select(touching, depth.scale(penalty) * factor, S::zero())
             }
         }
@@ -138,7 +140,9 @@ impl Law {
             None => force,
             Some(coulomb) => {
                 let slip = velocity - normal.times(along);
-                force - slip.times(coulomb.per_speed(slip.norm2()) * n)
+                // while apart no branch of the slip matters
+                let speed2 = S::select(S::zero().lt(depth), slip.norm2(), S::zero());
+                force - slip.times(coulomb.per_speed(speed2) * n)
             }
         }
     }
