@@ -426,6 +426,55 @@ fn the_example_runs_from_its_files_to_table_record_log_and_picture() {
 }
 
 #[test]
+fn results_of_others_are_kept_and_those_of_an_earlier_run_are_replaced() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("keeps");
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    std::fs::write(dir.join("slider_crank.res"), "somebody's").unwrap();
+    let run = || cognate(&["run", example, "--out", path(&dir)]);
+    let first = run();
+    assert!(first.err.contains("kept as") && first.err.contains("slider_crank.res~"));
+    let kept = std::fs::read_to_string(dir.join("slider_crank.res~")).unwrap();
+    assert_eq!(kept, "somebody's");
+    let names = || {
+        let files = std::fs::read_dir(&dir).unwrap();
+        let mut names: Vec<_> = files.map(|f| f.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = names();
+    assert_eq!(before.len(), 6);
+    assert!(!run().err.contains("kept as"));
+    assert_eq!(names(), before);
+    // what somebody has changed is somebody's
+    let csv = dir.join("slider_crank.csv");
+    let mut text = std::fs::read_to_string(&csv).unwrap();
+    text += "a note\n";
+    std::fs::write(&csv, &text).unwrap();
+    assert!(run().err.contains("slider_crank.csv~"));
+    assert_eq!(
+        std::fs::read_to_string(dir.join("slider_crank.csv~")).unwrap(),
+        text
+    );
+}
+
+#[test]
+fn the_commands_that_a_log_echoes_are_obeyed_again() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("replays");
+    let _ = std::fs::remove_dir_all(&dir);
+    cognate(&["run", example, "--out", path(&dir), "--quiet"]);
+    let model = PathBuf::from(example).with_extension("adm");
+    std::fs::copy(model, dir.join("slider_crank.adm")).unwrap();
+    let log = dir.join("slider_crank.msg");
+    let again = cognate(&["run", path(&log), "--out", path(&dir), "--quiet"]);
+    assert_eq!(again.code, 0, "{}", again.err);
+    let read = |name: &str| std::fs::read_to_string(dir.join(name)).unwrap();
+    assert_eq!(read("slider_crank.csv"), read("slider_crank_replay.csv"));
+}
+
+#[test]
 fn a_method_that_does_not_exist_is_a_mistake_and_the_others_are_named() {
     let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("no_method");

@@ -7,7 +7,7 @@ use crate::analysis::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::diagnostic::Diagnostic;
 use crate::results::{self, Status, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Linearize a model: eigenvalues, mode shapes, and the matrices A, B, C, D between its plant inputs and outputs
 #[derive(clap::Args)]
@@ -56,7 +56,7 @@ impl Watch for Quiet {
 /// The linear system of a model.
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
-    let commands = (args.model.extension()).is_some_and(|e| e.eq_ignore_ascii_case("acf"));
+    let commands = run::has_commands(&args.model);
     let (reading, base, steps) = if commands {
         let job = run::script(&args.model)?;
         (job.reading, job.base, job.steps)
@@ -95,16 +95,23 @@ pub fn run(args: &Args) -> Outcome {
     }
     session.linear = vec![(None, true, found)];
     if let Some(dir) = &args.out {
-        for file in write(&session, dir)? {
-            remark(format!("wrote {}", file.display()));
+        for (name, text) in files(&session) {
+            let path = dir.join(name);
+            if let Some(folder) = path.parent() {
+                std::fs::create_dir_all(folder).map_err(|e| {
+                    Diagnostic::error("file_unwritable", format!("{}: {e}", folder.display()))
+                })?;
+            }
+            results::write_text(&path, &text)?;
+            remark(format!("wrote {}", path.display()));
         }
     }
     Ok(Exit::Done)
 }
 
-/// Writes the linear systems that a session has found; the names of the files.
-pub fn write(session: &Session, dir: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let mut written = Vec::new();
+/// Names and texts of the files of the linear systems that a session has found.
+pub fn files(session: &Session) -> Vec<(String, String)> {
+    let mut files = Vec::new();
     let mut own = 0;
     for (file, matrices, found) in &session.linear {
         let name = match file {
@@ -124,15 +131,8 @@ pub fn write(session: &Session, dir: &Path) -> Result<Vec<PathBuf>, Failure> {
             texts.push(("m", found.matlab()));
         }
         for (ending, text) in texts {
-            let path = dir.join(format!("{name}.{ending}"));
-            if let Some(folder) = path.parent() {
-                std::fs::create_dir_all(folder).map_err(|e| {
-                    Diagnostic::error("file_unwritable", format!("{}: {e}", folder.display()))
-                })?;
-            }
-            results::write_text(&path, &text)?;
-            written.push(path);
+            files.push((format!("{name}.{ending}"), text));
         }
     }
-    Ok(written)
+    files
 }

@@ -10,7 +10,8 @@ use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::numeric::Stats;
-use crate::results::{self, Event, Run, Status, csv, json, msg, res};
+use crate::results::shelf::Shelf;
+use crate::results::{Event, Status, csv, json, msg, res};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -22,7 +23,7 @@ Examples:
   cognate run pendulum.adm --end 2 --steps 200 --column 'DX(12,21)'
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
-    /// Command file (.acf) or dataset (.adm)
+    /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or dataset (.adm)
     model: PathBuf,
     /// Permitted local error of the integration, relative to the magnitude of each unknown
     #[arg(long, value_name = "E")]
@@ -91,10 +92,7 @@ impl Watch for Terminal<'_> {
 pub fn run(args: &Args) -> Outcome {
     let clock = Instant::now();
     interrupt::install();
-    let is_command = args
-        .model
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("acf"));
+    let is_command = has_commands(&args.model);
     let Job {
         reading,
         base,
@@ -168,12 +166,11 @@ pub fn run(args: &Args) -> Outcome {
         cpu: cpu_seconds().unwrap_or(elapsed),
     });
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    let mut written = write(&mut session.run, &dir, full)?;
-    written.extend(linear::write(&session, &dir)?);
+    let shown = !args.json && !args.quiet;
+    let (written, record) = write(&mut session, &dir, full, shown)?;
     if args.json {
-        say(&json::text(&json::record(&session.run)));
-    } else if !args.quiet {
-        written.extend(summary::picture(&session.run, &dir));
+        say(&record);
+    } else if shown {
         say(&summary::table(&session.run));
         remark(summary::facts(&session.run, &written).trim_end());
     }
@@ -260,9 +257,30 @@ pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
     Ok(reading)
 }
 
-/// A command file and the dataset it names.
+/// Whether a file holds commands: a command file, or the log of a run.
+pub(super) fn has_commands(path: &Path) -> bool {
+    let is = |e: &std::ffi::OsStr| e.eq_ignore_ascii_case("acf") || e.eq_ignore_ascii_case("msg");
+    path.extension().is_some_and(is)
+}
+
+/// A command file and the dataset it names, or the commands that a log echoes and the dataset beside it.
 pub(super) fn script(path: &Path) -> Result<Job, Failure> {
-    let script = Script::read(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
+    let failed = |e: crate::dataset::Errors| Failure::in_files(Exit::Input, e.0);
+    if path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("msg"))
+    {
+        let script = Script::from_message_log(path).map_err(failed)?;
+        let file = script
+            .model_file()
+            .unwrap_or_else(|| path.with_extension("adm"));
+        return Ok(Job {
+            reading: read(&file)?,
+            base: format!("{}_replay", stem(path)),
+            steps: script.steps,
+        });
+    }
+    let script = Script::read(path).map_err(failed)?;
     let Some(file) = script.model_file() else {
         let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
         return Err(d.help("begin it with FILE/MODEL=name").into());
@@ -275,24 +293,42 @@ pub(super) fn script(path: &Path) -> Result<Job, Failure> {
     })
 }
 
-/// Writes everything the run produced; the names of the files. The record comes last: who sees it finds the others complete.
-fn write(run: &mut Run, dir: &Path, full: bool) -> Result<Vec<PathBuf>, Failure> {
+/// Writes everything the run produced; the names of the files, and the record. The record comes last: who sees it finds the
+/// others complete.
+fn write(
+    session: &mut Session,
+    dir: &Path,
+    full: bool,
+    picture: bool,
+) -> Result<(Vec<PathBuf>, String), Failure> {
     let clock = Instant::now();
-    std::fs::create_dir_all(dir)
-        .map_err(|e| Diagnostic::error("file_unwritable", format!("{}: {e}", dir.display())))?;
-    let path = |ending: &str| dir.join(format!("{}.{ending}", run.name));
-    let mut texts = vec![(path("csv"), csv::write(run, true))];
+    let run = &session.run;
+    let own = |ending: &str| format!("{}.{ending}", run.name);
+    let mut shelf = Shelf::new(dir, &run.name);
+    shelf.put(&own("csv"), &csv::write(run, true))?;
     if full {
-        texts.push((path("res"), res::write(run)));
+        shelf.put(&own("res"), &res::write(run))?;
     }
-    texts.push((path("msg"), msg::write(run)));
-    let record = path("json");
-    for (file, text) in &texts {
-        results::write_text(file, text)?;
+    shelf.put(&own("msg"), &msg::write(run))?;
+    for (name, text) in linear::files(session) {
+        shelf.put(&name, &text)?;
     }
-    run.record.write_seconds = clock.elapsed().as_secs_f64();
-    results::write_text(&record, &json::text(&json::record(run)))?;
-    Ok(texts.into_iter().map(|t| t.0).chain([record]).collect())
+    if let Some(text) = summary::picture(run).filter(|_| picture) {
+        shelf.put(&own("svg"), &text)?;
+    }
+    let name = own("json");
+    session.run.record.write_seconds = clock.elapsed().as_secs_f64();
+    let record = json::with_files(json::record(&session.run), shelf.written());
+    let record = json::text(&record);
+    shelf.put(&name, &record)?;
+    for (was, is) in shelf.kept() {
+        remark(format!(
+            "{} was not written by this program or has been changed: kept as {}",
+            was.display(),
+            is.display()
+        ));
+    }
+    Ok((shelf.files().to_vec(), record))
 }
 
 /// Time that this process has computed, where the system tells.

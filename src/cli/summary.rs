@@ -1,8 +1,8 @@
 //! What `cognate run` says at its end: a short table, how it went, and which files it wrote; and a picture of the results.
 
 use crate::report::{Plot, svg::panels};
-use crate::results::{Run, write_text};
-use std::path::{Path, PathBuf};
+use crate::results::Run;
+use std::path::PathBuf;
 
 /// Rows and columns of the table; results can have thousands of either.
 const ROWS: usize = 9;
@@ -106,11 +106,9 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
 /// Most panels of the picture.
 const PANELS: usize = 12;
 
-/// Draws the table over time, a panel per unit, to `DIR/<base>.svg`; the file, if there is anything to draw.
-pub fn picture(run: &Run, dir: &Path) -> Option<PathBuf> {
-    let file = dir.join(format!("{}.svg", run.name));
-    let text = panels(&Plot::by_unit(run, PANELS)).ok()?;
-    write_text(&file, &text).ok().map(|()| file)
+/// The table drawn over time as SVG, a panel per unit, if there is anything to draw.
+pub fn picture(run: &Run) -> Option<String> {
+    panels(&Plot::by_unit(run, PANELS)).ok()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `cognate verify`: how many freedoms a model has, what fixes something twice, and what is free.
 
-use super::run::{read, script};
+use super::run::{has_commands, read, script};
 use super::{Exit, Failure, Outcome, complain, remark, say};
 use crate::analysis::verify::{Verification, verify};
 use crate::dataset::command::Command;
@@ -43,10 +43,7 @@ pub fn run(args: &Args) -> Outcome {
 
 /// The model of a dataset, or of a command file as its commands leave it before the first simulation.
 pub fn model_of(path: &Path) -> Result<Model, Failure> {
-    let is_command = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("acf"));
-    if !is_command {
+    if !has_commands(path) {
         return Ok(read(path)?.model);
     }
     let job = script(path)?;

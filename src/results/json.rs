@@ -4,6 +4,7 @@
 
 use super::{Counts, Jump, RankChange, Run, Simulation};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 
 /// The record of a run: status, counts, timings, and one entry per simulation.
 pub fn record(run: &Run) -> Value {
@@ -31,11 +32,18 @@ pub fn record(run: &Run) -> Value {
         "warnings": r.warnings,
         "piecewise": r.piecewise.iter().map(jump).collect::<Vec<_>>(),
         "versions": { "cognate": env!("CARGO_PKG_VERSION"), "record": 1 },
+        "files": Map::new(),
         "simulations": r.simulations.iter().map(simulation).collect::<Vec<_>>(),
     });
     if let Some(record) = record.as_object_mut() {
         add_counts(record, &r.counts);
     }
+    record
+}
+
+/// The record with the names and sizes of the files that were written.
+pub fn with_files(mut record: Value, files: &BTreeMap<String, u64>) -> Value {
+    record["files"] = json!(files);
     record
 }
 

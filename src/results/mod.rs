@@ -9,6 +9,7 @@ pub mod gra;
 pub mod json;
 pub mod msg;
 pub mod res;
+pub mod shelf;
 mod text_res;
 
 use crate::diagnostic::Diagnostic;
