@@ -1,53 +1,11 @@
 //! The binary as its users meet it: what is printed where, and how it ends.
 #![cfg(feature = "cli")]
 
-use std::io::Write;
+#[path = "common/command.rs"]
+mod command;
+
+use command::{cognate, cognate_with, path, scratch};
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
-
-/// What a command did: exit code, standard output, standard error.
-struct Done {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn cognate_with(args: &[&str], input: &str) -> Done {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_cognate"))
-        .args(args)
-        .env_remove("COLUMNS")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // A command that does not read its input may end before all of it is written.
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
-    let output = child.wait_with_output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Done {
-        code: output.status.code().unwrap(),
-        out: text(output.stdout),
-        err: text(output.stderr),
-    }
-}
-
-fn cognate(args: &[&str]) -> Done {
-    cognate_with(args, "")
-}
-
-/// A file of this name in a folder of this test's own.
-fn scratch(test: &str, name: &str, contents: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
-    std::fs::create_dir_all(&folder).unwrap();
-    let file = folder.join(name);
-    std::fs::write(&file, contents).unwrap();
-    file
-}
-
-fn path(file: &std::path::Path) -> &str {
-    file.to_str().unwrap()
-}
 
 #[test]
 fn a_value_is_printed_alone_with_its_shortest_digits() {

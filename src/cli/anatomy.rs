@@ -3,8 +3,7 @@
 
 use crate::cli::data::Data;
 use crate::cli::formula::{Formula, TimedData};
-use crate::expr::ast::Dialect;
-use crate::expr::ast::{Ast, Node, NodeIx};
+use crate::expr::ast::{Ast, Constant, Node, NodeIx};
 use crate::expr::program::Input;
 use crate::expr::smoothness::smoothness;
 use crate::expr::walk;
@@ -36,7 +35,10 @@ pub fn explain(
         .expr
         .inputs()
         .iter()
-        .map(|i| i.to_string())
+        .map(|i| match i {
+            Input::Time => Constant::Time.name(ast.dialect).to_owned(),
+            i => i.to_string(),
+        })
         .collect();
     text += &format!(
         "\nreads      {}\n",
@@ -57,8 +59,9 @@ pub fn explain(
     text += &match formula.program.constant_outputs().as_deref() {
         Some([value]) => format!("program    folded to the constant {}\n", digits(*value)),
         _ => format!(
-            "program    {} operations, {} registers\n",
+            "program    {} operation{}, {} registers\n",
             formula.program.n_operations(),
+            if formula.program.n_operations() == 1 { "" } else { "s" },
             formula.program.work_size()
         ),
     };
@@ -68,10 +71,7 @@ pub fn explain(
 /// Switching functions, class and breakpoints, a line each.
 fn breaks(formula: &Formula, interval: RangeInclusive<f64>) -> String {
     let found = smoothness(&formula.program, 0, Input::Time, interval.clone());
-    let time = match formula.expr.ast().dialect {
-        Dialect::Function => "TIME",
-        Dialect::Expression => "t",
-    };
+    let time = Constant::Time.name(formula.expr.ast().dialect);
     let mut text = block("switches", found.switches.into_iter());
     text += &format!("class      {}\n", found.class.describe());
     let points = found

@@ -50,7 +50,7 @@ pub struct Args {
     /// Give a value to a function of the model, such as 'VARVAL(3)=2.5' (repeatable)
     #[arg(long, value_name = "CALL=VALUE")]
     set: Vec<String>,
-    /// Plot value and derivatives as SVG
+    /// Plot value and derivatives as SVG, in place of the table; with --json, both
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Print JSON
@@ -160,7 +160,10 @@ fn evaluate(args: &Args, text: &str) -> Outcome {
             }
             .into(),
         );
-        return plot::write_svg(&picture, file);
+        let written = plot::write_svg(&picture, file)?;
+        if !args.json {
+            return Ok(written);
+        }
     }
     say(&if args.json {
         json::text(&json::table(&run))

@@ -6,6 +6,8 @@
 use super::data::Data;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expr::ast::Dialect;
+use crate::expr::measures::Family;
+use crate::expr::signature::{Element, Kind};
 use crate::expr::program::{Input, Program, Work};
 use crate::expr::{Expr, Profile, input_named, walk};
 use crate::scalar::{Jet, Scalar};
@@ -106,9 +108,10 @@ impl Formula {
                     "missing_value" if time.is_none() && self.program.inputs().contains(&Input::Time) => {
                         d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")
                     }
-                    "missing_value" => d.help(
-                        "give states of markers (`--markers FILE`, `:marker`) or a value (`--set 'VARVAL(3)=2.5'`, `:let`)",
-                    ),
+                    "missing_value" => {
+                        let advice = self.what_is_missing(&d, data);
+                        d.help(advice)
+                    }
                     _ => d,
                 }
             }
@@ -124,6 +127,41 @@ impl Formula {
                 Diagnostic::error("domain", format!("the {which} has no finite value{at}"))
                     .at(self.expr.text(), Span::new(0, self.expr.text().len()))
             }
+        }
+    }
+}
+
+impl Formula {
+    /// How to give the input that a mistake is about.
+    fn what_is_missing(&self, d: &Diagnostic, data: &Data) -> String {
+        let about = |i: &&Input| d.message.starts_with(&i.to_string());
+        match self.program.inputs().iter().find(about) {
+            Some(Input::Measure(measure, arguments)) => {
+                let row = measure.row();
+                let missing: Vec<String> = row
+                    .arguments
+                    .iter()
+                    .zip(arguments)
+                    .filter(|(a, id)| {
+                        matches!(a.kind, Kind::Identifier { element: Element::Marker, .. })
+                            && **id > 0
+                            && !data.markers.contains_key(id)
+                    })
+                    .map(|(_, id)| id.to_string())
+                    .collect();
+                match row.family {
+                    Family::Displacement | Family::Velocity | Family::Acceleration if !missing.is_empty() => format!(
+                        "nothing is known of marker {}: give its state (`--markers FILE`; in the REPL `:marker {} X Y Z`)",
+                        missing.join(" and "),
+                        missing[0]
+                    ),
+                    _ => format!(
+                        "the model would know: give it a value (`--set '{0}=2.5'`; in the REPL `:let {0} = 2.5`)",
+                        d.message.split(" has no value").next().unwrap_or_default().replace(' ', "")
+                    ),
+                }
+            }
+            _ => "give it a value: `--set`; in the REPL `:let`".into(),
         }
     }
 }

@@ -109,7 +109,8 @@ impl fmt::Display for Breakpoint {
             (Some(before), Some(after)) => {
                 let side = |x: &f64| match x {
                     x if x.is_nan() => "no value".to_string(),
-                    x => format!("{x}").replace("inf", "infinity"),
+                    // a zero has no side here
+                    x => format!("{}", x + 0.0).replace("inf", "infinity"),
                 };
                 write!(f, "{name} jumps from {} to {}", side(before), side(after))
             }

@@ -101,6 +101,8 @@ impl Piecewise {
     /// ```text
     /// tᵢ = (|mᵢ₊₁ − mᵢ| mᵢ₋₁ + |mᵢ₋₁ − mᵢ₋₂| mᵢ)/(|mᵢ₊₁ − mᵢ| + |mᵢ₋₁ − mᵢ₋₂|)
     /// ```
+    ///
+    /// Where both weights are zero, or no more than rounding, it is the mean of the two neighbours.
     pub fn akima(x: &[f64], y: &[f64], extrapolation: Extrapolation) -> Result<Self, UnfitData> {
         check(x, y, 3)?;
         let n = x.len();
@@ -113,10 +115,17 @@ impl Piecewise {
         m[0] = 2.0 * m[1] - m[2];
         m[n + 1] = 2.0 * m[n] - m[n - 1];
         m[n + 2] = 2.0 * m[n + 1] - m[n];
+        // what rounding of the data makes of slopes that are equal: where straight parts meet, it must not choose between them
+        let noise = |i: usize| {
+            let i = i.min(n - 2);
+            let (x0, x1, y0, y1) = (x[i].abs(), x[i + 1].abs(), y[i].abs(), y[i + 1].abs());
+            4.0 * f64::EPSILON * (y0 + y1 + m[i + 2].abs() * (x0 + x1)) / (x[i + 1] - x[i])
+        };
         let slopes: Vec<f64> = (0..n)
             .map(|i| {
                 let (after, before) = ((m[i + 3] - m[i + 2]).abs(), (m[i + 1] - m[i]).abs());
-                if after + before > 0.0 {
+                let near = i.saturating_sub(2)..=i + 1;
+                if after + before > near.map(noise).fold(0.0, f64::max) {
                     (after * m[i + 1] + before * m[i + 2]) / (after + before)
                 } else {
                     0.5 * (m[i + 1] + m[i + 2])
@@ -528,6 +537,17 @@ mod tests {
             for (x, y) in X.iter().zip(Y) {
                 assert_relative_eq!(curve.at(*x, 0), y, epsilon = 1e-14);
             }
+        }
+    }
+
+    /// Slopes that differ by no more than the rounding of the data must not decide which side of a corner counts.
+    #[test]
+    fn akima_at_a_corner_of_straight_parts_has_the_mean_slope() {
+        for (offset, step) in [(0.0, 0.1), (7.3, 0.1), (0.0, 0.7), (1e3, 0.3)] {
+            let x: Vec<f64> = (0..9).map(|k| offset + step * f64::from(k)).collect();
+            let y: Vec<f64> = (0..9).map(|k: i32| 0.3 * f64::from((k - 4).abs())).collect();
+            let curve = Piecewise::akima(&x, &y, Extrapolation::Linear).unwrap();
+            assert!(curve.at(x[4], 1).abs() < 1e-9, "{offset} {step}: {}", curve.at(x[4], 1));
         }
     }
 

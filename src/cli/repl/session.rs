@@ -129,7 +129,7 @@ impl Session {
                 .map(|c| format!("{}\n", c.signature))
                 .collect()),
             ":let" => return self.define(rest),
-            ":time" => self.set_time(rest),
+            ":time" => return self.set_time(rest),
             ":derivative" => self.set_order(rest),
             ":marker" => self.marker(rest),
             ":markers" => self
@@ -251,17 +251,20 @@ impl Session {
         }
     }
 
-    fn set_time(&mut self, text: &str) -> Result<String, Diagnostic> {
-        if !text.is_empty() {
-            let expanded = self.expanded(text);
-            self.time =
-                Formula::new(&expanded, &self.setting)?.sample(None, 0, &self.setting.data)?[0];
+    fn set_time(&mut self, text: &str) -> Reply {
+        if text.is_empty() {
+            return Reply::Text(format!("{}\n", digits(self.time)));
         }
-        Ok(if text.is_empty() {
-            format!("{}\n", digits(self.time))
-        } else {
-            String::new()
-        })
+        let expanded = self.expanded(text);
+        let time = Formula::new(&expanded, &self.setting)
+            .and_then(|mut f| f.sample(None, 0, &self.setting.data));
+        match time {
+            Ok([time, ..]) => {
+                self.time = time;
+                Reply::Text(String::new())
+            }
+            Err(d) => Reply::Mistake(Box::new(d), expanded),
+        }
     }
 
     fn set_order(&mut self, text: &str) -> Result<String, Diagnostic> {
@@ -380,6 +383,9 @@ impl Session {
 
     /// `EXPRESSION [FIRST LAST]`
     fn explain(&self, text: &str) -> Reply {
+        if text.is_empty() {
+            return Reply::Mistake(Box::new(usage(":explain")), text.to_owned());
+        }
         let (text, interval) = match range_at_the_end(text) {
             Some((rest, first, last)) => (rest, first..=last),
             None => (text, anatomy::INTERVAL),
