@@ -29,8 +29,14 @@ fn json_of(text: &str) -> Value {
 
 #[test]
 fn a_range_goes_up_or_down_and_ends_where_its_steps_end() {
-    assert_eq!(eval(&["TIME", "--time", "0:1:0.4"]), "time,TIME\n0,0\n0.4,0.4\n0.8,0.8\n");
-    assert_eq!(eval(&["TIME", "--time", "1:0:-0.5"]), "time,TIME\n1,1\n0.5,0.5\n0,0\n");
+    assert_eq!(
+        eval(&["TIME", "--time", "0:1:0.4"]),
+        "time,TIME\n0,0\n0.4,0.4\n0.8,0.8\n"
+    );
+    assert_eq!(
+        eval(&["TIME", "--time", "1:0:-0.5"]),
+        "time,TIME\n1,1\n0.5,0.5\n0,0\n"
+    );
     assert_eq!(eval(&["TIME", "--time", "2:2:1"]), "time,TIME\n2,2\n");
     // multiples of the step, not sums of it
     let table = eval(&["TIME", "--time", "0:1:0.1"]);
@@ -57,7 +63,10 @@ fn what_is_no_time_or_leads_nowhere_is_a_mistake_of_usage() {
 fn a_time_that_is_needed_and_missing_is_asked_for() {
     let (code, err) = fails(&["2*TIME"]);
     assert_eq!(code, 3);
-    assert!(err.contains("error[missing_value]: TIME has no value here"), "{err}");
+    assert!(
+        err.contains("error[missing_value]: TIME has no value here"),
+        "{err}"
+    );
     assert!(err.contains("--time 1.5"), "{err}");
     assert_eq!(eval(&["2*PI-PI*2"]), "0\n");
 }
@@ -74,9 +83,18 @@ fn a_table_stops_where_the_expression_has_no_value_and_says_when() {
 
 #[test]
 fn derivatives_come_alone_at_a_time_and_in_columns_over_a_range() {
-    assert_eq!(eval(&["TIME**3", "--time", "2", "--derivative", "0"]), "8\n");
-    assert_eq!(eval(&["TIME**3", "--time", "2", "--derivative", "1"]), "12\n");
-    assert_eq!(eval(&["TIME**3", "--time", "2", "--derivative", "2"]), "12\n");
+    assert_eq!(
+        eval(&["TIME**3", "--time", "2", "--derivative", "0"]),
+        "8\n"
+    );
+    assert_eq!(
+        eval(&["TIME**3", "--time", "2", "--derivative", "1"]),
+        "12\n"
+    );
+    assert_eq!(
+        eval(&["TIME**3", "--time", "2", "--derivative", "2"]),
+        "12\n"
+    );
     assert_eq!(
         eval(&["TIME**3", "--time", "0:1:0.5", "--derivative", "2"]),
         "time,TIME**3,d/dt TIME**3,d2/dt2 TIME**3\n0,0,0,0\n0.5,0.125,0.75,3\n1,1,3,6\n"
@@ -90,20 +108,43 @@ fn a_derivative_that_does_not_exist_is_told_apart_from_a_value_that_does_not() {
     assert_eq!(eval(&["SQRT(TIME)", "--time", "0"]), "0\n");
     let (code, err) = fails(&["SQRT(TIME)", "--time", "0", "--derivative", "1"]);
     assert_eq!(code, 3);
-    assert!(err.contains("the first derivative has no finite value at time 0"), "{err}");
+    assert!(
+        err.contains("the first derivative has no finite value at time 0"),
+        "{err}"
+    );
     // b aᵇ⁻¹ is finite at 0 for b ≥ 1
-    assert_eq!(eval(&["TIME**2.5", "--time", "0", "--derivative", "1"]), "0\n");
+    assert_eq!(
+        eval(&["TIME**2.5", "--time", "0", "--derivative", "1"]),
+        "0\n"
+    );
 }
 
 // ------------------------------------------------------------------------------------------------- dialects and profiles
 
 #[test]
 fn each_dialect_has_its_own_time_its_own_angles_and_advice_about_the_other() {
-    assert_eq!(eval(&["180*sin(360*t)", "--dialect", "expression", "--time", "0.25"]), "180\n");
+    assert_eq!(
+        eval(&[
+            "180*sin(360*t)",
+            "--dialect",
+            "expression",
+            "--time",
+            "0.25"
+        ]),
+        "180\n"
+    );
     let table = eval(&["ent(t)", "--dialect", "expression", "--time", "0:1:0.75"]);
     assert_eq!(table, "time,ent(t)\n0,0\n0.75,0\n");
     // d/dt sin(t) is π/180 cos(t)
-    let slope = eval(&["sin(t)", "--dialect", "expression", "--time", "0", "--derivative", "1"]);
+    let slope = eval(&[
+        "sin(t)",
+        "--dialect",
+        "expression",
+        "--time",
+        "0",
+        "--derivative",
+        "1",
+    ]);
     assert_eq!(slope.trim().parse(), Ok(std::f64::consts::PI / 180.0));
     let (code, err) = fails(&["sin(TIME)", "--dialect", "expression", "--time", "1"]);
     assert!(code == 3 && err.contains("time is t here"), "{err}");
@@ -122,10 +163,17 @@ fn the_profile_ideas_has_limits_and_akima() {
     let caret = err.lines().find(|l| l.contains('^')).unwrap();
     assert_eq!(caret.find('^'), Some("1 | ".len() + 40), "{err}");
 
-    let data = scratch("profile", "s.json", r#"{"1": {"x": [1, 2, 3, 4], "y": [0, 2, 1, 3]}}"#);
+    let data = scratch(
+        "profile",
+        "s.json",
+        r#"{"1": {"x": [1, 2, 3, 4], "y": [0, 2, 1, 3]}}"#,
+    );
     let splines = ["--splines", path(&data)];
     let akima = [&["AKIMA(1.5,0,1)"][..], &splines].concat();
-    assert_eq!(eval(&[&akima[..], &["--profile", "ideas"]].concat()), "1.375\n");
+    assert_eq!(
+        eval(&[&akima[..], &["--profile", "ideas"]].concat()),
+        "1.375\n"
+    );
     let (code, err) = fails(&akima);
     assert!(code == 3 && err.contains("error[unknown_name]"), "{err}");
 }
@@ -149,17 +197,29 @@ fn markers_move_and_what_is_not_known_of_them_is_named() {
     assert_eq!(rate, of("VR(1,2)"));
     let (code, err) = fails(&["DM(1,7)", "--markers", path(&file)]);
     assert_eq!(code, 3);
-    assert!(err.contains("DM(1, 7) has no value here") && err.contains("nothing is known of marker 7"), "{err}");
+    assert!(
+        err.contains("DM(1, 7) has no value here") && err.contains("nothing is known of marker 7"),
+        "{err}"
+    );
     let (code, err) = fails(&["JOINT(3,0,1,0)", "--markers", path(&file)]);
-    assert!(code == 3 && err.contains("--set 'JOINT(3,0,1,0)=2.5'"), "{err}");
+    assert!(
+        code == 3 && err.contains("--set 'JOINT(3,0,1,0)=2.5'"),
+        "{err}"
+    );
     let (code, err) = fails(&["DM(1)", "--markers", "no_such_file.json"]);
-    assert!(code == 3 && err.contains("no_such_file.json: cannot be read"), "{err}");
+    assert!(
+        code == 3 && err.contains("no_such_file.json: cannot be read"),
+        "{err}"
+    );
 }
 
 #[test]
 fn values_are_given_to_functions_of_the_model() {
     let values = ["--set", "VARVAL(3)=2.5", "--set", "JOINT( 1,0, 2,0 ) = -4"];
-    assert_eq!(eval(&[&["VARVAL(3)*JOINT(1,0,2,0)"][..], &values].concat()), "-10\n");
+    assert_eq!(
+        eval(&[&["VARVAL(3)*JOINT(1,0,2,0)"][..], &values].concat()),
+        "-10\n"
+    );
     for (set, code, said) in [
         ("VARVAL(3)", 2, "CALL=VALUE"),
         ("VARVAL(3)=x", 2, "CALL=VALUE"),
@@ -184,7 +244,15 @@ fn splines_are_curves_and_families_with_their_extrapolation() {
     assert_eq!(of("CUBSPL(4,0,1,1)"), "3\n");
     assert_eq!(of("CUBSPL(5,0,2)"), "19\n");
     assert_eq!(of("AKISPL(2,0.5,3)"), "3\n");
-    let slope = eval(&["AKISPL(TIME,0,1)", "--splines", path(&file), "--time", "2", "--derivative", "1"]);
+    let slope = eval(&[
+        "AKISPL(TIME,0,1)",
+        "--splines",
+        path(&file),
+        "--time",
+        "2",
+        "--derivative",
+        "1",
+    ]);
     assert_eq!(slope, "0.5\n");
     let (code, err) = fails(&["AKISPL(1,0.5,3,1)", "--splines", path(&file)]);
     assert!(code == 3 && err.contains("family"), "{err}");
@@ -196,23 +264,63 @@ fn splines_are_curves_and_families_with_their_extrapolation() {
 
 #[test]
 fn json_tells_value_derivatives_and_tables() {
-    let one = json_of(&eval(&["TIME**3", "--time", "2", "--derivative", "2", "--json"]));
-    assert_eq!(one, json!({ "expression": "TIME**3", "time": 2.0, "value": 8.0, "derivatives": [12.0, 12.0] }));
+    let one = json_of(&eval(&[
+        "TIME**3",
+        "--time",
+        "2",
+        "--derivative",
+        "2",
+        "--json",
+    ]));
+    assert_eq!(
+        one,
+        json!({ "expression": "TIME**3", "time": 2.0, "value": 8.0, "derivatives": [12.0, 12.0] })
+    );
     let untimed = json_of(&eval(&["1/4", "--json"]));
-    assert_eq!((&untimed["time"], &untimed["value"]), (&Value::Null, &json!(0.25)));
-    let table = json_of(&eval(&["TIME**2", "--time", "0:1:0.5", "--derivative", "1", "--json"]));
-    let names: Vec<&Value> = table["columns"].as_array().unwrap().iter().map(|c| &c["name"]).collect();
+    assert_eq!(
+        (&untimed["time"], &untimed["value"]),
+        (&Value::Null, &json!(0.25))
+    );
+    let table = json_of(&eval(&[
+        "TIME**2",
+        "--time",
+        "0:1:0.5",
+        "--derivative",
+        "1",
+        "--json",
+    ]));
+    let names: Vec<&Value> = table["columns"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| &c["name"])
+        .collect();
     assert_eq!(names, ["time", "TIME**2", "d/dt TIME**2"]);
     assert_eq!(table["columns"][2]["values"], json!([0.0, 1.0, 2.0]));
     let done = cognate(&["eval", "2*FOO(1)", "--json"]);
     let said = json_of(&done.out);
-    assert_eq!((done.code, &said["errors"][0]["code"], &said["errors"][0]["column"]), (3, &json!("unknown_name"), &json!(3)));
+    assert_eq!(
+        (
+            done.code,
+            &said["errors"][0]["code"],
+            &said["errors"][0]["column"]
+        ),
+        (3, &json!("unknown_name"), &json!(3))
+    );
 }
 
 #[test]
 fn a_plot_takes_the_place_of_the_table_and_json_stays() {
     let file = scratch("eval_plot", "p.svg", "");
-    let range = ["SIN(TIME)", "--time", "0:1:0.5", "--derivative", "2", "--plot", path(&file)];
+    let range = [
+        "SIN(TIME)",
+        "--time",
+        "0:1:0.5",
+        "--derivative",
+        "2",
+        "--plot",
+        path(&file),
+    ];
     let done = cognate(&[&["eval"][..], &range].concat());
     assert_eq!((done.code, done.out.as_str()), (0, ""));
     assert!(done.err.contains("p.svg"), "{}", done.err);
@@ -232,7 +340,12 @@ fn a_plot_takes_the_place_of_the_table_and_json_stays() {
 
 #[test]
 fn an_explanation_shows_tree_values_inputs_switches_class_breaks_and_program() {
-    let said = eval(&["STEP(TIME,1,0,2,1)+IF(TIME-1: 2, 3, 4)", "--explain", "--time", "1.5"]);
+    let said = eval(&[
+        "STEP(TIME,1,0,2,1)+IF(TIME-1: 2, 3, 4)",
+        "--explain",
+        "--time",
+        "1.5",
+    ]);
     for line in [
         "STEP(TIME, 1, 0, 2, 1) + IF(TIME - 1: 2, 3, 4)",
         "+                4.5",
@@ -249,12 +362,21 @@ fn an_explanation_shows_tree_values_inputs_switches_class_breaks_and_program() {
     }
     assert!(said.contains("program    4 operations"), "{said}");
     assert!(eval(&["TIME**3", "--explain"]).contains("program    1 operation,"));
-    assert!(eval(&["2*PI", "--explain"]).contains("program    folded to the constant 6.283185307179586\n"));
+    assert!(
+        eval(&["2*PI", "--explain"])
+            .contains("program    folded to the constant 6.283185307179586\n")
+    );
     // without a time there are no values, and breaks are sought in the range that is given
     let early = eval(&["STEP(TIME,1,0,2,1)", "--explain", "--time", "0:1.5:0.5"]);
-    assert!(early.contains("TIME = 1: ") && !early.contains("TIME = 2: "), "{early}");
+    assert!(
+        early.contains("TIME = 1: ") && !early.contains("TIME = 2: "),
+        "{early}"
+    );
     let t = eval(&["abs(t-1)", "--dialect", "expression", "--explain"]);
-    assert!(t.contains("t = 1: slope jumps from -1 to 1") && t.contains("reads      t"), "{t}");
+    assert!(
+        t.contains("t = 1: slope jumps from -1 to 1") && t.contains("reads      t"),
+        "{t}"
+    );
     assert_eq!(fails(&["TIME", "--explain", "--json"]).0, 2);
     assert_eq!(fails(&["TIME+", "--explain"]).0, 3);
 }
@@ -263,7 +385,10 @@ fn an_explanation_shows_tree_values_inputs_switches_class_breaks_and_program() {
 
 #[test]
 fn expressions_come_from_standard_input_and_may_begin_with_a_minus() {
-    let done = cognate_with(&["eval", "-", "--time", "3"], "2 * & \n TIME ! and a comment\n");
+    let done = cognate_with(
+        &["eval", "-", "--time", "3"],
+        "2 * & \n TIME ! and a comment\n",
+    );
     assert_eq!((done.code, done.out.as_str()), (0, "6\n"));
     assert_eq!(eval(&["-2**2"]), "-4\n");
     assert_eq!(eval(&["-TIME", "--time", "-2"]), "2\n");
@@ -285,7 +410,9 @@ fn the_session_of_the_readme_is_what_really_comes_out() {
     let (shown, _) = from.split_once("\n```").unwrap();
     let (mut typed, mut printed, mut open) = (String::new(), String::new(), false);
     for line in shown.lines() {
-        let input = line.strip_prefix("> ").or(if open { line.strip_prefix("  ") } else { None });
+        let input = line
+            .strip_prefix("> ")
+            .or(if open { line.strip_prefix("  ") } else { None });
         // in the README a line that goes on ends with an operator
         open = input.is_some_and(|i| i.ends_with(['*', '+', '-', '/', ',', '(']));
         match input {
@@ -295,7 +422,12 @@ fn the_session_of_the_readme_is_what_really_comes_out() {
     }
     assert!(typed.lines().count() > 10 && printed.lines().count() > 20);
     let (said, code) = session(&typed, "readme.txt");
-    let trimmed = |text: &str| text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n");
+    let trimmed = |text: &str| {
+        text.lines()
+            .map(str::trim_end)
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
     assert_eq!(trimmed(&said), trimmed(&printed));
     // mistakes were made
     assert_eq!(code, 3);
@@ -308,14 +440,26 @@ fn a_session_without_mistakes_ends_well_and_quit_ends_it() {
     // the last line needs no end, an unfinished one is a mistake
     assert_eq!(session("1+\n1", "open.txt"), ("2\n".into(), 0));
     let (said, code) = session("(1+\n1", "unfinished.txt");
-    assert!(code == 3 && said.contains("error[unexpected_end]"), "{said}");
+    assert!(
+        code == 3 && said.contains("error[unexpected_end]"),
+        "{said}"
+    );
 }
 
 #[test]
 fn mistakes_at_the_prompt_point_into_what_they_are_about() {
-    let (said, code) = session(":time 2*FOO\n:plot BAR 0 1\n:explain\n:let x = LOG(\n:derivtive 1\n:time\n", "places.txt");
+    let (said, code) = session(
+        ":time 2*FOO\n:plot BAR 0 1\n:explain\n:let x = LOG(\n:derivtive 1\n:time\n",
+        "places.txt",
+    );
     assert_eq!(code, 3);
-    for text in ["1 | 2*FOO\n  |   ^^^", "1 | BAR\n  | ^^^", ":explain is used like this: :explain EXPRESSION", "1 | LOG(\n", "did you mean :derivative?"] {
+    for text in [
+        "1 | 2*FOO\n  |   ^^^",
+        "1 | BAR\n  | ^^^",
+        ":explain is used like this: :explain EXPRESSION",
+        "1 | LOG(\n",
+        "did you mean :derivative?",
+    ] {
         assert!(said.contains(text), "{text}\n{said}");
     }
     // the time is what it was
@@ -329,7 +473,10 @@ fn the_prompt_changes_language_order_and_markers() {
     let (said, code) = session(typed, "language.txt");
     assert_eq!(
         (said.as_str(), code),
-        ("1\n1\n5\n1: 3 4 12\n2: 0 0 12\n8\nvalue   4\nd/dt    4\n1\n", 0)
+        (
+            "1\n1\n5\n1: 3 4 12\n2: 0 0 12\n8\nvalue   4\nd/dt    4\n1\n",
+            0
+        )
     );
 }
 
@@ -338,7 +485,16 @@ fn help_at_the_prompt_is_the_card_of_functions() {
     let (said, code) = session(":help STEP5\n", "help.txt");
     assert_eq!((said, code), (cognate(&["functions", "STEP5"]).out, 0));
     let (said, _) = session(":help\n", "commands.txt");
-    for command in [":help", ":let", ":time", ":marker", ":plot", ":derivative", ":explain", ":quit"] {
+    for command in [
+        ":help",
+        ":let",
+        ":time",
+        ":marker",
+        ":plot",
+        ":derivative",
+        ":explain",
+        ":quit",
+    ] {
         assert!(said.contains(command), "{command}");
     }
 }
@@ -348,25 +504,48 @@ fn help_at_the_prompt_is_the_card_of_functions() {
 #[test]
 fn a_card_has_signature_equation_continuity_and_examples_in_text_and_json() {
     let card = cognate(&["functions", "step5"]).out;
-    for text in ["STEP5(x, x0, h0, x1, h1)", "h0 + (h1 - h0) u^3", "continuity", "STEP5(1.25,1,0,2,1) = 0.103515625"] {
+    for text in [
+        "STEP5(x, x0, h0, x1, h1)",
+        "h0 + (h1 - h0) u^3",
+        "continuity",
+        "STEP5(1.25,1,0,2,1) = 0.103515625",
+    ] {
         assert!(card.contains(text), "{text}\n{card}");
     }
     let cards = json_of(&cognate(&["functions", "STEP5", "--json"]).out);
     assert_eq!(cards.as_array().map(Vec::len), Some(1));
-    assert_eq!((&cards[0]["continuity"], &cards[0]["arguments"][4]["name"]), (&json!("c2"), &json!("h1")));
+    assert_eq!(
+        (&cards[0]["continuity"], &cards[0]["arguments"][4]["name"]),
+        (&json!("c2"), &json!("h1"))
+    );
     // a name of both languages has both cards
-    assert_eq!(json_of(&cognate(&["functions", "sin", "--json"]).out).as_array().map(Vec::len), Some(2));
+    assert_eq!(
+        json_of(&cognate(&["functions", "sin", "--json"]).out)
+            .as_array()
+            .map(Vec::len),
+        Some(2)
+    );
     let all = json_of(&cognate(&["functions", "--json"]).out);
     assert!(all.as_array().unwrap().len() > 120);
     let done = cognate(&["functions", "FOO"]);
-    assert!(done.code == 3 && done.out.is_empty() && done.err.contains("the language has no `FOO`"));
+    assert!(
+        done.code == 3 && done.out.is_empty() && done.err.contains("the language has no `FOO`")
+    );
 }
 
 #[test]
 fn codes_and_functions_are_explained_by_name() {
     let done = cognate(&["explain", "arity"]);
-    assert!(done.code == 0 && done.out.starts_with("arity: ") && done.out.lines().count() > 3, "{}", done.out);
+    assert!(
+        done.code == 0 && done.out.starts_with("arity: ") && done.out.lines().count() > 3,
+        "{}",
+        done.out
+    );
     let done = cognate(&["explain", "no_such_code"]);
-    assert!(done.code == 3 && done.err.contains("cognate explain"), "{}", done.err);
+    assert!(
+        done.code == 3 && done.err.contains("cognate explain"),
+        "{}",
+        done.err
+    );
     assert!(cognate(&["explain"]).out.lines().count() > 50);
 }

@@ -6,12 +6,12 @@
 //! printed with what came out and what was expected, and any of them fails the test. A note that says `tolerance 1e-9` is
 //! obeyed.
 
+use cognate::expr::ast::{Ast, Dialect, Node};
 use cognate::expr::compile::compile;
 use cognate::expr::interpolation::{Bindings, Spline};
 use cognate::expr::program::{Input, Program, Work};
 use cognate::expr::spline::{Ends, Extrapolation};
 use cognate::expr::walk::{Host, check_constants, value, values};
-use cognate::expr::ast::{Ast, Dialect, Node};
 use cognate::expr::{Profile, parse};
 use cognate::scalar::{Dual, Jet, Lanes, Scalar};
 use cognate::space::{MarkerState, Mat3, Vec3, kinematic::kinematic_of, rotation::from_313};
@@ -56,14 +56,24 @@ fn rows(folder: &str, file: &str) -> Option<Vec<Row>> {
 }
 
 /// The tables there are.
-const FILES: [&str; 6] = ["functions", "ideas", "markers", "splines", "derivatives", "errors"];
+const FILES: [&str; 6] = [
+    "functions",
+    "ideas",
+    "markers",
+    "splines",
+    "derivatives",
+    "errors",
+];
 
 /// Runs a check on every row of a table and prints what fails.
 fn all_rows(file: &str, check: impl Fn(&Row) -> Result<(), String>) {
     let folders = match std::env::var("COGNATE_CONFORMANCE") {
         Ok(folder) => {
             let there = |f: &&str| std::path::Path::new(&format!("{folder}/{f}.tsv")).is_file();
-            assert!(FILES.iter().any(|f| there(&f)), "{folder} has none of these: {FILES:?}");
+            assert!(
+                FILES.iter().any(|f| there(&f)),
+                "{folder} has none of these: {FILES:?}"
+            );
             vec![folder]
         }
         Err(_) => ["conformance", "edges"]
@@ -71,7 +81,11 @@ fn all_rows(file: &str, check: impl Fn(&Row) -> Result<(), String>) {
             .to_vec(),
     };
     let mut failures = 0;
-    let all: Vec<Row> = folders.iter().filter_map(|f| rows(f, file)).flatten().collect();
+    let all: Vec<Row> = folders
+        .iter()
+        .filter_map(|f| rows(f, file))
+        .flatten()
+        .collect();
     for row in &all {
         if let Err(what) = check(row) {
             failures += 1;
@@ -80,7 +94,10 @@ fn all_rows(file: &str, check: impl Fn(&Row) -> Result<(), String>) {
                 .filter(|c| !row[c].is_empty())
                 .map(|c| format!("  {c}: {}", &row[c]))
                 .collect::<String>();
-            println!("{}: {}{where_at}\n    {what}", row.place, &row["expression"]);
+            println!(
+                "{}: {}{where_at}\n    {what}",
+                row.place, &row["expression"]
+            );
         }
     }
     println!("{file}: {} rows, {failures} failed", all.len());
@@ -157,9 +174,11 @@ impl World {
             Some(Node::Number { literal, .. }) => *literal as i32,
             _ => 0,
         };
-        self.sizes.iter().fold(0.0, |most: f64, (values, interval)| {
-            most.max(values / interval.powi(order))
-        })
+        self.sizes
+            .iter()
+            .fold(0.0, |most: f64, (values, interval)| {
+                most.max(values / interval.powi(order))
+            })
     }
 }
 
@@ -213,7 +232,9 @@ fn markers(text: &str) -> Result<BTreeMap<u32, MarkerState<f64>>, String> {
         if let Some(rows) = rows {
             let at = |i: usize, j: usize| rows.get(i).and_then(|r| r.get(j)).copied();
             let entry = |i, j| at(i, j).unwrap_or(f64::NAN);
-            state.R_GM = Mat3(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))));
+            state.R_GM = Mat3(std::array::from_fn(|i| {
+                std::array::from_fn(|j| entry(i, j))
+            }));
         }
         markers.insert(id.parse().map_err(|e| format!("{id}: {e}"))?, state);
     }
@@ -249,11 +270,13 @@ fn splines(text: &str) -> Result<World, String> {
         };
         let x = numbers(s.get("x"));
         sizes.push((
-            y.iter().flatten().fold(0.0, |most: f64, y| most.max(y.abs())),
-            x.windows(2).fold(f64::INFINITY, |least, w| least.min(w[1] - w[0])),
+            y.iter()
+                .flatten()
+                .fold(0.0, |most: f64, y| most.max(y.abs())),
+            x.windows(2)
+                .fold(f64::INFINITY, |least, w| least.min(w[1] - w[0])),
         ));
-        let spline = Spline::new(x, z, y, ends, extrapolation)
-            .map_err(|e| e.to_string())?;
+        let spline = Spline::new(x, z, y, ends, extrapolation).map_err(|e| e.to_string())?;
         bindings.splines.insert(
             id.parse().map_err(|e| format!("{id}: {e}"))?,
             Arc::new(spline),

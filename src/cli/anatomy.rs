@@ -61,7 +61,11 @@ pub fn explain(
         _ => format!(
             "program    {} operation{}, {} registers\n",
             formula.program.n_operations(),
-            if formula.program.n_operations() == 1 { "" } else { "s" },
+            if formula.program.n_operations() == 1 {
+                ""
+            } else {
+                "s"
+            },
             formula.program.work_size()
         ),
     };

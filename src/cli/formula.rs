@@ -7,8 +7,8 @@ use super::data::Data;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expr::ast::Dialect;
 use crate::expr::measures::Family;
-use crate::expr::signature::{Element, Kind};
 use crate::expr::program::{Input, Program, Work};
+use crate::expr::signature::{Element, Kind};
 use crate::expr::{Expr, Profile, input_named, walk};
 use crate::scalar::{Jet, Scalar};
 
@@ -103,18 +103,18 @@ impl Formula {
     /// Why there is no finite number.
     fn trouble(&self, time: Option<f64>, data: &Data, sample: &Sample) -> Diagnostic {
         match self.expr.eval_with(&TimedData { data, time }) {
-            Err(d) => {
-                match d.code {
-                    "missing_value" if time.is_none() && self.program.inputs().contains(&Input::Time) => {
-                        d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")
-                    }
-                    "missing_value" => {
-                        let advice = self.what_is_missing(&d, data);
-                        d.help(advice)
-                    }
-                    _ => d,
+            Err(d) => match d.code {
+                "missing_value"
+                    if time.is_none() && self.program.inputs().contains(&Input::Time) =>
+                {
+                    d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")
                 }
-            }
+                "missing_value" => {
+                    let advice = self.what_is_missing(&d, data);
+                    d.help(advice)
+                }
+                _ => d,
+            },
             Ok(_) => {
                 let which = if sample[1].is_finite() {
                     "second derivative"
@@ -143,21 +143,34 @@ impl Formula {
                     .iter()
                     .zip(arguments)
                     .filter(|(a, id)| {
-                        matches!(a.kind, Kind::Identifier { element: Element::Marker, .. })
-                            && **id > 0
+                        matches!(
+                            a.kind,
+                            Kind::Identifier {
+                                element: Element::Marker,
+                                ..
+                            }
+                        ) && **id > 0
                             && !data.markers.contains_key(id)
                     })
                     .map(|(_, id)| id.to_string())
                     .collect();
                 match row.family {
-                    Family::Displacement | Family::Velocity | Family::Acceleration if !missing.is_empty() => format!(
-                        "nothing is known of marker {}: give its state (`--markers FILE`; in the REPL `:marker {} X Y Z`)",
-                        missing.join(" and "),
-                        missing[0]
-                    ),
+                    Family::Displacement | Family::Velocity | Family::Acceleration
+                        if !missing.is_empty() =>
+                    {
+                        format!(
+                            "nothing is known of marker {}: give its state (`--markers FILE`; in the REPL `:marker {} X Y Z`)",
+                            missing.join(" and "),
+                            missing[0]
+                        )
+                    }
                     _ => format!(
                         "the model would know: give it a value (`--set '{0}=2.5'`; in the REPL `:let {0} = 2.5`)",
-                        d.message.split(" has no value").next().unwrap_or_default().replace(' ', "")
+                        d.message
+                            .split(" has no value")
+                            .next()
+                            .unwrap_or_default()
+                            .replace(' ', "")
                     ),
                 }
             }

@@ -545,9 +545,15 @@ mod tests {
     fn akima_at_a_corner_of_straight_parts_has_the_mean_slope() {
         for (offset, step) in [(0.0, 0.1), (7.3, 0.1), (0.0, 0.7), (1e3, 0.3)] {
             let x: Vec<f64> = (0..9).map(|k| offset + step * f64::from(k)).collect();
-            let y: Vec<f64> = (0..9).map(|k: i32| 0.3 * f64::from((k - 4).abs())).collect();
+            let y: Vec<f64> = (0..9)
+                .map(|k: i32| 0.3 * f64::from((k - 4).abs()))
+                .collect();
             let curve = Piecewise::akima(&x, &y, Extrapolation::Linear).unwrap();
-            assert!(curve.at(x[4], 1).abs() < 1e-9, "{offset} {step}: {}", curve.at(x[4], 1));
+            assert!(
+                curve.at(x[4], 1).abs() < 1e-9,
+                "{offset} {step}: {}",
+                curve.at(x[4], 1)
+            );
         }
     }
 
