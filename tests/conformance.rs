@@ -71,7 +71,7 @@ fn all_rows(file: &str, check: impl Fn(&Row) -> Result<(), String>) {
         Ok(folder) => {
             let there = |f: &&str| std::path::Path::new(&format!("{folder}/{f}.tsv")).is_file();
             assert!(
-                FILES.iter().any(|f| there(&f)),
+                FILES.iter().any(there),
                 "{folder} has none of these: {FILES:?}"
             );
             vec![folder]
@@ -165,7 +165,8 @@ impl World {
             .max(self.curve_size(ast))
     }
 
-    /// Values of a curve over the shortest interval, to the power of the order that is asked for.
+    /// Values of a curve over the shortest interval, to the power of the order that is asked for; the equations for its
+    /// coefficients round a few times.
     fn curve_size(&self, ast: &Ast) -> f64 {
         let Node::Call { args, .. } = ast.node(ast.root) else {
             return 0.0;
@@ -177,7 +178,7 @@ impl World {
         self.sizes
             .iter()
             .fold(0.0, |most: f64, (values, interval)| {
-                most.max(values / interval.powi(order))
+                most.max(4.0 * values / interval.powi(order))
             })
     }
 }
