@@ -525,3 +525,107 @@ fn verify_tells_both_counts_and_exits_by_consistency() {
     );
     assert!(out.err.contains("JOINT/2"), "{}", out.err);
 }
+
+/// A slider that is driven beyond the reach of crank and rod.
+const REACH: &str = "REACH\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1\nPART/3, MASS=1, CM=30, IP=1,1,1\nPART/4, MASS=1, CM=40, IP=1,1,1\n\
+    MARKER/20, PART=2\nMARKER/30, PART=3\nMARKER/40, PART=4, QP=2,0,0, REULER=90D,90D,0\nMARKER/11, PART=1\n\
+    MARKER/22, PART=2, QP=0.25,0.968245836551854,0\nMARKER/32, PART=3, QP=0.25,0.968245836551854,0\n\
+    MARKER/33, PART=3, QP=2,0,0\nMARKER/43, PART=4, QP=2,0,0\nMARKER/14, PART=1, REULER=90D,90D,0\n\
+    JOINT/1, REVOLUTE, I=20, J=11\nJOINT/2, REVOLUTE, I=32, J=22\nJOINT/3, REVOLUTE, I=33, J=43\n\
+    JOINT/4, TRANSLATIONAL, I=40, J=14\nMOTION/1, JOINT=4, TRANSLATION, FUNCTION=2+TIME\nEND\n";
+
+#[test]
+fn a_lock_up_ends_with_its_code_its_joint_and_its_last_configuration() {
+    let adm = scratch("lock_up", "reach.adm", REACH);
+    let dir = adm.with_file_name("out");
+    let done = cognate(&[
+        "run",
+        path(&adm),
+        "--end",
+        "2",
+        "--steps",
+        "20",
+        "--column",
+        "DX(43,11)",
+        "--out",
+        path(&dir),
+    ]);
+    assert_eq!(done.code, 6, "{}", done.err);
+    assert!(
+        done.err.contains("is locked: MOTION/1")
+            && done.err.contains("JOINT/3")
+            && done.err.contains("time 0.99999"),
+        "{}",
+        done.err
+    );
+    // outputs up to there, and the stretched configuration as the last row
+    let table = std::fs::read_to_string(dir.join("reach.csv")).unwrap();
+    let last: Vec<f64> = (table.lines().last().unwrap().split(','))
+        .map(|x| x.parse().unwrap())
+        .collect();
+    assert!(
+        (last[0] - 1.0).abs() < 1e-6 && (last[1] - 3.0).abs() < 1e-6,
+        "{last:?}"
+    );
+    let record: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(dir.join("reach.json")).unwrap()).unwrap();
+    assert!(record.to_string().contains("is locked"), "{record}");
+}
+
+#[test]
+fn a_motion_that_jumps_is_refused_and_runs_piecewise_on_demand() {
+    let adm = scratch(
+        "piecewise",
+        "jump.adm",
+        "JUMP\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/1, PART=1\n\
+         JOINT/1, REVOLUTE, I=20, J=1\nMOTION/1, JOINT=1, ROTATION, FUNCTION=IF(TIME-0.5: 0, 0, TIME-0.3)\nEND\n",
+    );
+    let dir = adm.with_file_name("out");
+    let run = |more: &[&str]| {
+        let mut args = vec![
+            "run",
+            path(&adm),
+            "--end",
+            "1",
+            "--steps",
+            "10",
+            "--column",
+            "AZ(20,1)",
+            "--out",
+            path(&dir),
+        ];
+        args.extend(more);
+        cognate(&args)
+    };
+    let done = run(&[]);
+    assert_eq!(done.code, 4, "{}", done.err);
+    assert!(
+        done.err.contains("MOTION/1")
+            && done.err.contains("jumps at time 0.5")
+            && done.err.contains("--piecewise"),
+        "{}",
+        done.err
+    );
+    let done = run(&["--piecewise"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let record: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(dir.join("jump.json")).unwrap()).unwrap();
+    let jumps = record["piecewise"].as_array().unwrap();
+    assert_eq!(jumps.len(), 1, "{record}");
+    assert!(
+        jumps[0].to_string().contains("MOTION/1") && jumps[0].to_string().contains("0.5"),
+        "{}",
+        jumps[0]
+    );
+    let table = std::fs::read_to_string(dir.join("jump.csv")).unwrap();
+    let last: f64 = table
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .nth(1)
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((last - 0.7).abs() < 1e-9, "{last}");
+}

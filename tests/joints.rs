@@ -375,3 +375,152 @@ fn motions_that_jump_run_piecewise_when_somebody_insists() {
     assert!(off(&s, "DZ(20,1)", |t| if t > 1.0 { 0.5 } else { 0.0 }) < 1e-12);
     assert_eq!(s.run.record.piecewise.len(), 1);
 }
+
+/// Variables of a joint as result columns: markers 20 of part 2 against 1 of ground, which stands askew.
+fn variables(joint: &str, place: &str, more: &str, end: f64) -> Session {
+    let text = format!(
+        "TEST\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1\n\
+         PART/2, MASS=1, CM=20, IP=1,1,1{place}\nMARKER/20, PART=2\nJOINT/1, {joint}, I=20, J=1\n{more}END\n"
+    );
+    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let options = Options {
+        full: true,
+        error: Some(1e-9),
+        ..Options::default()
+    };
+    let mut s = Session::new(model, "test", options);
+    let status = s
+        .simulate(Analysis::Transient, end, 40, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    s
+}
+
+/// Names and units of the variables that are shown.
+fn shown(s: &Session) -> Vec<(String, String)> {
+    let columns = s.run.columns.iter();
+    columns
+        .filter_map(|c| {
+            let name = c.name.strip_prefix("JOINT_1_VARIABLES.")?;
+            Some((name.to_string(), c.unit.clone()))
+        })
+        .collect()
+}
+
+#[test]
+fn every_joint_shows_its_variables_with_their_units() {
+    for (joint, place, expected) in [
+        ("FIXED", "", vec![]),
+        ("SPHERICAL", "", vec![]),
+        ("CONVEL", "", vec![]),
+        ("REVOLUTE", "", vec!["ANGLE"]),
+        ("TRANSLATIONAL", "", vec!["DISTANCE"]),
+        ("CYLINDRICAL", "", vec!["DISTANCE", "ANGLE"]),
+        ("SCREW, PITCH=0.5", "", vec!["DISTANCE", "ANGLE"]),
+        (
+            "RACKPIN, PD=0.4",
+            ", REULER=90D,90D,0",
+            vec!["DISTANCE", "ANGLE"],
+        ),
+        ("PLANAR", "", vec!["X", "Y", "ANGLE"]),
+        ("HOOKE", "", vec!["ANGLE_1", "ANGLE_2"]),
+        ("UNIVERSAL", ", REULER=0,90D,0", vec!["ANGLE_1", "ANGLE_2"]),
+    ] {
+        let s = variables(joint, place, "", 0.01);
+        let expected: Vec<(String, String)> = (expected.iter())
+            .map(|v| {
+                let unit = if v.starts_with("ANGLE") {
+                    &s.run.units.angle
+                } else {
+                    "meter"
+                };
+                ((*v).to_string(), unit.to_string())
+            })
+            .collect();
+        assert_eq!(shown(&s), expected, "{joint}");
+    }
+}
+
+/// Driven variables are what their motions prescribe, of I against J along and about the axes of J; angles count their turns.
+#[test]
+fn variables_of_joints_are_what_motions_prescribe() {
+    let turn = "MOTION/1, JOINT=1, ROTATION, FUNCTION=-0.3+7*TIME\n";
+    let slide = "MOTION/2, JOINT=1, TRANSLATION, FUNCTION=0.2-TIME\n";
+    let angle = |t: f64| -0.3 + 7.0 * t;
+    let check = |s: &Session, variable: &str, expected: &dyn Fn(f64) -> f64| {
+        let error = off(s, &format!("JOINT_1_VARIABLES.{variable}"), expected);
+        assert!(error < 1e-8, "{variable}: {error}");
+    };
+    let s = variables("REVOLUTE", "", turn, 2.0);
+    check(&s, "ANGLE", &angle);
+    let s = variables("TRANSLATIONAL", "", slide, 2.0);
+    check(&s, "DISTANCE", &|t| 0.2 - t);
+    let s = variables("CYLINDRICAL", "", &format!("{turn}{slide}"), 2.0);
+    check(&s, "ANGLE", &angle);
+    check(&s, "DISTANCE", &|t| 0.2 - t);
+    let plane = "MOTION/1, I=20, J=1, X, FUNCTION=0.5*TIME\nMOTION/2, I=20, J=1, Y, FUNCTION=-TIME\nMOTION/3, I=20, J=1, B3, FUNCTION=7*TIME\n";
+    let s = variables("PLANAR", "", plane, 2.0);
+    check(&s, "X", &|t| 0.5 * t);
+    check(&s, "Y", &|t| -t);
+    check(&s, "ANGLE", &|t| 7.0 * t);
+}
+
+/// A right-hand thread advances along +z as it turns about +z; a negative PITCH is a left-hand one.
+#[test]
+fn variables_of_a_screw_advance_with_the_sign_of_its_pitch() {
+    for pitch in [0.5, -0.5] {
+        let more =
+            "JOINT/2, CYLINDRICAL, I=20, J=1\nMOTION/1, JOINT=2, ROTATION, FUNCTION=7*TIME\n";
+        let s = variables(&format!("SCREW, PITCH={pitch}"), "", more, 2.0);
+        assert!(off(&s, "JOINT_1_VARIABLES.ANGLE", |t| 7.0 * t) < 1e-8);
+        let advance = |t: f64| pitch * 7.0 * t / std::f64::consts::TAU;
+        assert!(
+            off(&s, "JOINT_1_VARIABLES.DISTANCE", advance) < 1e-8,
+            "{pitch}"
+        );
+    }
+}
+
+/// A pinion that rolls on a rack in ground: z of the rack along ground z, its x along the pinion's axis.
+#[test]
+fn variables_of_a_rack_and_pinion_roll_with_the_sign_of_pd() {
+    // the pinion's z along ground x; it turns about ground x and slides along ground z
+    let place = ", ZG=1,0,0, XG=0,1,0";
+    let more = "JPRIM/1, INLINE, I=20, J=1\nJPRIM/2, PARALLEL_AXES, I=20, J=11\nMARKER/11, PART=1, ZP=1,0,0, XP=0,1,0\n\
+                MOTION/1, I=20, J=1, Z, FUNCTION=0.7*TIME\n";
+    for pd in [0.4, -0.4] {
+        let s = variables(&format!("RACKPIN, PD={pd}"), place, more, 2.0);
+        assert!(off(&s, "JOINT_1_VARIABLES.DISTANCE", |t| 0.7 * t) < 1e-8);
+        let angle = values(&s, "JOINT_1_VARIABLES.ANGLE");
+        let turned: Vec<f64> = angle.iter().map(|a| a - angle[0]).collect();
+        for (t, a) in values(&s, "time").iter().zip(&turned) {
+            assert!((a - 0.7 * t / (0.5 * pd)).abs() < 1e-8, "{pd}: {t} {a}");
+        }
+    }
+}
+
+/// First about the pin of J, then about that of I: y of J and x of I for HOOKE, z of both for UNIVERSAL.
+#[test]
+fn variables_of_universal_joints_are_turns_about_their_pins() {
+    use cognate::space::rotation::about_axis;
+    let quarter = about_axis(0, std::f64::consts::FRAC_PI_2);
+    for (a, b) in [(0.3, -0.5), (-1.1, 0.4), (0.0, 0.7)] {
+        for (joint, r) in [
+            ("HOOKE", about_axis(1, a) * about_axis(0, b)),
+            ("UNIVERSAL", about_axis(2, a) * quarter * about_axis(2, b)),
+        ] {
+            let [x, _, z] = [0, 1, 2].map(|k| r.column(k).0);
+            let place = format!(
+                ", ZG={},{},{}, XG={},{},{}",
+                z[0], z[1], z[2], x[0], x[1], x[2]
+            );
+            let s = variables(joint, &place, "", 0.01);
+            let found =
+                ["ANGLE_1", "ANGLE_2"].map(|v| values(&s, &format!("JOINT_1_VARIABLES.{v}"))[0]);
+            assert!(
+                (found[0] - a).abs() < 1e-9 && (found[1] - b).abs() < 1e-9,
+                "{joint} {a} {b}: {found:?}"
+            );
+        }
+    }
+}

@@ -170,3 +170,56 @@ fn a_mechanism_driven_past_its_reach_stops_there_and_says_why() {
     assert!((s.run.column("DX(43,11)").unwrap()[last] - 3.0).abs() < 1e-6);
     assert!(s.run.record.simulations[0].worst[0].starts_with("JOINT/"));
 }
+
+/// Where coupler (4) and rocker (3, about (2, 0)) meet when the crank (1, about the origin) stands at an angle, on a side of the line between their ends.
+fn rocker(angle: f64, side: f64) -> [f64; 2] {
+    let a = [angle.cos(), angle.sin()];
+    let d = [2.0 - a[0], -a[1]];
+    let d2 = d[0] * d[0] + d[1] * d[1];
+    let along = (16.0 - 9.0 + d2) / (2.0 * d2);
+    let aside = side * (16.0 / d2 - along * along).max(0.0).sqrt();
+    [
+        a[0] + along * d[0] - aside * d[1],
+        a[1] + along * d[1] + aside * d[0],
+    ]
+}
+
+/// Crank 1, coupler 4, rocker 3, base 2: as 1 + 4 = 2 + 3, all hinges lie on one line when the crank points along the base, where both
+/// branches meet.
+fn change_point(more: &str) -> String {
+    let [px, py] = rocker(0.5 * PI, 1.0);
+    format!(
+        "CHANGE POINT\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1\nPART/3, MASS=1, CM=30, IP=1,1,1\nPART/4, MASS=1, CM=40, IP=1,1,1\n\
+         MARKER/20, PART=2\nMARKER/30, PART=3\nMARKER/40, PART=4\nMARKER/11, PART=1\nMARKER/14, PART=1, QP=2,0,0\n\
+         MARKER/21, PART=2\nMARKER/22, PART=2, QP=0,1,0\nMARKER/32, PART=3, QP=0,1,0\nMARKER/33, PART=3, QP={px:.15},{py:.15},0\n\
+         MARKER/43, PART=4, QP={px:.15},{py:.15},0\nMARKER/44, PART=4, QP=2,0,0\n\
+         JOINT/1, REVOLUTE, I=21, J=11\nJOINT/2, REVOLUTE, I=32, J=22\nJOINT/3, REVOLUTE, I=33, J=43\nJOINT/4, REVOLUTE, I=44, J=14\n{more}END\n"
+    )
+}
+
+/// Driven through its dead point, where all hinges lie on one line: it goes on smoothly, and the time and the place are told.
+#[test]
+fn an_unequal_four_bar_is_driven_through_its_dead_point() {
+    let motion = "MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME\n";
+    for steps in [43, 50] {
+        let mut s = session(&change_point(motion), &["DX(33,11)", "DY(33,11)"], 1e-8);
+        let status = s
+            .simulate(Analysis::Kinematic, 6.0, steps, &mut Unwatched)
+            .unwrap();
+        assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+        // the crank begins at 90° and points along the base after three quarters of a turn
+        let told = passes(&s);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!((told[0] - 1.5 * PI).abs() < 1e-5, "{told:?}");
+        assert!(!s.run.record.rank_changes[0].place.is_empty());
+        // smoothly on: the rocker's end passes to the other side of the line between its neighbours
+        let time = s.run.column("time").unwrap();
+        for (k, t) in time.iter().enumerate() {
+            let side = if *t < 1.5 * PI { 1.0 } else { -1.0 };
+            let [x, y] = rocker(0.5 * PI + t, side);
+            let off =
+                [("DX(33,11)", x), ("DY(33,11)", y)].map(|(c, x)| s.run.column(c).unwrap()[k] - x);
+            assert!(off[0].hypot(off[1]) < 1e-6, "{t}: {off:?}");
+        }
+    }
+}

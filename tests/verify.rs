@@ -351,3 +351,70 @@ fn what_routines_compute_is_taken_to_stand_still() {
         v.warnings
     );
 }
+
+/// Each message names the element, how much, in which direction, and what to do.
+#[test]
+fn what_does_not_fit_says_how_much_where_and_what_to_do() {
+    // the last hinge is 0.01 aside: nothing can give way out of the plane
+    let bars = four_bar(
+        [[0.0, 0.0], [0.0, 1.0], [3.0, 2.0], [3.0, 0.0]],
+        "UNITS/SYSTEM=MKS\n",
+    );
+    let moved = bars.replace(
+        "MARKER/14, PART=1, QP=3,0,0",
+        "MARKER/14, PART=1, QP=3,0,0.01",
+    );
+    assert_ne!(bars, moved);
+    let v = verified(&moved);
+    assert_eq!(v.freedom, None);
+    let said = &v.inconsistent[0];
+    assert!(
+        said.element
+            .as_ref()
+            .is_some_and(|e| e.starts_with("JOINT/"))
+            && said
+                .message
+                .ends_with("is off by 0.01 meter along ground Z"),
+        "{said:?}"
+    );
+    assert!(!said.help.is_empty());
+    // two cranks that are driven at rates that do not go together
+    let v = verified(&bars.replace(
+        "END\n",
+        "MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME\nMOTION/2, JOINT=4, ROTATION, FUNCTION=TIME\nEND\n",
+    ));
+    let said = &v.inconsistent[0];
+    assert!(
+        said.element
+            .as_ref()
+            .is_some_and(|e| e.starts_with("JOINT/")),
+        "{said:?}"
+    );
+    assert!(
+        said.message
+            .contains("give way by 0.5 meter per unit of time along ground X"),
+        "{}",
+        said.message
+    );
+    assert!(
+        (said.help.iter()).any(|h| h.contains("MOTION/1, MOTION/2")),
+        "{said:?}"
+    );
+}
+
+/// A curve that a routine computes: its contact is counted, and left out of the rank.
+#[test]
+fn contacts_of_unknown_curves_are_counted_and_told() {
+    let text = "USER\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/1, PART=1\n\
+        JPRIM/1, ORIENTATION, I=20, J=1\nPTCV/1, CURVE=1, I=20, RM=1\nCURVE/1, OPEN, FUNCTION=USER(1)\nEND\n";
+    let v = verified(text);
+    assert_eq!((v.gruebler, v.freedom), (1, Some(3)));
+    let told = v.warnings.iter().find(|w| w.starts_with("PTCV/1"));
+    assert!(
+        told.is_some_and(
+            |w| w.contains("CURVE/1 is computed by a routine") && w.contains("2 equations")
+        ),
+        "{:?}",
+        v.warnings
+    );
+}

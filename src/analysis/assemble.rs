@@ -4,6 +4,7 @@
 //! reflections (`numeric/rank.rs`), translations first; a row that depends on earlier ones is left out, and is no
 //! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
 
+use super::misalignment::{length, short};
 use super::nearby;
 use super::verify::direction;
 use crate::diagnostic::Diagnostic;
@@ -341,13 +342,18 @@ fn contradictions(scene: &Scene, g: &DVector<f64>, numbers: &[f64]) -> Vec<Diagn
             let by = match &row.kind {
                 RowKind::Markers { law, .. } if law.is_length() => {
                     let way = direction(scene, &at, r).replace("translation ", "");
-                    format!("{:.3e} {} {way}", g[r], scene.length_unit).replace("  ", " ")
+                    format!("{} {way}", length(g[r], &scene.length_unit))
                 }
                 RowKind::Markers { .. } => {
                     let way = direction(scene, &at, r).replace("rotation ", "");
-                    format!("{:.3e} deg {way}", g[r].clamp(-1.0, 1.0).asin().to_degrees())
+                    let angle = g[r].clamp(-1.0, 1.0).asin().to_degrees();
+                    format!("{} deg {way}", short(angle.abs()))
                 }
-                _ => format!("{:.3e}", g[r]),
+                RowKind::Cam { .. } => {
+                    let way = direction(scene, &at, r).replace("translation ", "");
+                    format!("{} {way}", length(g[r], &scene.length_unit))
+                }
+                _ => short(g[r].abs()),
             };
             Diagnostic::error("assembly", format!("cannot be satisfied: {} is off by {by}", row.equation))
                 .element(row.element.clone())
@@ -411,6 +417,38 @@ pub fn rank(
     (independent, redundant)
 }
 
+/// Motions ask for a rate that a row forbids: what it would have to give way by, and which motions there are.
+fn prescribed_too_much(scene: &Scene, numbers: &[f64], r: usize, rate: f64) -> Diagnostic {
+    let at = Equations::new(scene, numbers);
+    let row = &scene.rows[r];
+    let way = direction(scene, &at, r);
+    let (way, rate) = match way.strip_prefix("rotation ") {
+        Some(way) => (
+            way.to_string(),
+            format!("{} deg", short(rate.abs().to_degrees())),
+        ),
+        None => (
+            way.replace("translation ", ""),
+            length(rate, &scene.length_unit),
+        ),
+    };
+    let motions: Vec<String> = (scene.motions.iter())
+        .map(|m| format!("MOTION/{}", m.id))
+        .collect();
+    Diagnostic::error(
+        "assembly",
+        format!(
+            "the prescribed velocities contradict it: {} would have to give way by {rate} per unit of time {way}",
+            row.equation
+        ),
+    )
+    .element(row.element.clone())
+    .help(format!(
+        "prescribe less, or rates that go together: there are {}",
+        motions.join(", ")
+    ))
+}
+
 /// Velocities nearest to those the dataset gives that satisfy the rows: given ones first, then the rest as small as may be.
 ///
 /// # Errors
@@ -431,13 +469,12 @@ pub fn velocities(
     let left = &gradient * &v0 + &drift;
     let scale = 1.0 + drift.amax().max(gradient.amax());
     if let Some(r) = (0..left.len()).find(|&r| left[r].abs() > 1e-8 * scale) {
-        return Err(vec![
-            Diagnostic::error(
-                "assembly",
-                format!("the prescribed velocities contradict it by {:.3e}", left[r]),
-            )
-            .element(row_name(&scene.rows[r])),
-        ]);
+        return Err(vec![prescribed_too_much(
+            scene,
+            &numbers(scene, t, q, &vec![0.0; n], x),
+            r,
+            left[r],
+        )]);
     }
     let mut v = v0;
     let wishes = [&wishes.firm, &wishes.given, &wishes.rest];

@@ -96,6 +96,9 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     }
     let assembly = assemble::positions(&mut scene, 0.0, &mut q, &x)?;
     out.warnings.extend(assembly.warnings.iter().cloned());
+    let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
+    let turned = super::misalignment::turned(&scene, model, &numbers);
+    out.warnings.extend(turned);
     for r in &assembly.redundant {
         let on: Vec<String> = (r.combination.iter().take(4))
             .map(|c| row_name(&scene.rows[c.0]))

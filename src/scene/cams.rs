@@ -96,7 +96,7 @@ impl Builder<'_> {
                 if path.height > 1e-9 * path.length {
                     planar = false;
                     let what = format!(
-                        "CURVE/{curve} leaves the x-y plane of its marker by {:.3e}",
+                        "CURVE/{curve} leaves the x-y plane of its marker by {:.4} along z",
                         path.height
                     );
                     c.errors.push(not_coplanar(&name, what));
@@ -468,8 +468,13 @@ pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Brok
             return Some(Broken {
                 element,
                 code: "curves_not_coplanar",
-                sentence: format!("the planes of the curves are inclined to each other by {:.3e} rad", tilt.asin()),
-                advice: "let joints hold the x-y planes of IRM and JRM together".into(),
+                sentence: format!(
+                    "the planes of the curves are inclined to each other by {:.4} deg: the x-y planes of MARKER/{} and MARKER/{}",
+                    tilt.min(1.0).asin().to_degrees(),
+                    scene.markers[cam.i].id,
+                    scene.markers[cam.j].id
+                ),
+                advice: "turn one of these markers, and let joints hold their x-y planes together".into(),
             });
         }
         None
