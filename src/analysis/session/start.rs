@@ -1,0 +1,313 @@
+//! What a simulation starts from: the model compiled as it is now, and the state that the last one left or that is assembled.
+
+use super::super::assemble::{self, Assembly};
+use super::super::system::{System, complaints};
+use super::super::{misalignment, outside, placement, wishes};
+use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
+use crate::diagnostic::Diagnostic;
+use crate::expr::measures::Measure;
+use crate::model::{Model, Orientation};
+use crate::scene::build::{self, unknown_names};
+use crate::scene::compile::orientation;
+use crate::scene::equations::Equations;
+use crate::scene::{Scene, Source};
+use crate::space::kinematic::kinematic;
+use crate::space::{MarkerState, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// State carried from one simulation to the next, by the names of the unknowns.
+#[derive(Clone, Debug)]
+pub(super) struct Carried {
+    pub(super) t: f64,
+    /// numbers of the last row
+    pub(super) numbers: Vec<f64>,
+    pub(super) names: Vec<String>,
+    /// it came to rest: velocities are those of the dataset again, not zero
+    pub(super) at_rest: bool,
+    /// place and motion of every part (point masses: true), for when the unknowns are others
+    pub(super) parts: Vec<(bool, u32, MarkerState<f64>)>,
+    /// turns that angles have counted
+    pub(super) turns: Vec<f64>,
+    /// numbers from outside, and what was before
+    pub(super) supplied: Vec<f64>,
+    pub(super) past: Vec<outside::Past>,
+}
+
+impl Session {
+    /// Compiles the model for a MODE, with VARIABLEs that are inputs, and brings it into its state.
+    pub(super) fn prepare(
+        &mut self,
+        mode: u32,
+        inputs: &[u32],
+    ) -> Result<(System, Assembly), Vec<Diagnostic>> {
+        let options = build::Options {
+            mode,
+            extra: self.columns.extra.clone(),
+            variables: self.options.full,
+            skip: self.options.skip.clone(),
+            hooks: self.hooks.iter().map(outside::Hook::as_name).collect(),
+            zero_user: self.options.zero_user,
+            plant_inputs: inputs.to_vec(),
+            ..build::Options::default()
+        };
+        let mut scene = Scene::compile(&self.model, &options)?;
+        // Commands may have changed what carries a part: then its place is no unknown of before, and is told by the part.
+        let moved = (self.carried.as_ref())
+            .filter(|carried| has_new_unknowns(&scene, carried))
+            .map(|carried| moved(&self.model, carried));
+        if let Some(moved) = &moved {
+            scene = Scene::compile(moved, &options)?;
+        }
+        let l = scene.layout;
+        let t = self.time();
+        let names = unknown_names(&scene);
+        let mut x = vec![0.0; l.n_x];
+        for d in &scene.differentials {
+            if let Some(state) = d.state {
+                x[state] = d.initial[0];
+            }
+        }
+        let mut q = scene.initial_q.clone();
+        let mut v = None;
+        let mut turns = vec![0.0; l.n_turns];
+        if let Some(carried) = &self.carried {
+            let values: BTreeMap<&str, f64> = carried
+                .names
+                .iter()
+                .map(String::as_str)
+                .zip(carried.numbers[1..].iter().copied())
+                .collect();
+            let mut speeds = vec![0.0; l.n_v];
+            let mut complete = true;
+            for (k, name) in names.iter().enumerate() {
+                match values.get(name.as_str()) {
+                    Some(&value) if k < l.n_q => q[k] = value,
+                    Some(&value) if k < l.n_q + l.n_v => speeds[k - l.n_q] = value,
+                    Some(&value) => x[k - l.n_q - l.n_v] = value,
+                    None => complete &= k >= l.n_q + l.n_v,
+                }
+            }
+            for cam in &mut scene.cams {
+                let name = &names[l.n_q + l.n_v + cam.state];
+                cam.begun = values.contains_key(name.as_str());
+            }
+            if complete && !carried.at_rest {
+                v = Some(speeds);
+            }
+            if carried.turns.len() == l.n_turns {
+                turns.copy_from_slice(&carried.turns);
+            }
+        } else {
+            if mode != KINEMATIC && mode != STATIC {
+                self.initial_joints(&scene, &mut q);
+            }
+            for (m, motion) in scene.motions.iter().enumerate() {
+                self.initial_motion(&scene, m, motion.state, &q, &mut x);
+            }
+        }
+        scene.turns.clone_from(&turns);
+        scene.supplied_values = self.supplied(&scene, t, &q, &x)?;
+        let first = self.carried.is_none();
+        let misaligned = if first {
+            misalignment::misaligned(&scene, &self.model)
+        } else {
+            Vec::new()
+        };
+        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
+        let placed = first && placement::settle(&scene, &self.model, t, &mut q, &x, joints);
+        // only what moves by itself has initial conditions
+        let wishes = if first && mode != KINEMATIC && mode != STATIC {
+            wishes::collect(&scene, &self.model)
+        } else {
+            Vec::new()
+        };
+        // where parts are too many to be weighed, or on curves, coordinates move as little as may be
+        let starts = if first && !(placed && joints) {
+            wishes::approach(&mut scene, &wishes, t, &mut q, &x)
+        } else {
+            Vec::new()
+        };
+        let mut assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
+        let unmet = wishes::unmet(&scene, &wishes, &starts, t, &q, &x);
+        assembly.warnings.extend(unmet);
+        assembly.warnings.splice(0..0, misaligned);
+        if first {
+            let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
+            let turned = misalignment::turned(&scene, &self.model, &numbers);
+            assembly.warnings.extend(turned);
+        }
+        scene.begin_states(&mut x);
+        let v = match v {
+            _ if mode == STATIC || mode == LINEAR && self.is_at_rest() => vec![0.0; l.n_v],
+            Some(v) => v,
+            None => {
+                let at_rest = self.carried.as_ref().is_some_and(|c| c.at_rest);
+                let given = moved.as_ref().filter(|_| !at_rest).unwrap_or(&self.model);
+                assemble::velocities(&scene, given, t, &q, &x)?
+            }
+        };
+        let mut system = System::with_hooks(scene, &self.hooks)?;
+        let past = self.carried.as_ref().map_or(&[][..], |c| &c.past);
+        system.outside.begin(t, past);
+        let mut y = q;
+        y.extend(v);
+        y.extend(x);
+        system.numbers[l.turns()].copy_from_slice(&turns);
+        system.numbers[0] = t;
+        system.numbers[l.y()].copy_from_slice(&y);
+        if let Err(k) = system.resolve() {
+            let name = system.scene.loops[k].name.clone();
+            return Err(vec![
+                Diagnostic::error("loop", "it depends on itself, and no value solves that")
+                    .element(name)
+                    .help("give an IC near the solution, where it has one"),
+            ]);
+        }
+        let row = system.row(t, &y);
+        system.numbers.copy_from_slice(&row);
+        let y = row[l.y()].to_vec();
+        system.count_turns(t, &y);
+        if mode != STATIC {
+            system.begin_sensing();
+        }
+        Ok((system, assembly))
+    }
+
+    /// Numbers from outside where assembly begins: what sensors evaluated before, and what closures say of the configuration.
+    pub(super) fn supplied(
+        &self,
+        scene: &Scene,
+        t: f64,
+        q: &[f64],
+        x: &[f64],
+    ) -> Result<Vec<f64>, Vec<Diagnostic>> {
+        let l = scene.layout;
+        let mut numbers = vec![0.0; l.len()];
+        let carried = self.carried.as_ref().map(|c| &c.supplied);
+        if let Some(values) = carried.filter(|v| v.len() == l.n_supplied) {
+            numbers[l.supplied()].copy_from_slice(values);
+        }
+        if !scene.hooks.is_empty() {
+            numbers[0] = t;
+            numbers[l.q()].copy_from_slice(q);
+            numbers[l.x()].copy_from_slice(x);
+            numbers[l.turns()].copy_from_slice(&scene.turns);
+            let mut outside = outside::Outside::new(scene, &self.hooks).map_err(complaints)?;
+            outside.evaluate(&mut numbers, true);
+        }
+        Ok(numbers[l.supplied()].to_vec())
+    }
+
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.carried.as_ref().is_some_and(|c| c.at_rest)
+    }
+
+    /// IC, ICTRAN, ICROT of joints that carry a part: where assembly begins.
+    pub(super) fn initial_joints(&self, scene: &Scene, q: &mut [f64]) {
+        for c in &scene.coordinates {
+            let Some(joint) = c.joint.and_then(|j| self.model.joints.get(&j)) else {
+                continue;
+            };
+            let given = if c.angular {
+                joint.ic_rotation[0]
+            } else {
+                joint.ic_translation[0]
+            };
+            if let (Some(value), Source::Free { q: place, .. }) = (given, c.source) {
+                q[place] = value;
+            }
+        }
+    }
+
+    /// Start of motions given by their rate: ICDISP and ICVEL, else what the dataset's configuration and the joint's IC show; rows begin
+    /// where the assembled configuration is.
+    pub(super) fn initial_motion(
+        &self,
+        scene: &Scene,
+        m: usize,
+        state: Option<usize>,
+        _q: &[f64],
+        x: &mut [f64],
+    ) {
+        let Some(state) = state else { return };
+        let motion = &scene.motions[m];
+        let Some(data) = self.model.motions.get(&motion.id) else {
+            return;
+        };
+        let begins_there = scene.initial_displacement(m);
+        x[state] = data.ic_displacement.or(begins_there).unwrap_or(0.0);
+        if motion.level == crate::model::Level::Acceleration {
+            let rate = scene.motions[m].coordinate.and_then(|c| {
+                let coordinate = &scene.coordinates[c];
+                let joint = self.model.joints.get(&coordinate.joint?)?;
+                if coordinate.angular {
+                    joint.ic_rotation[1]
+                } else {
+                    joint.ic_translation[1]
+                }
+            });
+            x[state + 1] = data.ic_velocity.or(rate).unwrap_or(0.0);
+        }
+    }
+
+    pub(super) fn keep(&mut self, system: &System, numbers: Vec<f64>) {
+        let at = Equations::new(&system.scene, &numbers);
+        let parts = system.scene.parts.iter().enumerate();
+        let parts = parts
+            .map(|(k, p)| (p.point_mass, p.id, at.part(k, false)))
+            .collect();
+        self.carried = Some(Carried {
+            t: numbers[0],
+            turns: numbers[system.scene.layout.turns()].to_vec(),
+            supplied: numbers[system.scene.layout.supplied()].to_vec(),
+            past: system.outside.past(),
+            names: unknown_names(&system.scene),
+            at_rest: false,
+            parts,
+            numbers,
+        });
+    }
+}
+
+/// Whether a scene has positions or velocities among its unknowns that the last state does not tell by name.
+pub(super) fn has_new_unknowns(scene: &Scene, carried: &Carried) -> bool {
+    let known: BTreeSet<&str> = carried.names.iter().map(String::as_str).collect();
+    let l = scene.layout;
+    let names = unknown_names(scene);
+    names[..l.n_q + l.n_v]
+        .iter()
+        .any(|name| !known.contains(name.as_str()))
+}
+
+/// The model with its parts where they are, and moving as they do.
+pub(super) fn moved(model: &Model, carried: &Carried) -> Model {
+    let mut model = model.clone();
+    for joint in model.joints.values_mut() {
+        (joint.ic_translation, joint.ic_rotation) = ([None; 2], [None; 2]);
+    }
+    let ground = MarkerState::ground();
+    for (point_mass, id, state) in &carried.parts {
+        let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);
+        let parts = if *point_mass {
+            &mut model.point_masses
+        } else {
+            &mut model.parts
+        };
+        let Some(part) = parts.get_mut(id) else {
+            continue;
+        };
+        part.qg = state.p_GM.0;
+        part.orientation =
+            Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle));
+        let cm = part.cm.and_then(|cm| model.markers.get(&cm));
+        let cm_place = cm.map_or(Vec3::zero(), |cm| Vec3(cm.qp));
+        let cm_axes = cm.and_then(|cm| orientation(&cm.orientation, cm.qp).ok());
+        // The dataset tells the velocity of CM along ground axes, the angular velocity along those of CM.
+        let v_cm = state.v_GM + state.w_GM.cross(state.R_GM.apply(cm_place));
+        let w_part = state.R_GM.apply_transposed(state.w_GM);
+        let w_cm = cm_axes.map_or(w_part, |axes| axes.apply_transposed(w_part));
+        (part.vm, part.wm) = (None, None);
+        (part.velocity, part.angular_velocity) = (v_cm.0.map(Some), w_cm.0.map(Some));
+    }
+    model
+}
