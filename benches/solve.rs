@@ -10,11 +10,15 @@ use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::script::obey;
 use cognate::analysis::session::{Options, Session};
 use cognate::dataset::command::Script;
-use cognate::model::{Formula, Model, RequestKind};
+use cognate::model::Model;
 use cognate::numeric::{self, Dop853, Failure, Method, Ode};
 use cognate::scalar::{Jet, Scalar};
+use requests::expressions;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+#[path = "../tests/common/requests.rs"]
+mod requests;
 
 /// A mechanism written by hand.
 trait Hand {
@@ -375,21 +379,6 @@ fn by_hand(hand: &dyn Hand, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>) {
         .map(|k| rows.iter().map(|r| r[k]).collect())
         .collect();
     (seconds, columns)
-}
-
-/// The expressions of the requests of a model.
-fn expressions(model: &Model) -> Vec<String> {
-    let mut all = Vec::new();
-    for request in model.requests.values() {
-        if let RequestKind::Functions(functions) = &request.kind {
-            for f in functions.iter().flatten() {
-                if let Formula::Expression { text, .. } = f {
-                    all.push(text.clone());
-                }
-            }
-        }
-    }
-    all
 }
 
 /// A run of the dataset.

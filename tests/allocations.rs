@@ -3,33 +3,13 @@
 
 mod problems;
 
-use std::alloc::{GlobalAlloc, Layout, System as Heap};
-use std::cell::Cell;
+#[path = "common/counting.rs"]
+mod counting;
 
 use cognate::numeric::event::Locator;
 use cognate::numeric::{Form, METHODS, Method, Options, dae_method, ode_method};
+use counting::allocations_so_far;
 use problems::*;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-/// The system's allocator, counting per thread.
-struct Counting;
-
-// SAFETY: hands everything on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { Heap.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { Heap.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
 
 /// Allocations of a run with events after its first steps.
 fn allocations<P>(method: &mut dyn Method<P>, problem: &mut P, y: &[f64], settle: usize) -> usize {
@@ -40,7 +20,7 @@ fn allocations<P>(method: &mut dyn Method<P>, problem: &mut P, y: &[f64], settle
     for _ in 0..settle {
         method.step(problem, 10.0).unwrap();
     }
-    let before = COUNT.with(Cell::get);
+    let before = allocations_so_far();
     let (mut events, mut undone) = (0, false);
     while method.t() < 10.0 {
         let step = method.step(problem, 10.0).unwrap();
@@ -63,7 +43,7 @@ fn allocations<P>(method: &mut dyn Method<P>, problem: &mut P, y: &[f64], settle
             .unwrap();
     }
     assert!(events >= 5, "{events} events");
-    COUNT.with(Cell::get) - before
+    allocations_so_far() - before
 }
 
 #[test]

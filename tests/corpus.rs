@@ -3,6 +3,8 @@
 
 #[path = "corpus/chrono.rs"]
 mod chrono;
+#[path = "common/meaning.rs"]
+mod meaning;
 #[path = "corpus/runs.rs"]
 mod runs;
 
@@ -11,6 +13,7 @@ use cognate::dataset::command::{Command, Script, Step};
 use cognate::dataset::syntax::{Item, TokenKind};
 use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::model::Model;
+use meaning::{difference, meaning};
 use std::path::{Path, PathBuf};
 
 /// All files of the corpus with this ending, in order of their names; `None` (and a line) without a corpus.
@@ -180,40 +183,6 @@ fn message_logs_replay_as_commands() {
                 .unwrap_or_else(|e| panic!("{log}:{}: {e}", step.line));
         }
     }
-}
-
-/// What a model says, without the places it was read from and without blanks in expressions.
-fn meaning(model: &Model) -> String {
-    let mut out = String::new();
-    let mut inside_breaks = false;
-    for line in format!("{model:#?}").lines().map(str::trim) {
-        match line {
-            "breaks: [" => inside_breaks = true,
-            "]," if inside_breaks => inside_breaks = false,
-            _ if inside_breaks => {}
-            _ if line.starts_with("line: ")
-                || line.starts_with("column: ")
-                || line == "breaks: []," => {}
-            _ if line.starts_with("text: ") => {
-                out.extend(line.chars().filter(|c| *c != ' ').chain(['\n']))
-            }
-            _ => out.extend(line.chars().chain(['\n'])),
-        }
-    }
-    out
-}
-
-/// The first line in which two texts differ.
-fn difference(a: &str, b: &str) -> String {
-    let differ = a
-        .lines()
-        .zip(b.lines())
-        .enumerate()
-        .find(|(_, (a, b))| a != b);
-    differ.map_or_else(
-        || format!("{} and {} lines", a.lines().count(), b.lines().count()),
-        |(k, (a, b))| format!("line {}: {a:?} and {b:?}", k + 1),
-    )
 }
 
 fn same(a: &str, b: &str, what: &str, path: &Path) {

@@ -1,5 +1,7 @@
 //! The engines agree: walker, machine, batch, duals, jets, germs and the adjoint compute one thing from random expressions.
 
+#[path = "common/counting.rs"]
+mod counting;
 #[path = "common/expressions.rs"]
 #[allow(dead_code)]
 mod expressions;
@@ -9,33 +11,12 @@ use cognate::expr::compile::compile;
 use cognate::expr::program::{Input, Program, Work};
 use cognate::expr::walk::{self, Host};
 use cognate::scalar::{Dual, Germ, Jet, Scalar};
+use counting::allocations_so_far;
 use expressions::{Anything, Contents, bindings, tree};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-/// The system's allocator, counting per thread.
-struct Counting;
-
-// SAFETY: hands everything on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
 
 const DIALECTS: [Dialect; 2] = [Dialect::Function, Dialect::Expression];
 
@@ -374,8 +355,8 @@ fn evaluating_allocates_nothing() {
             batch.run(&columns, &mut [&mut column]);
         };
         round();
-        let before = COUNT.with(Cell::get);
+        let before = allocations_so_far();
         round();
-        assert_eq!(COUNT.with(Cell::get) - before, 0, "{ast}");
+        assert_eq!(allocations_so_far() - before, 0, "{ast}");
     }
 }

@@ -8,24 +8,13 @@ use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::script::obey;
 use cognate::analysis::session::{Options, Session};
 use cognate::dataset::command::Script;
-use cognate::model::{Formula, Model, RequestKind};
+use cognate::model::Model;
 use cognate::results::Status;
+use requests::expressions;
 use std::path::Path;
 
-/// The expressions of the requests of a model.
-fn expressions(model: &Model) -> Vec<String> {
-    let mut all = Vec::new();
-    for request in model.requests.values() {
-        if let RequestKind::Functions(functions) = &request.kind {
-            for f in functions.iter().flatten() {
-                if let Formula::Expression { text, .. } = f {
-                    all.push(text.clone());
-                }
-            }
-        }
-    }
-    all
-}
+#[path = "common/requests.rs"]
+mod requests;
 
 /// Columns of a CSV with a header line.
 fn columns(path: &Path) -> Vec<Vec<f64>> {

@@ -75,6 +75,17 @@ fn unit_of(text: &str, units: &Units) -> String {
     }
 }
 
+/// An element whose components are columns of its own name.
+fn shown(run: &mut Run, kind: &str, entity: String, id: u32, components: Vec<Component>) {
+    run.entities.push(Entity {
+        name: entity.clone(),
+        entity,
+        kind: kind.into(),
+        id: u64::from(id),
+        components,
+    });
+}
+
 impl Columns {
     /// Declares all columns of a run: those of the parts, joints and forces when `full`, requests, and `user` expressions.
     /// `computed` tells whether there is a closure for a REQUEST of this number with this USER.
@@ -217,14 +228,7 @@ impl Columns {
                 components.push(Component { name, column });
             }
             if !components.is_empty() {
-                let kind = "Joint_Variables".to_string();
-                run.entities.push(Entity {
-                    name: entity.clone(),
-                    entity,
-                    kind,
-                    id: u64::from(id),
-                    components,
-                });
+                shown(run, "Joint_Variables", entity, id, components);
             }
         }
         for (keyword, id, entity, kind) in all {
@@ -246,13 +250,7 @@ impl Columns {
                     column,
                 });
             }
-            run.entities.push(Entity {
-                name: entity.clone(),
-                entity,
-                kind: kind.into(),
-                id: u64::from(id),
-                components,
-            });
+            shown(run, kind, entity, id, components);
         }
         for (&id, variable) in &model.variables {
             let entity = name_of(&variable.place, "VARIABLE", id);
@@ -261,14 +259,7 @@ impl Columns {
                 name: "Q".into(),
                 column,
             }];
-            let kind = "ADAMS_Variable".to_string();
-            run.entities.push(Entity {
-                name: entity.clone(),
-                entity,
-                kind,
-                id: u64::from(id),
-                components,
-            });
+            shown(run, "ADAMS_Variable", entity, id, components);
         }
     }
 
@@ -360,7 +351,7 @@ impl Columns {
                 RequestKind::User(_) => Vec::new(),
             };
             let by_closure = matches!(request.kind, RequestKind::User(_));
-            let mut shown = Vec::new();
+            let mut columns = Vec::new();
             for (k, name, text) in components {
                 let given = request.cnames.get(k - 1);
                 if given.is_some_and(String::is_empty) {
@@ -375,17 +366,10 @@ impl Columns {
                     self.text(run, title, &text, &units)
                 };
                 table.push(column);
-                shown.push(Component { name, column });
+                columns.push(Component { name, column });
             }
-            if !shown.is_empty() {
-                let kind = "Request".to_string();
-                run.entities.push(Entity {
-                    name: entity.clone(),
-                    entity,
-                    kind,
-                    id: u64::from(id),
-                    components: shown,
-                });
+            if !columns.is_empty() {
+                shown(run, "Request", entity, id, columns);
             }
         }
     }
