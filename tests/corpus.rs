@@ -289,6 +289,12 @@ const FREEDOMS: &[(&str, i64, usize, &str)] = &[
         "one redundant row, as the log of Adams says",
     ),
     (
+        "real_analysis_with_spikes/FRS5_doe_8_LAUL_analysis.adm",
+        538,
+        538,
+        "a gear selector: 11 INPLANE, 18 points on curves and 4 couplers hold 140 parts that contacts and bushings keep in place; none is redundant",
+    ),
+    (
         "T_MSC_ADAMS/RD3.adm",
         3,
         9,
