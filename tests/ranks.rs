@@ -223,3 +223,52 @@ fn an_unequal_four_bar_is_driven_through_its_dead_point() {
         }
     }
 }
+
+/// A problem of the references as its command file runs it.
+fn reference(problem: &str) -> Session {
+    use cognate::analysis::script::obey;
+    use cognate::dataset::command::Script;
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
+    let script = Script::read(folder.join(format!("{problem}.acf"))).unwrap();
+    let options = Options {
+        error: Some(1e-8),
+        ..Options::default()
+    };
+    let model = Model::read(script.model_file().unwrap()).unwrap();
+    let mut session = Session::new(model, problem, options);
+    let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+    assert_eq!(
+        status,
+        Status::Completed,
+        "{}",
+        session.run.record.stop_reason
+    );
+    session
+}
+
+/// Its six hinges are dependent wherever it stands: one row is left out for good, and its rank never changes.
+#[test]
+fn bricards_linkage_has_the_same_rank_all_along() {
+    let s = reference("a04_bricard");
+    let record = &s.run.record;
+    assert!(record.rank_changes.is_empty(), "{:?}", record.rank_changes);
+    assert_eq!(record.redundant.len(), 1, "{:?}", record.redundant);
+    assert!(record.energy_drift.unwrap() < 1e-6);
+}
+
+/// Two four-bars side by side fold whenever their cranks are level: each passage is told with its time and its place, and energy stays.
+#[test]
+fn linked_four_bars_tell_each_folded_position() {
+    let s = reference("a02_nfourbar_2");
+    let changes = &s.run.record.rank_changes;
+    assert!(changes.len() >= 10, "{changes:?}");
+    for (k, c) in changes.iter().enumerate() {
+        assert_eq!(c.what, "passes");
+        assert!(c.rows.iter().all(|r| r.starts_with("JOINT/")), "{c:?}");
+        let crank = c.place.iter().find(|p| p.0 == "JOINT/1 angle");
+        // level after each odd number of quarter turns, none left out; found where the rank falls
+        let quarters = crank.expect("the crank").1 / (0.5 * PI);
+        assert!((quarters + 2.0 * k as f64 + 1.0).abs() < 1e-4, "{k}: {c:?}");
+    }
+    assert!(s.run.record.energy_drift.unwrap() < 1e-6);
+}

@@ -236,7 +236,16 @@ pub fn passes(scene: &Scene, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
             }
             // a smooth minimum, well above what a fall to zero beside it would show
             let fall = (sizes[before] - sizes[k]).max(sizes[after] - sizes[k]);
-            if sizes[k] > 1.25 * fall {
+            // straight on from outside, the two sides would meet at zero between these states
+            let slope = |a: usize, b: usize| {
+                let h = run[b][0] - run[a][0];
+                ((sizes[b] - sizes[a]) / h.max(f64::MIN_POSITIVE)).abs()
+            };
+            let steep = |a: usize, b: usize| {
+                let outer = slope(a.saturating_sub(1), a).max(slope(b, (b + 1).min(run.len() - 1)));
+                sizes[a] + sizes[b] <= 1.5 * outer * (run[b][0] - run[a][0])
+            };
+            if sizes[k] > 1.25 * fall && !steep(before, k) && !steep(k, after) {
                 continue;
             }
             let sides = [(before, k), (k, after)];
