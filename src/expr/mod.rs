@@ -32,6 +32,7 @@ mod check;
 pub mod compile;
 mod expression;
 pub mod functions;
+mod grammar;
 pub mod interpolation;
 mod lint;
 pub mod measures;
