@@ -1,6 +1,6 @@
 //! One ordered pass over a text: finds its first mistake, or what each of its names and numbers means.
 //!
-//! The grammar says what the language is and makes the tree; but a grammar that fails knows neither kind nor cause. So the
+//! The grammar says what the language is; but a grammar that fails knows neither kind nor cause. So the
 //! tokens are first led through an automaton with a stack of open calls and groups, from left to right, without recursion.
 //! It reports the first mistake it meets, by the rules of the language reference: names when they are read, the syntax of a
 //! whole argument list before the number of its arguments, that before what its identifiers must be. A text that passes is

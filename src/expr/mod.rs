@@ -18,7 +18,7 @@
 //! | names | `functions/` `measures.rs` `interpolation.rs` | the tables; `signature.rs` says what arguments are, `symbols.rs` what a name means |
 //! | text | `token.rs` `check.rs` | words; one ordered pass that finds the first mistake, exactly placed |
 //! | | `advice.rs` `lint.rs` | what is said about mistakes, and about what is legal but hardly meant |
-//! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | the grammars, the tree, and back to source |
+//! | tree | `parse.rs` `ast.rs` `print.rs` | the tree, and back to source; `grammar.rs`: the same by `grammar/*.pest`, as a check |
 //! | value | `walk.rs` | the reference: lazily correct, names what has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
 //! | | `smoothness.rs` | where it is not smooth, and which derivative jumps there |
