@@ -257,7 +257,15 @@ fn splines_are_curves_and_families_with_their_extrapolation() {
     let (code, err) = fails(&["AKISPL(1,0.5,3,1)", "--splines", path(&file)]);
     assert!(code == 3 && err.contains("family"), "{err}");
     let (code, err) = fails(&["AKISPL(1,0,9)", "--splines", path(&file)]);
-    assert!(code == 3 && err.contains("error[unknown_element]"), "{err}");
+    assert!(
+        code == 3 && err.contains("error[unknown_element]") && err.contains("there are: 1, 2, 3"),
+        "{err}"
+    );
+    let (_, err) = fails(&["AKISPL(1,0,9)"]);
+    assert!(
+        err.contains("no spline is given") && err.contains("--splines FILE"),
+        "{err}"
+    );
 }
 
 // -------------------------------------------------------------------------------------------------------- plots and JSON

@@ -43,7 +43,14 @@ impl Formula {
     /// The first mistake in it, with its place.
     pub fn new(text: &str, setting: &Setting) -> Result<Self, Diagnostic> {
         let expr = Expr::parse_profile(text, setting.dialect, setting.profile)?;
-        let program = expr.compile(&setting.data.bindings)?;
+        let program = expr
+            .compile(&setting.data.bindings)
+            .map_err(|d| match d.code {
+                "unknown_element" if !d.message.contains("curve") => {
+                    d.help("data come from `--splines FILE`; in the REPL from `:splines FILE`")
+                }
+                _ => d,
+            })?;
         Ok(Self {
             expr,
             program,
