@@ -629,3 +629,79 @@ fn a_motion_that_jumps_is_refused_and_runs_piecewise_on_demand() {
         .unwrap();
     assert!((last - 0.7).abs() < 1e-9, "{last}");
 }
+
+/// Wrong models, one mistake each: what `verify`, `explain` and `run` say names the element, how much, and what to do.
+#[test]
+fn wrong_models_are_told_alike_by_verify_explain_and_run() {
+    let head = "WRONG\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1\n\
+                PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\n";
+    let line = "MATRIX/1, FULL=RORDER, ROWS=4, COLUMNS=3, VALUES=-1,0,0,-0.5,0,0,0.5,0,0,1,0,0\nCURVE/1, OPEN, MATRIX=1, CURVE_POINTS\n";
+    let gear = "PART/3, MASS=1, CM=30, IP=1,1,1, QG=3,0,0\nMARKER/30, PART=3\nMARKER/13, PART=1, QP=3,0,0\nMARKER/9, PART=1, QP=1,0,0\n\
+                JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=13\nGEAR/1, JOINTS=1,2, CV=9\n";
+    let planes = format!(
+        "MARKER/21, PART=2, REULER=0,10D,0\nJOINT/1, PLANAR, I=20, J=1\nCVCV/1, ICURVE=1, IRM=21, JCURVE=1, JRM=1\n{line}"
+    );
+    let beside = format!(
+        "JPRIM/1, ORIENTATION, I=20, J=1\nMARKER/21, PART=2, QP=4,0,0\nJPRIM/2, ATPOINT, I=20, J=1\nPTCV/1, CURVE=1, I=21, RM=1\n{line}"
+    );
+    for (name, text, words) in [
+        (
+            "gear",
+            gear,
+            ["GEAR/1", "z of CV is parallel", "common tangent"],
+        ),
+        (
+            "planes",
+            planes.as_str(),
+            [
+                "CVCV/1",
+                "inclined to each other by 10",
+                "MARKER/21 and MARKER/1",
+            ],
+        ),
+        (
+            "beside",
+            beside.as_str(),
+            [
+                "PTCV/1",
+                "leaves the open CURVE/1 at its last point (1.0",
+                "by more than 3.0",
+            ],
+        ),
+    ] {
+        let adm = scratch(
+            "wrong_models",
+            &format!("{name}.adm"),
+            &format!("{head}{text}END\n"),
+        );
+        let out = adm.with_file_name("out");
+        for command in [
+            vec!["verify", path(&adm)],
+            vec!["explain", path(&adm)],
+            vec!["run", path(&adm), "--end", "1", "--out", path(&out)],
+        ] {
+            let done = cognate(&command);
+            assert_eq!(done.code, 4, "{command:?}: {}", done.err);
+            for w in words {
+                assert!(done.err.contains(w), "{command:?}, {w}: {}", done.err);
+            }
+        }
+    }
+    // a part that stands the wrong way round is no mistake, but told
+    let flipped = format!(
+        "{}JOINT/1, REVOLUTE, I=20, J=1\nEND\n",
+        head.replace("IP=1,1,1", "IP=1,1,1, REULER=0,180D,0")
+    );
+    let adm = scratch("wrong_models", "flipped.adm", &flipped);
+    for command in ["verify", "explain"] {
+        let done = cognate(&[command, path(&adm)]);
+        assert!(
+            done.code == 0
+                && done
+                    .out
+                    .contains("PART/2 is assembled on another branch: turned by 180 deg"),
+            "{command}: {}",
+            done.out
+        );
+    }
+}

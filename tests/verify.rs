@@ -402,19 +402,54 @@ fn what_does_not_fit_says_how_much_where_and_what_to_do() {
     );
 }
 
-/// A curve that a routine computes: its contact is counted, and left out of the rank.
+/// What a routine computes, or what stands in another file: such constraints are counted, and left out of the rank.
 #[test]
-fn contacts_of_unknown_curves_are_counted_and_told() {
-    let text = "USER\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/1, PART=1\n\
-        JPRIM/1, ORIENTATION, I=20, J=1\nPTCV/1, CURVE=1, I=20, RM=1\nCURVE/1, OPEN, FUNCTION=USER(1)\nEND\n";
-    let v = verified(text);
-    assert_eq!((v.gruebler, v.freedom), (1, Some(3)));
-    let told = v.warnings.iter().find(|w| w.starts_with("PTCV/1"));
-    assert!(
-        told.is_some_and(
-            |w| w.contains("CURVE/1 is computed by a routine") && w.contains("2 equations")
+fn constraints_that_nobody_knows_are_counted_and_told() {
+    let contact = |curve: &str| format!("PTCV/1, CURVE=1, I=20, RM=1\nCURVE/1, OPEN, {curve}\n");
+    let hinge = "JOINT/1, REVOLUTE, I=20, J=1\n";
+    for (text, gruebler, freedom, element, why) in [
+        (
+            contact("FUNCTION=USER(1)"),
+            4,
+            6,
+            "PTCV/1",
+            "CURVE/1 is computed by a routine",
         ),
-        "{:?}",
-        v.warnings
-    );
+        (
+            contact("MATRIX=1, CURVE_POINTS\nMATRIX/1, FILE=points.mtx"),
+            4,
+            6,
+            "PTCV/1",
+            "stand in the file points.mtx",
+        ),
+        (
+            "GCON/1, I=20, FUNCTION=USER(1)\n".to_string(),
+            5,
+            6,
+            "GCON/1",
+            "by a routine",
+        ),
+        (
+            format!(
+                "{hinge}PART/3, MASS=1, CM=30, IP=1,1,1\nMARKER/30, PART=3\nJOINT/2, REVOLUTE, I=30, J=1\n\
+                 COUPLER/1, JOINTS=1,2, TYPE=R:R, FUNCTION=USER(1)\n"
+            ),
+            1,
+            2,
+            "COUPLER/1",
+            "by a routine",
+        ),
+    ] {
+        let text = format!(
+            "USER\nPART/1, GROUND\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/1, PART=1\n{text}END\n"
+        );
+        let v = verified(&text);
+        assert_eq!((v.gruebler, v.freedom), (gruebler, Some(freedom)), "{text}");
+        let told = v.warnings.iter().find(|w| w.starts_with(element));
+        assert!(
+            told.is_some_and(|w| w.contains(why) && w.contains("is counted with")),
+            "{:?}",
+            v.warnings
+        );
+    }
 }

@@ -450,19 +450,7 @@ pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Brok
                 advice,
             });
         }
-        let apart = cam.contact.missing(&i, &j, s);
-        if apart.is_nan() || apart > 1e-6 {
-            let what = match cam.contact {
-                Contact::Point(_) => "no point of the curve is next to I",
-                Contact::Curves(..) => "the two curves have no common tangent near",
-            };
-            return Some(Broken {
-                element,
-                code: "no_common_tangent",
-                sentence: what.into(),
-                advice: "bring the parts to where they touch, or say where with DISP, IDISP and JDISP".into(),
-            });
-        }
+        // what is inclined need not have a common tangent: that is said first
         let tilt = i.rotation.column(2).cross(j.rotation.column(2)).norm();
         if matches!(cam.contact, Contact::Curves(..)) && tilt > COPLANAR {
             return Some(Broken {
@@ -475,6 +463,19 @@ pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Brok
                     scene.markers[cam.j].id
                 ),
                 advice: "turn one of these markers, and let joints hold their x-y planes together".into(),
+            });
+        }
+        let apart = cam.contact.missing(&i, &j, s);
+        if apart.is_nan() || apart > 1e-6 {
+            let what = match cam.contact {
+                Contact::Point(_) => "no point of the curve is next to I",
+                Contact::Curves(..) => "the two curves have no common tangent near",
+            };
+            return Some(Broken {
+                element,
+                code: "no_common_tangent",
+                sentence: what.into(),
+                advice: "bring the parts to where they touch, or say where with DISP, IDISP and JDISP".into(),
             });
         }
         None

@@ -165,24 +165,43 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
     }
 }
 
-/// Contacts of curves that routines compute are counted, but cannot be among the rows: nobody knows where they are.
-fn leave_out_unknown_curves(model: &mut Model, warnings: &mut Vec<String>) {
-    let unknown = |id: &u32| model.curves.get(id).is_some_and(|c| c.function.is_some());
-    let points = (model.points_on_curves.iter()).map(|(id, p)| ("PTCV", *id, vec![p.curve]));
-    let pairs =
-        (model.curves_on_curves.iter()).map(|(id, c)| ("CVCV", *id, vec![c.i.curve, c.j.curve]));
-    let found: Vec<(&str, u32, Vec<u32>)> = points
-        .chain(pairs)
-        .filter(|(keyword, id, _)| !model.inactive.contains(&((*keyword).to_string(), *id)))
-        .map(|(keyword, id, curves)| (keyword, id, curves.into_iter().filter(unknown).collect()))
-        .filter(|(_, _, curves): &(_, _, Vec<u32>)| !curves.is_empty())
-        .collect();
-    for (keyword, id, curves) in found {
-        let curves: Vec<String> = curves.iter().map(|c| format!("CURVE/{c}")).collect();
+/// Constraints that a routine computes, or whose curve does not stand in the dataset, are counted, but cannot be among the rows: nobody knows
+/// what they hold.
+fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<String>) {
+    let unknown = |id: u32| {
+        let curve = model.curves.get(&id)?;
+        if curve.function.is_some() {
+            return Some(format!("CURVE/{id} is computed by a routine"));
+        }
+        let matrix = curve.matrix.and_then(|m| model.matrices.get(&m));
+        let file = matrix.and_then(|m| m.file.as_ref())?;
+        Some(format!("the points of CURVE/{id} stand in the file {file}"))
+    };
+    let mut found: Vec<(&str, u32, usize, String)> = Vec::new();
+    for (&id, p) in &model.points_on_curves {
+        found.extend(unknown(p.curve).map(|why| ("PTCV", id, 2, why)));
+    }
+    for (&id, c) in &model.curves_on_curves {
+        let why = unknown(c.i.curve).or_else(|| unknown(c.j.curve));
+        found.extend(why.map(|why| ("CVCV", id, 2, why)));
+    }
+    let routine = || "its function is computed by a routine".to_string();
+    for (&id, g) in &model.general_constraints {
+        if matches!(g.function, Formula::User { .. }) {
+            found.push(("GCON", id, 1, routine()));
+        }
+    }
+    for (&id, c) in &model.couplers {
+        if c.user.is_some() {
+            found.push(("COUPLER", id, 1, routine()));
+        }
+    }
+    found.retain(|(keyword, id, ..)| !model.inactive.contains(&((*keyword).to_string(), *id)));
+    for (keyword, id, n, why) in found {
+        let plural = if n == 1 { "" } else { "s" };
         warnings.push(format!(
-            "{keyword}/{id} is counted with its 2 equations, but where they act is unknown: {} is computed by a routine; \
-             the freedom from the rank is that without it, and up to 2 too large",
-            curves.join(", ")
+            "{keyword}/{id} is counted with {n} equation{plural}, but what it holds is unknown: {why}; \
+             the freedom from the rank is that without it, and up to {n} too large"
         ));
         model.inactive.insert((keyword.into(), id));
     }
@@ -234,7 +253,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         ..Options::default()
     };
     let counted = counted(&model);
-    leave_out_unknown_curves(&mut model, &mut warnings);
+    leave_out_unknown(&mut model, &mut warnings);
     let mut scene = Scene::compile(&model, &options)?;
     for d in &scene.warnings {
         let element = d.element.clone().unwrap_or_default();
