@@ -460,3 +460,176 @@ fn a_motion_may_follow_a_differential_equation_of_time() {
         assert!((values(&s, "ACCZ(2,3,3)")[row] + 2.0 * t.sin()).abs() < 1e-8);
     }
 }
+
+/// A free unit mass with MARKER/2, and MARKER/5 on ground that follows it as a floating marker.
+const FREE: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2, IP=1,2,3, QG=1,0,0, VX=0.5, WY=0.3\nMARKER/2, PART=2\n\
+                    MARKER/5, PART=1, FLOATING\nMARKER/7, PART=1, FLOATING\nMARKER/6, PART=1, REULER=90D,90D,0\n";
+
+fn free(text: &str, columns: &[&str], method: &str) -> Session {
+    let model = Model::from_text(&format!("{FREE}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
+    let options = Options {
+        columns: columns.iter().map(ToString::to_string).collect(),
+        method: Some(method.to_string()),
+        error: Some(1e-10),
+        ..Options::default()
+    };
+    Session::new(model, "test", options)
+}
+
+#[test]
+fn closures_give_all_components_of_vector_forces() {
+    let columns = [
+        "DX(2,1)", "DY(2,1)", "DZ(2,1)", "WX(2,1)", "WY(2,1)", "WZ(2,1)",
+    ];
+    let laws = [
+        ["-3*DX(2,1)-0.1*VX(2,1)", "COS(TIME)", "0.2*DX(2,1)"],
+        ["-0.5*WX(2,1)", "-0.5*WY(2,1)+0.1*SIN(TIME)", "0.3"],
+    ];
+    let forces = |kind: &str, names: [&str; 3], law: &[&str; 3]| {
+        let parts = names.iter().zip(law).map(|(n, f)| format!(", {n}={f}"));
+        let parts = parts.collect::<Vec<_>>().join("\\");
+        format!("{kind}, I=2, JFLOAT=5, RM=6{parts}\n")
+    };
+    let (f, t) = (["FX", "FY", "FZ"], ["TX", "TY", "TZ"]);
+    let plain = forces("VFORCE/1", f, &laws[0])
+        + &forces("VTORQUE/1", t, &laws[1]).replace("JFLOAT=5", "JFLOAT=7");
+    let reads = ["DX(2,1)", "VX(2,1)", "WX(2,1)", "WY(2,1)"];
+    let force = |call: &cognate::analysis::outside::Call<'_>| {
+        let [x, v, ..] = *call.values else {
+            return [f64::NAN; 3];
+        };
+        [-3.0 * x - 0.1 * v, call.time.cos(), 0.2 * x]
+    };
+    let torque = |call: &cognate::analysis::outside::Call<'_>| {
+        let [_, _, wx, wy] = *call.values else {
+            return [f64::NAN; 3];
+        };
+        [-0.5 * wx, -0.5 * wy + 0.1 * call.time.sin(), 0.3]
+    };
+    for method in ["DOP853", "RADAU5"] {
+        let mut reference = free(&plain, &columns, method);
+        go(&mut reference, 2.0, 4);
+        let mut apart = free(
+            "VFORCE/1, I=2, JFLOAT=5, RM=6, FUNCTION=USER(1)\nVTORQUE/1, I=2, JFLOAT=7, RM=6, FUNCTION=USER(2)\n",
+            &columns,
+            method,
+        );
+        apart.register("VFORCE/1", &reads, move |call, out| {
+            out.copy_from_slice(&force(call))
+        });
+        apart.register("2", &reads, move |call, out| {
+            out.copy_from_slice(&torque(call))
+        });
+        let mut together = free(
+            "GFORCE/1, I=2, JFLOAT=5, RM=6, FUNCTION=USER(9,8)\n",
+            &columns,
+            method,
+        );
+        together.register("9", &reads, move |call, out| {
+            assert_eq!(
+                (call.element, call.constants),
+                ("GFORCE/1", &[9.0, 8.0][..])
+            );
+            out[..3].copy_from_slice(&force(call));
+            out[3..].copy_from_slice(&torque(call));
+        });
+        for s in [&mut apart, &mut together] {
+            go(s, 2.0, 4);
+            for c in columns {
+                for (a, b) in values(s, c).iter().zip(values(&reference, c)) {
+                    // both within the request of 1e-10, grown over two seconds
+                    assert!((a - b).abs() < 1e-8, "{method} {c}: {a} {b}");
+                }
+            }
+        }
+        assert!(
+            columns
+                .iter()
+                .all(|c| (last(&reference, c) - values(&reference, c)[0]).abs() > 1e-2)
+        );
+    }
+}
+
+#[test]
+fn what_a_closure_exerts_is_reported_and_reacts() {
+    let text = "GFORCE/1, I=2, JFLOAT=5, RM=6, FUNCTION=USER(9)\nREQUEST/1, FORCE, I=2, J=5\n";
+    let columns = ["GFORCE(1,0,2,1)", "GFORCE(1,1,2,1)", "GFORCE(1,0,8,6)"];
+    let mut s = free(text, &columns, "AUTO");
+    s.register("9", &[], |call, out| {
+        // x of MARKER/6 is y of ground
+        out[0] = 1.0 + call.time;
+        out[5] = 2.0;
+    });
+    go(&mut s, 1.0, 2);
+    assert_eq!(last(&s, "GFORCE(1,0,8,6)"), 2.0);
+    assert_eq!(last(&s, "GFORCE(1,0,2,1)"), -last(&s, "GFORCE(1,1,2,1)"));
+}
+
+#[test]
+fn a_closure_that_yields_no_number_is_named() {
+    let mut s = free(
+        "GFORCE/1, I=2, JFLOAT=5, RM=6, FUNCTION=USER(9)\n",
+        &[],
+        "AUTO",
+    );
+    s.register("9", &[], |call, out| {
+        out[0] = if call.time < 0.5 { 1.0 } else { f64::NAN };
+    });
+    let status = s
+        .simulate(Analysis::Dynamic, 1.0, 2, &mut Unwatched)
+        .expect("it begins");
+    assert_ne!(status, Status::Completed);
+    assert!((s.time() - 0.5).abs() < 1e-6, "{}", s.time());
+    assert!(
+        s.run.record.stop_reason.contains("PART/2")
+            || s.run.record.stop_reason.contains("GFORCE/1"),
+        "{}",
+        s.run.record.stop_reason
+    );
+}
+
+#[test]
+fn a_sensor_with_le_waits_for_a_fall() {
+    // from below: x = t²/2 − 1 is less than 1 at once, so it waits; cos t falls to 0.5 at π/3
+    for (function, value, due) in [
+        ("COS(TIME)", "0.5", std::f64::consts::FRAC_PI_3),
+        ("2-DZ(2,3,3)", "0", 2.0),
+    ] {
+        for method in ["DOP853", "RADAU5"] {
+            let text = format!(
+                "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=1\nSENSOR/1, FUNCTION={function}\\, VALUE={value}, LE, RETURN\n"
+            );
+            let mut s = session(&text, &[], method);
+            go(&mut s, 10.0, 3);
+            assert!(
+                (s.time() - due).abs() < 1e-7,
+                "{method} {function}: {}",
+                s.time()
+            );
+        }
+    }
+}
+
+#[test]
+fn a_sensor_shortens_the_next_step_or_begins_anew() {
+    let push = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=-DZ(2,3,3)+1\n";
+    let steps = |method: &str, more: &str| {
+        let mut s = session(&format!("{push}{more}"), &["DZ(2,3,3)"], method);
+        go(&mut s, 1.0, 1);
+        assert!(
+            (last(&s, "DZ(2,3,3)") - (1.0 - 1f64.cos())).abs() < 1e-9,
+            "{more}"
+        );
+        s.run.record.counts.steps
+    };
+    let sensor = "SENSOR/1, FUNCTION=TIME\\, VALUE=0.5, GE";
+    for method in ["DOP853", "RADAU5", "BDF"] {
+        let plain = steps(method, "");
+        let anew = steps(method, &format!("{sensor}, RESTART\n"));
+        let short = steps(method, &format!("{sensor}, STEPSIZE=1E-6\n"));
+        // a step ends at the sensor and one begins there; a short one has to grow again, at most tenfold each time
+        // (implicit methods grow their steps so slowly that beginning anew may even save some)
+        assert!(anew > plain || method != "DOP853", "{plain} {anew}");
+        assert!(short >= anew + 3, "{method}: {anew} {short}");
+    }
+}

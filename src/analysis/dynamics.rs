@@ -394,7 +394,11 @@ impl Leg<'_> {
             {
                 switched = true;
             }
+            let mut stepsize: Option<f64> = None;
             for k in self.system.sense(step.t1, method.y(), switched) {
+                if let Some(h) = self.system.scene.sensors[k].stepsize {
+                    stepsize = Some(stepsize.map_or(h, |other| other.min(h)));
+                }
                 switched |= self.react(k, method, step.t1);
                 if let Some(why) = self.out.ended.take() {
                     return Finished::Ended(why);
@@ -412,6 +416,10 @@ impl Leg<'_> {
                     .and_then(|()| self.begin(method, &mut switches))
                 {
                     return Finished::Ended(Ended::Stop(stop));
+                }
+                // after the method has begun anew, which chooses a step of its own
+                if let Some(h) = stepsize {
+                    method.propose(h);
                 }
             }
             if may_change && method.stiff() && method.t() < self.end {
@@ -448,9 +456,6 @@ impl Leg<'_> {
         if let Some(dt) = sensor.dt {
             self.outputs.truncate(self.out.t.len());
             self.outputs.extend(Output::Every(dt).times(t, self.end));
-        }
-        if let Some(h) = sensor.stepsize {
-            method.propose(h);
         }
         sensor.restart || sensor.stepsize.is_some() || sensor.evaluate.is_some()
     }
