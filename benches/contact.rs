@@ -67,7 +67,9 @@ fn bounce(k: f64) -> f64 {
     let text = ball(2, 1.0, R, [0.0, 0.0, R + H], "")
         + &contact(1, 2, 1, k, damper(0.5, k, 1.0), "")
         + &format!("ACCGRAV/KGRAV=-{G}\n");
-    let s = run(&text, &["VZ(2)", "DZ(2)"], speed / G + 0.02, 1, 1e-8);
+    // until the softest has let go
+    let end = speed / G + 0.02 + 4.0 / k.sqrt();
+    let s = run(&text, &["VZ(2)", "DZ(2)"], end, 1, 1e-8);
     (left_with(last(&s, "VZ(2)"), last(&s, "DZ(2)")) - 0.5 * speed).abs() / speed
 }
 

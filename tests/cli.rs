@@ -705,3 +705,41 @@ fn wrong_models_are_told_alike_by_verify_explain_and_run() {
         );
     }
 }
+
+#[test]
+fn what_a_model_cannot_do_is_shown_at_its_statement() {
+    let text = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n\
+                ARRAY/12, Y\nARRAY/14, X\n\
+                GSE/1, NO=1, ND=1, Y=12, XD=14, SAMPLE_PERIOD=0.1, FUNCTION=USER(9)\n\
+                SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=USER(7)\nEND\n";
+    let file = scratch("places", "refused.adm", text);
+    let out = scratch("places", "out", "");
+    let folder = out.parent().expect("it is a file");
+    for command in [
+        vec![
+            "run",
+            path(&file),
+            "--end",
+            "1",
+            "--quiet",
+            "--out",
+            path(folder),
+        ],
+        vec!["linear", path(&file), "--out", path(folder)],
+    ] {
+        let done = cognate(&command);
+        assert_eq!(done.code, 4, "{command:?}: {}", done.err);
+        for place in [
+            "refused.adm:8:1",
+            "refused.adm:9:1",
+            "8 | GSE/1",
+            "9 | SFORCE/1",
+        ] {
+            assert!(
+                done.err.contains(place),
+                "{command:?} {place}: {}",
+                done.err
+            );
+        }
+    }
+}

@@ -29,8 +29,8 @@ pub fn run(args: &Args) -> Outcome {
     match &args.what {
         None => say(&list()),
         Some(what) if is_model(what) => {
-            let model = model_of(Path::new(what))?;
-            let found = outline(&model).map_err(|d| Failure::in_files(Exit::Model, d))?;
+            let (model, dataset) = model_of(Path::new(what))?;
+            let found = outline(&model).map_err(|d| Failure::in_model(&dataset, d))?;
             if args.json {
                 say(&format!("{:#}\n", as_json(&found)));
             } else {

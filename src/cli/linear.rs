@@ -69,7 +69,8 @@ pub fn run(args: &Args) -> Outcome {
         ..Options::default()
     };
     let mut session = Session::new(reading.model, &base, options);
-    let in_model = |errors| Failure::in_files(Exit::Model, errors);
+    let dataset = reading.dataset;
+    let in_model = |errors| Failure::in_model(&dataset, errors);
     let mut status = obey(&mut session, &steps, |_, _| (), &mut Quiet).map_err(in_model)?;
     if args.settle && status == Status::Completed {
         let now = session.time();

@@ -23,6 +23,7 @@ mod run;
 mod summary;
 mod verify;
 
+use crate::dataset::Dataset;
 use crate::diagnostic::Diagnostic;
 use clap::{Parser, Subcommand};
 use render::Sources;
@@ -129,6 +130,11 @@ impl Failure {
             diagnostics,
             sources,
         }
+    }
+    /// What is wrong with a model, each at the statement of its element.
+    pub fn in_model(dataset: &Dataset, diagnostics: Vec<Diagnostic>) -> Self {
+        let located = diagnostics.into_iter().map(|d| dataset.locate(d));
+        Self::in_files(Exit::Model, located.collect())
     }
     /// The command was understood but contradicts itself.
     pub fn usage(message: impl Into<String>) -> Self {

@@ -114,7 +114,7 @@ pub fn run(args: &Args) -> Outcome {
             warnings.len()
         ));
     }
-    let model = reading.model;
+    let (model, dataset) = (reading.model, reading.dataset);
     let full = model.settings.contains_key("RESULTS");
     let options = Options {
         error: args.error,
@@ -175,7 +175,7 @@ pub fn run(args: &Args) -> Outcome {
         remark(summary::facts(&session.run, &written).trim_end());
     }
     if let Some(diagnostics) = failure {
-        return Err(Failure::in_files(Exit::Model, diagnostics));
+        return Err(Failure::in_model(&dataset, diagnostics));
     }
     if status != Status::Completed && (args.quiet || args.json) {
         remark(&session.run.record.stop_reason);

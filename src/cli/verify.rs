@@ -3,6 +3,7 @@
 use super::run::{has_commands, read, script};
 use super::{Exit, Failure, Outcome, complain, remark, say};
 use crate::analysis::verify::{Verification, verify};
+use crate::dataset::Dataset;
 use crate::dataset::command::Command;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
@@ -27,8 +28,8 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> Outcome {
-    let model = model_of(&args.model)?;
-    let found = verify(&model).map_err(|d| Failure::in_files(Exit::Model, d))?;
+    let (model, dataset) = model_of(&args.model)?;
+    let found = verify(&model).map_err(|d| Failure::in_model(&dataset, d))?;
     if args.json {
         say(&format!("{:#}\n", as_json(&found)));
     } else {
@@ -41,10 +42,11 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Model)
 }
 
-/// The model of a dataset, or of a command file as its commands leave it before the first simulation.
-pub fn model_of(path: &Path) -> Result<Model, Failure> {
+/// The model of a dataset, or of a command file as its commands leave it before the first simulation, and the dataset as written.
+pub fn model_of(path: &Path) -> Result<(Model, Dataset), Failure> {
     if !has_commands(path) {
-        return Ok(read(path)?.model);
+        let reading = read(path)?;
+        return Ok((reading.model, reading.dataset));
     }
     let job = script(path)?;
     let mut model = job.reading.model;
@@ -64,7 +66,7 @@ pub fn model_of(path: &Path) -> Result<Model, Failure> {
     {
         remark("no SIMULATE in the command file: this is the model after all its commands");
     }
-    Ok(model)
+    Ok((model, job.reading.dataset))
 }
 
 fn finding(d: &Diagnostic) -> Value {

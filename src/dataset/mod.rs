@@ -43,6 +43,19 @@ pub struct Dataset {
 }
 
 impl Dataset {
+    /// What is said about an element, with the place of its statement; unchanged where that is not known, or a place has been given.
+    pub fn locate(&self, d: Diagnostic) -> Diagnostic {
+        let named = d.element.as_deref().and_then(|e| e.split(' ').next());
+        let (None, Some(element)) = (&d.file, named) else {
+            return d;
+        };
+        let mut records = self.records.iter().flatten();
+        match records.find(|r| r.element().eq_ignore_ascii_case(element)) {
+            Some(record) => self.source.locate(d, record.head),
+            None => d,
+        }
+    }
+
     /// The statements that could not be understood, or not all of them.
     pub fn mistaken(&self) -> Vec<Span> {
         let all = self.syntax.items.iter().zip(&self.records);
