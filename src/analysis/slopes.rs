@@ -1,9 +1,35 @@
 //! Derivatives of recorded programs along directions, several directions at a time.
 
 use super::unknowns::WIDTH;
-use crate::expr::program::{Program, Work};
+use crate::expr::program::{Builder, Folding, Input, Program, Work};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::DMatrix;
+
+/// Most operations of a recorded gradient, and of a program whose gradient is recorded at all, in products with its outputs.
+const LONGEST: usize = 60_000;
+
+/// The derivatives of the first `n` outputs of a program as a program: output by output, with respect to the numbers at `places`;
+/// `None` where it would take longer than duals.
+pub fn recorded(
+    program: &Program,
+    n: usize,
+    places: impl Iterator<Item = usize>,
+) -> Option<Program> {
+    if n * program.n_operations() > LONGEST * 4 {
+        return None;
+    }
+    let mut builder = Builder::new(Folding::Structural);
+    let outputs = program.record(&mut builder);
+    let places: Vec<_> = places
+        .map(|k| builder.input(Input::Slot(k as u32)))
+        .collect();
+    let mut entries = Vec::with_capacity(n * places.len());
+    for &output in &outputs[..n] {
+        entries.extend(builder.gradient(output, &places));
+    }
+    let gradient = builder.finish_with_inputs(&entries, program.inputs());
+    (gradient.n_operations() <= LONGEST).then_some(gradient)
+}
 
 /// A direction: places in the row of numbers, each with the slope of its number.
 pub type Direction = Vec<(usize, f64)>;

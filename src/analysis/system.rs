@@ -5,7 +5,7 @@
 //! them in position and velocity.
 
 use crate::diagnostic::Diagnostic;
-use crate::expr::program::{Builder, Folding, Input, Program, Work};
+use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
@@ -20,6 +20,7 @@ use super::implicit::Implicit;
 use super::outside::{Hook, Outside};
 use super::passage::Passage;
 use super::sensors::Sensors;
+use super::slopes;
 use super::unknowns::{Unknowns, WIDTH};
 
 /// A scene with its programs, ready to be integrated.
@@ -89,31 +90,16 @@ enum Gradient {
     Duals,
 }
 
-/// Most operations of a recorded gradient, and of a program whose gradient is recorded at all, in products with the unknowns.
-const LONGEST_GRADIENT: usize = 60_000;
-
 impl Gradient {
     /// Of the first `n` outputs of a program, by whichever way takes less.
     fn new(rate: &Program, n: usize) -> Self {
-        if n * rate.n_operations() > LONGEST_GRADIENT * 4 {
-            return Gradient::Duals;
-        }
-        let mut builder = Builder::new(Folding::Structural);
-        let rates = rate.record(&mut builder);
         // unknowns are numbers 1 … n of the row, time is number 0
-        let slots = (1..=n).chain([0]);
-        let places: Vec<_> = slots
-            .map(|k| builder.input(Input::Slot(k as u32)))
-            .collect();
-        let mut entries = Vec::with_capacity(n * (n + 1));
-        for &rate in &rates[..n] {
-            entries.extend(builder.gradient(rate, &places));
+        match slopes::recorded(rate, n, (1..=n).chain([0])) {
+            Some(program) => {
+                Gradient::Recorded(Box::new(program), Work::default(), vec![0.0; n * (n + 1)])
+            }
+            None => Gradient::Duals,
         }
-        let program = builder.finish_with_inputs(&entries, rate.inputs());
-        if program.n_operations() > LONGEST_GRADIENT {
-            return Gradient::Duals;
-        }
-        Gradient::Recorded(Box::new(program), Work::default(), vec![0.0; n * (n + 1)])
     }
 }
 

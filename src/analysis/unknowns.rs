@@ -6,6 +6,7 @@
 //!
 //! The iteration begins where the last one ended, so that z follows its branch as the state moves.
 
+use super::slopes;
 use crate::expr::program::{Program, Work};
 use crate::numeric::dense::Lu;
 use crate::scalar::Dual;
@@ -23,6 +24,8 @@ const ROUNDING: f64 = 1e-14;
 #[derive(Debug)]
 pub(super) struct Unknowns {
     residual: Program,
+    /// ∂ρ/∂z by rows, where it is not too long, and its values
+    gradient: Option<(Program, Work, Vec<f64>)>,
     places: Range<usize>,
     work: Work,
     dual_work: Work<Dual<WIDTH>>,
@@ -45,9 +48,12 @@ impl Unknowns {
     /// Of a scene; `None` when it has no such unknowns.
     pub fn new(scene: &Scene) -> Result<Option<Self>, Vec<String>> {
         let n = scene.layout.n_loops;
+        let places = scene.layout.loops();
         Ok(loops::program(scene)?.map(|residual| Self {
+            gradient: slopes::recorded(&residual, n, places.clone())
+                .map(|program| (program, Work::default(), vec![0.0; n * n])),
             residual,
-            places: scene.layout.loops(),
+            places,
             work: Work::default(),
             dual_work: Work::default(),
             dual_numbers: Vec::new(),
@@ -67,6 +73,15 @@ impl Unknowns {
     /// Factors ∂ρ/∂z.
     fn factor(&mut self, numbers: &[f64]) -> Result<(), usize> {
         let n = self.rho.len();
+        if let Some((program, work, entries)) = &mut self.gradient {
+            program.run(numbers, work, entries);
+            for (i, row) in entries.chunks(n).enumerate() {
+                for (k, &entry) in row.iter().enumerate() {
+                    self.lu.matrix_mut()[i + n * k] = entry;
+                }
+            }
+            return self.lu.factor(1e-14);
+        }
         self.dual_numbers.clear();
         self.dual_numbers.extend(numbers.iter().map(|&x| lift(x)));
         for first in (0..n).step_by(WIDTH) {
