@@ -395,7 +395,7 @@ impl Place<'_> {
     }
 
     fn missing_arguments(&self, inside: Option<(Open, Span)>) -> Said {
-        let word = self.word();
+        let word = self.word().to_ascii_uppercase();
         let form = match inside {
             Some((Open::Call(callee), _)) => callee.signature(),
             _ => "IF(e1: e2, e3, e4)".to_string(),

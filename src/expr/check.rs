@@ -1,6 +1,6 @@
 //! One ordered pass over a text: finds its first mistake, or what each of its names and numbers means.
 //!
-//! The grammar says what the language is; but a grammar that fails knows neither kind nor cause. So the
+//! The grammar says what the language is and makes the tree; but a grammar that fails knows neither kind nor cause. So the
 //! tokens are first led through an automaton with a stack of open calls and groups, from left to right, without recursion.
 //! It reports the first mistake it meets, by the rules of the language reference: names when they are read, the syntax of a
 //! whole argument list before the number of its arguments, that before what its identifiers must be. A text that passes is
@@ -64,26 +64,12 @@ impl Profile {
     }
 }
 
-/// A word or sign of the text with its meaning, and its bytes.
+/// The meaning of a number or a name, in the order of the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Word {
-    pub meaning: Meaning,
-    pub span: Span,
-}
-
-/// What a word or sign means.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Meaning {
-    Number {
-        literal: f64,
-        degrees: bool,
-    },
+pub(crate) enum Atom {
+    Number { literal: f64, degrees: bool },
     Constant(Constant),
     Callee(Callee),
-    /// the arithmetic IF
-    If,
-    /// an operator, a parenthesis or a separator
-    Sign(Kind),
 }
 
 /// An open parenthesis and the argument that is being read inside it.
@@ -112,7 +98,7 @@ struct Check<'a> {
     dialect: Dialect,
     profile: Profile,
     limits: Limits,
-    words: Vec<Word>,
+    atoms: Vec<Atom>,
     frames: Vec<Frame>,
     /// arguments of all open calls, those of inner calls last
     arguments: Vec<Argument>,
@@ -132,13 +118,13 @@ struct Counted {
     line_breaks: usize,
 }
 
-/// All words and signs of a text with their meaning, or its first mistake.
+/// The meaning of all numbers and names of a text, or its first mistake.
 pub(crate) fn check(
     text: &str,
     dialect: Dialect,
     profile: Profile,
     limits: Limits,
-) -> Result<Vec<Word>, Fault> {
+) -> Result<Vec<Atom>, Fault> {
     if let Some(span) = character_after(text, MOST_CHARACTERS) {
         return Err(Fault::new("limit_length", span).about(About::Limit(MOST_CHARACTERS)));
     }
@@ -148,8 +134,7 @@ pub(crate) fn check(
         dialect,
         profile,
         limits,
-        // about every other byte begins a word
-        words: Vec::with_capacity(text.len().min(MOST_CHARACTERS) / 2 + 1),
+        atoms: Vec::new(),
         frames: Vec::new(),
         arguments: Vec::new(),
         depth: 0,
@@ -158,7 +143,7 @@ pub(crate) fn check(
         counted: Counted::default(),
     };
     check.run()?;
-    Ok(check.words)
+    Ok(check.atoms)
 }
 
 /// The place of the character after the first `n`, if there is one.
@@ -181,7 +166,8 @@ impl Check<'_> {
                     self.open(Open::Group, token.span)?;
                     self.next()?
                 }
-                Kind::Number { .. } => {
+                Kind::Number { literal, degrees } => {
+                    self.atoms.push(Atom::Number { literal, degrees });
                     let after = self.next()?;
                     match self.after_operand(after)? {
                         Some(token) => token,
@@ -208,15 +194,9 @@ impl Check<'_> {
         let Some(meaning) = symbol(text, self.dialect, self.profile) else {
             return Err(Fault::new("unknown_name", name.span));
         };
-        if let Some(word) = self.words.last_mut() {
-            word.meaning = match meaning {
-                Symbol::Constant(c) => Meaning::Constant(c),
-                Symbol::If => Meaning::If,
-                Symbol::Callee(callee) => Meaning::Callee(callee),
-            };
-        }
         let open = match meaning {
-            Symbol::Constant(_) => {
+            Symbol::Constant(c) => {
+                self.atoms.push(Atom::Constant(c));
                 let after = self.next()?;
                 return match after.kind {
                     Kind::Open => Err(Fault::new("not_callable", after.span)),
@@ -224,7 +204,10 @@ impl Check<'_> {
                 };
             }
             Symbol::If => Open::If(0),
-            Symbol::Callee(callee) => Open::Call(callee),
+            Symbol::Callee(callee) => {
+                self.atoms.push(Atom::Callee(callee));
+                Open::Call(callee)
+            }
         };
         self.open(open, name.span)?;
         let inside = Some((open, name.span));
@@ -428,16 +411,6 @@ impl Check<'_> {
                     .about(About::Limit(self.limits.symbols)));
             }
         }
-        let meaning = match token.kind {
-            Kind::Number { literal, degrees } => Some(Meaning::Number { literal, degrees }),
-            Kind::End => None,
-            // the meaning of a name is found when it is looked at
-            sign => Some(Meaning::Sign(sign)),
-        };
-        self.words.extend(meaning.map(|meaning| Word {
-            meaning,
-            span: token.span,
-        }));
         // only the argument that is being read counts tokens, and it lies in the innermost call
         if let Some(argument) = self.arguments.last_mut() {
             if argument.tokens == 0 {

@@ -18,7 +18,7 @@
 //! | names | `functions/` `measures.rs` `interpolation.rs` | the tables; `signature.rs` says what arguments are, `symbols.rs` what a name means |
 //! | text | `token.rs` `check.rs` | words; one ordered pass that finds the first mistake, exactly placed |
 //! | | `advice.rs` `lint.rs` | what is said about mistakes, and about what is legal but hardly meant |
-//! | tree | `parse.rs` `ast.rs` `print.rs` | the tree, and back to source; `grammar.rs`: the same by `grammar/*.pest`, as a check |
+//! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | the grammars, the tree, and back to source |
 //! | value | `walk.rs` | the reference: lazily correct, names what has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
 //! | | `smoothness.rs` | where it is not smooth, and which derivative jumps there |
@@ -32,7 +32,6 @@ mod check;
 pub mod compile;
 mod expression;
 pub mod functions;
-mod grammar;
 pub mod interpolation;
 mod lint;
 pub mod measures;

@@ -1,16 +1,16 @@
-//! Text to [`Ast`]: the ordered check first, then its words become nodes, by precedence.
+//! Text to [`Ast`]: the ordered check first, then the grammar, whose pairs become nodes.
 //!
-//! The grammars (`grammar/function.pest`, `grammar/expression.pest`) are the definition of the languages. Reading by them takes
-//! four fifths of the time between text and program, so they are the second opinion: debug builds, and with them all tests and
-//! fuzz targets, read every text both ways and insist on the same tree.
+//! The grammars (`grammar/function.pest`, `grammar/expression.pest`) are the definition of the languages and make the tree.
+//! Names and numbers were given their meaning by the check, in the order of the text; the pairs take them in that order.
 
 use super::advice;
 use super::ast::{Ast, BinaryOp, Dialect, Node, NodeIx};
-use super::check::{Limits, Meaning, Word, check};
-use super::grammar;
+use super::check::{Atom, Limits, check};
 use super::symbols::Profile;
-use super::token::Kind;
 use crate::diagnostic::{Diagnostic, Span};
+use pest::Parser;
+use pest::iterators::{Pair, Pairs};
+use std::iter::Peekable;
 
 /// Reads a text of one of the two languages.
 ///
@@ -31,16 +31,18 @@ pub fn parse_with_limits(
     profile: Profile,
     limits: Limits,
 ) -> Result<Ast, Diagnostic> {
-    let words = check(text, dialect, profile, limits)
+    let atoms = check(text, dialect, profile, limits)
         .map_err(|fault| advice::explain(text, dialect, &fault))?;
-    let tree = Builder::new(&words).whole();
-    if cfg!(debug_assertions) {
-        let defined = grammar::tree(text, dialect, &words);
-        assert_eq!(tree, defined, "the grammar reads it otherwise: {text:?}");
-        assert!(tree.is_some(), "the check accepts it: {text:?}");
-    }
+    let tree = match dialect {
+        Dialect::Function => function::tree(text, atoms),
+        Dialect::Expression => expression::tree(text, atoms),
+    };
     let (nodes, spans) = tree.ok_or_else(|| {
-        // The check and the builder disagree: our mistake, but the user's text is not readable all the same.
+        // The check and the grammar disagree: our mistake, but the user's text is not readable all the same.
+        debug_assert!(
+            false,
+            "the grammar refuses what the check accepts: {text:?}"
+        );
         Diagnostic::error("unexpected_token", "this cannot be read as an expression")
             .at(text, Span::new(0, text.len()))
     })?;
@@ -53,31 +55,83 @@ pub fn parse_with_limits(
     })
 }
 
-/// Makes nodes of words, children before parents. `None` anywhere: the words are not those of an expression.
-///
-/// Recursion is as deep as the check allows.
-struct Builder<'a> {
-    words: std::slice::Iter<'a, Word>,
+/// What a pair of either grammar is, where the tree needs to know.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// a whole expression, or one in parentheses or between separators: a flat list
+    Sum,
+    SumOperator,
+    ProductOperator,
+    PowerOperator,
+    Sign,
+    Number,
+    /// a name with or without arguments
+    Reference,
+    Conditional,
+    /// what the tree does not need
+    Other,
+}
+
+/// One grammar: its parser, and what its rules are.
+macro_rules! grammar {
+    ($module:ident, $file:literal, $($conditional:ident)?) => {
+        mod $module {
+            use super::*;
+
+            #[derive(pest_derive::Parser)]
+            #[grammar = $file]
+            struct Grammar;
+
+            pub fn tree(text: &str, atoms: Vec<Atom>) -> Option<(Vec<Node>, Vec<Span>)> {
+                let whole = Grammar::parse(Rule::whole, text).ok()?.next()?;
+                let mut builder = Builder::new(atoms, role);
+                builder.operand(whole.into_inner().next()?)?;
+                Some((builder.nodes, builder.spans))
+            }
+
+            fn role(rule: Rule) -> Role {
+                match rule {
+                    Rule::sum => Role::Sum,
+                    Rule::sum_operator => Role::SumOperator,
+                    Rule::product_operator => Role::ProductOperator,
+                    Rule::power_operator => Role::PowerOperator,
+                    Rule::sign => Role::Sign,
+                    Rule::number => Role::Number,
+                    Rule::reference => Role::Reference,
+                    $(Rule::$conditional => Role::Conditional,)?
+                    _ => Role::Other,
+                }
+            }
+        }
+    };
+}
+grammar!(function, "../grammar/function.pest", conditional);
+grammar!(expression, "../grammar/expression.pest",);
+
+/// The pairs of one level that are still to be read.
+type Level<'i, R> = Peekable<Pairs<'i, R>>;
+
+/// Makes nodes of pairs, children before parents. `None` anywhere: the pairs are not those of the grammar.
+struct Builder<R> {
+    atoms: std::vec::IntoIter<Atom>,
+    role: fn(R) -> Role,
     nodes: Vec<Node>,
     spans: Vec<Span>,
 }
 
-impl<'a> Builder<'a> {
-    fn new(words: &'a [Word]) -> Self {
+impl<R: pest::RuleType> Builder<R> {
+    fn new(atoms: Vec<Atom>, role: fn(R) -> Role) -> Self {
+        let capacity = 2 * atoms.len();
         Self {
-            words: words.iter(),
-            nodes: Vec::with_capacity(words.len()),
-            spans: Vec::with_capacity(words.len()),
+            atoms: atoms.into_iter(),
+            role,
+            nodes: Vec::with_capacity(capacity),
+            spans: Vec::with_capacity(capacity),
         }
     }
 
-    /// One expression, and nothing behind it.
-    fn whole(mut self) -> Option<(Vec<Node>, Vec<Span>)> {
-        self.sum()?;
-        self.words
-            .next()
-            .is_none()
-            .then_some((self.nodes, self.spans))
+    fn is(&self, pair: &Pair<R>, role: Role) -> bool {
+        (self.role)(pair.as_rule()) == role
     }
 
     fn push(&mut self, node: Node, span: Span) -> NodeIx {
@@ -86,111 +140,104 @@ impl<'a> Builder<'a> {
         (self.nodes.len() - 1) as NodeIx
     }
 
-    /// The next sign, if it is one that has a value here.
-    fn next_sign<T>(&mut self, of: impl FnOnce(Kind) -> Option<T>) -> Option<(T, Span)> {
-        let word = self.words.as_slice().first()?;
-        let Meaning::Sign(sign) = word.meaning else {
-            return None;
-        };
-        let found = of(sign)?;
-        self.words.next();
-        Some((found, word.span))
-    }
-
-    /// The next word must be this sign.
-    fn expect(&mut self, sign: Kind) -> Option<()> {
-        (self.words.next()?.meaning == Meaning::Sign(sign)).then_some(())
-    }
-
-    /// Products with `+` and `-` between them, from the left.
-    fn sum(&mut self) -> Option<NodeIx> {
-        let mut left = self.product()?;
-        while let Some((op, span)) = self.next_sign(|sign| match sign {
-            Kind::Plus => Some(BinaryOp::Add),
-            Kind::Minus => Some(BinaryOp::Sub),
-            _ => None,
-        }) {
-            let right = self.product()?;
-            left = self.push(Node::Binary(op, left, right), span);
+    /// The pairs of a sum: products with operators between them, from the left.
+    fn sum(&mut self, pairs: &mut Level<R>) -> Option<NodeIx> {
+        let mut left = self.product(pairs)?;
+        while let Some(operator) = pairs.next_if(|p| self.is(p, Role::SumOperator)) {
+            let op = if operator.as_str() == "+" {
+                BinaryOp::Add
+            } else {
+                BinaryOp::Sub
+            };
+            let right = self.product(pairs)?;
+            left = self.push(Node::Binary(op, left, right), place(&operator));
         }
         Some(left)
     }
 
-    fn product(&mut self) -> Option<NodeIx> {
-        let mut left = self.unary()?;
-        while let Some((op, span)) = self.next_sign(|sign| match sign {
-            Kind::Times => Some(BinaryOp::Mul),
-            Kind::Over => Some(BinaryOp::Div),
-            _ => None,
-        }) {
-            let right = self.unary()?;
-            left = self.push(Node::Binary(op, left, right), span);
+    fn product(&mut self, pairs: &mut Level<R>) -> Option<NodeIx> {
+        let mut left = self.unary(pairs)?;
+        while let Some(operator) = pairs.next_if(|p| self.is(p, Role::ProductOperator)) {
+            let op = if operator.as_str() == "*" {
+                BinaryOp::Mul
+            } else {
+                BinaryOp::Div
+            };
+            let right = self.unary(pairs)?;
+            left = self.push(Node::Binary(op, left, right), place(&operator));
         }
         Some(left)
     }
 
-    /// `-a**-b**c` is `-(a**(-(b**c)))`.
-    fn unary(&mut self) -> Option<NodeIx> {
-        if let Some((sign, span)) = self.next_sign(|sign| match sign {
-            Kind::Minus => Some(Node::Negate as fn(NodeIx) -> Node),
-            Kind::Plus => Some(Node::Plus as fn(NodeIx) -> Node),
-            _ => None,
-        }) {
-            let x = self.unary()?;
-            return Some(self.push(sign(x), span));
+    fn unary(&mut self, pairs: &mut Level<R>) -> Option<NodeIx> {
+        if let Some(sign) = pairs.next_if(|p| self.is(p, Role::Sign)) {
+            let x = self.unary(pairs)?;
+            let node = if sign.as_str() == "-" {
+                Node::Negate(x)
+            } else {
+                Node::Plus(x)
+            };
+            return Some(self.push(node, place(&sign)));
         }
-        let base = self.operand()?;
-        let power = self.next_sign(|sign| (sign == Kind::Power).then_some(BinaryOp::Pow));
-        let Some((op, span)) = power else {
+        let base = self.operand(pairs.next()?)?;
+        let Some(operator) = pairs.next_if(|p| self.is(p, Role::PowerOperator)) else {
             return Some(base);
         };
-        let exponent = self.unary()?;
-        Some(self.push(Node::Binary(op, base, exponent), span))
+        let exponent = self.unary(pairs)?;
+        Some(self.push(
+            Node::Binary(BinaryOp::Pow, base, exponent),
+            place(&operator),
+        ))
     }
 
-    fn operand(&mut self) -> Option<NodeIx> {
-        let &Word { meaning, span } = self.words.next()?;
-        match meaning {
-            Meaning::Number { literal, degrees } => {
-                Some(self.push(Node::Number { literal, degrees }, span))
-            }
-            Meaning::Constant(c) => Some(self.push(Node::Constant(c), span)),
-            Meaning::Sign(Kind::Open) => {
-                let inside = self.sum()?;
-                self.expect(Kind::Close)?;
-                Some(inside)
-            }
-            Meaning::Callee(callee) => {
-                self.expect(Kind::Open)?;
-                let mut args = vec![self.sum()?];
-                while self
-                    .next_sign(|sign| (sign == Kind::Comma).then_some(()))
-                    .is_some()
-                {
-                    args.push(self.sum()?);
-                }
-                self.expect(Kind::Close)?;
-                Some(self.push(Node::Call { callee, args }, span))
-            }
-            Meaning::If => {
-                self.expect(Kind::Open)?;
-                let selector = self.sum()?;
-                self.expect(Kind::Colon)?;
-                let negative = self.sum()?;
-                self.expect(Kind::Comma)?;
-                let zero = self.sum()?;
-                self.expect(Kind::Comma)?;
-                let positive = self.sum()?;
-                self.expect(Kind::Close)?;
-                let node = Node::If {
-                    selector,
-                    negative,
-                    zero,
-                    positive,
+    fn operand(&mut self, pair: Pair<R>) -> Option<NodeIx> {
+        match (self.role)(pair.as_rule()) {
+            Role::Sum => self.sum(&mut pair.into_inner().peekable()),
+            Role::Number => {
+                let Atom::Number { literal, degrees } = self.atoms.next()? else {
+                    return None;
                 };
-                Some(self.push(node, span))
+                Some(self.push(Node::Number { literal, degrees }, place(&pair)))
             }
-            Meaning::Sign(_) => None,
+            Role::Reference => self.reference(pair),
+            Role::Conditional => self.conditional(pair),
+            _ => None,
         }
     }
+
+    /// A constant, or a call.
+    fn reference(&mut self, pair: Pair<R>) -> Option<NodeIx> {
+        let mut pairs = pair.into_inner();
+        let span = place(&pairs.next()?);
+        let callee = match self.atoms.next()? {
+            Atom::Constant(c) => return Some(self.push(Node::Constant(c), span)),
+            Atom::Callee(callee) => callee,
+            Atom::Number { .. } => return None,
+        };
+        let args = pairs.map(|a| self.operand(a)).collect::<Option<Vec<_>>>()?;
+        Some(self.push(Node::Call { callee, args }, span))
+    }
+
+    fn conditional(&mut self, pair: Pair<R>) -> Option<NodeIx> {
+        let mut pairs = pair.into_inner();
+        let span = place(&pairs.next()?);
+        let selector = self.operand(pairs.next()?)?;
+        let negative = self.operand(pairs.next()?)?;
+        let zero = self.operand(pairs.next()?)?;
+        let positive = self.operand(pairs.next()?)?;
+        Some(self.push(
+            Node::If {
+                selector,
+                negative,
+                zero,
+                positive,
+            },
+            span,
+        ))
+    }
+}
+
+fn place<R: pest::RuleType>(pair: &Pair<R>) -> Span {
+    let span = pair.as_span();
+    Span::new(span.start(), span.end())
 }
