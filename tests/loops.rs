@@ -232,7 +232,8 @@ fn a_loop_that_ends_stops_the_run_and_is_named() {
     let why = &s.run.record.stop_reason;
     assert!(why.contains("VARIABLE/1"), "{why}");
     let reached = *values(&s, "time").last().unwrap();
-    assert!((0.2..=0.25).contains(&reached), "{reached}: {why}");
+    // at 1/4 the two solutions meet: a little beyond, v = 1/2 still leaves no more than rounding
+    assert!((0.2..0.25 + 1e-14).contains(&reached), "{reached}: {why}");
 }
 
 #[test]

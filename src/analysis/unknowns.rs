@@ -19,6 +19,10 @@ pub(super) const WIDTH: usize = 8;
 const ITERATIONS: usize = 60;
 /// Change of an unknown, relative to its size, that counts as rounding.
 const ROUNDING: f64 = 1e-14;
+/// The same for a step by factors from elsewhere that leads no further, relative to the largest unknown.
+const STALLED: f64 = 1e-13;
+/// Factors from elsewhere serve as long as each step leaves no more than this part of the residual.
+const SERVES: f64 = 0.2;
 
 /// Solves the loops of a scene.
 #[derive(Debug)]
@@ -35,6 +39,8 @@ pub(super) struct Unknowns {
     trial: Vec<f64>,
     step: Vec<f64>,
     lu: Lu,
+    /// `lu` holds factors, of ∂ρ/∂z here or where it was last solved
+    factored: bool,
 }
 
 fn lift(x: f64) -> Dual<WIDTH> {
@@ -42,6 +48,16 @@ fn lift(x: f64) -> Dual<WIDTH> {
         re: x,
         eps: [0.0; WIDTH],
     }
+}
+
+/// What a step by factors from elsewhere came to.
+enum Simplified {
+    /// the residual it leaves
+    Nearer(f64),
+    /// as near as rounding lets
+    Arrived,
+    /// it needs factors of its own
+    Fails,
 }
 
 impl Unknowns {
@@ -62,6 +78,7 @@ impl Unknowns {
             trial: vec![0.0; n],
             step: vec![0.0; n],
             lu: Lu::new(n),
+            factored: false,
         }))
     }
 
@@ -80,7 +97,7 @@ impl Unknowns {
                     self.lu.matrix_mut()[i + n * k] = entry;
                 }
             }
-            return self.lu.factor(1e-14);
+            return self.factors();
         }
         self.dual_numbers.clear();
         self.dual_numbers.extend(numbers.iter().map(|&x| lift(x)));
@@ -98,7 +115,13 @@ impl Unknowns {
                 }
             }
         }
-        self.lu.factor(1e-14)
+        self.factors()
+    }
+
+    fn factors(&mut self) -> Result<(), usize> {
+        let outcome = self.lu.factor(1e-14);
+        self.factored = outcome.is_ok();
+        outcome
     }
 
     /// Solves for the unknowns in a row of numbers.
@@ -113,6 +136,16 @@ impl Unknowns {
             }
             if !size.is_finite() {
                 break;
+            }
+            if self.factored {
+                match self.simplified(numbers, size) {
+                    Simplified::Nearer(next) => {
+                        size = next;
+                        continue;
+                    }
+                    Simplified::Arrived => return Ok(()),
+                    Simplified::Fails => {}
+                }
             }
             self.factor(numbers)?;
             self.step.copy_from_slice(&self.rho);
@@ -169,6 +202,33 @@ impl Unknowns {
             size(a).total_cmp(&size(b))
         });
         Err(worst.unwrap_or(0))
+    }
+
+    /// A step by the factors from where it was last solved.
+    fn simplified(&mut self, numbers: &mut [f64], size: f64) -> Simplified {
+        self.step.copy_from_slice(&self.rho);
+        self.lu.solve(&mut self.step);
+        let z = &mut numbers[self.places.clone()];
+        self.trial.copy_from_slice(z);
+        for (z, d) in z.iter_mut().zip(&self.step) {
+            *z -= d;
+        }
+        let next = self.evaluate(numbers);
+        if next <= SERVES * size {
+            return Simplified::Nearer(next);
+        }
+        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let arrived = largest(&self.step) <= STALLED * largest(&self.trial);
+        if !arrived || next > size || next.is_nan() {
+            numbers[self.places.clone()].copy_from_slice(&self.trial);
+            self.evaluate(numbers);
+        }
+        if arrived {
+            Simplified::Arrived
+        } else {
+            self.factored = false;
+            Simplified::Fails
+        }
     }
 
     /// Puts dz along the directions of the other numbers into the places of the unknowns, whose own derivatives are zero;
