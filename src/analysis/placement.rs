@@ -26,6 +26,23 @@ const LARGEST: usize = 300;
 /// Change below which a place is one.
 const ARRIVED: f64 = 1e-11;
 
+/// IC, ICTRAN, ICROT of joints that carry a part: where assembly begins.
+pub(super) fn initial_joints(scene: &Scene, model: &Model, q: &mut [f64]) {
+    for c in &scene.coordinates {
+        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else {
+            continue;
+        };
+        let given = if c.angular {
+            joint.ic_rotation[0]
+        } else {
+            joint.ic_translation[0]
+        };
+        if let (Some(value), Source::Free { q: place, .. }) = (given, c.source) {
+            q[place] = value;
+        }
+    }
+}
+
 /// Moves `q` to the positions nearest to the dataset. `joints`: IC of joints count. False: the mechanism is not one that is placed
 /// like this, or no step led anywhere.
 pub fn settle(

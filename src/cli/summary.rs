@@ -97,6 +97,9 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     for warning in &r.warnings {
         text += &format!("warning: {warning}\n");
     }
+    if run.table_columns().len() <= 1 {
+        text += "the model has no REQUEST: --column EXPR adds a column to the table\n";
+    }
     for file in written {
         text += &format!("{}\n", file.display());
     }

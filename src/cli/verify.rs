@@ -125,9 +125,19 @@ fn as_text(v: &Verification) -> String {
     let mut line = |text: String| {
         let _ = writeln!(out, "{text}");
     };
-    line(format!("{:5}  parts, 6 each", v.parts));
+    let parts = if v.parts == 1 {
+        "part, with 6"
+    } else {
+        "parts, 6 each"
+    };
+    line(format!("{:5}  {parts}", v.parts));
     if v.point_masses > 0 {
-        line(format!("{:5}  point masses, 3 each", v.point_masses));
+        let masses = if v.point_masses == 1 {
+            "point mass, with 3"
+        } else {
+            "point masses, 3 each"
+        };
+        line(format!("{:5}  {masses}", v.point_masses));
     }
     for (what, n, equations) in &v.counted {
         line(format!("{n:5}  {what}, {equations} equations"));

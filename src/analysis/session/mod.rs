@@ -377,14 +377,8 @@ impl Session {
             })
             .collect::<Vec<_>>()
             .join(", then ");
-        let record = &mut self.run.record;
-        record.counts += counts;
-        record.solve_seconds += seconds;
-        record.method.clone_from(&method);
-        record.error = Some(settings.error);
-        record.status = status;
-        record.stop_reason.clone_from(&reason);
-        record.simulations.push(results::Simulation {
+        self.run.record.error = Some(settings.error);
+        self.close(results::Simulation {
             kind,
             start,
             end: reached,
@@ -395,8 +389,7 @@ impl Session {
             solve_seconds: seconds,
             counts,
             worst,
-        });
-        status
+        })
     }
 
     /// An equilibrium now, or one at each output time up to an `end` that is still to come.
@@ -465,29 +458,23 @@ impl Session {
             carried.at_rest = true;
         }
         let counts = counts(&stats);
-        let record = &mut self.run.record;
-        record.counts += counts;
-        record.solve_seconds += seconds;
-        record.method = if words.is_empty() {
+        let method = if words.is_empty() {
             "EQUILIBRIUM".into()
         } else {
             words
         };
-        record.status = status;
-        record.stop_reason.clone_from(&reason);
-        record.simulations.push(results::Simulation {
+        self.close(results::Simulation {
             kind,
             start,
             end: reached,
             outputs: rows.len(),
-            method: record.method.clone(),
+            method,
             status,
             stop_reason: reason,
             solve_seconds: seconds,
             counts,
             worst,
-        });
-        status
+        })
     }
 
     /// Writes the equations as methods for implicit equations want them, if one is asked for.

@@ -7,10 +7,10 @@ use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::model::{Model, Orientation};
+use crate::scene::Scene;
 use crate::scene::build::{self, unknown_names};
 use crate::scene::compile::orientation;
 use crate::scene::equations::Equations;
-use crate::scene::{Scene, Source};
 use crate::space::kinematic::kinematic;
 use crate::space::{MarkerState, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -99,7 +99,7 @@ impl Session {
             }
         } else {
             if mode != KINEMATIC && mode != STATIC {
-                self.initial_joints(&scene, &mut q);
+                placement::initial_joints(&scene, &self.model, &mut q);
             }
             for (m, motion) in scene.motions.iter().enumerate() {
                 self.initial_motion(&scene, m, motion.state, &q, &mut x);
@@ -200,23 +200,6 @@ impl Session {
 
     pub(super) fn is_at_rest(&self) -> bool {
         self.carried.as_ref().is_some_and(|c| c.at_rest)
-    }
-
-    /// IC, ICTRAN, ICROT of joints that carry a part: where assembly begins.
-    pub(super) fn initial_joints(&self, scene: &Scene, q: &mut [f64]) {
-        for c in &scene.coordinates {
-            let Some(joint) = c.joint.and_then(|j| self.model.joints.get(&j)) else {
-                continue;
-            };
-            let given = if c.angular {
-                joint.ic_rotation[0]
-            } else {
-                joint.ic_translation[0]
-            };
-            if let (Some(value), Source::Free { q: place, .. }) = (given, c.source) {
-                q[place] = value;
-            }
-        }
     }
 
     /// Start of motions given by their rate: ICDISP and ICVEL, else what the dataset's configuration and the joint's IC show; rows begin

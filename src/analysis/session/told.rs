@@ -13,6 +13,18 @@ use crate::scene::build::unknown_names;
 use crate::scene::equations::row_name;
 
 impl Session {
+    /// Adds a simulation that has ended to the record; how it ended.
+    pub(super) fn close(&mut self, simulation: results::Simulation) -> Status {
+        let record = &mut self.run.record;
+        record.counts += simulation.counts;
+        record.solve_seconds += simulation.solve_seconds;
+        record.method.clone_from(&simulation.method);
+        record.status = simulation.status;
+        record.stop_reason.clone_from(&simulation.stop_reason);
+        record.simulations.push(simulation);
+        record.status
+    }
+
     pub(super) fn rows(
         &mut self,
         kind: Kind,

@@ -22,9 +22,9 @@ use super::{misalignment, outline, placement, wishes};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Level, Model};
 use crate::physics::joint::Tie;
+use crate::scene::Scene;
 use crate::scene::build::Options;
 use crate::scene::equations::{Equations, row_name};
-use crate::scene::{Scene, Source};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Stress in an element, relative to the largest in the state, below which it takes no part.
@@ -320,19 +320,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
 
 /// Starting values of the states, and of joints that say where they begin.
 pub(super) fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
-    for c in &scene.coordinates {
-        let Some(joint) = c.joint.and_then(|j| model.joints.get(&j)) else {
-            continue;
-        };
-        let given = if c.angular {
-            joint.ic_rotation[0]
-        } else {
-            joint.ic_translation[0]
-        };
-        if let (Some(value), Source::Free { q: place, .. }) = (given, c.source) {
-            q[place] = value;
-        }
-    }
+    placement::initial_joints(scene, model, q);
     let mut x = vec![0.0; scene.layout.n_x];
     for (m, motion) in scene.motions.iter().enumerate() {
         let given = model
