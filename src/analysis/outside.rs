@@ -14,6 +14,8 @@ use super::system::System;
 use super::unknowns::WIDTH;
 use crate::expr::program::{Program, Work};
 use crate::numeric::{Failure, Method, Step};
+use crate::physics::contact::Question;
+use crate::physics::contact::curves::Curves;
 use crate::scalar::Dual;
 use crate::scene::Scene;
 use crate::scene::layout::Layout;
@@ -136,18 +138,26 @@ impl fmt::Debug for Callable {
 fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<String>> {
     match kind {
         HookKind::User { closure, .. } => Ok(Callable(hooks[*closure].law.clone())),
-        #[cfg(feature = "geometry")]
-        HookKind::Touches { solids, .. } => {
-            let query = crate::physics::contact::query::Query::new(&solids[0], &solids[1]);
-            let query = query.ok_or_else(|| vec![format!("{element}: its points have no hull")])?;
-            Ok(Callable(Arc::new(
-                move |call: &Call<'_>, out: &mut [f64]| {
-                    query.ask(call.values, out);
-                },
-            )))
-        }
-        #[cfg(not(feature = "geometry"))]
-        HookKind::Touches { .. } => Err(vec![format!("{element}: needs the feature geometry")]),
+        HookKind::Touches { question, .. } => match question {
+            Question::Outlines([i, j]) => {
+                let curves = Curves::new(i.clone(), j.clone());
+                let curves = curves.ok_or_else(|| vec![format!("{element}: two points")])?;
+                Ok(Callable(Arc::new(
+                    move |call: &Call<'_>, out: &mut [f64]| curves.ask(call.values, out),
+                )))
+            }
+            #[cfg(feature = "geometry")]
+            Question::Solids(solids) => {
+                let query = crate::physics::contact::query::Query::new(&solids[0], &solids[1]);
+                let query =
+                    query.ok_or_else(|| vec![format!("{element}: its points have no hull")])?;
+                Ok(Callable(Arc::new(
+                    move |call: &Call<'_>, out: &mut [f64]| query.ask(call.values, out),
+                )))
+            }
+            #[cfg(not(feature = "geometry"))]
+            Question::Solids(_) => Err(vec![format!("{element}: needs the feature geometry")]),
+        },
     }
 }
 

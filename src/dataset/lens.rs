@@ -774,7 +774,8 @@ pub fn put_graphics_cm(graphics: &mut Graphics, value: Value) -> Done {
             | Shape::Frustum { cm, .. }
             | Shape::Ellipsoid { cm, .. }
             | Shape::Torus { cm, .. }
-            | Shape::Circle { cm, .. },
+            | Shape::Circle { cm, .. }
+            | Shape::Arc { cm, .. },
             [one],
         ) => *cm = *one,
         (Shape::Other(_), _) => graphics.keep("CM", text),
@@ -790,7 +791,26 @@ pub fn graphics_cm(graphics: &Graphics) -> Option<Value> {
         | Shape::Frustum { cm, .. }
         | Shape::Ellipsoid { cm, .. }
         | Shape::Torus { cm, .. }
-        | Shape::Circle { cm, .. } => Some(Value::Ids(vec![*cm])),
+        | Shape::Circle { cm, .. }
+        | Shape::Arc { cm, .. } => Some(Value::Ids(vec![*cm])),
+        _ => None,
+    }
+}
+
+/// RANGLE: how far an ARC goes from the x axis of its marker; of other shapes it is only kept.
+pub fn put_arc_angle(graphics: &mut Graphics, value: Value) -> Done {
+    if let Shape::Arc { angle, .. } = &mut graphics.shape {
+        *angle = real(value)?;
+    } else {
+        graphics.keep("RANGLE", value.to_string());
+    }
+    Ok(())
+}
+
+/// See [`put_arc_angle`].
+pub fn arc_angle(graphics: &Graphics) -> Option<Value> {
+    match &graphics.shape {
+        Shape::Arc { angle, .. } => angle.written(),
         _ => None,
     }
 }

@@ -334,7 +334,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         variant "POint" (shape, Shape::Point { .. } => Shape::Point { rm: 0 }).required().group("shape");
         variant "CUrve" (shape, Shape::Curve { .. } => Shape::Curve { curve: 0, rm: 0 }).required().group("shape");
         variant "EXTERNAL" (shape, Shape::External { .. } => Shape::External { rm: 0, file: String::new(), element: None }).required().group("shape");
-        kept_shape "ARC" ().required().group("shape");
+        variant "ARC" (shape, Shape::Arc { .. } => Shape::Arc { cm: 0, radius: 0.0, angle: std::f64::consts::TAU }).required().group("shape");
         own "OUTline" (IDS, |g, v| { g.shape = Shape::Other("OUTLINE".into()); g.keep("OUTLINE", v.to_string()); Ok(()) }, |_| None)
             .required().group("shape");
         kept_shape "SPdp" ().required().group("shape");
@@ -357,7 +357,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         shape "LENGTH" (Shape::Cylinder { length, .. } | Shape::Frustum { length, .. } => length);
         shape "TOP" (Shape::Frustum { top, .. } => top);
         shape "BOTTOM" (Shape::Frustum { bottom, .. } => bottom);
-        shape "RADIUS" (Shape::Cylinder { radius, .. } | Shape::Circle { radius, .. } => radius);
+        shape "RADIUS" (Shape::Cylinder { radius, .. } | Shape::Circle { radius, .. } | Shape::Arc { radius, .. } => radius);
         shape "MAJOR_RADIUS" (Shape::Torus { ring, .. } => ring);
         shape "MINOR_RADIUS" (Shape::Torus { tube, .. } => tube);
         own "XMIN" (REAL, |g, v| put_bound(g, false, 0, v), |g| bound(g, false, 0));
@@ -371,7 +371,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         keep "FACETING_TOLERANCE" (REAL);
         keep "SEG|SEGMENTS" (Kind::Id);
         keep "SIDES" (Kind::Id);
-        keep "RANGLE" (ANGLE);
+        own "RANGLE" (ANGLE, put_arc_angle, arc_angle);
         keep "I" (Kind::Id);
         keep "J" (Kind::Id);
         keep "COILS" (Kind::Id);

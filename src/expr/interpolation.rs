@@ -289,6 +289,7 @@ pub enum CurvePoints {
 pub struct Curve {
     components: [Arc<dyn Table>; 3],
     closed: bool,
+    knots: Vec<f64>,
 }
 
 impl Curve {
@@ -331,14 +332,14 @@ impl Curve {
         if let Some(end) = alpha.last_mut() {
             *end = 1.0;
         }
-        let component = |k: usize| -> Result<Arc<dyn Table>, UnfitData> {
+        let component = |k: usize| -> Result<Piecewise, UnfitData> {
             let y: Vec<f64> = points.iter().map(|p| p[k]).collect();
             let ends = if closed {
                 Ends::Periodic
             } else {
                 Ends::Natural
             };
-            Ok(Arc::new(match (kind, order) {
+            Ok(match (kind, order) {
                 (CurvePoints::Control, _) => Piecewise::b_spline(&y, order, closed, -1.0, 1.0)?,
                 (CurvePoints::OnCurve, 4) => {
                     Piecewise::cubic(&alpha, &y, ends, Extrapolation::None)?
@@ -349,12 +350,24 @@ impl Curve {
                         "a curve of order {order} through points; use 2 or 4"
                     )));
                 }
-            }))
+            })
         };
+        let x = component(0)?;
+        let knots = x.knots().to_vec();
         Ok(Self {
-            components: [component(0)?, component(1)?, component(2)?],
+            components: [
+                Arc::new(x),
+                Arc::new(component(1)?),
+                Arc::new(component(2)?),
+            ],
             closed,
+            knots,
         })
+    }
+
+    /// Parameters, ascending from −1 to 1, between which it is a polynomial.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
     }
 
     /// The x, y and z over the parameter.

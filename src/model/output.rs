@@ -113,6 +113,12 @@ pub enum Shape {
         cm: u32,
         radius: f64,
     },
+    /// of a circle about z of `cm`, by an angle from its x axis on
+    Arc {
+        cm: u32,
+        radius: f64,
+        angle: f64,
+    },
     Point {
         rm: u32,
     },

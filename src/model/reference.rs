@@ -394,7 +394,8 @@ impl Model {
                 | Shape::Frustum { cm, .. }
                 | Shape::Ellipsoid { cm, .. }
                 | Shape::Torus { cm, .. }
-                | Shape::Circle { cm, .. } => ("CM", cm),
+                | Shape::Circle { cm, .. }
+                | Shape::Arc { cm, .. } => ("CM", cm),
                 Shape::Plane { rm, .. } | Shape::Point { rm } | Shape::External { rm, .. } => {
                     ("RM", rm)
                 }

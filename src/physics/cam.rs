@@ -29,6 +29,8 @@ pub struct Path {
     tables: [Arc<dyn Table>; 3],
     /// it returns to its beginning
     pub closed: bool,
+    /// parameters between which it is a polynomial
+    pub knots: Vec<f64>,
     /// r: no tangent comes near this direction
     away: Vec3<f64>,
     /// length of the polygon through its samples
@@ -82,6 +84,7 @@ impl Path {
         let mut path = Self {
             tables: [0, 1, 2].map(|k| beyond(&curve.components()[k])),
             closed,
+            knots: curve.knots().to_vec(),
             away: Vec3::axis(2),
             length: 0.0,
             height: 0.0,

@@ -111,7 +111,7 @@ impl Builder<'_> {
         }
     }
 
-    fn path(&self, c: &mut Compiler, curve: u32) -> Option<Path> {
+    pub(super) fn path(&self, c: &mut Compiler, curve: u32) -> Option<Path> {
         match super::formula::curve(self.model, curve) {
             Ok(curve) => Some(Path::new(&curve)),
             Err(why) => {

@@ -7,9 +7,14 @@ use super::outside::{HookKind, SceneHook, Supplied};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Contact, ContactLaw, CoulombFriction, Shape};
 use crate::physics::contact::law::{Coulomb, Law, Normal};
-use crate::physics::contact::{Pair, Solid, TOUCH_NUMBERS, TOUCHES};
+use crate::physics::contact::outline::{Outline, Rim};
+use crate::physics::contact::{Pair, Question, Solid, TOUCH_NUMBERS, TOUCHES};
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+use std::sync::Arc;
 
+/// Planes of curves count as one below this sine of the angle between them.
+const COPLANAR: f64 = 1e-6;
 /// Small speed that makes POISSON smooth, as a part of the speed of a fall through the mechanism's own size.
 const SMOOTHING: f64 = 1e-3;
 
@@ -17,6 +22,24 @@ const SMOOTHING: f64 = 1e-3;
 struct Placed {
     marker: u32,
     solid: Solid,
+}
+
+/// What a GRAPHICS of a contact is.
+enum Body {
+    Solid(Placed),
+    /// a plane curve in the frame of a marker
+    Outline(u32, Arc<Outline>),
+}
+
+/// Two bodies of a contact with their markers, and how their touches are found.
+struct Couple {
+    markers: [u32; 2],
+    how: How,
+}
+
+enum How {
+    Formula(Pair),
+    Question(Question),
 }
 
 fn ascending(a: f64, b: f64) -> [f64; 2] {
@@ -74,8 +97,9 @@ fn solid(shape: &Shape) -> Result<Placed, String> {
         Shape::External { ref file, .. } => Err(format!(
             "is the solid of a CAD kernel in {file:?}, which cannot be read"
         )),
-        Shape::Circle { .. } => Err("is a circle: contacts of curves are not solved".into()),
-        Shape::Curve { .. } => Err("is a curve: contacts of curves are not solved".into()),
+        Shape::Circle { .. } | Shape::Arc { .. } | Shape::Curve { .. } => {
+            unreachable!("it is an outline")
+        }
         Shape::Other(ref kind) => Err(format!("is {kind}, for which there is no contact")),
         Shape::Nothing => Err("has no shape".into()),
     }
@@ -92,6 +116,64 @@ fn is_degenerate(solid: &Solid) -> bool {
         Solid::Ellipsoid { semi } => semi.iter().any(|&a| bad(a)),
         Solid::Torus { ring, tube } => bad(*ring) || bad(*tube),
         Solid::Hull(points) => points.is_empty(),
+    }
+}
+
+/// A curve as the rim of a solid; `None`: it has no length.
+fn outline(marker: u32, rim: Rim, flipped: bool) -> Option<Body> {
+    Outline::new(rim, flipped).map(|o| Body::Outline(marker, Arc::new(o)))
+}
+
+impl Body {
+    fn marker(&self) -> u32 {
+        match self {
+            Body::Solid(placed) => placed.marker,
+            Body::Outline(marker, _) => *marker,
+        }
+    }
+    fn name(&self) -> &'static str {
+        match self {
+            Body::Solid(placed) => placed.solid.name(),
+            Body::Outline(..) => "curve",
+        }
+    }
+    /// As a curve, or the point that can touch one.
+    fn as_outline(&self) -> Option<Arc<Outline>> {
+        match self {
+            Body::Outline(_, outline) => Some(outline.clone()),
+            Body::Solid(Placed { solid: Solid::Ball { radius: 0.0 }, .. }) => {
+                Outline::new(Rim::Point, false).map(Arc::new)
+            }
+            Body::Solid(_) => None,
+        }
+    }
+}
+
+/// How the touches of two bodies are found.
+///
+/// # Errors
+/// Why they are not.
+fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
+    let [a, b] = match (i, j) {
+        (Body::Solid(a), Body::Solid(b)) => [&a.solid, &b.solid],
+        _ => {
+            return match (i.as_outline(), j.as_outline()) {
+                (Some(i), Some(j)) => Ok(How::Question(Question::Outlines([i, j]))),
+                _ => Err(": curves touch curves and points; draw the other one as a CURVE, CIRCLE or ARC in the same plane"),
+            };
+        }
+    };
+    if let Some(pair) = Pair::of(a, b) {
+        return Ok(How::Formula(pair));
+    }
+    if !(a.can_be_queried() && b.can_be_queried()) {
+        return Err("");
+    }
+    if cfg!(feature = "geometry") {
+        let solids = Box::new([a.clone(), b.clone()]);
+        Ok(How::Question(Question::Solids(solids)))
+    } else {
+        Err(" in this program: it was built without the feature geometry")
     }
 }
 
@@ -118,14 +200,18 @@ impl Builder<'_> {
                     continue;
                 }
             };
-            match self.pairs(contact) {
-                Ok(pairs) => {
-                    for (i, j, solids) in pairs {
-                        let Some(touching) = self.touching(c, &name, (i, j), solids) else {
-                            continue;
+            match self.couples(c, contact) {
+                Ok(couples) => {
+                    for Couple { markers, how } in couples {
+                        let touching = match how {
+                            How::Formula(pair) => Touching::Formula(pair),
+                            How::Question(q) => match self.asked(c, &name, markers, q) {
+                                Some(touching) => touching,
+                                None => continue,
+                            },
                         };
                         let law = ForceLaw::Contact(Box::new((touching, law)));
-                        self.between(c, "CONTACT", id, (i, j), law);
+                        self.between(c, "CONTACT", id, (markers[0], markers[1]), law);
                     }
                 }
                 Err(why) if skipped.contains("CONTACT") => {
@@ -142,27 +228,39 @@ impl Builder<'_> {
         }
     }
 
-    /// How the touches of a pair are found: by a formula, else by a query; `None`: a marker is missing, which has been said.
-    fn touching(
+    /// Touches that are found by a question; `None`: a marker is missing, which has been said, or the planes of two curves do
+    /// not lie in each other.
+    fn asked(
         &mut self,
         c: &mut Compiler,
         name: &str,
-        markers: (u32, u32),
-        solids: [Solid; 2],
+        ids: [u32; 2],
+        question: Question,
     ) -> Option<Touching> {
-        if let Some(pair) = Pair::of(&solids[0], &solids[1]) {
-            return Some(Touching::Formula(pair));
+        let markers = [c.marker(ids[0], name)?, c.marker(ids[1], name)?];
+        if let Question::Outlines(_) = question {
+            let [i, j] = markers.map(|m| self.scene.drawn(m).rotation.column(2));
+            let sine = i.cross(j).norm();
+            if sine > COPLANAR {
+                let what = format!(
+                    "the planes of its curves are inclined to each other by {:.4} deg: the x-y planes of MARKER/{} and MARKER/{}",
+                    sine.min(1.0).asin().to_degrees(),
+                    ids[0],
+                    ids[1]
+                );
+                let error = Diagnostic::error("curves_not_coplanar", what).element(name);
+                c.errors.push(error.help(
+                    "curves touch in one plane: turn one of these markers, and let joints hold their x-y planes together",
+                ));
+                return None;
+            }
         }
-        let markers = [c.marker(markers.0, name)?, c.marker(markers.1, name)?];
         let (hook, n) = (self.scene.hooks.len(), TOUCHES * TOUCH_NUMBERS);
         let places: Vec<usize> = (0..n)
             .map(|k| self.supply(Supplied::Hook(hook, k)))
             .collect();
         self.scene.hooks.push(SceneHook {
-            kind: HookKind::Touches {
-                solids: Box::new(solids),
-                markers,
-            },
+            kind: HookKind::Touches { question, markers },
             element: name.to_string(),
             constants: Vec::new(),
             n,
@@ -172,44 +270,74 @@ impl Builder<'_> {
         Some(Touching::Query(places[0]))
     }
 
-    /// The pairs of a contact with the markers of their solids.
-    fn pairs(&self, contact: &Contact) -> Result<Vec<(u32, u32, [Solid; 2])>, String> {
-        if contact.flip != [false; 2] {
-            return Err("IFLIP and JFLIP, which turn a solid inside out, are not solved".into());
-        }
-        let find = |ids: &[u32]| -> Result<Vec<(u32, Placed)>, String> {
-            let one = |&id: &u32| {
-                let graphics = self.model.graphics.get(&id);
-                let graphics = graphics.ok_or(format!("GRAPHICS/{id} does not exist"))?;
-                let placed =
-                    solid(&graphics.shape).map_err(|why| format!("GRAPHICS/{id} {why}"))?;
-                if is_degenerate(&placed.solid) {
-                    return Err(format!("GRAPHICS/{id} has no size"));
+    /// The bodies of one side of a contact, with the numbers of their GRAPHICS.
+    fn bodies(
+        &self,
+        c: &mut Compiler,
+        ids: &[u32],
+        flipped: bool,
+    ) -> Result<Vec<(u32, Body)>, String> {
+        let mut out = Vec::new();
+        for &id in ids {
+            let graphics = self.model.graphics.get(&id);
+            let shape = &graphics.ok_or(format!("GRAPHICS/{id} does not exist"))?.shape;
+            let body = match *shape {
+                Shape::Circle { cm, radius } => outline(cm, Rim::Circle(radius.abs(), TAU), flipped),
+                Shape::Arc { cm, radius, angle } => {
+                    // against the turn is the way back
+                    let rim = Rim::Circle(radius.abs(), angle.abs().min(TAU));
+                    (angle >= 0.0).then(|| outline(cm, rim, flipped)).flatten()
                 }
-                Ok((id, placed))
+                Shape::Curve { curve, rm } => {
+                    let path = self.path(c, curve);
+                    let path = path.ok_or(format!("GRAPHICS/{id} has no curve"))?;
+                    if path.height > 1e-9 * path.length {
+                        return Err(format!(
+                            "CURVE/{curve} of GRAPHICS/{id} leaves the x-y plane of its marker by {:.4} along z: only plane curves touch",
+                            path.height
+                        ));
+                    }
+                    outline(rm, Rim::Path(Box::new(path)), flipped)
+                }
+                _ => {
+                    let placed = solid(shape).map_err(|why| format!("GRAPHICS/{id} {why}"))?;
+                    let sized = !is_degenerate(&placed.solid);
+                    sized.then_some(Body::Solid(placed))
+                }
             };
-            ids.iter().map(one).collect()
-        };
-        let (all_i, all_j) = (find(&contact.i_geometry)?, find(&contact.j_geometry)?);
+            let body = body.ok_or(format!("GRAPHICS/{id} has no size"))?;
+            if flipped && !matches!(body, Body::Outline(..)) {
+                return Err(format!(
+                    "IFLIP and JFLIP turn a curve over, but GRAPHICS/{id} is a solid, which has its outside outside: leave the flag out"
+                ));
+            }
+            out.push((id, body));
+        }
+        Ok(out)
+    }
+
+    /// The pairs of a contact.
+    fn couples(
+        &self,
+        c: &mut Compiler,
+        contact: &Contact,
+    ) -> Result<Vec<Couple>, String> {
+        let all_i = self.bodies(c, &contact.i_geometry, contact.flip[0])?;
+        let all_j = self.bodies(c, &contact.j_geometry, contact.flip[1])?;
         let mut out = Vec::new();
         for (gi, i) in &all_i {
             for (gj, j) in &all_j {
-                let queried = i.solid.can_be_queried() && j.solid.can_be_queried();
-                let solved = Pair::of(&i.solid, &j.solid).is_some()
-                    || (queried && cfg!(feature = "geometry"));
-                if !solved {
-                    let why = if queried {
-                        " in this program: it was built without the feature geometry"
-                    } else {
-                        ""
-                    };
-                    return Err(format!(
+                let how = how(i, j).map_err(|why| {
+                    format!(
                         "there is no contact between a {} (GRAPHICS/{gi}) and a {} (GRAPHICS/{gj}){why}",
-                        i.solid.name(),
-                        j.solid.name()
-                    ));
-                }
-                out.push((i.marker, j.marker, [i.solid.clone(), j.solid.clone()]));
+                        i.name(),
+                        j.name()
+                    )
+                })?;
+                out.push(Couple {
+                    markers: [i.marker(), j.marker()],
+                    how,
+                });
             }
         }
         Ok(out)

@@ -4,7 +4,7 @@
 //! before them, so that the programs need not know where they come from.
 
 use crate::model::{Comparison, Formula};
-use crate::physics::contact::Solid;
+use crate::physics::contact::Question;
 
 /// One number from outside, in the order of the places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +98,7 @@ pub enum HookKind {
     /// [`TOUCH_NUMBERS`](crate::physics::contact::TOUCH_NUMBERS)
     Touches {
         /// of I and J
-        solids: Box<[Solid; 2]>,
+        question: Question,
         /// in whose frames they stand: indices in [`Scene::markers`](super::Scene::markers)
         markers: [usize; 2],
     },

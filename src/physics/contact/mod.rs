@@ -13,10 +13,13 @@
 //! | plane – torus | the same four of its ring |
 //! | plane – ellipsoid | 1, the deepest |
 //! | point | a ball without radius |
+//! | curve, circle, point with each other, in a plane | up to 8, where one reaches deepest into the other (`outline.rs`, `curves.rs`) |
 //! | box, cylinder, frustum, ellipsoid, hull with each other | up to 8, found by queries (`query.rs`, feature `geometry`) |
 
 pub mod ball;
+pub mod curves;
 pub mod law;
+pub mod outline;
 pub mod plane;
 #[cfg(feature = "geometry")]
 pub mod query;
@@ -25,6 +28,17 @@ use super::action::Action;
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 pub use law::Law;
+use outline::Outline;
+use std::sync::Arc;
+
+/// What is asked for the touches of a pair that no formula finds.
+#[derive(Clone, Debug)]
+pub enum Question {
+    /// two convex solids
+    Solids(Box<[Solid; 2]>),
+    /// two outlines, I's and J's
+    Outlines([Arc<Outline>; 2]),
+}
 
 /// A solid in the frame of its marker; lengths in model units.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,6 +131,14 @@ pub const TOUCHES: usize = 8;
 /// Numbers of one: its point on I's solid and on J's, each in the frame of its marker, the direction from J's solid to I's in
 /// the frame of J's marker, what is taken off the depth (of touches that are not there), its share.
 pub const TOUCH_NUMBERS: usize = 11;
+
+/// Numbers of touches that are not there: no share, and a gap.
+fn nothing(out: &mut [f64]) {
+    for touch in out.chunks_mut(TOUCH_NUMBERS) {
+        touch.fill(0.0);
+        touch[TOUCH_NUMBERS - 2] = 1.0;
+    }
+}
 
 /// The touches that a query found, as formulas of the two frames: the points stay on their solids.
 pub fn found<S: Scalar>(numbers: &[S], i: &MarkerState<S>, j: &MarkerState<S>) -> Vec<Touch<S>> {

@@ -270,11 +270,7 @@ impl Query {
     /// The touches for a pose of I's marker in J's, its position and the three columns of its axes, as [`super::found`] reads
     /// them   (TOUCHES × TOUCH_NUMBERS).
     pub fn ask(&self, pose: &[f64], out: &mut [f64]) {
-        for touch in out.chunks_mut(TOUCH_NUMBERS) {
-            touch.fill(0.0);
-            // no share, and a gap
-            touch[TOUCH_NUMBERS - 2] = 1.0;
-        }
+        super::nothing(out);
         let reach = FAR * (self.i.size[1] + self.j.size[1]);
         if pose.len() != 12 || !pose.iter().all(|x| x.abs() <= reach.max(2.0)) {
             return;

@@ -1,0 +1,419 @@
+//! Where two outlines touch: all places at which one reaches deepest into the other, each a touch of its own.
+//!
+//! All is looked at in the plane of J. With D = P_I − P_J, tangents t, outward normals n, curvature κ (positive where it bulges), gap g:
+//!
+//! ```text
+//! smooth sides    D · t_I = 0,   t_I × t_J = 0,   n_I · n_J < 0,   g = D · n_J                    (1)
+//!                 κ_I + κ_J + g κ_I κ_J > 0: the two curve away from each other                   (2)
+//! corner of I     the point of J nearest to it, g = (P − P_J) · n_J                               (3)
+//! corner of J     the same, the other way round
+//! ```
+//!
+//! (1) is solved by Newton's iteration from each pair of cells that can hold a solution; circles about cells and directions of their normals
+//! exclude nearly all others at the level of whole pieces. Where (2) fails the sides lie in each other, as two straight ones do: then
+//! their corners touch. A corner counts where the normal lies between those of its sides, and beside a straight side a little
+//! farther, with a share that fades, so that a box stands on both its lower corners. Touches that are near each other share what one would do.
+//!
+//! A solid is no deeper than [`DEPTH`] of the smaller outline: what is deeper comes from the other side. The line between the two points must not
+//! cross either outline elsewhere: then it is another solid's turn. What is lost: where two places of touch melt into one, as a
+//! rounded edge does that comes to lie in a hollow of its own radius, the force of one of them ends at once.
+
+use super::outline::{Corner, Flat, Node, Outline, Spot};
+use super::outline::{along, cross, dot, length, minus, wrapped};
+use super::{TOUCH_NUMBERS, TOUCHES};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Depth of a solid, as a part of the radius of the circle about the smaller outline; gaps that are larger are not looked at either.
+const DEPTH: f64 = 0.5;
+/// Corners beside a straight side touch up to this angle beyond its normal.
+const BESIDE: f64 = 0.35;
+/// Relative curvature, as a part of the reciprocal size, below which sides lie in each other.
+const FLAT: f64 = 1e-9;
+/// Touches nearer than this part of the smaller outline share.
+const NEIGHBOURS: f64 = 0.02;
+/// Touches nearer than this part of it are one.
+const SAME: f64 = 1e-9;
+/// Outlines farther apart than this many times their size are left alone.
+const FAR: f64 = 1e6;
+/// Most pairs of pieces that are looked at in one question.
+const PATIENCE: usize = 1_000_000;
+
+/// The question for a pair of outlines.
+#[derive(Debug)]
+pub struct Curves {
+    i: Arc<Outline>,
+    j: Arc<Outline>,
+    /// radius of the smaller
+    size: f64,
+}
+
+/// I's plane seen from J's.
+#[derive(Clone, Copy)]
+struct Pose {
+    at: Flat,
+    x: Flat,
+    y: Flat,
+}
+
+impl Pose {
+    fn turned(&self, v: Flat) -> Flat {
+        [
+            self.x[0] * v[0] + self.y[0] * v[1],
+            self.x[1] * v[0] + self.y[1] * v[1],
+        ]
+    }
+    fn point(&self, p: Flat) -> Flat {
+        along(self.turned(p), 1.0, self.at)
+    }
+    /// A vector of J's plane in I's.
+    fn back(&self, v: Flat) -> Flat {
+        [dot(self.x, v), dot(self.y, v)]
+    }
+    /// The direction of a vector of I's plane.
+    fn direction(&self, angle: f64) -> f64 {
+        let (sin, cos) = angle.sin_cos();
+        let v = self.turned([cos, sin]);
+        v[1].atan2(v[0])
+    }
+    fn spot(&self, spot: &Spot) -> Spot {
+        Spot {
+            at: self.point(spot.at),
+            tangent: self.turned(spot.tangent),
+            bend: self.turned(spot.bend),
+            normal: self.turned(spot.normal),
+        }
+    }
+}
+
+/// A touch in J's plane.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    on_i: Flat,
+    on_j: Flat,
+    /// from J's solid into I's
+    normal: Flat,
+    depth: f64,
+    weight: f64,
+}
+
+impl Curves {
+    /// For the outlines of I and J; `None`: both are points.
+    pub fn new(i: Arc<Outline>, j: Arc<Outline>) -> Option<Self> {
+        let sizes = [&i, &j].into_iter().filter(|o| !o.is_point());
+        let size = sizes.map(|o| o.size).fold(f64::INFINITY, f64::min);
+        size.is_finite().then_some(Self { i, j, size })
+    }
+
+    /// The touches for a pose of I's marker in J's, its position and the three columns of its axes, as [`super::found`] reads
+    /// them   (TOUCHES × TOUCH_NUMBERS).
+    pub fn ask(&self, pose: &[f64], out: &mut [f64]) {
+        super::nothing(out);
+        let reach = FAR * (self.i.size + self.j.size);
+        if pose.len() != 12 || !pose.iter().all(|x| x.abs() <= reach.max(2.0)) {
+            return;
+        }
+        let (x, y) = ([pose[3], pose[4]], [pose[6], pose[7]]);
+        // planes that stand on each other have no touch
+        if cross(x, y).abs() < 0.5 {
+            return;
+        }
+        let at = [pose[0], pose[1]];
+        let pose = Pose { at, x, y };
+        let found = self.touches(&pose);
+        for (touch, f) in out.chunks_mut(TOUCH_NUMBERS).zip(&found) {
+            let p = pose.back(minus(f.on_i, pose.at));
+            let all = [
+                p[0], p[1], 0.0, f.on_j[0], f.on_j[1], 0.0, f.normal[0], f.normal[1], 0.0, 0.0,
+                f.weight,
+            ];
+            touch.copy_from_slice(&all);
+        }
+    }
+
+    /// All touches, the deepest first, with their shares.
+    fn touches(&self, pose: &Pose) -> Vec<Found> {
+        let mut all = Vec::new();
+        self.smooth(pose, &mut all);
+        let limit = DEPTH * self.size;
+        for corner in self.i.corners.iter().filter(|c| c.convex) {
+            let p = pose.point(corner.at);
+            if let Some((on_j, normal, depth)) = nearest(&self.j, p, limit) {
+                let inward = [-normal[0], -normal[1]];
+                let direction = inward[1].atan2(inward[0]);
+                let normals = corner.normals.map(|n| pose.direction(n));
+                let weight = self.share_of(&self.i, corner, normals, direction);
+                all.push(Found {
+                    on_i: p,
+                    on_j,
+                    normal,
+                    depth,
+                    weight,
+                });
+            }
+        }
+        for corner in self.j.corners.iter().filter(|c| c.convex) {
+            let p = pose.back(minus(corner.at, pose.at));
+            if let Some((on_i, normal, depth)) = nearest(&self.i, p, limit) {
+                let inward = pose.turned([-normal[0], -normal[1]]);
+                // from J's solid into I's
+                let direction = inward[1].atan2(inward[0]);
+                let weight = self.share_of(&self.j, corner, corner.normals, direction);
+                all.push(Found {
+                    on_i: pose.point(on_i),
+                    on_j: corner.at,
+                    normal: inward,
+                    depth,
+                    weight,
+                });
+            }
+        }
+        self.shared(all)
+    }
+
+    /// How much a corner takes part in a touch along an outward direction.
+    fn share_of(&self, outline: &Outline, corner: &Corner, normals: [f64; 2], direction: f64) -> f64 {
+        if outline.is_point() {
+            return 1.0;
+        }
+        let width = wrapped(normals[1] - normals[0]);
+        let offset = wrapped(direction - normals[0] - 0.5 * width) * width.signum();
+        let beyond = offset.abs() - 0.5 * width.abs();
+        if beyond <= 0.0 {
+            return 1.0;
+        }
+        let straight = corner.straight[usize::from(offset > 0.0)];
+        // rounding where sides lie on each other
+        let allowed = if straight { BESIDE } else { 1e-9 };
+        (1.0 - (beyond / allowed).powi(2)).max(0.0).powi(2)
+    }
+
+    /// Touches of smooth sides, where (1) and (2) hold.
+    fn smooth(&self, pose: &Pose, all: &mut Vec<Found>) {
+        let (Some(root_i), Some(root_j)) = (self.i.root(), self.j.root()) else {
+            return;
+        };
+        let reach = DEPTH * self.size;
+        let mirrored = cross(pose.x, pose.y) < 0.0;
+        let turn = pose.x[1].atan2(pose.x[0]);
+        let towards = |n: &Node| if mirrored { turn - n.normal } else { turn + n.normal };
+        let mut waiting = vec![(root_i, root_j)];
+        let mut seen = 0;
+        while let Some((a, b)) = waiting.pop() {
+            seen += 1;
+            if seen > PATIENCE {
+                break;
+            }
+            let (i, j) = (&self.i.nodes[a], &self.j.nodes[b]);
+            if i.straight && j.straight {
+                continue;
+            }
+            let spread = i.spread + j.spread;
+            let direction = towards(i);
+            if wrapped(direction - j.normal - PI).abs() > spread {
+                continue;
+            }
+            let between = minus(pose.point(i.centre), j.centre);
+            let (distance, radii) = (length(between), i.radius + j.radius);
+            if distance > radii + reach {
+                continue;
+            }
+            // what lies between them is along both normals
+            let aside = |angle: f64, spread: f64| {
+                let (sin, cos) = angle.sin_cos();
+                spread < 1.5 && cross(between, [cos, sin]).abs() > radii + distance * spread.sin()
+            };
+            if aside(j.normal, j.spread) || aside(direction, i.spread) {
+                continue;
+            }
+            match (i.halves, j.halves) {
+                (Some([p, q]), None) => waiting.extend([(p, b), (q, b)]),
+                (None, Some([p, q])) => waiting.extend([(a, p), (a, q)]),
+                (Some([p, q]), Some([r, s])) => {
+                    if i.radius * (1.0 + i.spread) > j.radius * (1.0 + j.spread) {
+                        waiting.extend([(p, b), (q, b)]);
+                    } else {
+                        waiting.extend([(a, r), (a, s)]);
+                    }
+                }
+                (None, None) => {
+                    all.extend(self.common_normal(pose, i.cells.start, j.cells.start));
+                }
+            }
+        }
+    }
+
+    /// The touch of two cells, by Newton's iteration.
+    fn common_normal(&self, pose: &Pose, cell_i: usize, cell_j: usize) -> Option<Found> {
+        let [ci, cj] = [&self.i.cells[cell_i], &self.j.cells[cell_j]];
+        let width = [ci.s[1] - ci.s[0], cj.s[1] - cj.s[0]];
+        let [mut a, mut b] = [0.5 * (ci.s[0] + ci.s[1]), 0.5 * (cj.s[0] + cj.s[1])];
+        let keep = |s: f64, range: [f64; 2], width: f64| s.clamp(range[0] - width, range[1] + width);
+        let mut done = false;
+        for _ in 0..25 {
+            let p = pose.spot(&self.i.spot(a));
+            let q = self.j.spot(b);
+            let d = minus(p.at, q.at);
+            let f = dot(d, p.tangent);
+            let g = cross(p.tangent, q.tangent);
+            let fa = dot(p.tangent, p.tangent) + dot(d, p.bend);
+            let fb = -dot(q.tangent, p.tangent);
+            let ga = cross(p.bend, q.tangent);
+            let gb = cross(p.tangent, q.bend);
+            let det = fa * gb - fb * ga;
+            let (da, db) = ((f * gb - g * fb) / det, (g * fa - f * ga) / det);
+            if !(da.is_finite() && db.is_finite()) {
+                return None;
+            }
+            // the curves go on beyond their cells only as far as their polynomials are of use
+            a = keep(a - da, ci.s, width[0]);
+            b = keep(b - db, cj.s, width[1]);
+            if done {
+                break;
+            }
+            done = da.abs() < 1e-9 * width[0] && db.abs() < 1e-9 * width[1];
+        }
+        let inside = |s: f64, range: [f64; 2], width: f64| {
+            s >= range[0] - 1e-9 * width && s <= range[1] + 1e-9 * width
+        };
+        if !done || !inside(a, ci.s, width[0]) || !inside(b, cj.s, width[1]) {
+            return None;
+        }
+        let p = pose.spot(&self.i.spot(a));
+        let q = self.j.spot(b);
+        let gap = dot(minus(p.at, q.at), q.normal);
+        let (k, l) = (p.curvature(), q.curvature());
+        let apart = k + l + gap * k * l;
+        if dot(p.normal, q.normal) >= 0.0
+            || apart.is_nan()
+            || apart <= FLAT / self.size
+            || gap.abs() > DEPTH * self.size
+        {
+            return None;
+        }
+        if gap < 0.0 {
+            let (u, v) = ([p.at, q.at], [p.at, q.at].map(|x| pose.back(minus(x, pose.at))));
+            if self.j.is_crossed(u[0], u[1], cell_j) || self.i.is_crossed(v[0], v[1], cell_i) {
+                return None;
+            }
+        }
+        Some(Found {
+            on_i: p.at,
+            on_j: q.at,
+            normal: q.normal,
+            depth: -gap,
+            weight: 1.0,
+        })
+    }
+
+    /// One of each, with shares; the deepest first, at most [`TOUCHES`].
+    fn shared(&self, mut all: Vec<Found>) -> Vec<Found> {
+        all.retain(|f| f.weight > 0.0 && f.depth.is_finite());
+        all.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+        let near = SAME * self.size;
+        let mut found: Vec<Found> = Vec::new();
+        for f in all {
+            let same = |other: &Found| {
+                length(minus(other.on_i, f.on_i)) <= near && length(minus(other.on_j, f.on_j)) <= near
+            };
+            if !found.iter().any(same) {
+                found.push(f);
+            }
+            // what is not as deep is hardly ever as many
+            if found.len() == 8 * TOUCHES {
+                break;
+            }
+        }
+        let reach = NEIGHBOURS * self.size;
+        let crowd = |f: &Found| -> f64 {
+            let part = |other: &Found| {
+                let near = 1.0 - (length(minus(other.on_j, f.on_j)) / reach).powi(2);
+                let alike = dot(other.normal, f.normal).max(0.0);
+                other.weight * near.max(0.0).powi(2) * alike * alike
+            };
+            found.iter().map(part).sum()
+        };
+        let shares: Vec<f64> = found.iter().map(|f| f.weight / crowd(f).max(1.0)).collect();
+        for (f, share) in found.iter_mut().zip(shares) {
+            f.weight = share;
+        }
+        found.truncate(TOUCHES);
+        found
+    }
+}
+
+/// The point of an outline nearest to `p`, its outward normal there, and how deep `p` is below it.
+fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<(Flat, Flat, f64)> {
+    let (cell, s, at) = outline.nearest(p, limit)?;
+    let c = &outline.cells[cell];
+    let apart = minus(p, at);
+    let distance = length(apart);
+    // a little inside its cell, where the tangent is that of this side
+    let width = c.s[1] - c.s[0];
+    let side = outline.spot(s.clamp(c.s[0] + 1e-9 * width, c.s[1] - 1e-9 * width));
+    let gap = dot(apart, side.normal);
+    let end = if s <= c.s[0] {
+        c.corner[0]
+    } else if s >= c.s[1] {
+        c.corner[1]
+    } else {
+        None
+    };
+    match end {
+        // the nearest point is a corner itself
+        Some(corner) if distance > 1e-9 * outline.size && cross(apart, side.normal).abs() > 1e-9 * distance => {
+            let sign = if outline.corners[corner].convex { 1.0 } else { -1.0 };
+            let normal = [sign * apart[0] / distance, sign * apart[1] / distance];
+            Some((at, normal, -sign * distance))
+        }
+        _ => Some((at, side.normal, -gap)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::outline::Rim;
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn circle(radius: f64, flipped: bool) -> Arc<Outline> {
+        Arc::new(Outline::new(Rim::Circle(radius, TAU), flipped).unwrap())
+    }
+
+    fn depths(c: &Curves, at: Flat, angle: f64) -> Vec<f64> {
+        let (sin, cos) = angle.sin_cos();
+        let pose = Pose {
+            at,
+            x: [cos, sin],
+            y: [-sin, cos],
+        };
+        c.touches(&pose).iter().map(|f| f.depth).collect()
+    }
+
+    #[test]
+    fn circles_touch_once_as_deep_as_their_centres_tell() {
+        let outside = Curves::new(circle(1.0, false), circle(2.0, false)).unwrap();
+        let inside = Curves::new(circle(1.0, false), circle(2.0, true)).unwrap();
+        for k in 0..100 {
+            let angle = f64::from(k) * 0.7;
+            for (c, distance, depth) in [
+                (&outside, 2.9, 0.1),
+                (&outside, 3.01, -0.01),
+                (&outside, 2.6, 0.4),
+                (&inside, 1.01, 0.01),
+                (&inside, 0.9, -0.1),
+            ] {
+                let found = depths(c, [distance * angle.cos(), distance * angle.sin()], 1.3 * angle);
+                assert_eq!(found.len(), 1, "{distance} {k}");
+                assert!((found[0] - depth).abs() < 1e-14, "{distance} {k} {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_circle_in_another_circles_depth_limit_is_left_alone() {
+        let c = Curves::new(circle(1.0, false), circle(2.0, false)).unwrap();
+        assert!(depths(&c, [2.4, 0.0], 0.0).is_empty());
+        assert!(depths(&c, [1e9, 0.0], 0.0).is_empty());
+    }
+}
