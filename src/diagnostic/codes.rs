@@ -410,10 +410,11 @@ contact with IDISP and JDISP. Two straight lines touch everywhere and nowhere: o
     },
     Code {
         name: "curves_not_coplanar",
-        summary: "two curves of a CVCV do not lie in one plane",
+        summary: "two curves of a CVCV or CONTACT do not lie in one plane",
         explanation: "\
-The curves of a CVCV lie in the x-y planes of IRM and JRM, z = 0, and these planes must be one and the same all the time.
-CVCV does not turn parts to make them so: that is up to joints, such as PLANAR, or REVOLUTE with parallel axes.",
+The curves of a CVCV lie in the x-y planes of IRM and JRM, z = 0, those of a CONTACT in the planes of the markers of their
+GRAPHICS (CRM, CM), and these planes must be one and the same all the time.
+Neither turns parts to make them so: that is up to joints, such as PLANAR, or REVOLUTE with parallel axes.",
     },
     Code {
         name: "motion_jumps",

@@ -141,9 +141,10 @@ impl Body {
     fn as_outline(&self) -> Option<Arc<Outline>> {
         match self {
             Body::Outline(_, outline) => Some(outline.clone()),
-            Body::Solid(Placed { solid: Solid::Ball { radius: 0.0 }, .. }) => {
-                Outline::new(Rim::Point, false).map(Arc::new)
-            }
+            Body::Solid(Placed {
+                solid: Solid::Ball { radius: 0.0 },
+                ..
+            }) => Outline::new(Rim::Point, false).map(Arc::new),
             Body::Solid(_) => None,
         }
     }
@@ -159,7 +160,9 @@ fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
         _ => {
             return match (i.as_outline(), j.as_outline()) {
                 (Some(i), Some(j)) => Ok(How::Question(Question::Outlines([i, j]))),
-                _ => Err(": curves touch curves and points; draw the other one as a CURVE, CIRCLE or ARC in the same plane"),
+                _ => Err(
+                    ": curves touch curves and points; draw the other one as a CURVE, CIRCLE or ARC in the same plane",
+                ),
             };
         }
     };
@@ -280,9 +283,13 @@ impl Builder<'_> {
         let mut out = Vec::new();
         for &id in ids {
             let graphics = self.model.graphics.get(&id);
-            let shape = &graphics.ok_or(format!("GRAPHICS/{id} does not exist"))?.shape;
+            let shape = &graphics
+                .ok_or(format!("GRAPHICS/{id} does not exist"))?
+                .shape;
             let body = match *shape {
-                Shape::Circle { cm, radius } => outline(cm, Rim::Circle(radius.abs(), TAU), flipped),
+                Shape::Circle { cm, radius } => {
+                    outline(cm, Rim::Circle(radius.abs(), TAU), flipped)
+                }
                 Shape::Arc { cm, radius, angle } => {
                     // against the turn is the way back
                     let rim = Rim::Circle(radius.abs(), angle.abs().min(TAU));
@@ -317,11 +324,7 @@ impl Builder<'_> {
     }
 
     /// The pairs of a contact.
-    fn couples(
-        &self,
-        c: &mut Compiler,
-        contact: &Contact,
-    ) -> Result<Vec<Couple>, String> {
+    fn couples(&self, c: &mut Compiler, contact: &Contact) -> Result<Vec<Couple>, String> {
         let all_i = self.bodies(c, &contact.i_geometry, contact.flip[0])?;
         let all_j = self.bodies(c, &contact.j_geometry, contact.flip[1])?;
         let mut out = Vec::new();

@@ -11,7 +11,7 @@
 //!
 //! (1) is solved by Newton's iteration from each pair of cells that can hold a solution; circles about cells and directions of their normals
 //! exclude nearly all others at the level of whole pieces. Where (2) fails the sides lie in each other, as two straight ones do: then
-//! their corners touch. A corner counts where the normal lies between those of its sides, and beside a straight side a little
+//! their corners touch. A corner counts where the normal lies between those of its sides, and where straight sides face each other a little
 //! farther, with a share that fades, so that a box stands on both its lower corners. Touches that are near each other share what one would do.
 //!
 //! A solid is no deeper than [`DEPTH`] of the smaller outline: what is deeper comes from the other side. The line between the two points must not
@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 /// Depth of a solid, as a part of the radius of the circle about the smaller outline; gaps that are larger are not looked at either.
 const DEPTH: f64 = 0.5;
-/// Corners beside a straight side touch up to this angle beyond its normal.
+/// Corners beside a straight side touch another straight side up to this angle beyond its normal.
 const BESIDE: f64 = 0.35;
 /// Relative curvature, as a part of the reciprocal size, below which sides lie in each other.
 const FLAT: f64 = 1e-9;
@@ -124,7 +124,16 @@ impl Curves {
         for (touch, f) in out.chunks_mut(TOUCH_NUMBERS).zip(&found) {
             let p = pose.back(minus(f.on_i, pose.at));
             let all = [
-                p[0], p[1], 0.0, f.on_j[0], f.on_j[1], 0.0, f.normal[0], f.normal[1], 0.0, 0.0,
+                p[0],
+                p[1],
+                0.0,
+                f.on_j[0],
+                f.on_j[1],
+                0.0,
+                f.normal[0],
+                f.normal[1],
+                0.0,
+                0.0,
                 f.weight,
             ];
             touch.copy_from_slice(&all);
@@ -138,11 +147,17 @@ impl Curves {
         let limit = DEPTH * self.size;
         for corner in self.i.corners.iter().filter(|c| c.convex) {
             let p = pose.point(corner.at);
-            if let Some((on_j, normal, depth)) = nearest(&self.j, p, limit) {
+            if let Some(Foot {
+                at: on_j,
+                normal,
+                depth,
+                straight,
+            }) = nearest(&self.j, p, limit)
+            {
                 let inward = [-normal[0], -normal[1]];
                 let direction = inward[1].atan2(inward[0]);
                 let normals = corner.normals.map(|n| pose.direction(n));
-                let weight = self.share_of(&self.i, corner, normals, direction);
+                let weight = share(corner, self.i.is_point(), normals, (direction, straight));
                 all.push(Found {
                     on_i: p,
                     on_j,
@@ -154,11 +169,22 @@ impl Curves {
         }
         for corner in self.j.corners.iter().filter(|c| c.convex) {
             let p = pose.back(minus(corner.at, pose.at));
-            if let Some((on_i, normal, depth)) = nearest(&self.i, p, limit) {
+            if let Some(Foot {
+                at: on_i,
+                normal,
+                depth,
+                straight,
+            }) = nearest(&self.i, p, limit)
+            {
                 let inward = pose.turned([-normal[0], -normal[1]]);
                 // from J's solid into I's
                 let direction = inward[1].atan2(inward[0]);
-                let weight = self.share_of(&self.j, corner, corner.normals, direction);
+                let weight = share(
+                    corner,
+                    self.j.is_point(),
+                    corner.normals,
+                    (direction, straight),
+                );
                 all.push(Found {
                     on_i: pose.point(on_i),
                     on_j: corner.at,
@@ -171,23 +197,6 @@ impl Curves {
         self.shared(all)
     }
 
-    /// How much a corner takes part in a touch along an outward direction.
-    fn share_of(&self, outline: &Outline, corner: &Corner, normals: [f64; 2], direction: f64) -> f64 {
-        if outline.is_point() {
-            return 1.0;
-        }
-        let width = wrapped(normals[1] - normals[0]);
-        let offset = wrapped(direction - normals[0] - 0.5 * width) * width.signum();
-        let beyond = offset.abs() - 0.5 * width.abs();
-        if beyond <= 0.0 {
-            return 1.0;
-        }
-        let straight = corner.straight[usize::from(offset > 0.0)];
-        // rounding where sides lie on each other
-        let allowed = if straight { BESIDE } else { 1e-9 };
-        (1.0 - (beyond / allowed).powi(2)).max(0.0).powi(2)
-    }
-
     /// Touches of smooth sides, where (1) and (2) hold.
     fn smooth(&self, pose: &Pose, all: &mut Vec<Found>) {
         let (Some(root_i), Some(root_j)) = (self.i.root(), self.j.root()) else {
@@ -196,7 +205,13 @@ impl Curves {
         let reach = DEPTH * self.size;
         let mirrored = cross(pose.x, pose.y) < 0.0;
         let turn = pose.x[1].atan2(pose.x[0]);
-        let towards = |n: &Node| if mirrored { turn - n.normal } else { turn + n.normal };
+        let towards = |n: &Node| {
+            if mirrored {
+                turn - n.normal
+            } else {
+                turn + n.normal
+            }
+        };
         let mut waiting = vec![(root_i, root_j)];
         let mut seen = 0;
         while let Some((a, b)) = waiting.pop() {
@@ -248,7 +263,8 @@ impl Curves {
         let [ci, cj] = [&self.i.cells[cell_i], &self.j.cells[cell_j]];
         let width = [ci.s[1] - ci.s[0], cj.s[1] - cj.s[0]];
         let [mut a, mut b] = [0.5 * (ci.s[0] + ci.s[1]), 0.5 * (cj.s[0] + cj.s[1])];
-        let keep = |s: f64, range: [f64; 2], width: f64| s.clamp(range[0] - width, range[1] + width);
+        let keep =
+            |s: f64, range: [f64; 2], width: f64| s.clamp(range[0] - width, range[1] + width);
         let mut done = false;
         for _ in 0..25 {
             let p = pose.spot(&self.i.spot(a));
@@ -292,7 +308,10 @@ impl Curves {
             return None;
         }
         if gap < 0.0 {
-            let (u, v) = ([p.at, q.at], [p.at, q.at].map(|x| pose.back(minus(x, pose.at))));
+            let (u, v) = (
+                [p.at, q.at],
+                [p.at, q.at].map(|x| pose.back(minus(x, pose.at))),
+            );
             if self.j.is_crossed(u[0], u[1], cell_j) || self.i.is_crossed(v[0], v[1], cell_i) {
                 return None;
             }
@@ -314,7 +333,8 @@ impl Curves {
         let mut found: Vec<Found> = Vec::new();
         for f in all {
             let same = |other: &Found| {
-                length(minus(other.on_i, f.on_i)) <= near && length(minus(other.on_j, f.on_j)) <= near
+                length(minus(other.on_i, f.on_i)) <= near
+                    && length(minus(other.on_j, f.on_j)) <= near
             };
             if !found.iter().any(same) {
                 found.push(f);
@@ -342,8 +362,40 @@ impl Curves {
     }
 }
 
-/// The point of an outline nearest to `p`, its outward normal there, and how deep `p` is below it.
-fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<(Flat, Flat, f64)> {
+/// How much a corner takes part in a touch along an outward direction, with a side that is straight or not.
+fn share(
+    corner: &Corner,
+    is_point: bool,
+    normals: [f64; 2],
+    (direction, straight): (f64, bool),
+) -> f64 {
+    if is_point {
+        return 1.0;
+    }
+    let width = wrapped(normals[1] - normals[0]);
+    let offset = wrapped(direction - normals[0] - 0.5 * width) * width.signum();
+    let beyond = offset.abs() - 0.5 * width.abs();
+    if beyond <= 0.0 {
+        return 1.0;
+    }
+    // a curved side touches by itself; 1e-9 is for rounding where it hands over
+    let lies = straight && corner.straight[usize::from(offset > 0.0)];
+    let allowed = if lies { BESIDE } else { 1e-9 };
+    (1.0 - (beyond / allowed).powi(2)).max(0.0).powi(2)
+}
+
+/// The point of an outline that is nearest to another point.
+struct Foot {
+    at: Flat,
+    /// outward
+    normal: Flat,
+    /// how deep the other point is below it
+    depth: f64,
+    /// it lies on a straight side
+    straight: bool,
+}
+
+fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<Foot> {
     let (cell, s, at) = outline.nearest(p, limit)?;
     let c = &outline.cells[cell];
     let apart = minus(p, at);
@@ -351,7 +403,6 @@ fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<(Flat, Flat, f64)> 
     // a little inside its cell, where the tangent is that of this side
     let width = c.s[1] - c.s[0];
     let side = outline.spot(s.clamp(c.s[0] + 1e-9 * width, c.s[1] - 1e-9 * width));
-    let gap = dot(apart, side.normal);
     let end = if s <= c.s[0] {
         c.corner[0]
     } else if s >= c.s[1] {
@@ -359,14 +410,28 @@ fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<(Flat, Flat, f64)> 
     } else {
         None
     };
+    let aside = cross(apart, side.normal).abs() > 1e-9 * distance;
     match end {
         // the nearest point is a corner itself
-        Some(corner) if distance > 1e-9 * outline.size && cross(apart, side.normal).abs() > 1e-9 * distance => {
-            let sign = if outline.corners[corner].convex { 1.0 } else { -1.0 };
-            let normal = [sign * apart[0] / distance, sign * apart[1] / distance];
-            Some((at, normal, -sign * distance))
+        Some(corner) if distance > 1e-9 * outline.size && aside => {
+            let sign = if outline.corners[corner].convex {
+                1.0
+            } else {
+                -1.0
+            };
+            Some(Foot {
+                at,
+                normal: [sign * apart[0] / distance, sign * apart[1] / distance],
+                depth: -sign * distance,
+                straight: false,
+            })
         }
-        _ => Some((at, side.normal, -gap)),
+        _ => Some(Foot {
+            at,
+            normal: side.normal,
+            depth: -dot(apart, side.normal),
+            straight: c.straight,
+        }),
     }
 }
 
@@ -403,7 +468,11 @@ mod tests {
                 (&inside, 1.01, 0.01),
                 (&inside, 0.9, -0.1),
             ] {
-                let found = depths(c, [distance * angle.cos(), distance * angle.sin()], 1.3 * angle);
+                let found = depths(
+                    c,
+                    [distance * angle.cos(), distance * angle.sin()],
+                    1.3 * angle,
+                );
                 assert_eq!(found.len(), 1, "{distance} {k}");
                 assert!((found[0] - depth).abs() < 1e-14, "{distance} {k} {found:?}");
             }

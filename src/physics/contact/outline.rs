@@ -244,7 +244,10 @@ impl Outline {
                 continue;
             }
             let directions: Vec<f64> = (0..=16)
-                .map(|k| self.rim.at(a + (b - a) * (f64::from(k) + 1e-6) / 16.00001, 1))
+                .map(|k| {
+                    self.rim
+                        .at(a + (b - a) * (f64::from(k) + 1e-6) / 16.00001, 1)
+                })
                 .map(|t| t[1].atan2(t[0]))
                 .collect();
             let turn: f64 = directions
@@ -297,10 +300,7 @@ impl Outline {
             let after = (k < n).then_some(k);
             let corner = match (before, after) {
                 (Some(b), Some(a)) => {
-                    let normals = [
-                        self.direction(b, 1.0 - 1e-7),
-                        self.direction(a, 1e-7),
-                    ];
+                    let normals = [self.direction(b, 1.0 - 1e-7), self.direction(a, 1e-7)];
                     let jump = wrapped(normals[1] - normals[0]);
                     // with the outside on the left a turn to the right is convex
                     (jump.abs() > SMOOTH).then(|| Corner {
@@ -352,8 +352,8 @@ impl Outline {
         let reach = inside.map(|s| length(minus(self.rim.at(s, 0), middle)));
         let radius = 1.02 * reach.fold(0.0, f64::max);
         let normal = self.direction(cell, 0.5);
-        let deviations = [1e-7, 0.25, 0.75, 1.0 - 1e-7]
-            .map(|u| wrapped(self.direction(cell, u) - normal).abs());
+        let deviations =
+            [1e-7, 0.25, 0.75, 1.0 - 1e-7].map(|u| wrapped(self.direction(cell, u) - normal).abs());
         let spread = 1.1 * deviations.into_iter().fold(0.0, f64::max) + 1e-9;
         self.nodes.push(Node {
             cells: cell..cell + 1,
@@ -377,7 +377,9 @@ impl Outline {
         let [a, b] = halves.map(|h| &self.nodes[h]);
         let apart = minus(b.centre, a.centre);
         let distance = length(apart);
-        let radius = (0.5 * (distance + a.radius + b.radius)).max(a.radius).max(b.radius);
+        let radius = (0.5 * (distance + a.radius + b.radius))
+            .max(a.radius)
+            .max(b.radius);
         let centre = if distance > 0.0 {
             along(a.centre, (radius - a.radius) / distance, apart)
         } else {
@@ -406,7 +408,9 @@ impl Outline {
 
     /// The parameter of the point of a cell that is nearest to `p`, and that point.
     fn nearest_of(&self, cell: usize, p: Flat) -> (f64, Flat) {
-        let Cell { s: [a, b], ends, .. } = self.cells[cell];
+        let Cell {
+            s: [a, b], ends, ..
+        } = self.cells[cell];
         let chord = minus(ends[1], ends[0]);
         let u = dot(minus(p, ends[0]), chord) / dot(chord, chord);
         let mut s = a + (b - a) * u.clamp(0.0, 1.0);
@@ -437,7 +441,8 @@ impl Outline {
             }
             match node.halves {
                 Some([a, b]) => {
-                    let far = |k: usize| length(minus(p, self.nodes[k].centre)) - self.nodes[k].radius;
+                    let far =
+                        |k: usize| length(minus(p, self.nodes[k].centre)) - self.nodes[k].radius;
                     // the nearer half is looked at first
                     waiting.extend(if far(a) < far(b) { [b, a] } else { [a, b] });
                 }
@@ -472,7 +477,11 @@ impl Outline {
             let cell = node.cells.start;
             let n = self.cells.len();
             let apart = cell.abs_diff(own);
-            let apart = if self.closed { apart.min(n - apart) } else { apart };
+            let apart = if self.closed {
+                apart.min(n - apart)
+            } else {
+                apart
+            };
             let [a, b] = self.cells[cell].ends;
             let sides = [a, b].map(|x| cross(way, minus(x, p)) >= 0.0);
             let ends = [p, q].map(|x| cross(minus(b, a), minus(x, a)) >= 0.0);
