@@ -81,7 +81,7 @@ impl Builder {
             Node::Binary(BinaryOp::Rem, a, b) => {
                 at(self.binary(BinaryOp::Div, a, b), Levels::Whole)
             }
-            Node::Binary(BinaryOp::Div, _, b) => at(b, Levels::Zero),
+            Node::Binary(BinaryOp::Div | BinaryOp::Along, _, b) => at(b, Levels::Zero),
             Node::Binary(BinaryOp::Pow, a, _) => at(a, Levels::Zero),
             Node::Whole(x, n) if n < 0 => at(x, Levels::Zero),
             Node::Lookup { table, x, .. } => {

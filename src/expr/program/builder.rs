@@ -160,7 +160,7 @@ impl Builder {
         ca: Option<f64>,
         cb: Option<f64>,
     ) -> Option<Value> {
-        use BinaryOp::{Add, Div, Mul, Pow, Sub};
+        use BinaryOp::{Add, Along, Div, Mul, Pow, Sub};
         let structural = self.folding == Folding::Structural;
         let minus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_negative);
         let plus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_positive);
@@ -179,7 +179,7 @@ impl Builder {
             Mul if structural && (ca == Some(0.0) || cb == Some(0.0)) => {
                 return Some(self.constant(0.0));
             }
-            Div if structural && ca == Some(0.0) => return Some(self.constant(0.0)),
+            Div | Along if structural && ca == Some(0.0) => return Some(self.constant(0.0)),
             Div if structural && a == b => return Some(self.constant(1.0)),
             // a power of two divides as its reciprocal multiplies, to the bit
             Div if cb.is_some_and(is_power_of_two) => {
@@ -200,6 +200,10 @@ impl Builder {
             (Add, Some(y), None) => Some(self.binary(Sub, b, y)),
             (Sub, _, Some(y)) => Some(self.binary(Add, a, y)),
             (Mul | Div, Some(x), Some(y)) => Some(self.binary(op, x, y)),
+            (Along, Some(x), _) if structural => {
+                let along = self.binary(Along, x, b);
+                Some(self.unary(UnaryOp::Neg, along))
+            }
             // −x − b is −(x + b) but for the sign of a zero sum
             (Sub, Some(x), None) if structural => {
                 let sum = self.binary(Add, x, b);

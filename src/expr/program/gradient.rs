@@ -9,7 +9,7 @@ use super::guard::{GuardIx, Guards, NEVER};
 use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value, partial};
 use super::{Builder, Folding};
 use crate::expr::functions::Function;
-use BinaryOp::{Add, Div, Mul, Sub};
+use BinaryOp::{Add, Along, Div, Mul, Sub};
 use std::f64::consts::LOG10_E;
 
 impl Builder {
@@ -110,8 +110,8 @@ impl<'b> Adjoint<'b> {
             Node::Whole(x, n) => {
                 if self.active[x.index()] {
                     let slope = self.builder.powi(x, n - 1);
-                    let slope = self.times(slope, f64::from(n));
-                    let part = self.op(Mul, bar, slope);
+                    let part = self.times(bar, f64::from(n));
+                    let part = self.op(Mul, part, slope);
                     self.add(x, here, part);
                 }
             }
@@ -120,8 +120,8 @@ impl<'b> Adjoint<'b> {
                     let whole = self.builder.powi(x, n - 1);
                     let root = self.builder.unary(UnaryOp::Sqrt, x);
                     let slope = self.op(Mul, whole, root);
-                    let slope = self.times(slope, f64::from(n) + 0.5);
-                    let part = self.op(Mul, bar, slope);
+                    let part = self.times(bar, f64::from(n) + 0.5);
+                    let part = self.op(Mul, part, slope);
                     self.add(x, here, part);
                 }
                 _ => self.binary(op, a, b, v, bar),
@@ -164,13 +164,11 @@ impl<'b> Adjoint<'b> {
         let slope = match op {
             UnaryOp::Neg => return self.negative(bar),
             UnaryOp::Trunc | UnaryOp::Round | UnaryOp::Floor | UnaryOp::Not => return zero,
-            UnaryOp::Abs => {
-                let minus = self.negative(bar);
-                return self.signed(x, minus, zero, bar);
-            }
+            UnaryOp::Abs => return self.op(Along, bar, x),
+            // the quotient need not wait for the bar
             UnaryOp::Sqrt => {
-                let half = self.times(bar, 0.5);
-                return self.op(Div, half, v);
+                let half = self.builder.constant(0.5);
+                self.op(Div, half, v)
             }
             UnaryOp::Ln => return self.op(Div, bar, x),
             UnaryOp::Log10 => {
@@ -226,6 +224,11 @@ impl<'b> Adjoint<'b> {
                 let minus = self.negative(bar);
                 self.add(b, here, minus);
             }
+            BinaryOp::Mul if a == b => {
+                let part = self.times(bar, 2.0);
+                let part = self.op(Mul, part, a);
+                self.add(a, here, part);
+            }
             BinaryOp::Mul => {
                 for (x, other) in [(a, b), (b, a)] {
                     if self.active[x.index()] {
@@ -268,6 +271,10 @@ impl<'b> Adjoint<'b> {
                     let part = self.negative(part);
                     self.add(b, here, part);
                 }
+            }
+            BinaryOp::Along => {
+                let part = self.op(Along, bar, b);
+                self.add(a, here, part);
             }
             BinaryOp::And | BinaryOp::Or => {}
         }
@@ -322,8 +329,7 @@ impl<'b> Adjoint<'b> {
                 self.add(b, here, to_b);
             }
             (Function::Sign, &[a, b]) => {
-                let minus = self.negative(bar);
-                let along = self.signed(a, minus, zero, bar);
+                let along = self.op(Along, bar, a);
                 let against = self.negative(along);
                 let flipped = self.builder.compare(Comparison::Lt, b, zero);
                 let part = self.builder.select(flipped, against, along);
@@ -373,19 +379,26 @@ impl<'b> Adjoint<'b> {
         });
     }
 
-    /// One of three by the sign of `x`.
-    fn signed(&mut self, x: Value, negative: Value, zero: Value, positive: Value) -> Value {
-        self.builder.arithmetic_if(x, negative, zero, positive)
-    }
     fn op(&mut self, op: BinaryOp, a: Value, b: Value) -> Value {
         self.builder.binary(op, a, b)
     }
     fn negative(&mut self, a: Value) -> Value {
         self.builder.unary(UnaryOp::Neg, a)
     }
+    /// The multiple of a value; of a multiple, the multiple of what is in it.
     fn times(&mut self, a: Value, factor: f64) -> Value {
+        if let Node::Binary(Mul, x, y) = self.builder.nodes[a.index()] {
+            for (c, other) in [(x, y), (y, x)] {
+                if let Some(c) = self.builder.constant_of(c).map(|c| c * factor)
+                    && c.is_normal()
+                {
+                    let factor = self.builder.constant(c);
+                    return self.op(Mul, other, factor);
+                }
+            }
+        }
         let factor = self.builder.constant(factor);
-        self.builder.binary(Mul, a, factor)
+        self.op(Mul, a, factor)
     }
 }
 

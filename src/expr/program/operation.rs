@@ -47,6 +47,8 @@ pub enum BinaryOp {
     And,
     /// either condition
     Or,
+    /// −a, 0 or a by the sign of b; NaN where b is
+    Along,
 }
 
 /// A comparison of two numbers; it yields a condition, 1 or 0.
@@ -102,6 +104,7 @@ impl BinaryOp {
             BinaryOp::Rem => a.rem(b),
             BinaryOp::And => from_mask(truth(a).and(truth(b))),
             BinaryOp::Or => from_mask(truth(a).or(truth(b))),
+            BinaryOp::Along => arithmetic_if(b, -a, S::zero(), a),
         }
     }
 }

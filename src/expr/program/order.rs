@@ -8,7 +8,7 @@
 use super::Builder;
 use super::guard::{ALWAYS, GuardIx, Guards, NEVER};
 use super::operation::{Node, UnaryOp, Value};
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 
 /// An element of the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,12 +29,22 @@ pub(super) struct Order {
     pub(super) uses: Vec<u32>,
     /// comparisons that exist only inside the selections they decide
     pub(super) inlined: Vec<bool>,
+    /// selections whose sides stand together, by the one that `Begin` and `End` name, in the order of their values
+    pub(super) groups: HashMap<Value, Vec<Value>>,
+    /// whether a node is one of these
+    pub(super) is_jumped: Vec<bool>,
 }
 
 /// A side of a selection is skipped by a jump if what it computes costs at least so much. An IF was written by somebody who
 /// expects one side to be computed, mostly by time; other selections are sides of a kink that change more often.
 const WORTH_A_JUMP: u32 = 8;
 const WORTH_A_JUMP_IN_IF: u32 = 2;
+
+/// Most selections whose sides stand together, most candidates that are looked at for it, and most nodes that are looked at
+/// to see that one does not need another: recording stays linear.
+const MOST_TOGETHER: usize = 16;
+const MOST_CANDIDATES: usize = 32;
+const MOST_SEARCHED: usize = 200;
 
 impl Order {
     pub(super) fn new(builder: &Builder, outputs: &[Value]) -> Self {
@@ -43,10 +53,15 @@ impl Order {
             items: Vec::new(),
             uses: vec![0; builder.nodes.len()],
             inlined: vec![false; builder.nodes.len()],
+            groups: HashMap::new(),
+            is_jumped: vec![false; builder.nodes.len()],
         };
         order.count(builder, outputs, &guards);
-        let items = Walk::new(builder, &guards, &order).run(outputs);
-        order.items = items;
+        let (items, groups) = Walk::new(builder, &guards, &order).run(outputs);
+        for member in groups.values().flatten() {
+            order.is_jumped[member.index()] = true;
+        }
+        (order.items, order.groups) = (items, groups);
         order
     }
 
@@ -123,6 +138,11 @@ struct Walk<'a> {
     partners: HashMap<Value, Vec<Value>>,
     /// guards of the open sides
     open: Vec<GuardIx>,
+    /// needed selections by the guard of their first side: those that share their sides
+    alike: HashMap<GuardIx, VecDeque<Value>>,
+    groups: HashMap<Value, Vec<Value>>,
+    /// whether a selection belongs to a group
+    grouped: Vec<bool>,
     tasks: Vec<Task>,
     items: Vec<Item>,
 }
@@ -138,19 +158,22 @@ impl<'a> Walk<'a> {
             placed: vec![false; builder.nodes.len()],
             partners: partners(builder, guards),
             open: vec![ALWAYS],
+            alike: alike(builder, guards),
+            groups: HashMap::new(),
+            grouped: vec![false; builder.nodes.len()],
             tasks: Vec::new(),
             items: Vec::new(),
         }
     }
 
-    fn run(mut self, outputs: &[Value]) -> Vec<Item> {
+    fn run(mut self, outputs: &[Value]) -> (Vec<Item>, HashMap<Value, Vec<Value>>) {
         for &output in outputs {
             self.tasks.push(Task::Visit(output));
             while let Some(task) = self.tasks.pop() {
                 self.perform(task);
             }
         }
-        self.items
+        (self.items, self.groups)
     }
 
     fn perform(&mut self, task: Task) {
@@ -172,13 +195,22 @@ impl<'a> Walk<'a> {
 
     fn visit(&mut self, v: Value) {
         let node = &self.builder.nodes[v.index()];
+        if self.grouped[v.index()] {
+            // another of its group is on its way, and will place it
+            return;
+        }
         if self.is_worth_a_jump(v, node) {
             self.tasks.push(Task::Sides(v));
             // what decides is placed last, next to the jump
             self.tasks
                 .extend(self.deciders(node).iter().rev().map(|&x| Task::Visit(x)));
-            let sides = side_operands(self.builder, node);
-            self.visit_shared(v, &sides);
+            let group = self.group(v);
+            for &member in &group {
+                self.grouped[member.index()] = true;
+                let sides = side_operands(self.builder, &self.builder.nodes[member.index()]);
+                self.visit_shared(v, &sides);
+            }
+            self.groups.insert(v, group);
             return;
         }
         self.tasks.push(Task::Place(v));
@@ -234,12 +266,90 @@ impl<'a> Walk<'a> {
     }
 
     fn sides(&mut self, v: Value) {
-        let sides = side_operands(self.builder, &self.builder.nodes[v.index()]);
-        self.tasks.push(Task::Place(v));
-        for (side, &x) in [0u8, 1, 2].iter().zip(&sides).rev() {
-            self.tasks
-                .extend([Task::End(v, *side), Task::Visit(x), Task::Begin(v, *side)]);
+        let group = &self.groups[&v];
+        self.tasks.extend(group.iter().rev().map(|&m| Task::Place(m)));
+        let n_sides = side_operands(self.builder, &self.builder.nodes[v.index()]).len();
+        for side in (0..n_sides).rev() {
+            self.tasks.push(Task::End(v, side as u8));
+            for &m in group.iter().rev() {
+                let sides = side_operands(self.builder, &self.builder.nodes[m.index()]);
+                self.tasks.push(Task::Visit(sides[side]));
+            }
+            self.tasks.push(Task::Begin(v, side as u8));
         }
+    }
+
+    /// The selections whose sides are placed together with those of `v`: they share its sides, and none needs another.
+    fn group(&mut self, v: Value) -> Vec<Value> {
+        let Some(alike) = self.alike.get_mut(&self.guards.side(v, 0)) else {
+            return vec![v];
+        };
+        let is_done = |w: &Value| self.placed[w.index()] || self.grouped[w.index()];
+        let done = alike.iter().take_while(|w| is_done(w)).count();
+        alike.drain(..done);
+        let mut candidates: Vec<Value> = alike
+            .iter()
+            .take(MOST_CANDIDATES)
+            .copied()
+            .filter(|w| !is_done(w))
+            .collect();
+        if !candidates.contains(&v) {
+            candidates.push(v);
+            candidates.sort_unstable();
+        }
+        let mut group = vec![v];
+        for w in candidates {
+            if w != v
+                && group.len() < MOST_TOGETHER
+                && self.is_ready(w)
+                && group.iter().all(|&m| self.are_independent(m, w))
+            {
+                group.push(w);
+            }
+        }
+        group.sort_unstable();
+        group
+    }
+
+    /// Whether all that a selection needs may be placed here: nothing waits for a selection that is being placed, and nothing is
+    /// needed where the open sides are not taken. `false` where that is not seen soon.
+    fn is_ready(&self, w: Value) -> bool {
+        let here = self.open.last().copied().unwrap_or(ALWAYS);
+        let mut seen = std::collections::HashSet::new();
+        let mut open = vec![w];
+        let mut is_ready = true;
+        while let (Some(x), true) = (open.pop(), is_ready) {
+            let node = &self.builder.nodes[x.index()];
+            is_ready = matches!(node, Node::Constant(_) | Node::Input(_))
+                || seen.len() <= MOST_SEARCHED
+                    && !self.grouped[x.index()]
+                    && self.guards.is_within(self.guards.of[x.index()], here);
+            self.order.operands(self.builder, node, |o| {
+                if !self.placed[o.index()] && seen.insert(o) {
+                    open.push(o);
+                }
+            });
+        }
+        is_ready
+    }
+
+    /// Whether neither value needs the other; `false` where that is not seen soon.
+    fn are_independent(&self, a: Value, b: Value) -> bool {
+        let (below, above) = (a.min(b), a.max(b));
+        let mut seen = std::collections::HashSet::new();
+        let mut open = vec![above];
+        while let Some(x) = open.pop() {
+            if x == below || seen.len() > MOST_SEARCHED {
+                return false;
+            }
+            // operands stand before their users
+            self.builder.operands(&self.builder.nodes[x.index()], |o| {
+                if o >= below && seen.insert(o) {
+                    open.push(o);
+                }
+            });
+        }
+        true
     }
 
     fn place(&mut self, v: Value) {
@@ -279,6 +389,18 @@ pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
             .map_or(Vec::new(), |list| builder.arguments[list][1..].to_vec()),
         _ => Vec::new(),
     }
+}
+
+/// Needed selections by the guard of their first side.
+fn alike(builder: &Builder, guards: &Guards) -> HashMap<GuardIx, VecDeque<Value>> {
+    let mut alike: HashMap<GuardIx, VecDeque<Value>> = HashMap::new();
+    for (k, node) in builder.nodes.iter().enumerate() {
+        if guards.of[k] != NEVER && matches!(node, Node::Select(..) | Node::If(_)) {
+            let v = Value(k as u32);
+            alike.entry(guards.side(v, 0)).or_default().push_back(v);
+        }
+    }
+    alike
 }
 
 /// What nodes that are computed together have in common, except sine and cosine: the call.
@@ -363,7 +485,12 @@ fn cost(node: &Node) -> u32 {
         Node::Unary(UnaryOp::Trunc | UnaryOp::Floor | UnaryOp::Round, _) => 2,
         Node::Unary(..) => 20,
         Node::Binary(
-            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or,
+            BinaryOp::Add
+            | BinaryOp::Sub
+            | BinaryOp::Mul
+            | BinaryOp::And
+            | BinaryOp::Or
+            | BinaryOp::Along,
             ..,
         ) => 1,
         Node::Binary(BinaryOp::Div, ..) => 4,

@@ -89,7 +89,17 @@ impl Schedule<'_> {
         let mut code = Vec::with_capacity(self.order.items.len());
         let mut lists = Vec::new();
         for (time, item) in self.order.items.iter().enumerate() {
-            let Item::Node(v) = *item else { continue };
+            let v = match *item {
+                Item::Node(v) => v,
+                Item::Begin(first, 0) => {
+                    // the values of all sides go to registers that are held for them from the first side on
+                    for &member in &self.order.groups[&first] {
+                        self.registers[member.index()] = allocation.take();
+                    }
+                    continue;
+                }
+                _ => continue,
+            };
             let node = builder.nodes[v.index()];
             if matches!(node, Node::Constant(_) | Node::Input(_)) {
                 continue;
@@ -114,7 +124,10 @@ impl Schedule<'_> {
             self.order.operands(builder, &node, |x| {
                 allocation.release(x, time as u32, &self.registers)
             });
-            let to = allocation.take();
+            let to = match self.registers[v.index()] {
+                NONE => allocation.take(),
+                held => held,
+            };
             self.registers[v.index()] = to;
             self.instructions[v.index()] = code.len() as u32;
             let [a, b, c, d] = operands;

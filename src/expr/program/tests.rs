@@ -528,3 +528,25 @@ fn recording_looks_at_few_places_per_node() {
     assert_eq!(b.finish(&[v]).n_operations(), 2 * n as usize);
     assert!(b.probes < 3 * 5 * n as u64, "{} probes", b.probes);
 }
+/// Value and derivatives choose by the same two conditions, and the derivative by each needs the value of the other.
+#[test]
+fn selections_that_need_each_other_crosswise_are_not_placed_together() {
+    let mut b = Builder::new(Folding::Strict);
+    let (x, half) = (b.input(Input::Slot(0)), b.constant(0.5));
+    let sum = b.binary(BinaryOp::Add, x, half);
+    let condition = b.compare(Comparison::Lt, half, sum);
+    let quotient = b.binary(BinaryOp::Div, half, x);
+    let first = b.select(condition, half, quotient);
+    let inner = b.arithmetic_if(x, half, half, half);
+    let second = b.arithmetic_if(x, inner, half, x);
+    let product = b.binary(BinaryOp::Mul, first, second);
+    let program = b.finish(&[product]).with_gradient(&[Input::Slot(0)]);
+    let mut out = [0.0; 2];
+    // x > 0: x/2; x < 0: 1/(4x)
+    for (x, want) in [(2.0, [1.0, 0.5]), (-0.25, [-1.0, -4.0])] {
+        program.run(&[x], &mut Work::default(), &mut out);
+        assert_eq!(out, want);
+        program.eval(&[x], &mut Work::default(), &mut out);
+        assert_eq!(out, want);
+    }
+}

@@ -24,6 +24,9 @@ pub(super) const SQRT: u8 = 6;
 /// magnitude of a
 pub(super) const ABS: u8 = 7;
 
+/// −a, 0 or a by the sign of b
+pub(super) const ALONG: u8 = 8;
+
 /// Where the first operand, or the last, comes from.
 pub(super) const REGISTERS: u8 = 0;
 pub(super) const FIRST: u8 = 1;
@@ -32,7 +35,7 @@ pub(super) const LAST: u8 = 2;
 pub(super) const ADDED: u8 = 3;
 
 /// No operation (of a selector).
-const PLAIN: u8 = 8;
+const PLAIN: u8 = 9;
 
 #[inline(always)]
 fn arithmetic<const OP: u8>(a: f64, b: f64) -> f64 {
@@ -44,8 +47,17 @@ fn arithmetic<const OP: u8>(a: f64, b: f64) -> f64 {
         DIV => a / b,
         VID => b / a,
         SQRT => a.sqrt(),
+        ALONG => along(a, b),
         _ => a.abs(),
     }
+}
+
+/// −a, 0 or a by the sign of b, without a branch; NaN where b is.
+#[inline(always)]
+fn along(a: f64, b: f64) -> f64 {
+    let signed = f64::from_bits(a.to_bits() ^ (b.to_bits() & (1 << 63)));
+    let here = if b == 0.0 { 0.0 } else { signed };
+    if b.is_nan() { f64::NAN } else { here }
 }
 
 /// Defines handlers: the body sees `o` (operands), `r!(k)` (register k), `frame` (all
@@ -321,6 +333,10 @@ jumps! {
         r!(o[1]) = acc;
         (o[2], acc)
     }
+    /// go to o[0]
+    fn go(o, r, acc) {
+        (o[0], acc)
+    }
     /// a → o[1], go to o[2]
     fn fetch(o, r, _acc) {
         let value = r!(o[0]);
@@ -449,20 +465,20 @@ macro_rules! table {
 }
 
 /// By operation and source of the first operand.
-pub(super) static ONES: [[Handler; 2]; 8] = table!(one [REGISTERS FIRST]; 0 1 2 3 4 5 6 7);
+pub(super) static ONES: [[Handler; 2]; 9] = table!(one [REGISTERS FIRST]; 0 1 2 3 4 5 6 7 8);
 /// By both operations and source.
-pub(super) static TWOS: [[[Handler; 3]; 8]; 8] =
-    table!(two [REGISTERS FIRST LAST]; 0 1 2 3 4 5 6 7; [0 1 2 3 4 5 6 7]);
+pub(super) static TWOS: [[[Handler; 3]; 9]; 9] =
+    table!(two [REGISTERS FIRST LAST]; 0 1 2 3 4 5 6 7 8; [0 1 2 3 4 5 6 7 8]);
 /// By three operations (the quotients left out) and source.
-pub(super) static CHAINS: [[[[Handler; 3]; 6]; 6]; 6] =
-    table!(chain [REGISTERS FIRST LAST]; 0 1 2 3 6 7; [0 1 2 3 6 7]; [0 1 2 3 6 7]);
+pub(super) static CHAINS: [[[[Handler; 3]; 7]; 7]; 7] =
+    table!(chain [REGISTERS FIRST LAST]; 0 1 2 3 6 7 8; [0 1 2 3 6 7 8]; [0 1 2 3 6 7 8]);
 /// By three operations (sums, differences, products) and source.
 pub(super) static BALANCED: [[[[Handler; 3]; 4]; 4]; 4] =
     table!(balanced [REGISTERS FIRST LAST]; 0 1 2 3; [0 1 2 3]; [0 1 2 3]);
 /// By the two sums and source.
 pub(super) static DOTS: [[[Handler; 3]; 3]; 3] = table!(dot [REGISTERS FIRST LAST]; 0 1 2; [0 1 2]);
 /// By operation of the selector (the last: none) and source.
-pub(super) static BRANCHES: [[Handler; 2]; 7] = table!(branch [REGISTERS FIRST]; 0 1 2 3 4 5 8);
+pub(super) static BRANCHES: [[Handler; 2]; 7] = table!(branch [REGISTERS FIRST]; 0 1 2 3 4 5 9);
 /// By number of inputs less one.
 pub(super) static LOADS: [Handler; 5] = [load::<1>, load::<2>, load::<3>, load::<4>, load::<5>];
 /// By operation and source.
