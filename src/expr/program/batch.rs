@@ -60,6 +60,8 @@ enum Instructions {
 #[derive(Clone, Debug)]
 enum Step {
     Plain(Instruction),
+    /// (a p b) q c, where nobody else needs the inner result
+    Two(Arithmetic, Arithmetic, [u32; 4]),
     Prepared {
         what: Prepared,
         parameters: Vec<f64>,
@@ -67,6 +69,41 @@ enum Step {
         b: u32,
         to: u32,
     },
+}
+
+/// Arithmetic that fuses; `Bus` is the difference the other way round.
+#[derive(Clone, Copy, Debug)]
+enum Arithmetic {
+    Add,
+    Sub,
+    Bus,
+    Mul,
+}
+
+impl Step {
+    /// This step and the next as one, where the next takes the result of this and puts its own in the same register.
+    fn followed_by(&self, next: &Step) -> Option<Step> {
+        let (Step::Plain(this), Step::Plain(next)) = (self, next) else {
+            return None;
+        };
+        let (p, q) = (arithmetic(this.code)?, arithmetic(next.code)?);
+        let (q, c) = match (next.a == this.to, next.b == this.to, q) {
+            (true, false, q) => (q, next.b),
+            (false, true, Arithmetic::Sub) => (Arithmetic::Bus, next.a),
+            (false, true, q) => (q, next.a),
+            _ => return None,
+        };
+        (next.to == this.to).then_some(Step::Two(p, q, [this.a, this.b, c, next.to]))
+    }
+}
+
+fn arithmetic(code: Code) -> Option<Arithmetic> {
+    match code {
+        Code::Binary(BinaryOp::Add) => Some(Arithmetic::Add),
+        Code::Binary(BinaryOp::Sub) => Some(Arithmetic::Sub),
+        Code::Binary(BinaryOp::Mul) | Code::HalfPower(_) => Some(Arithmetic::Mul),
+        _ => None,
+    }
 }
 
 impl Program {
@@ -78,7 +115,14 @@ impl Program {
         for (register, &c) in registers.iter_mut().zip(&core.constants) {
             *register = Block([Vector::constant(c); VECTORS]);
         }
-        let steps = core.code.iter().map(|i| self.batch_step(i)).collect();
+        let mut steps: Vec<Step> = Vec::with_capacity(core.code.len());
+        for instruction in &core.code {
+            let step = self.batch_step(instruction);
+            match steps.last().and_then(|last| last.followed_by(&step)) {
+                Some(both) => steps.splice(steps.len() - 1.., [both]).for_each(drop),
+                None => steps.push(step),
+            }
+        }
         Batch {
             program: self.clone(),
             registers,
@@ -229,6 +273,7 @@ impl Batch {
         for step in &self.steps {
             match step {
                 Step::Plain(instruction) => plain(&self.program, instruction, r),
+                Step::Two(p, q, registers) => two(*p, *q, *registers, r),
                 Step::Prepared {
                     what,
                     parameters,
@@ -262,6 +307,27 @@ macro_rules! lanes {
         }
         Lanes(result)
     }};
+}
+
+/// (a p b) q c → to
+#[inline(always)]
+fn two(p: Arithmetic, q: Arithmetic, [a, b, c, to]: [u32; 4], r: &mut [Block]) {
+    use Arithmetic::{Add, Bus, Mul, Sub};
+    macro_rules! inner {
+        (|$inner:ident, $z:ident| $value:expr) => {
+            match p {
+                Add => each!(r, to = |x = a, y = b, $z = c| { let $inner = x + y; $value }),
+                Sub | Bus => each!(r, to = |x = a, y = b, $z = c| { let $inner = x - y; $value }),
+                Mul => each!(r, to = |x = a, y = b, $z = c| { let $inner = x * y; $value }),
+            }
+        };
+    }
+    match q {
+        Add => inner!(|v, z| v + z),
+        Sub => inner!(|v, z| v - z),
+        Bus => inner!(|v, z| z - v),
+        Mul => inner!(|v, z| v * z),
+    }
 }
 
 #[inline(always)]

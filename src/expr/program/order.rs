@@ -267,7 +267,8 @@ impl<'a> Walk<'a> {
 
     fn sides(&mut self, v: Value) {
         let group = &self.groups[&v];
-        self.tasks.extend(group.iter().rev().map(|&m| Task::Place(m)));
+        self.tasks
+            .extend(group.iter().rev().map(|&m| Task::Place(m)));
         let n_sides = side_operands(self.builder, &self.builder.nodes[v.index()]).len();
         for side in (0..n_sides).rev() {
             self.tasks.push(Task::End(v, side as u8));

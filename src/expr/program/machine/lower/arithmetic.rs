@@ -40,7 +40,6 @@ pub(super) enum Shape {
     Dot,
 }
 
-
 impl Lowering<'_> {
     /// Joins an operation with those before it, where nobody else needs their results.
     pub(super) fn arithmetic(&mut self, v: Value, op: u8, a: Operand, b: Operand) {

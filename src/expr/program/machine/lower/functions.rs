@@ -1,8 +1,8 @@
 //! Functions of the table as operations of the machine: their constant arguments prepared, value and slopes together.
 
-use super::Lowering;
 use super::super::handlers::{self, ADDED, FIRST, REGISTERS};
 use super::super::{Handler, Kind, halves};
+use super::Lowering;
 use crate::expr::functions::prepared::Prepared;
 use crate::expr::program::operation::{Node, UnaryOp, Value};
 use crate::expr::program::order::Item;

@@ -169,15 +169,17 @@ impl Lowering<'_> {
                 .copied()
                 .unwrap_or(m)
         };
-        let is_last = usize::from(side) + 1 == side_operands(builder, &builder.nodes[v.index()]).len();
+        let is_last =
+            usize::from(side) + 1 == side_operands(builder, &builder.nodes[v.index()]).len();
         // which of the values is in `acc`, and which must be copied
         let mut held = None;
         let mut copies: Vec<Value> = Vec::new();
         for &m in &members {
             let x = operand_of(m);
-            let places = self.places.get(&x).filter(|places| {
-                self.is_single(x) && places.iter().all(|&(op, _)| op > branch)
-            });
+            let places = self
+                .places
+                .get(&x)
+                .filter(|places| self.is_single(x) && places.iter().all(|&(op, _)| op > branch));
             let Some(places) = places.cloned() else {
                 copies.push(m);
                 continue;
@@ -200,7 +202,10 @@ impl Lowering<'_> {
             open.exits.extend(closed.exits);
         }
         // what is in `acc` is stored before a copy takes its place
-        if let Some(first) = copies.iter().position(|&m| self.last == Some(operand_of(m))) {
+        if let Some(first) = copies
+            .iter()
+            .position(|&m| self.last == Some(operand_of(m)))
+        {
             let m = copies.remove(first);
             held = Some(m);
             if copies.is_empty() && !is_last {
@@ -218,11 +223,10 @@ impl Lowering<'_> {
                 self.copy(handlers::copy, from, m);
             }
         }
-        let has_left = self.sides.last().is_some_and(|open| {
-            open.exits
-                .iter()
-                .any(|&(op, _)| op + 1 == self.ops.len())
-        });
+        let has_left = self
+            .sides
+            .last()
+            .is_some_and(|open| open.exits.iter().any(|&(op, _)| op + 1 == self.ops.len()));
         if !is_last && !has_left {
             let op = self.emit(handlers::go, &[1], Kind::Jumps(0, 1));
             self.leaves_by(op, 0);
