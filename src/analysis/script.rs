@@ -12,6 +12,15 @@ use crate::results::{Event, Status};
 pub const DEFAULT_STEPS: usize = 50;
 
 impl Simulate {
+    /// Whether its END is the time that the clock shows: a command after one that was to end there at the latest.
+    fn is_over(&self, now: f64) -> bool {
+        let over_time = !matches!(
+            self.kind,
+            SimulationKind::Static | SimulationKind::InitialConditions
+        );
+        over_time && self.end == Some(now)
+    }
+
     /// Kind, end and output steps, when the clock shows `now`.
     ///
     /// # Errors
@@ -67,6 +76,13 @@ pub fn obey(
             d
         };
         match &step.command {
+            Command::Simulate(simulate) if simulate.is_over(session.time()) => {
+                let now = session.time();
+                session.warn(&format!(
+                    "{}: the clock shows {now} already, there is nothing to simulate",
+                    step.text
+                ));
+            }
             Command::Simulate(simulate) => {
                 let (analysis, end, output) = simulate
                     .resolved(session.time())

@@ -129,6 +129,8 @@ impl Unknowns {
     /// # Errors
     /// The index of an unknown whose loop has no solution near.
     pub fn solve(&mut self, numbers: &mut [f64]) -> Result<(), usize> {
+        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let begun = largest(&numbers[self.places.clone()]);
         let mut size = self.evaluate(numbers);
         for _ in 0..ITERATIONS {
             if size == 0.0 {
@@ -190,6 +192,11 @@ impl Unknowns {
                 }
                 break;
             }
+        }
+        // a solution that is zero is approached for ever: what is left is nothing beside where it began
+        let about = begun.max(largest(&numbers[self.places.clone()]));
+        if size.is_finite() && largest(&self.step) <= 1e-14 * about {
+            return Ok(());
         }
         let worst = (0..self.rho.len()).max_by(|&a, &b| {
             let size = |k: usize| {

@@ -53,14 +53,55 @@ pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> St
         Renderer::plain()
     };
     let mut text = String::new();
-    for diagnostic in diagnostics.iter().take(MOST_SHOWN) {
+    let (shown, alike) = sorted_out(diagnostics);
+    for diagnostic in shown.iter().take(MOST_SHOWN) {
         text += &renderer.render(&[group(diagnostic, sources)]);
         text += "\n";
     }
-    if diagnostics.len() > MOST_SHOWN {
-        text += &format!("… and {} more\n", diagnostics.len() - MOST_SHOWN);
+    if shown.len() > MOST_SHOWN {
+        text += &format!("… and {} more\n", shown.len() - MOST_SHOWN);
+    }
+    for (code, elements) in alike {
+        let names: Vec<&str> = elements.iter().take(MOST_NAMED).copied().collect();
+        let rest = elements.len() - names.len();
+        let rest = if rest > 0 {
+            format!(" and {rest} more")
+        } else {
+            String::new()
+        };
+        text += &format!("{code}: likewise {}{rest}\n", names.join(", "));
     }
     text
+}
+
+/// Kinds of diagnostics that a model can have hundreds of, one for each element of a family, all with the same way out.
+const ALIKE: [&str; 4] = ["unsupported", "user_routine", "curve_data", "skipped"];
+/// How many of these are shown in full, and of how many more the names are told.
+const FIRST_ALIKE: usize = 3;
+const MOST_NAMED: usize = 12;
+
+/// Diagnostics that are to be shown, and the elements of those which say the same of others: by code.
+fn sorted_out(diagnostics: &[Diagnostic]) -> (Vec<&Diagnostic>, Vec<(&str, Vec<&str>)>) {
+    let mut shown: Vec<&Diagnostic> = Vec::new();
+    let mut alike: Vec<(&Diagnostic, Vec<&str>)> = Vec::new();
+    for d in diagnostics {
+        let same = |other: &Diagnostic| {
+            (other.code, other.severity, &other.help) == (d.code, d.severity, &d.help)
+        };
+        let before = shown.iter().filter(|s| same(s)).count();
+        let element = d.element.as_deref().filter(|_| ALIKE.contains(&d.code));
+        match element {
+            Some(element) if before >= FIRST_ALIKE => {
+                match alike.iter_mut().find(|(first, _)| same(first)) {
+                    Some((_, elements)) => elements.push(element),
+                    None => alike.push((d, vec![element])),
+                }
+            }
+            _ => shown.push(d),
+        }
+    }
+    let alike = alike.into_iter().map(|(d, e)| (d.code, e)).collect();
+    (shown, alike)
 }
 
 fn group<'a>(d: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
@@ -215,6 +256,22 @@ mod tests {
         let at = lines.iter().position(|l| l.contains(text)).unwrap();
         assert_eq!(lines[at].find("STEP"), lines[at + 1].find("^^^^"));
         assert!(shown.contains("help: STEP(x, x0, h0, x1, h1)"), "{shown}");
+    }
+
+    #[test]
+    fn what_is_said_of_a_hundred_elements_is_said_of_three() {
+        let one = |k: usize| {
+            Diagnostic::error("unsupported", format!("solid {k} cannot be read"))
+                .element(format!("CONTACT/{k}"))
+                .help("leave them out")
+        };
+        let mut all: Vec<Diagnostic> = (1..=100).map(one).collect();
+        all.push(Diagnostic::error("unsupported", "is not solved").element("TIRE/1"));
+        let shown = render(&all, &Sources::default(), false);
+        assert_eq!(shown.matches("cannot be read").count(), 3, "{shown}");
+        assert!(shown.contains("likewise CONTACT/4, CONTACT/5"), "{shown}");
+        assert!(shown.contains("and 85 more"), "{shown}");
+        assert!(shown.contains("TIRE/1: is not solved"), "{shown}");
     }
 
     #[test]

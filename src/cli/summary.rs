@@ -94,8 +94,8 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
             simulation.worst.join(", ")
         );
     }
-    for warning in &r.warnings {
-        text += &format!("warning: {warning}\n");
+    for line in warnings(&r.warnings) {
+        text += &format!("warning: {line}\n");
     }
     if run.table_columns().len() <= 1 {
         text += "the model has no REQUEST: --column EXPR adds a column to the table\n";
@@ -104,6 +104,41 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
         text += &format!("{}\n", file.display());
     }
     text
+}
+
+/// How many warnings that differ in numbers and names alone are shown.
+const ALIKE: usize = 3;
+
+/// The warnings, three of each kind; the record has all of them.
+fn warnings(all: &[String]) -> Vec<String> {
+    let kind = |warning: &str| -> String {
+        let words = warning.split_once(": ").map_or(warning, |(_, w)| w);
+        let words = words.split(' ').filter(|w| !w.contains(|c: char| c.is_ascii_digit()));
+        words.collect::<Vec<_>>().join(" ")
+    };
+    let mut kinds: Vec<(String, usize)> = Vec::new();
+    let mut shown = Vec::new();
+    for warning in all {
+        let kind = kind(warning);
+        let seen = match kinds.iter_mut().find(|(k, _)| *k == kind) {
+            Some((_, n)) => {
+                *n += 1;
+                *n
+            }
+            None => {
+                kinds.push((kind, 1));
+                1
+            }
+        };
+        if seen <= ALIKE {
+            shown.push(warning.clone());
+        }
+    }
+    let hidden = all.len() - shown.len();
+    if hidden > 0 {
+        shown.push(format!("{hidden} more like these are in the record"));
+    }
+    shown
 }
 
 /// Most panels of the picture.
@@ -137,6 +172,19 @@ mod tests {
             "{text}"
         );
         assert_eq!(table(&Run::new("r", "t", Units::default())), "");
+    }
+
+    #[test]
+    fn warnings_that_differ_in_numbers_are_shown_three_times() {
+        let mut all: Vec<String> = (0..50)
+            .map(|k| format!("CONTACT/{k}: is left out: GRAPHICS/{k} is a solid"))
+            .collect();
+        all.push("JOINT/3: its markers are off by 0.1 deg".into());
+        let shown = warnings(&all);
+        assert_eq!(shown.len(), 5, "{shown:?}");
+        assert!(shown[3].starts_with("JOINT/3"));
+        assert_eq!(shown[4], "47 more like these are in the record");
+        assert_eq!(warnings(&all[..3]), all[..3]);
     }
 
     #[test]

@@ -256,7 +256,8 @@ impl Script {
         of_message_log(&Source::from_text(None, text))
     }
 
-    /// The dataset that the file names, beside the command file, with the ending `.adm` where none is given.
+    /// The dataset that the file names, beside the command file, with the ending `.adm` where none is given; a file whose name differs in
+    /// small and capital letters alone is taken where there is no other, as the systems do on which such files are written.
     pub fn model_file(&self) -> Option<PathBuf> {
         let name = self.model.as_deref()?;
         let mut name = PathBuf::from(name);
@@ -269,8 +270,25 @@ impl Script {
             name = PathBuf::from(with_ending);
         }
         let folder = self.path.as_deref().and_then(Path::parent);
-        Some(folder.map_or(name.clone(), |f| f.join(name)))
+        Some(existing(folder.map_or(name.clone(), |f| f.join(name))))
     }
+}
+
+/// The file, or the one beside it whose name has other capital letters.
+fn existing(path: PathBuf) -> PathBuf {
+    if path.exists() {
+        return path;
+    }
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let alike = |other: &std::ffi::OsStr| {
+        (path.file_name()).is_some_and(|name| name.eq_ignore_ascii_case(other))
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut found = entries.filter(|e| alike(&e.file_name()));
+    found.next().map_or_else(|| path.clone(), |e| e.path())
 }
 
 /// Files that call each other endlessly stop here.
@@ -314,6 +332,7 @@ fn of_source(source: &Source) -> Result<Script, Errors> {
     if let Some(spans) = prompt_answers(source) {
         let answer = |k: usize| -> Option<String> {
             let text = source.slice(*spans.get(k)?).trim();
+            let text = text.trim_start_matches('\u{FEFF}').trim_start();
             (!text.is_empty() && !text.starts_with('!')).then(|| text.to_owned())
         };
         (script.model, script.output) = (answer(0), answer(1));
@@ -384,7 +403,7 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
 fn prompt_answers(source: &Source) -> Option<Vec<Span>> {
     let lines = syntax::headings(source);
     let is_command = |span: &Span| {
-        let line = source.slice(*span).trim();
+        let line = source.slice(*span).trim().trim_start_matches('\u{FEFF}');
         let word = line
             .split(['/', ' ', '\t', ',', '!'])
             .next()
@@ -394,6 +413,7 @@ fn prompt_answers(source: &Source) -> Option<Vec<Span>> {
         slash || rest.is_empty() && word.eq_ignore_ascii_case("STOP")
     };
     let first = source.slice(*lines.first()?).trim();
+    let first = first.trim_start_matches('\u{FEFF}');
     if first.is_empty() || first.starts_with('!') || is_command(&lines[0]) {
         return None;
     }

@@ -197,6 +197,12 @@ impl<'a> Reader<'a> {
             return self.fail("unexpected_text", name.span, message);
         }
         self.at += 1;
+        let kind_at = |k: usize| self.tokens.get(k).map(|t| t.kind);
+        if kind_at(self.at) == Some(TokenKind::Continuation)
+            && kind_at(self.at + 1) == Some(TokenKind::Equals)
+        {
+            self.at += 1;
+        }
         let equals = self.take(TokenKind::Equals).is_some();
         // The value may begin on the next line, whose comma then only continues.
         while equals && self.take(TokenKind::Continuation).is_some() {}

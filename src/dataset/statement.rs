@@ -282,7 +282,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         lens "REULER" (Euler, orientation);
         lens "ZG" (PointOnZ, orientation);
         lens "XG" (PointOnX, orientation);
-        field "MASS" (mass);
+        field "Mass" (mass);
         field "CM" (cm);
         field "IM" (im);
         lens "IP" (Inertia, ip);

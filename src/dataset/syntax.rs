@@ -260,7 +260,7 @@ fn token(pair: &Pair<Rule>) -> Token {
         Rule::equals => TokenKind::Equals,
         Rule::colon => TokenKind::Colon,
         Rule::slash => TokenKind::Slash,
-        Rule::backslash => TokenKind::Backslash,
+        Rule::backslash | Rule::hanging => TokenKind::Backslash,
         Rule::open => TokenKind::Open,
         Rule::close => TokenKind::Close,
         Rule::carry => TokenKind::Carry,

@@ -58,12 +58,14 @@ table!(
 );
 
 /// Systems of units.
-pub const SYSTEMS: &[&str] = &["MKS", "CGS", "FPS", "IPS", "NONE"];
+pub const SYSTEMS: &[&str] = &["MKS", "CGS", "FPS", "IPS", "NONE", "MMKS"];
 
 /// Force, mass, length and time of a system; `None` for NONE, which has UCF 1 and no units.
 pub fn system(name: &str) -> Option<[&'static str; 4]> {
     match name {
         "MKS" => Some(["NEWTON", "KILOGRAM", "METER", "SECOND"]),
+        // the preset of Adams View
+        "MMKS" => Some(["NEWTON", "KILOGRAM", "MILLIMETER", "SECOND"]),
         "CGS" => Some(["DYNE", "GRAM", "CENTIMETER", "SECOND"]),
         "FPS" => Some(["POUND_FORCE", "POUND_MASS", "FOOT", "SECOND"]),
         "IPS" => Some(["POUND_FORCE", "POUND_MASS", "INCH", "SECOND"]),

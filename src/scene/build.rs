@@ -3,6 +3,7 @@
 use super::compile::{Compiler, NamedTie, part_name};
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
+use super::left_out::LeftOut;
 use super::loops::{self, Key};
 use super::outside::{HookKind, HookName, SceneDelay, SceneHook, Supplied};
 use super::reads::{Allowed, offence};
@@ -70,6 +71,13 @@ impl Scene {
     /// # Errors
     /// Everything that keeps the model from being solved, all at once.
     pub fn compile(model: &Model, options: &Options) -> Result<Scene, Vec<Diagnostic>> {
+        let mut left_out = LeftOut::of(model, &options.skip, options.zero_user);
+        let without = (!left_out.elements.is_empty()).then(|| {
+            let mut model = model.clone();
+            model.inactive.extend(left_out.elements.iter().cloned());
+            model
+        });
+        let model = without.as_ref().unwrap_or(model);
         let mut c = Compiler::new(model);
         let (bindings, unusable) = super::formula::bindings(model);
         let mut b = Builder {
@@ -80,7 +88,7 @@ impl Scene {
             hooks: &options.hooks,
             zero_user: options.zero_user,
         };
-        for d in super::unsupported::report(model, &options.skip) {
+        for d in std::mem::take(&mut left_out.told) {
             match d.severity {
                 Severity::Error => c.errors.push(d),
                 _ => b.scene.warnings.push(d),
@@ -89,6 +97,7 @@ impl Scene {
         c.frames();
         b.scene.mode = f64::from(options.mode);
         b.scene.inactive.clone_from(&model.inactive);
+        b.scene.left_out = left_out;
         b.data();
         let drives = b.motions(&mut c);
         let ties = ties(model);
@@ -119,6 +128,7 @@ impl Scene {
             b.scene.extra.push(f);
         }
         b.counted();
+        b.read_zero();
         if c.errors.is_empty() {
             b.loops(&mut c);
             b.natural_sizes();
@@ -681,6 +691,11 @@ impl<'m> Builder<'m> {
         };
         let reaction = f.jfloat.and_then(|j| self.owner(c, j, &name));
         let floating = f.jfloat.unwrap_or(0);
+        // the floating marker has the place and the axes of I at every instant, and moves as I does
+        let floats = |j: &u32| self.model.markers.get(j).is_some_and(|m| m.floating);
+        if let Some(j) = f.jfloat.filter(floats) {
+            self.scene.marker_of.entry(j).or_insert(i);
+        }
         let law = ForceLaw::Vector { rm, formulas };
         self.scene.forces.push(ForceElement {
             keyword,

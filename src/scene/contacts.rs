@@ -193,6 +193,8 @@ impl Builder<'_> {
                     c.errors.push(d.element(name).help(
                         "give it an IMPACT or POISSON law, or take what USER would compute as zero (--zero-user)",
                     ));
+                } else {
+                    self.leave_out("CONTACT", id, "its force is computed by a routine");
                 }
                 continue;
             }
@@ -218,9 +220,7 @@ impl Builder<'_> {
                     }
                 }
                 Err(why) if skipped.contains("CONTACT") => {
-                    let what = format!("is left out: {why}");
-                    let warning = Diagnostic::warning("skipped", what).element(name);
-                    self.scene.warnings.push(warning);
+                    self.leave_out("CONTACT", id, &why);
                 }
                 Err(why) => {
                     let help = "--skip-unsupported CONTACT leaves out the contacts that cannot be solved; the results are then those of another model";

@@ -17,6 +17,7 @@ mod formula;
 mod frictions;
 mod general;
 pub mod layout;
+pub mod left_out;
 pub mod loops;
 pub mod outside;
 pub mod programs;
@@ -24,7 +25,6 @@ mod reads;
 pub mod solve;
 pub mod sweep;
 mod systems;
-mod unsupported;
 
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
@@ -397,6 +397,8 @@ pub struct Scene {
     pub extra: Vec<usize>,
     /// elements that are switched off, by keyword and number: they exert nothing
     pub inactive: BTreeSet<(String, u32)>,
+    /// elements that are left out because they are not solved
+    pub left_out: left_out::LeftOut,
     /// angles whose turns are counted, in the order of their places in the layout
     pub counted: Vec<Counted>,
     /// the values these angles have before the first step; empty: within half a turn   (n_turns)
@@ -500,6 +502,20 @@ impl Scene {
     pub fn computed(&self, formula: usize) -> Option<usize> {
         let place = *self.formulas.get(formula)?.delayed.first()?;
         matches!(self.supplied.get(place), Some(outside::Supplied::Hook(..))).then_some(place)
+    }
+
+    /// Where SENVAL of a sensor stands among the numbers from outside.
+    pub fn sensor_place(&self, id: u32) -> Option<usize> {
+        self.supplied.iter().position(|s| self.sensor_of(*s) == Some(id))
+    }
+
+    /// The user's number of the sensor that a number from outside belongs to.
+    pub fn sensor_of(&self, supplied: outside::Supplied) -> Option<u32> {
+        match supplied {
+            outside::Supplied::Sensor(k) => Some(self.sensors[k].id),
+            outside::Supplied::Kept(id) => Some(id),
+            _ => None,
+        }
     }
 
     /// What a motion's displacement is in the configuration of the dataset, where it drives a coordinate of the forest.

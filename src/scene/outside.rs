@@ -11,6 +11,8 @@ use crate::physics::contact::Question;
 pub enum Supplied {
     /// what a sensor evaluated last: index in [`Scene::sensors`](super::Scene::sensors)
     Sensor(usize),
+    /// what a sensor that is switched off evaluated last: the user's number
+    Kept(u32),
     /// a value of the past: index in [`Scene::delays`](super::Scene::delays)
     Delay(usize),
     /// what is added to a VARIABLE that is a plant input: index in the formulas

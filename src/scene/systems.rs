@@ -144,7 +144,12 @@ impl Builder<'_> {
 
     fn sensors(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, s) in active(model, "SENSOR", &model.sensors) {
+        for (&id, s) in &model.sensors {
+            if model.inactive.contains(&("SENSOR".to_string(), id)) {
+                // it watches nothing, but keeps what it has seen
+                self.supply(Supplied::Kept(id));
+                continue;
+            }
             let name = format!("SENSOR/{id}");
             let formula = self.formula(c, &format!("{name} FUNCTION"), &s.function);
             let evaluate =

@@ -28,8 +28,9 @@ pub(super) struct Carried {
     pub(super) parts: Vec<(bool, u32, MarkerState<f64>)>,
     /// turns that angles have counted
     pub(super) turns: Vec<f64>,
-    /// numbers from outside, and what was before
-    pub(super) supplied: Vec<f64>,
+    /// what sensors evaluated last, by their numbers
+    pub(super) sensors: BTreeMap<u32, f64>,
+    /// what was before
     pub(super) past: Vec<outside::Past>,
 }
 
@@ -183,9 +184,13 @@ impl Session {
     ) -> Result<Vec<f64>, Vec<Diagnostic>> {
         let l = scene.layout;
         let mut numbers = vec![0.0; l.len()];
-        let carried = self.carried.as_ref().map(|c| &c.supplied);
-        if let Some(values) = carried.filter(|v| v.len() == l.n_supplied) {
-            numbers[l.supplied()].copy_from_slice(values);
+        if let Some(carried) = &self.carried {
+            let first = l.supplied().start;
+            for (place, supplied) in scene.supplied.iter().enumerate() {
+                let sensor = scene.sensor_of(*supplied);
+                let value = sensor.and_then(|id| carried.sensors.get(&id));
+                numbers[first + place] = value.copied().unwrap_or(0.0);
+            }
         }
         if !scene.hooks.is_empty() {
             numbers[0] = t;
@@ -242,7 +247,7 @@ impl Session {
         self.carried = Some(Carried {
             t: numbers[0],
             turns: numbers[system.scene.layout.turns()].to_vec(),
-            supplied: numbers[system.scene.layout.supplied()].to_vec(),
+            sensors: sensed(&system.scene, &numbers),
             past: system.outside.past(),
             names: unknown_names(&system.scene),
             at_rest: false,
@@ -250,6 +255,14 @@ impl Session {
             numbers,
         });
     }
+}
+
+/// What SENVAL yields of each sensor.
+fn sensed(scene: &Scene, numbers: &[f64]) -> BTreeMap<u32, f64> {
+    let first = scene.layout.supplied().start;
+    let all = scene.supplied.iter().enumerate();
+    all.filter_map(|(place, s)| Some((scene.sensor_of(*s)?, numbers[first + place])))
+        .collect()
 }
 
 /// Whether a scene has positions or velocities among its unknowns that the last state does not tell by name.

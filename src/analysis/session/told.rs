@@ -121,7 +121,7 @@ impl Session {
         self.run.record.rank_changes.extend(told);
     }
 
-    pub(super) fn warn(&mut self, what: &str) {
+    pub(in crate::analysis) fn warn(&mut self, what: &str) {
         if !self.run.record.warnings.iter().any(|w| w == what) {
             self.run.record.warnings.push(what.to_string());
             self.run.log.push(Event::Warning(what.to_string()));

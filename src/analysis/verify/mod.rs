@@ -25,6 +25,7 @@ use crate::physics::joint::Tie;
 use crate::scene::Scene;
 use crate::scene::build::Options;
 use crate::scene::equations::{Equations, row_name};
+use crate::scene::left_out::{Unknown, unknown_constraints};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Stress in an element, relative to the largest in the state, below which it takes no part.
@@ -168,36 +169,14 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
 /// Constraints that a routine computes, or whose curve does not stand in the dataset, are counted, but cannot be among the rows: nobody knows
 /// what they hold.
 fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<String>) {
-    let unknown = |id: u32| {
-        let curve = model.curves.get(&id)?;
-        if curve.function.is_some() {
-            return Some(format!("CURVE/{id} is computed by a routine"));
-        }
-        let matrix = curve.matrix.and_then(|m| model.matrices.get(&m));
-        let file = matrix.and_then(|m| m.file.as_ref())?;
-        Some(format!("the points of CURVE/{id} stand in the file {file}"))
-    };
-    let mut found: Vec<(&str, u32, usize, String)> = Vec::new();
-    for (&id, p) in &model.points_on_curves {
-        found.extend(unknown(p.curve).map(|why| ("PTCV", id, 2, why)));
-    }
-    for (&id, c) in &model.curves_on_curves {
-        let why = unknown(c.i.curve).or_else(|| unknown(c.j.curve));
-        found.extend(why.map(|why| ("CVCV", id, 2, why)));
-    }
-    let routine = || "its function is computed by a routine".to_string();
-    for (&id, g) in &model.general_constraints {
-        if matches!(g.function, Formula::User { .. }) {
-            found.push(("GCON", id, 1, routine()));
-        }
-    }
-    for (&id, c) in &model.couplers {
-        if c.user.is_some() {
-            found.push(("COUPLER", id, 1, routine()));
-        }
-    }
-    found.retain(|(keyword, id, ..)| !model.inactive.contains(&((*keyword).to_string(), *id)));
-    for (keyword, id, n, why) in found {
+    for unknown in unknown_constraints(model) {
+        let Unknown {
+            keyword,
+            id,
+            equations: n,
+            why,
+            ..
+        } = unknown;
         let plural = if n == 1 { "" } else { "s" };
         warnings.push(format!(
             "{keyword}/{id} is counted with {n} equation{plural}, but what it holds is unknown: {why}; \

@@ -320,8 +320,10 @@ Every statement of a dataset is read, checked and written. Those that cannot be 
     },
     Code {
         name: "skipped",
-        summary: "an element left out because --skip-unsupported says so",
-        explanation: "The result is that of the model without it.",
+        summary: "an element left out because --skip-unsupported or --zero-user says so",
+        explanation: "\
+The result is that of the model without it, and without what hangs on it: what is attached to a body that is left out, what drives
+or couples a joint. It exerts nothing, and functions read zero of it; each of these is named.",
     },
     Code {
         name: "assembly",

@@ -111,8 +111,8 @@ impl<S: Scalar> Equations<'_, S> {
         sum
     }
 
-    /// A displacement or an angle; `None`: a marker is missing, or it is no function of places.
-    fn traced_measure(&self, measure: Measure, ids: [u32; 4]) -> Option<Traced<S>> {
+    /// A displacement or an angle with its rates; `None`: a marker is missing, or it is no function of places.
+    pub(super) fn place_in_time(&self, measure: Measure, ids: [u32; 4]) -> Option<Jet<S>> {
         let index = |id: u32| self.scene.marker_of.get(&id).copied();
         let mut jet = kinematic::kinematic_of(measure, ids, |id| {
             Some(placed(moving(&self.marker(index(id)?))))
@@ -120,6 +120,13 @@ impl<S: Scalar> Equations<'_, S> {
         if measure.needs_history() {
             jet.value = self.turned(Counted::Measure(measure, ids), jet.value);
         }
+        Some(jet)
+    }
+
+    /// A displacement or an angle; `None`: a marker is missing, or it is no function of places.
+    fn traced_measure(&self, measure: Measure, ids: [u32; 4]) -> Option<Traced<S>> {
+        let index = |id: u32| self.scene.marker_of.get(&id).copied();
+        let jet = self.place_in_time(measure, ids)?;
         let mut read: Vec<usize> = Vec::new();
         let seeded = kinematic::kinematic_of(measure, ids, |id| {
             let m = index(id)?;

@@ -4,7 +4,6 @@ use super::Equations;
 use crate::expr::measures::{Family, Measure};
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
-use crate::scene::outside::Supplied;
 use crate::scene::{Counted, Entry, sweep};
 use crate::space::kinematic;
 
@@ -17,6 +16,9 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// What a measure turns out to be, also where a load reads it.
     pub(super) fn measure_itself(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+        if self.scene.gone(measure, &ids).is_some() {
+            return S::zero();
+        }
         let row = measure.row();
         match row.family {
             Family::Displacement | Family::Velocity => {
@@ -116,9 +118,7 @@ impl<S: Scalar> Equations<'_, S> {
                 }
             }
             Measure::Senval => {
-                let wanted =
-                    |s: &Supplied| matches!(*s, Supplied::Sensor(k) if scene.sensors[k].id == id);
-                match scene.supplied.iter().position(wanted) {
+                match scene.sensor_place(id) {
                     Some(place) => self.supplied[place],
                     None => self.complain(format!("{asked_by}: SENSOR/{id} does not exist")),
                 }
@@ -147,10 +147,7 @@ impl<S: Scalar> Equations<'_, S> {
         let equation = &self.scene.differentials[d];
         match (equation.implicit, equation.state) {
             (false, _) => self.formula(equation.formula),
-            (true, None) => self.complain(format!(
-                "DIF1({0}): DIFF/{0} is an equation without a rate",
-                equation.id
-            )),
+            (true, None) => self.algebraic_rate(d),
             // at rest there is no rate
             (true, Some(_)) => self.unknown(Key::Rate(d)).unwrap_or_else(S::zero),
         }

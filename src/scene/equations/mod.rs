@@ -7,6 +7,7 @@
 //!
 //! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
 
+mod algebraic;
 mod cams;
 mod dynamics;
 mod general;
@@ -17,6 +18,7 @@ mod rows;
 mod stress;
 
 pub use dynamics::Solved;
+pub(in crate::scene) use reactions::keyword_of;
 pub use rows::{RowValue, row_name};
 pub use stress::Share;
 
@@ -65,6 +67,8 @@ pub struct Equations<'s, S: Scalar> {
     /// notes what is asked for too early instead of complaining
     discovering: bool,
     discovered: RefCell<Vec<Key>>,
+    /// equations whose rates are being found
+    rates_open: RefCell<Vec<usize>>,
     /// what went wrong, for the compiler to report
     complaints: RefCell<Vec<String>>,
 }
@@ -103,6 +107,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             loops,
             discovering,
             discovered: RefCell::new(Vec::new()),
+            rates_open: RefCell::new(Vec::new()),
             complaints: RefCell::new(Vec::new()),
         };
         this.driven = (0..scene.motions.len()).map(|m| this.drive(m)).collect();

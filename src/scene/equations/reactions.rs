@@ -360,7 +360,7 @@ fn negative<S: Scalar>(a: &Action<S>) -> Action<S> {
 }
 
 /// Keyword of the statement whose force a measure returns.
-fn keyword_of(measure: Measure) -> Option<&'static str> {
+pub(in crate::scene) fn keyword_of(measure: Measure) -> Option<&'static str> {
     use Measure as M;
     Some(match measure {
         M::Joint => "JOINT",

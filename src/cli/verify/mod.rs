@@ -1,5 +1,7 @@
 //! `cognate verify`: how many freedoms a model has, what fixes something twice, and what is free.
 
+mod text;
+
 use super::run::{has_commands, read, script};
 use super::{Exit, Failure, Outcome, complain, remark, say};
 use crate::analysis::verify::{Verification, verify};
@@ -8,7 +10,6 @@ use crate::dataset::command::Command;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use serde_json::{Value, json};
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Count the freedoms of a model and explain what is fixed twice and what is free
@@ -33,7 +34,7 @@ pub fn run(args: &Args) -> Outcome {
     if args.json {
         say(&format!("{:#}\n", as_json(&found)));
     } else {
-        say(&as_text(&found));
+        say(&text::of(&found));
     }
     if found.inconsistent.is_empty() {
         return Ok(Exit::Done);
@@ -118,88 +119,4 @@ fn as_json(v: &Verification) -> Value {
         "assembly": { "iterations": v.assembly.0, "moved": v.assembly.1 },
         "warnings": v.warnings,
     })
-}
-
-fn as_text(v: &Verification) -> String {
-    let mut out = String::new();
-    let mut line = |text: String| {
-        let _ = writeln!(out, "{text}");
-    };
-    let parts = if v.parts == 1 {
-        "part, with 6"
-    } else {
-        "parts, 6 each"
-    };
-    line(format!("{:5}  {parts}", v.parts));
-    if v.point_masses > 0 {
-        let masses = if v.point_masses == 1 {
-            "point mass, with 3"
-        } else {
-            "point masses, 3 each"
-        };
-        line(format!("{:5}  {masses}", v.point_masses));
-    }
-    for (what, n, equations) in &v.counted {
-        line(format!("{n:5}  {what}, {equations} equations"));
-    }
-    line(format!("Gruebler count: {}", v.gruebler));
-    let Some(freedom) = v.freedom else {
-        line("no position satisfies all constraints".into());
-        return out;
-    };
-    line(format!(
-        "freedom: {freedom} (from the rank of the constraints where they are assembled)"
-    ));
-    if v.freedom_nearby != v.freedom {
-        line(format!(
-            "freedom near that position: {}",
-            v.freedom_nearby.unwrap_or(freedom)
-        ));
-    }
-    for f in &v.free {
-        line(format!("free: {}", f.words));
-    }
-    if v.dependent.is_empty() {
-        line("no redundant constraint".into());
-    }
-    for (first, group) in groups(&v.dependent, |a, b| {
-        (&a.element, &a.fixed_by, a.only_here) == (&b.element, &b.fixed_by, b.only_here)
-    }) {
-        let directions: Vec<&str> = group.iter().map(|d| d.direction.as_str()).collect();
-        let rows: Vec<&str> = group.iter().map(|d| d.row.as_str()).collect();
-        let words = first
-            .words
-            .replacen(&first.direction, &directions.join(", "), 1);
-        line(format!("redundant: {words} ({})", rows.join(", ")));
-    }
-    for (first, group) in groups(&v.undetermined, |a, b| {
-        (&a.components, &a.axes) == (&b.components, &b.axes)
-    }) {
-        let elements: Vec<&str> = group.iter().map(|u| u.element.as_str()).collect();
-        line(format!(
-            "not unique: {} of {} (axes of {}); results tell the smallest set",
-            first.components.join(" "),
-            elements.join(", "),
-            first.axes
-        ));
-    }
-    for advice in &v.advice {
-        line(format!("advice: {advice}"));
-    }
-    for warning in &v.warnings {
-        line(format!("warning: {warning}"));
-    }
-    out
-}
-
-/// What belongs together, in the order of the first of each group.
-fn groups<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<(&T, Vec<&T>)> {
-    let mut found: Vec<(&T, Vec<&T>)> = Vec::new();
-    for x in all {
-        match found.iter_mut().find(|(first, _)| same(first, x)) {
-            Some((_, group)) => group.push(x),
-            None => found.push((x, vec![x])),
-        }
-    }
-    found
 }

@@ -1,0 +1,229 @@
+//! A verification as a person reads it: the count line by line, then what there is to say, what says the same of many elements said once.
+
+use crate::analysis::verify::{Dependent, Undetermined, Verification};
+use std::fmt::Write;
+
+/// More findings of one sort than this are told by their kinds: one in full, of the others the names.
+const MANY: usize = 6;
+
+/// The text.
+pub fn of(v: &Verification) -> String {
+    let mut out = String::new();
+    let mut line = |text: String| {
+        let _ = writeln!(out, "{text}");
+    };
+    let parts = if v.parts == 1 {
+        "part, with 6"
+    } else {
+        "parts, 6 each"
+    };
+    line(format!("{:5}  {parts}", v.parts));
+    if v.point_masses > 0 {
+        let masses = if v.point_masses == 1 {
+            "point mass, with 3"
+        } else {
+            "point masses, 3 each"
+        };
+        line(format!("{:5}  {masses}", v.point_masses));
+    }
+    for (what, n, equations) in &v.counted {
+        line(format!("{n:5}  {what}, {equations} equations"));
+    }
+    line(format!("Gruebler count: {}", v.gruebler));
+    let Some(freedom) = v.freedom else {
+        line("no position satisfies all constraints".into());
+        return out;
+    };
+    line(format!(
+        "freedom: {freedom} (from the rank of the constraints where they are assembled)"
+    ));
+    if v.freedom_nearby != v.freedom {
+        line(format!(
+            "freedom near that position: {}",
+            v.freedom_nearby.unwrap_or(freedom)
+        ));
+    }
+    for f in v.free.iter().take(MOST_FREE) {
+        line(format!("free: {}", f.words));
+    }
+    if v.free.len() > MOST_FREE {
+        let rest = v.free.len() - MOST_FREE;
+        line(format!("free: {rest} more, which --json tells"));
+    }
+    if v.dependent.is_empty() {
+        line("no redundant constraint".into());
+    }
+    let all = redundant(&v.dependent)
+        .into_iter()
+        .chain(not_unique(&v.undetermined));
+    all.chain(advice(&v.advice)).for_each(&mut line);
+    for warning in &v.warnings {
+        line(format!("warning: {warning}"));
+    }
+    out
+}
+
+/// How many free directions are told.
+const MOST_FREE: usize = 40;
+
+/// What is fixed twice.
+fn redundant(all: &[Dependent]) -> Vec<String> {
+    let by_element = groups(all, |a, b| {
+        (&a.element, &a.fixed_by, a.only_here) == (&b.element, &b.fixed_by, b.only_here)
+    });
+    let sentence = |(first, group): &(&Dependent, Vec<&Dependent>)| {
+        let directions: Vec<&str> = group.iter().map(|d| d.direction.as_str()).collect();
+        let rows: Vec<&str> = group.iter().map(|d| d.row.as_str()).collect();
+        let words = first
+            .words
+            .replacen(&first.direction, &directions.join(", "), 1);
+        format!("redundant: {words} ({})", rows.join(", "))
+    };
+    if by_element.len() <= MANY {
+        return by_element.iter().map(sentence).collect();
+    }
+    // rotations or translations, as many of them, fixed by one other element or around a loop
+    type Group<'a> = (&'a Dependent, Vec<&'a Dependent>);
+    let kind = |(first, group): &Group<'_>| {
+        let words = group.iter().map(|d| d.direction.starts_with("rotation"));
+        let words: Vec<bool> = words.collect();
+        (words, first.fixed_by.len() == 1, first.only_here)
+    };
+    let mut lines = vec![format!(
+        "{} redundant equations; --json tells of each what fixes it already",
+        all.len()
+    )];
+    for (first, group) in groups(&by_element, |a, b| kind(a) == kind(b)) {
+        let mut others: Vec<String> = group[1..]
+            .iter()
+            .map(|(d, _)| match d.fixed_by.as_slice() {
+                [one] => format!("{} by {one}", d.element),
+                _ => d.element.clone(),
+            })
+            .collect();
+        others.dedup();
+        let mut text = sentence(first);
+        if !others.is_empty() {
+            let where_ = if first.0.fixed_by.len() == 1 {
+                ""
+            } else {
+                ", around loops of theirs,"
+            };
+            let _ = write!(text, "; likewise{where_} {}", others.join(", "));
+        }
+        lines.push(text);
+    }
+    lines
+}
+
+/// Reactions that are not unique.
+fn not_unique(all: &[Undetermined]) -> Vec<String> {
+    let tell = |first: &Undetermined, group: &[&Undetermined], axes: &str| {
+        let elements: Vec<&str> = group.iter().map(|u| u.element.as_str()).collect();
+        format!(
+            "not unique: {} of {} ({axes}); results tell the smallest set",
+            first.components.join(" "),
+            elements.join(", "),
+        )
+    };
+    let exact = groups(all, |a, b| {
+        (&a.components, &a.axes) == (&b.components, &b.axes)
+    });
+    if exact.len() <= MANY {
+        let tell = |(first, group): &(&Undetermined, Vec<&Undetermined>)| {
+            tell(first, group, &format!("axes of {}", first.axes))
+        };
+        return exact.iter().map(tell).collect();
+    }
+    let alike = groups(all, |a, b| a.components == b.components);
+    let tell = |(first, group): &(&Undetermined, Vec<&Undetermined>)| {
+        tell(first, group, "axes of the J marker of each")
+    };
+    alike.iter().map(tell).collect()
+}
+
+/// What could be changed.
+fn advice(all: &[String]) -> Vec<String> {
+    if all.len() <= MANY {
+        return all.iter().map(|a| format!("advice: {a}")).collect();
+    }
+    let element = |text: &str| -> Option<String> {
+        let named = |w: &&str| {
+            let number = w.split_once('/').map(|(_, n)| n);
+            number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
+        };
+        text.split(' ').find(named).map(str::to_string)
+    };
+    let kind = |text: &String| match element(text) {
+        Some(name) => text.replacen(&name, "", 1),
+        None => text.clone(),
+    };
+    let mut lines = Vec::new();
+    for (first, group) in groups(all, |a, b| kind(a) == kind(b)) {
+        let others: Vec<String> = group[1..].iter().filter_map(|a| element(a)).collect();
+        let mut text = format!("advice: {first}");
+        if !others.is_empty() {
+            let _ = write!(text, "; likewise {}", others.join(", "));
+        }
+        lines.push(text);
+    }
+    lines
+}
+
+/// What belongs together, in the order of the first of each group.
+fn groups<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<(&T, Vec<&T>)> {
+    let mut found: Vec<(&T, Vec<&T>)> = Vec::new();
+    for x in all {
+        match found.iter_mut().find(|(first, _)| same(first, x)) {
+            Some((_, group)) => group.push(x),
+            None => found.push((x, vec![x])),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dependent(k: usize, fixed_by: &[&str]) -> Dependent {
+        let element = format!("JOINT/{k}");
+        let fixed_by: Vec<String> = fixed_by.iter().map(ToString::to_string).collect();
+        Dependent {
+            row: format!("{element} Zi.Xj"),
+            words: format!("{element} fixes rotation about ground Y, already fixed by it"),
+            element,
+            direction: "rotation about ground Y".into(),
+            fixed_by,
+            combination: Vec::new(),
+            only_here: false,
+        }
+    }
+
+    #[test]
+    fn few_findings_are_told_one_by_one_and_many_by_their_kinds() {
+        let few: Vec<Dependent> = (1..=6).map(|k| dependent(k, &["JOINT/9"])).collect();
+        assert_eq!(redundant(&few).len(), 6);
+        let mut many: Vec<Dependent> = (1..=20).map(|k| dependent(k, &["JOINT/90"])).collect();
+        many.extend((31..=35).map(|k| dependent(k, &["JOINT/91", "JOINT/92"])));
+        let lines = redundant(&many);
+        assert_eq!(lines.len(), 3, "{lines:#?}");
+        assert!(lines[0].starts_with("25 redundant equations"));
+        assert!(lines[1].contains("likewise JOINT/2 by JOINT/90"));
+        assert!(lines[2].contains("JOINT/35") && lines[2].contains("loops"));
+        // every element is named
+        for d in &many {
+            assert!(lines.iter().any(|l| l.contains(&d.element)), "{}", d.element);
+        }
+    }
+
+    #[test]
+    fn advice_of_one_kind_is_given_once() {
+        let all: Vec<String> = (1..=9)
+            .map(|k| format!("JPRIM/{k} is not needed: without it the motion is the same"))
+            .collect();
+        let lines = advice(&all);
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].ends_with("likewise JPRIM/2, JPRIM/3, JPRIM/4, JPRIM/5, JPRIM/6, JPRIM/7, JPRIM/8, JPRIM/9"));
+    }
+}

@@ -1,0 +1,72 @@
+//! Forces: what their laws need.
+
+use super::constraints::joint_word;
+use super::*;
+
+pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
+    for (&id, f) in &model.fields {
+        if f.stiffness.is_empty() && f.function.is_none() {
+            error(
+                out,
+                "missing_argument",
+                ("FIELD", id, &f.place),
+                "KMATRIX is needed".into(),
+            );
+        }
+    }
+    for (&id, b) in &model.beams {
+        let who = ("BEAM", id, &b.place);
+        if b.length <= 0.0 {
+            error(out, "unfit_value", who, "LENGTH must be positive".into());
+        }
+        for (name, x) in [
+            ("AREA", b.area),
+            ("EMODULUS", b.youngs_modulus),
+            ("GMODULUS", b.shear_modulus),
+        ] {
+            if x <= 0.0 {
+                warn(out, "unfit_value", who, format!("{name} is not positive"));
+            }
+        }
+    }
+    for (keyword, list) in [
+        ("VFORCE", &model.vforces),
+        ("VTORQUE", &model.vtorques),
+        ("GFORCE", &model.gforces),
+    ] {
+        for (&id, f) in list {
+            let none = f.force.iter().chain(&f.torque).all(Option::is_none);
+            if none && f.user.is_none() {
+                warn(
+                    out,
+                    "no_effect",
+                    (keyword, id, &f.place),
+                    "no component is given: it does nothing".into(),
+                );
+            }
+        }
+    }
+    for (&id, f) in &model.frictions {
+        let kind = model.joints.get(&f.joint).map(|j| j.kind);
+        let takes = |k| {
+            use JointKind as J;
+            matches!(
+                k,
+                J::Translational
+                    | J::Revolute
+                    | J::Cylindrical
+                    | J::Hooke
+                    | J::Universal
+                    | J::Spherical
+            )
+        };
+        if let Some(kind) = kind.filter(|&k| !takes(k)) {
+            let message = format!(
+                "JOINT/{} is {}: there is no friction law for it",
+                f.joint,
+                joint_word(kind)
+            );
+            error(out, "wrong_joint", ("FRICTION", id, &f.place), message);
+        }
+    }
+}

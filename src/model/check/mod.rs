@@ -1,0 +1,126 @@
+//! What does not fit together in a model: one function per rule, all of them run, all findings reported.
+//!
+//! A rule reads the model and says what is wrong with which element, and what to do. Rules about geometry in motion
+//! (freedom, redundancy, lock-up) belong to the analyses; here stands what the statements themselves contradict.
+
+mod bodies;
+mod constraints;
+mod couplings;
+mod forces;
+mod output;
+mod references;
+mod systems;
+
+use super::*;
+use crate::diagnostic::{Diagnostic, near_names};
+
+/// Where findings go.
+type Out = Vec<Diagnostic>;
+
+/// Name of a rule and the rule.
+type Rule = (&'static str, fn(&Model, &mut Out));
+
+/// All rules, in the order in which they run.
+pub const RULES: &[Rule] = &[
+    ("references exist", references::references_exist),
+    ("exactly one ground", bodies::one_ground),
+    ("mass has a place", bodies::mass_has_a_centre),
+    ("inertia is possible", bodies::inertia_is_possible),
+    ("axes have directions", bodies::axes_have_directions),
+    (
+        "constraints join two parts",
+        constraints::constraints_join_two_parts,
+    ),
+    (
+        "floating markers have one owner",
+        bodies::floating_markers_have_one_owner,
+    ),
+    ("joints are complete", constraints::joints_are_complete),
+    (
+        "motions fit their joints",
+        constraints::motions_fit_their_joints,
+    ),
+    (
+        "couplers fit their joints",
+        couplings::couplers_fit_their_joints,
+    ),
+    ("gears share a carrier", couplings::gears_share_a_carrier),
+    ("point masses do not turn", bodies::point_masses_do_not_turn),
+    ("splines are functions", systems::splines_are_functions),
+    ("arrays have their size", systems::arrays_have_their_size),
+    (
+        "systems have their arrays",
+        systems::systems_have_their_arrays,
+    ),
+    ("curves have points", systems::curves_have_points),
+    ("forces have data", forces::forces_have_data),
+    ("requests ask something", output::requests_ask_something),
+    ("units are known", output::units_are_known),
+    ("functions can be read", references::functions_can_be_read),
+];
+
+impl Model {
+    /// Everything that does not fit together, in the order of the elements' lines.
+    ///
+    /// # Examples
+    /// ```
+    /// use cognate::model::{Joint, Model};
+    /// let mut model = Model::default();
+    /// model.joints.insert(3, Joint { i: 12, j: 21, ..Joint::default() });
+    /// let found = model.check();
+    /// assert!(found.iter().any(|d| d.message == "I = 12: MARKER/12 does not exist"));
+    /// ```
+    pub fn check(&self) -> Vec<Diagnostic> {
+        let mut out = Vec::new();
+        for (_, rule) in RULES {
+            rule(self, &mut out);
+        }
+        out.sort_by_key(|d| (d.line, d.column));
+        out
+    }
+}
+
+fn about(d: Diagnostic, keyword: &str, id: u32, place: &Place) -> Diagnostic {
+    let mut d = d.element(format!("{keyword}/{id}"));
+    (d.line, d.column) = (place.line, usize::from(place.line > 0));
+    d
+}
+
+fn error(
+    out: &mut Out,
+    code: &'static str,
+    (keyword, id, place): (&str, u32, &Place),
+    message: String,
+) {
+    out.push(about(Diagnostic::error(code, message), keyword, id, place));
+}
+
+fn warn(
+    out: &mut Out,
+    code: &'static str,
+    (keyword, id, place): (&str, u32, &Place),
+    message: String,
+) {
+    out.push(about(
+        Diagnostic::warning(code, message),
+        keyword,
+        id,
+        place,
+    ));
+}
+
+fn advise(out: &mut Out, advice: impl Into<String>) {
+    if let Some(d) = out.last_mut() {
+        d.help.push(advice.into());
+    }
+}
+
+/// "did you mean …?" among the numbers in use.
+fn near(number: u32, known: &[u32]) -> Option<String> {
+    if number < 10 {
+        return None; // every digit is near every other
+    }
+    let known: Vec<String> = known.iter().map(u32::to_string).collect();
+    let near = near_names(&number.to_string(), known.iter().map(String::as_str));
+    (!near.is_empty()).then(|| format!("did you mean {}?", near.join(" or ")))
+}

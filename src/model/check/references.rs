@@ -1,0 +1,145 @@
+//! What is named exists, and functions can be read.
+
+use super::{Out, about, advise, error, near};
+use crate::diagnostic::Diagnostic;
+use crate::expr::Expr;
+use crate::expr::ast::Node;
+use crate::expr::signature;
+use crate::model::reference::Target;
+use crate::model::{Formula, Model};
+use std::collections::BTreeMap;
+
+pub(super) fn references_exist(model: &Model, out: &mut Out) {
+    for r in model.references() {
+        if model.has(r.target, r.number) {
+            continue;
+        }
+        let what = r.target.keyword();
+        let message = format!("{} = {1}: {what}/{1} does not exist", r.argument, r.number);
+        error(out, "unknown_element", (r.keyword, r.id, r.place), message);
+        if let Some(advice) = near(r.number, &model.numbers(r.target)) {
+            advise(out, advice);
+        }
+    }
+}
+
+pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
+    let mut known = Known::default();
+    for owned in model.formulas() {
+        let Formula::Expression { text, .. } = owned.formula else {
+            continue;
+        };
+        let who = |d: Diagnostic| {
+            let d = about(d, owned.keyword, owned.id, owned.place);
+            Diagnostic {
+                message: format!("{}: {}", owned.argument, d.message),
+                ..d
+            }
+        };
+        if text.is_empty() && owned.place.line > 0 {
+            continue; // the reader has said so already
+        }
+        if text.is_empty() {
+            out.push(who(Diagnostic::error(
+                "missing_argument",
+                "an expression is needed",
+            )));
+            continue;
+        }
+        match Expr::parse(text) {
+            Err(d) => {
+                let at = d.span.map_or(0, |s| s.start);
+                out.push(placed(who(strip(d)), owned.formula, at));
+                continued_by_comma(owned.formula, at, out);
+            }
+            Ok(expr) => {
+                for d in expr.warnings() {
+                    let at = d.span.map_or(0, |s| s.start);
+                    out.push(placed(who(strip(d)), owned.formula, at));
+                }
+                for (at, target, number) in named(&expr) {
+                    if known.has(model, target, number) {
+                        continue;
+                    }
+                    let message = format!("{}/{number} does not exist", target.keyword());
+                    let mut d = who(Diagnostic::error("unknown_element", message));
+                    d.help.extend(near(number, &model.numbers(target)));
+                    out.push(placed(d, owned.formula, at));
+                }
+            }
+        }
+    }
+}
+
+/// A place in an expression is not yet one in a file.
+fn strip(d: Diagnostic) -> Diagnostic {
+    Diagnostic {
+        span: None,
+        line: 0,
+        column: 0,
+        ..d
+    }
+}
+
+/// The place in the file of a byte of the expression; the place of the statement stays where there is none.
+fn placed(mut d: Diagnostic, formula: &Formula, offset: usize) -> Diagnostic {
+    if let Some((line, column)) = formula.file_place(offset) {
+        (d.line, d.column) = (line, column);
+    }
+    d
+}
+
+/// A comma at the beginning of a line does not separate arguments: say so where that may be the mistake.
+fn continued_by_comma(formula: &Formula, offset: usize, out: &mut Out) {
+    let Formula::Expression { text, breaks, .. } = formula else {
+        return;
+    };
+    let at_break = breaks.iter().any(|b| b.offset == offset);
+    let open = text
+        .get(..offset)
+        .is_some_and(|t| !t.trim_end().ends_with([',', '+', '-', '*', '/', '(']));
+    if at_break && open {
+        advise(
+            out,
+            "a comma that begins a line only continues the statement; one that separates arguments ends the line above",
+        );
+    }
+}
+
+/// Numbers in use, looked up once per kind.
+#[derive(Default)]
+struct Known(BTreeMap<Target, Vec<u32>>);
+
+impl Known {
+    fn has(&mut self, model: &Model, target: Target, number: u32) -> bool {
+        let list = self
+            .0
+            .entry(target)
+            .or_insert_with(|| model.numbers(target));
+        list.binary_search(&number).is_ok()
+    }
+}
+
+/// The elements an expression names: byte, kind, number. Zeros that stand for ground are left out.
+fn named(expr: &Expr) -> Vec<(usize, Target, u32)> {
+    let ast = expr.ast();
+    let mut all = Vec::new();
+    for node in &ast.nodes {
+        let Node::Call { callee, args } = node else {
+            continue;
+        };
+        for (k, &arg) in args.iter().enumerate() {
+            let signature::Kind::Identifier { element, .. } = callee.argument(k) else {
+                continue;
+            };
+            if let Node::Number { literal, .. } = ast.node(arg)
+                && *literal >= 1.0
+                && *literal <= f64::from(u32::MAX)
+            {
+                let at = ast.spans.get(arg as usize).map_or(0, |s| s.start);
+                all.push((at, Target::Named(element), *literal as u32));
+            }
+        }
+    }
+    all
+}

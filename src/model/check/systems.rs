@@ -1,0 +1,190 @@
+//! Data and system elements: splines, arrays, curves, and the arrays that systems fill and read.
+
+use super::*;
+use crate::model::reference::Target;
+
+pub(super) fn splines_are_functions(model: &Model, out: &mut Out) {
+    for (&id, s) in &model.splines {
+        let who = ("SPLINE", id, &s.place);
+        if s.file.is_some() {
+            continue;
+        }
+        let n = s.x.len();
+        if n == 0 || s.y.is_empty() {
+            error(
+                out,
+                "missing_argument",
+                who,
+                "a SPLINE needs X and Y, or FILE".into(),
+            );
+            continue;
+        }
+        for (k, y) in s.y.iter().enumerate().filter(|(_, y)| y.len() != n) {
+            let which = if s.y.len() > 1 {
+                format!(" {}", k + 1)
+            } else {
+                String::new()
+            };
+            error(
+                out,
+                "wrong_count",
+                who,
+                format!("X has {n} numbers, Y{which} has {}", y.len()),
+            );
+        }
+        for (name, list) in [("X", &s.x), ("Z (the first numbers of each Y)", &s.z)] {
+            if let Some(w) = list.windows(2).find(|w| w[0].total_cmp(&w[1]).is_ge()) {
+                let message = format!("{name} must increase: {} comes after {}", w[1], w[0]);
+                error(out, "not_increasing", who, message);
+            }
+        }
+        if n < 4 {
+            warn(
+                out,
+                "few_points",
+                who,
+                format!("{n} points: a cubic spline needs four or more"),
+            );
+        }
+    }
+}
+
+pub(super) fn arrays_have_their_size(model: &Model, out: &mut Out) {
+    for (&id, a) in &model.arrays {
+        let (n, name) = match &a.kind {
+            ArrayKind::Ic(x) => (x.len(), "NUMBERS"),
+            ArrayKind::Inputs(x) => (x.len(), "VARIABLES"),
+            ArrayKind::States | ArrayKind::Outputs => continue,
+        };
+        let who = ("ARRAY", id, &a.place);
+        if n == 0 {
+            error(out, "missing_argument", who, format!("{name} is needed"));
+        }
+        if let Some(size) = a.size.filter(|&s| s != n && n > 0) {
+            error(
+                out,
+                "wrong_count",
+                who,
+                format!("SIZE = {size}, but {name} holds {n}"),
+            );
+        }
+    }
+    for (&id, m) in &model.matrices {
+        let who = ("MATRIX", id, &m.place);
+        if m.file.is_some() {
+            continue;
+        }
+        if m.rows == 0 || m.columns == 0 {
+            error(
+                out,
+                "missing_argument",
+                who,
+                "ROWS and COLUMNS are needed".into(),
+            );
+        } else if m.by_rows().is_none() {
+            let message = match &m.layout {
+                MatrixLayout::Sparse { rows, columns } => format!(
+                    "SPARSE with {} I, {} J and {} VALUES in {} rows and {} columns",
+                    rows.len(),
+                    columns.len(),
+                    m.values.len(),
+                    m.rows,
+                    m.columns
+                ),
+                _ => format!(
+                    "{} rows of {} make {}, but VALUES holds {}",
+                    m.rows,
+                    m.columns,
+                    m.rows.saturating_mul(m.columns),
+                    m.values.len()
+                ),
+            };
+            error(out, "wrong_count", who, message);
+        }
+    }
+}
+
+pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
+    let fits = |array: u32, argument: &str| {
+        model.arrays.get(&array).is_none_or(|a| match argument {
+            "X" | "XD" => a.kind == ArrayKind::States,
+            "Y" => a.kind == ArrayKind::Outputs,
+            "U" => matches!(a.kind, ArrayKind::Inputs(_)),
+            _ => matches!(a.kind, ArrayKind::Ic(_)),
+        })
+    };
+    for r in model.references() {
+        if r.target == Target::Array && !fits(r.number, r.argument) {
+            let kind = match r.argument {
+                "XD" => "X",
+                "ICD" => "IC",
+                other => other,
+            };
+            let message = format!(
+                "{} = {1}: ARRAY/{1} is not of the kind {kind}",
+                r.argument, r.number
+            );
+            error(out, "wrong_array", (r.keyword, r.id, r.place), message);
+        }
+    }
+    for (&id, t) in &model.transfer_functions {
+        let who = ("TFSISO", id, &t.place);
+        if t.numerator.len() > t.denominator.len() {
+            let message = "the degree of NUMERATOR is higher than that of DENOMINATOR".to_owned();
+            error(out, "improper_transfer_function", who, message);
+        }
+        if t.denominator.last().is_some_and(|&a| a == 0.0) {
+            error(
+                out,
+                "unfit_value",
+                who,
+                "the last number of DENOMINATOR, its highest power, is zero".into(),
+            );
+        }
+    }
+}
+
+pub(super) fn curves_have_points(model: &Model, out: &mut Out) {
+    for (&id, c) in &model.curves {
+        let who = ("CURVE", id, &c.place);
+        if c.matrix.is_none() && c.function.is_none() {
+            error(
+                out,
+                "missing_argument",
+                who,
+                "a CURVE needs MATRIX, or FUNCTION = USER(…)".into(),
+            );
+        }
+        let Some(points) = c.matrix.and_then(|m| model.matrices.get(&m)) else {
+            continue;
+        };
+        if points.file.is_some() {
+            continue;
+        }
+        if points.columns != 3 {
+            let message = format!(
+                "its MATRIX has {} columns; a point has three",
+                points.columns
+            );
+            error(out, "wrong_count", who, message);
+            continue;
+        }
+        if points.rows < 4 {
+            error(
+                out,
+                "few_points",
+                who,
+                format!("{} points; a curve needs four or more", points.rows),
+            );
+        }
+        let all = points.by_rows().unwrap_or_default();
+        if c.closed && c.through_points && all.len() >= 6 && all[..3] != all[all.len() - 3..] {
+            error(
+                out,
+                "open_ends",
+                who,
+                "CLOSED, but the first and last point differ".into(),
+            );
+        }
+    }
+}

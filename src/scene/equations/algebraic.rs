@@ -1,0 +1,118 @@
+//! The rate of a DIFF that has none of its own: an implicit equation without DIF1 holds at every instant, so it holds with its first rate.
+//!
+//! ```text
+//! 0 = e(y, z(t))        y' = −(∂e/∂z · z') / (∂e/∂y)
+//! ```
+//!
+//! Both derivatives come from the program of e over jets: once with z moving and y at rest, once with y alone moving. What e reads
+//! may be time, other equations, VARIABLEs and ARRAYs of these, and places of markers; what has no rate that is known
+//! without accelerations is named.
+
+use super::Equations;
+use crate::expr::measures::{Family, Measure};
+use crate::expr::program::{Input, Work};
+use crate::scalar::{Jet, Scalar};
+use crate::scene::Entry;
+
+/// What moves while a formula is differentiated in time.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Moving {
+    /// all but the unknown of this equation
+    Others(usize),
+    /// the unknown of this equation alone, at rate one
+    Only(usize),
+}
+
+impl<S: Scalar> Equations<'_, S> {
+    /// Rate of the unknown of an equation that does not read its rate.
+    pub(super) fn algebraic_rate(&self, d: usize) -> S {
+        let equation = &self.scene.differentials[d];
+        if self.rates_open.borrow().contains(&d) {
+            return self.complain(format!("DIF1({}) depends on itself", equation.id));
+        }
+        self.rates_open.borrow_mut().push(d);
+        let along = self.moved(equation.formula, Moving::Others(d), &mut Vec::new());
+        let own = self.moved(equation.formula, Moving::Only(d), &mut Vec::new());
+        self.rates_open.borrow_mut().pop();
+        -(along.first / own.first)
+    }
+
+    /// A formula with its rate while some of what it reads moves.
+    fn moved(&self, formula: usize, moving: Moving, open: &mut Vec<usize>) -> Jet<S> {
+        let f = &self.scene.formulas[formula];
+        if open.contains(&formula) {
+            return Jet::constant(f64::NAN);
+        }
+        open.push(formula);
+        let inputs: Vec<Jet<S>> = (f.program.inputs().iter())
+            .map(|&input| match input {
+                Input::Time => at_rate(self.t, if own(moving) { S::zero() } else { S::one() }),
+                Input::Mode => Jet::constant(self.scene.mode),
+                Input::Measure(Measure::Varval, [id, ..]) => match self.scene.variables.get(&id) {
+                    Some(&v) => self.moved(v, moving, open),
+                    None => Jet::constant(f64::NAN),
+                },
+                Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k) {
+                    Some(Entry::Number(x)) => Jet::constant(x),
+                    Some(Entry::State(d)) => self.moved_state(d, moving),
+                    Some(Entry::Formula(f)) => self.moved(f, moving, open),
+                    None => Jet::constant(f64::NAN),
+                },
+                Input::Measure(Measure::Dif, [id, ..]) => {
+                    match self.scene.differentials.iter().position(|d| d.id == id) {
+                        Some(d) => self.moved_state(d, moving),
+                        None => Jet::constant(f64::NAN),
+                    }
+                }
+                Input::Measure(measure, ids) => self.moved_measure(&f.name, measure, ids, moving),
+                Input::Delayed(_) | Input::Slot(_) => Jet::constant(f64::NAN),
+            })
+            .collect();
+        open.pop();
+        let mut out = [Jet::zero()];
+        f.program.eval(&inputs, &mut Work::default(), &mut out);
+        out[0]
+    }
+
+    fn moved_state(&self, d: usize, moving: Moving) -> Jet<S> {
+        let rate = match moving {
+            Moving::Others(own) if own == d => S::zero(),
+            Moving::Others(_) => self.rate_of(d),
+            Moving::Only(own) if own == d => S::one(),
+            Moving::Only(_) => S::zero(),
+        };
+        at_rate(self.state_of(d), rate)
+    }
+
+    fn moved_measure(
+        &self,
+        asked_by: &str,
+        measure: Measure,
+        ids: [u32; 4],
+        moving: Moving,
+    ) -> Jet<S> {
+        if own(moving) {
+            return at_rate(self.measure(measure, ids, asked_by), S::zero());
+        }
+        let places = measure.row().family == Family::Displacement;
+        match places.then(|| self.place_in_time(measure, ids)).flatten() {
+            Some(jet) => at_rate(jet.value, jet.first),
+            None => Jet::new(
+                S::zero(),
+                self.complain(format!(
+                    "{asked_by}: {} has no rate that is known here, which DIF1 asks for",
+                    measure.name()
+                )),
+                S::zero(),
+            ),
+        }
+    }
+}
+
+fn own(moving: Moving) -> bool {
+    matches!(moving, Moving::Only(_))
+}
+
+fn at_rate<S: Scalar>(value: S, rate: S) -> Jet<S> {
+    Jet::new(value, rate, S::zero())
+}
