@@ -125,12 +125,16 @@ fn a_sensor_that_is_switched_off_keeps_what_it_has_seen() {
 #[test]
 fn a_simulation_up_to_now_is_passed_over() {
     let mut s = session("", &["TIME"], &[], false);
-    let script = "\nsim/dyn, end=0.5, steps=2\nsim/dyn, end=0.5, steps=2\nsim/dyn, end=1, steps=2\n";
+    let script =
+        "\nsim/dyn, end=0.5, steps=2\nsim/dyn, end=0.5, steps=2\nsim/dyn, end=1, steps=2\n";
     let script = Script::from_text(script).unwrap();
     obey(&mut s, &script.steps, |_, _| (), &mut Unwatched).unwrap();
     assert_eq!(s.time(), 1.0);
     assert_eq!(s.run.record.simulations.len(), 2);
-    assert!(warns(&s, &["sim/dyn, end=0.5, steps=2", "nothing to simulate"]));
+    assert!(warns(
+        &s,
+        &["sim/dyn, end=0.5, steps=2", "nothing to simulate"]
+    ));
 }
 
 #[test]

@@ -113,7 +113,9 @@ const ALIKE: usize = 3;
 fn warnings(all: &[String]) -> Vec<String> {
     let kind = |warning: &str| -> String {
         let words = warning.split_once(": ").map_or(warning, |(_, w)| w);
-        let words = words.split(' ').filter(|w| !w.contains(|c: char| c.is_ascii_digit()));
+        let words = words
+            .split(' ')
+            .filter(|w| !w.contains(|c: char| c.is_ascii_digit()));
         words.collect::<Vec<_>>().join(" ")
     };
     let mut kinds: Vec<(String, usize)> = Vec::new();

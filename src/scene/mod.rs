@@ -506,7 +506,9 @@ impl Scene {
 
     /// Where SENVAL of a sensor stands among the numbers from outside.
     pub fn sensor_place(&self, id: u32) -> Option<usize> {
-        self.supplied.iter().position(|s| self.sensor_of(*s) == Some(id))
+        self.supplied
+            .iter()
+            .position(|s| self.sensor_of(*s) == Some(id))
     }
 
     /// The user's number of the sensor that a number from outside belongs to.

@@ -213,7 +213,11 @@ mod tests {
         assert!(lines[2].contains("JOINT/35") && lines[2].contains("loops"));
         // every element is named
         for d in &many {
-            assert!(lines.iter().any(|l| l.contains(&d.element)), "{}", d.element);
+            assert!(
+                lines.iter().any(|l| l.contains(&d.element)),
+                "{}",
+                d.element
+            );
         }
     }
 
@@ -224,6 +228,8 @@ mod tests {
             .collect();
         let lines = advice(&all);
         assert_eq!(lines.len(), 1);
-        assert!(lines[0].ends_with("likewise JPRIM/2, JPRIM/3, JPRIM/4, JPRIM/5, JPRIM/6, JPRIM/7, JPRIM/8, JPRIM/9"));
+        assert!(lines[0].ends_with(
+            "likewise JPRIM/2, JPRIM/3, JPRIM/4, JPRIM/5, JPRIM/6, JPRIM/7, JPRIM/8, JPRIM/9"
+        ));
     }
 }

@@ -117,12 +117,10 @@ impl<S: Scalar> Equations<'_, S> {
                     )),
                 }
             }
-            Measure::Senval => {
-                match scene.sensor_place(id) {
-                    Some(place) => self.supplied[place],
-                    None => self.complain(format!("{asked_by}: SENSOR/{id} does not exist")),
-                }
-            }
+            Measure::Senval => match scene.sensor_place(id) {
+                Some(place) => self.supplied[place],
+                None => self.complain(format!("{asked_by}: SENSOR/{id} does not exist")),
+            },
             Measure::Dif | Measure::Dif1 => {
                 match scene.differentials.iter().position(|d| d.id == id) {
                     Some(d) if measure == Measure::Dif => self.state_of(d),
