@@ -141,8 +141,8 @@ impl LeftOut {
             let MarkerOwner::Other(owner) = marker.owner else {
                 continue;
             };
-            let gone = |k: &&str| this.elements.contains(&((**k).to_string(), owner));
-            if UNSOLVED.iter().any(|k| gone(&k)) {
+            let gone = |k: &str| this.elements.contains(&(k.to_string(), owner));
+            if UNSOLVED.iter().any(|k| gone(k)) {
                 this.markers.insert(id);
             }
         }
