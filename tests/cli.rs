@@ -11,7 +11,7 @@ use std::path::PathBuf;
 fn a_value_is_printed_alone_with_its_shortest_digits() {
     for (args, value) in [
         (&["STEP(TIME,1,0,2,1)", "--time", "1.5"][..], "0.5\n"),
-        (&["-2**2"][..], "-4\n"),
+        (&["-(2**2)"][..], "-4\n"),
         (&["0.1+0.2"][..], "0.30000000000000004\n"),
         (&["TIME**3", "--time", "2", "--derivative", "1"][..], "12\n"),
         (

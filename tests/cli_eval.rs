@@ -375,6 +375,7 @@ fn an_explanation_shows_tree_values_inputs_switches_class_breaks_and_program() {
             .contains("program    folded to the constant 6.283185307179586\n")
     );
     // without a time there are no values, and breaks are sought in the range that is given
+    assert!(eval(&["MAX(TIME,2)", "--explain"]).contains("switches   TIME - 2\nclass"));
     let early = eval(&["STEP(TIME,1,0,2,1)", "--explain", "--time", "0:1.5:0.5"]);
     assert!(
         early.contains("TIME = 1: ") && !early.contains("TIME = 2: "),
@@ -556,4 +557,12 @@ fn codes_and_functions_are_explained_by_name() {
         done.err
     );
     assert!(cognate(&["explain"]).out.lines().count() > 50);
+}
+
+#[test]
+fn what_is_hardly_meant_is_said_beside_the_value() {
+    let done = cognate(&["eval", "10*SIN(30)"]);
+    assert_eq!((done.code, done.out.as_str()), (0, "-9.880316240928618\n"));
+    assert!(done.err.contains("degrees_or_radians"), "{}", done.err);
+    assert_eq!(eval(&["10*SIN(30D)"]), "4.999999999999999\n");
 }

@@ -2,7 +2,7 @@
 
 use super::formula::{Formula, Setting, derivative_names, give, times};
 use super::render::{Sources, as_json};
-use super::{Exit, Failure, Outcome, anatomy, plot, say};
+use super::{Exit, Failure, Outcome, anatomy, complain, plot, say};
 use crate::diagnostic::Diagnostic;
 use crate::expr::Profile;
 use crate::expr::ast::Dialect;
@@ -114,6 +114,7 @@ fn evaluate(args: &Args, text: &str) -> Outcome {
         ..Failure::from(d)
     };
     let mut formula = Formula::new(text, &setting).map_err(in_text)?;
+    complain(&formula.expr.warnings(), &Sources::of(text));
     if args.explain {
         let (at, interval) = match &time {
             Time::Not => (None, anatomy::INTERVAL),

@@ -69,6 +69,10 @@ fn from_pipe(session: &mut Session, input: impl BufRead) -> Exit {
 fn answer(reply: Reply, exit: &mut Exit) -> bool {
     match reply {
         Reply::Text(text) => say(&text),
+        Reply::Doubtful(doubts, expression, text) => {
+            complain(&doubts, &Sources::of(expression));
+            say(&text);
+        }
         Reply::Mistake(diagnostic, text) => {
             complain(&[*diagnostic], &Sources::of(text));
             *exit = Exit::Input;

@@ -17,6 +17,8 @@ use std::path::Path;
 pub enum Reply {
     /// to be printed; may be empty
     Text(String),
+    /// what is probably not meant, the text its places refer to, and what is to be printed nevertheless
+    Doubtful(Vec<Diagnostic>, String, String),
     /// what is wrong, and the text its place refers to
     Mistake(Box<Diagnostic>, String),
     /// the session is over
@@ -156,19 +158,27 @@ impl Session {
 
     fn evaluate(&self, text: &str) -> Reply {
         let expanded = self.expanded(text);
-        let sample = Formula::new(&expanded, &self.setting)
-            .and_then(|mut f| f.sample(Some(self.time), self.order, &self.setting.data));
-        match (sample, self.order) {
-            (Err(d), _) => Reply::Mistake(Box::new(d), expanded),
-            (Ok(s), 0) => Reply::Text(digits(s[0]) + "\n"),
-            (Ok(s), order) => {
-                let lines = ["value", "d/dt", "d2/dt2"].iter().zip(s).take(order + 1);
-                Reply::Text(
-                    lines
-                        .map(|(name, x)| format!("{name:6}  {}\n", digits(x)))
-                        .collect(),
-                )
-            }
+        let done = Formula::new(&expanded, &self.setting).and_then(|mut f| {
+            let sample = f.sample(Some(self.time), self.order, &self.setting.data)?;
+            Ok((f.expr.warnings(), sample))
+        });
+        let (doubts, sample) = match done {
+            Ok(done) => done,
+            Err(d) => return Reply::Mistake(Box::new(d), expanded),
+        };
+        let text = if self.order == 0 {
+            digits(sample[0]) + "\n"
+        } else {
+            let lines = ["value", "d/dt", "d2/dt2"].iter().zip(sample);
+            lines
+                .take(self.order + 1)
+                .map(|(name, x)| format!("{name:6}  {}\n", digits(x)))
+                .collect()
+        };
+        if doubts.is_empty() {
+            Reply::Text(text)
+        } else {
+            Reply::Doubtful(doubts, expanded, text)
         }
     }
 
@@ -479,6 +489,7 @@ mod tests {
         let mut session = Session::new(Dialect::Function);
         let answer = |reply| match reply {
             Reply::Text(text) => text,
+            Reply::Doubtful(doubts, _, text) => format!("{} {text}", doubts[0].code),
             Reply::Mistake(d, _) => d.code.to_owned(),
             Reply::Quit => "bye".into(),
         };
@@ -486,6 +497,13 @@ mod tests {
             .iter()
             .map(|line| answer(session.execute(line)))
             .collect()
+    }
+
+    #[test]
+    fn what_is_hardly_meant_is_said_beside_the_answer() {
+        let said = answers(&["SIN(30)", "SIN(30D)"]);
+        assert!(said[0].starts_with("degrees_or_radians -0.98"), "{said:?}");
+        assert!(said[1].starts_with("0.49999"), "{said:?}");
     }
 
     #[test]

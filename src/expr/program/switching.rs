@@ -61,6 +61,7 @@ impl Builder {
             images[k] = match node {
                 Node::Compare(op, ..) => self.compare(op, side, zero),
                 Node::If(_) => self.arithmetic_if(side, arguments[1], arguments[2], arguments[3]),
+                Node::Binary(op, ..) => self.binary(op, arguments[0], side),
                 _ => {
                     let negative = self.compare(Comparison::Lt, side, zero);
                     let minus = self.unary(UnaryOp::Neg, arguments[0]);
@@ -94,6 +95,7 @@ impl Builder {
         let needed = self.needed(outputs, n);
         let mut differences: Vec<Value> = Vec::new();
         let mut places = std::collections::HashMap::new();
+        let mut by_operands = std::collections::HashMap::new();
         let mut asked = vec![None; n];
         for k in (0..n).filter(|&k| needed[k]) {
             let difference = match self.nodes[k] {
@@ -104,7 +106,7 @@ impl Builder {
                     self.binary(BinaryOp::Sub, a, b)
                 }
                 Node::If(first) => self.arguments[first as usize],
-                Node::Unary(UnaryOp::Abs, x) => x,
+                Node::Unary(UnaryOp::Abs, x) | Node::Binary(BinaryOp::Along, _, x) => x,
                 _ => continue,
             };
             if self.constant_of(difference).is_some() {
@@ -112,6 +114,14 @@ impl Builder {
             }
             let (plain, contrary) = match self.nodes[difference.index()] {
                 Node::Unary(UnaryOp::Neg, x) => (x, true),
+                // b − a has the contrary sign of a − b, to the bit
+                Node::Binary(BinaryOp::Sub, a, b) => match by_operands.get(&(b, a)) {
+                    Some(&before) => (before, true),
+                    None => {
+                        by_operands.insert((a, b), difference);
+                        (difference, false)
+                    }
+                },
                 _ => (difference, false),
             };
             let which = *places.entry(plain).or_insert_with(|| {

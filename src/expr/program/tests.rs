@@ -550,3 +550,35 @@ fn selections_that_need_each_other_crosswise_are_not_placed_together() {
         assert_eq!(out, want);
     }
 }
+
+#[test]
+fn a_held_magnitude_has_a_held_derivative() {
+    let mut b = Builder::new(Folding::Strict);
+    let x = b.input(Input::Slot(0));
+    let magnitude = b.unary(UnaryOp::Abs, x);
+    let outputs = [magnitude, b.gradient(magnitude, &[x])[0]];
+    let (held, differences) = b.held(&outputs, &outputs, |_| Input::Slot(1));
+    assert_eq!((differences.len(), differences[0]), (1, x));
+    let program = b.finish_with_inputs(&held, &[Input::Slot(0), Input::Slot(1)]);
+    let mut out = [0.0; 2];
+    for (point, want) in [([-0.1, 1.0], [-0.1, 1.0]), ([-0.1, -1.0], [0.1, -1.0])] {
+        program.run(&point, &mut Work::default(), &mut out);
+        assert_eq!(out, want);
+    }
+}
+
+#[test]
+fn a_difference_and_its_contrary_are_one_switch() {
+    let mut b = Builder::new(Folding::Strict);
+    let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
+    let larger = b.call(Function::Max, &[x, y]);
+    let larger = b.expanded(&[larger], super::expand::Expand::Calls)[0];
+    assert_eq!(b.switching(&[larger]).len(), 1);
+    let (held, _) = b.held(&[larger], &[larger], |_| Input::Slot(2));
+    let program = b.finish_with_inputs(&held, &layout());
+    let mut out = [0.0];
+    for (side, want) in [(1.0, 3.0), (-1.0, 4.0)] {
+        program.run(&[3.0, 4.0, side, 0.0], &mut Work::default(), &mut out);
+        assert_eq!(out, [want], "held on the side {side}");
+    }
+}
