@@ -247,6 +247,8 @@ mod tests {
             "2**(1/2)",
             "TIME**2/2",
             "-2**3",
+            "-(2**2)",
+            "(TIME**1)/2",
         ] {
             assert!(codes(text, Dialect::Function).is_empty(), "{text}");
         }
