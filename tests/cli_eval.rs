@@ -399,7 +399,7 @@ fn expressions_come_from_standard_input_and_may_begin_with_a_minus() {
         "2 * & \n TIME ! and a comment\n",
     );
     assert_eq!((done.code, done.out.as_str()), (0, "6\n"));
-    assert_eq!(eval(&["-2**2"]), "-4\n");
+    assert_eq!(eval(&["-TIME**2", "--time", "2"]), "-4\n");
     assert_eq!(eval(&["-TIME", "--time", "-2"]), "2\n");
     let done = cognate_with(&["eval", "-"], "1 +\n  2 *\n  FOO(3)\n");
     assert_eq!(done.code, 3);

@@ -27,9 +27,12 @@ pub fn lint(ast: &Ast, text: &str) -> Vec<Diagnostic> {
                 ref args,
             } => angle_argument(ast, f, args),
             Node::Binary(op, a, b) => {
-                precedence(ast, op, a, b).or_else(|| angle_difference(ast, op, a, b))
+                let loose = |_: &Doubt| !parenthesis_between(ast, text, a, ix);
+                precedence(ast, op, a, b)
+                    .filter(loose)
+                    .or_else(|| angle_difference(ast, op, a, b))
             }
-            Node::Negate(x) => negated_power(ast, x),
+            Node::Negate(x) => negated_power(ast, x, ix, text),
             _ => None,
         };
         if let Some((code, message, help)) = doubt {
@@ -43,6 +46,13 @@ pub fn lint(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     }
     found.sort_by_key(|d| d.column);
     found
+}
+
+/// Whether there is a parenthesis between the places of two nodes: then their order was written, not left to precedence.
+fn parenthesis_between(ast: &Ast, text: &str, first: NodeIx, second: NodeIx) -> bool {
+    let start = |ix: NodeIx| ast.spans.get(ix as usize).map_or(0, |span| span.start);
+    text.get(start(first)..start(second))
+        .is_some_and(|between| between.contains(['(', ')']))
 }
 
 /// Code, message, advice.
@@ -149,12 +159,12 @@ fn precedence(ast: &Ast, op: BinaryOp, a: NodeIx, b: NodeIx) -> Option<Doubt> {
 }
 
 /// -2**2
-fn negated_power(ast: &Ast, x: NodeIx) -> Option<Doubt> {
+fn negated_power(ast: &Ast, x: NodeIx, sign: NodeIx, text: &str) -> Option<Doubt> {
     let Node::Binary(BinaryOp::Pow, base, exponent) = *ast.node(x) else {
         return None;
     };
     let even = number(ast, exponent).is_some_and(|e| e % 2.0 == 0.0);
-    if !even || number(ast, base).is_none() {
+    if !even || number(ast, base).is_none() || parenthesis_between(ast, text, sign, base) {
         return None;
     }
     let message = "** binds tighter than the sign: this is the negative of the power".to_string();

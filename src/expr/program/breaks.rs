@@ -51,12 +51,24 @@ impl Builder {
             if !constant
                 && !breaks
                     .iter()
-                    .any(|b| b.value == new.value && b.levels.are(&new.levels))
+                    .any(|b| self.has_level_with(b, &new) && b.levels.are(&new.levels))
             {
                 breaks.push(new);
             }
         }
         (output, breaks)
+    }
+
+    /// Whether two values are at their levels together: they are one value, or a difference and its contrary.
+    fn has_level_with(&self, one: &Break, other: &Break) -> bool {
+        let difference = |v: Value| match self.nodes[v.index()] {
+            Node::Binary(BinaryOp::Sub, a, b) => Some((a, b)),
+            _ => None,
+        };
+        one.value == other.value
+            || !matches!(one.levels, Levels::Knots(_))
+                && difference(one.value)
+                    .is_some_and(|(a, b)| difference(other.value) == Some((b, a)))
     }
 
     fn breaks_of(&mut self, node: &Node, found: &mut Vec<Break>) {
