@@ -55,7 +55,7 @@ enum Jacobian {
         entries: Vec<(usize, usize, Option<usize>, Option<usize>)>,
         out: Vec<f64>,
     },
-    /// by duals, all entries
+    /// by duals, all entries: where the program would be too long, and where numbers come from outside
     Duals {
         work: Work<Dual<WIDTH>>,
         numbers: Vec<Dual<WIDTH>>,
@@ -108,13 +108,6 @@ impl Implicit {
     /// # Errors
     /// Functions that read what is solved for: their loops are solved beside explicit rates only.
     pub fn new(scene: &Scene, formulation: Formulation) -> Result<Self, Vec<Diagnostic>> {
-        if scene.layout.n_supplied > 0 {
-            return Err(vec![Diagnostic::error(
-                "implicit_loop",
-                "closures, values of the past and contacts that are found by queries: methods for implicit equations do not know their derivatives",
-            )
-            .help("leave the method to the program, or ask for RADAU5")]);
-        }
         if !scene.loops.is_empty() {
             let loops = scene.loops.iter().map(|u| u.name.as_str());
             return Err(vec![Diagnostic::error(
@@ -183,7 +176,8 @@ impl Jacobian {
             numbers: Vec::new(),
             out: Vec::new(),
         };
-        if size * residual.n_operations() > LONGEST {
+        // what closures and queries yield is differentiated by differences, beside the programs
+        if size * residual.n_operations() > LONGEST || !scene.hooks.is_empty() {
             return by_duals();
         }
         let mut builder = Builder::new(Folding::Structural);
@@ -333,6 +327,7 @@ impl Dae for System {
                             }
                         };
                         mark(numbers, 1.0, cj);
+                        self.outside.follow(numbers, begin == 0);
                         i.residual.eval(numbers, work, out);
                         mark(numbers, 0.0, 0.0);
                         for j in columns.clone() {

@@ -146,6 +146,12 @@ fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<S
                     move |call: &Call<'_>, out: &mut [f64]| curves.ask(call.values, out),
                 )))
             }
+            Question::Ring(ring) => {
+                let ring = ring.clone();
+                Ok(Callable(Arc::new(
+                    move |call: &Call<'_>, out: &mut [f64]| ring.ask(call.values, out),
+                )))
+            }
             #[cfg(feature = "geometry")]
             Question::Solids(solids) => {
                 let query = crate::physics::contact::query::Query::new(&solids[0], &solids[1]);
@@ -444,7 +450,8 @@ pub fn remember(
             method.interpolate(system, t, &mut state)?;
             t
         };
-        system.set(t, &state);
+        // methods for implicit equations have multipliers behind it
+        system.set(t, &state[..system.scene.layout.y().len()]);
         for (track, piece) in system.outside.tracks.iter().zip(&mut pieces) {
             track
                 .expression

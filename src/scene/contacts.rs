@@ -8,6 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::{Contact, ContactLaw, CoulombFriction, Shape};
 use crate::physics::contact::law::{Coulomb, Law, Normal};
 use crate::physics::contact::outline::{Outline, Rim};
+use crate::physics::contact::ring::Ring;
 use crate::physics::contact::{Pair, Question, Solid, TOUCH_NUMBERS, TOUCHES};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -168,6 +169,9 @@ fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
     };
     if let Some(pair) = Pair::of(a, b) {
         return Ok(How::Formula(pair));
+    }
+    if let Some(ring) = Ring::new(a, b) {
+        return Ok(How::Question(Question::Ring(Box::new(ring))));
     }
     if !(a.can_be_queried() && b.can_be_queried()) {
         return Err("");

@@ -346,7 +346,7 @@ much: parts may start too far away, or two constraints contradict each other.",
         name: "implicit_loop",
         summary: "a function that methods for implicit equations cannot take",
         explanation: "\
-BDF, HHT and the like need derivatives of all equations. Closures of the host, delayed values and functions that read
-accelerations or forces which depend on them have none: choose an explicit method or RADAU5.",
+BDF, HHT and the like need derivatives of all equations. Functions that read accelerations or forces which depend on
+them have none: choose an explicit method or RADAU5.",
     },
 ];

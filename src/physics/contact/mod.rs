@@ -11,10 +11,11 @@
 //! | plane – box, hull | the corners (`plane.rs`) |
 //! | plane – cylinder, frustum | on each rim the deepest point and those a quarter and half a turn further |
 //! | plane – torus | the same four of its ring |
+//! | torus – box, cylinder, frustum, torus | where the ring is nearest, and the same four (`ring.rs`) |
 //! | plane – ellipsoid | 1, the deepest |
 //! | point | a ball without radius |
 //! | curve, circle, point with each other, in a plane | up to 8, where one reaches deepest into the other (`outline.rs`, `curves.rs`) |
-//! | box, cylinder, frustum, ellipsoid, hull with each other | up to 8, found by queries (`query.rs`, feature `geometry`) |
+//! | box, cylinder, frustum, ellipsoid, hull with each other | up to 8, found by queries (`query/`, feature `geometry`) |
 
 pub mod ball;
 pub mod curves;
@@ -23,6 +24,7 @@ pub mod outline;
 pub mod plane;
 #[cfg(feature = "geometry")]
 pub mod query;
+pub mod ring;
 
 use super::action::Action;
 use crate::scalar::Scalar;
@@ -36,6 +38,8 @@ use std::sync::Arc;
 pub enum Question {
     /// two convex solids
     Solids(Box<[Solid; 2]>),
+    /// a torus and another solid
+    Ring(Box<ring::Ring>),
     /// two outlines, I's and J's
     Outlines([Arc<Outline>; 2]),
 }

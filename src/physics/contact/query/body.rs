@@ -1,0 +1,215 @@
+//! A convex solid as queries ask it: its farthest point in a direction, and the face that looks there.
+
+use super::super::Solid;
+use super::flat::Flat;
+use parry3d_f64::math::Vector;
+use parry3d_f64::shape::{ConvexPolyhedron, SupportMap};
+
+/// Points of a rim; every sixth is a corner.
+pub const RIM: usize = 24;
+
+/// A solid as it is asked.
+#[derive(Debug)]
+pub(super) struct Body {
+    pub solid: Solid,
+    /// its smallest and largest extent, roughly
+    pub size: [f64; 2],
+    /// of a hull: outward normals and corners
+    faces: Vec<(Vector, Vec<Vector>)>,
+}
+
+/// The side of a solid that looks in some direction: a polygon, a line or a point.
+pub(super) struct Face {
+    pub outline: Vec<Vector>,
+    /// every how many-th point of the outline is a corner
+    pub stride: usize,
+    /// outwards; of polygons only
+    pub normal: Option<Vector>,
+}
+
+impl Face {
+    /// Its outline on the plane of two axes.
+    pub fn laid(&self, e: Vector, f: Vector) -> Vec<Flat> {
+        let outline = self.outline.iter();
+        outline.map(|p| [p.dot(e), p.dot(f)]).collect()
+    }
+}
+
+pub(super) fn vector(p: [f64; 3]) -> Vector {
+    Vector::new(p[0], p[1], p[2])
+}
+
+/// Unit vector across z, x where there is none.
+fn azimuth(dir: Vector) -> (f64, f64) {
+    let across = dir.x.hypot(dir.y);
+    // a face that looks along z has no direction of its own
+    if across <= 1e-12 * dir.z.abs() || across == 0.0 {
+        (1.0, 0.0)
+    } else {
+        (dir.x / across, dir.y / across)
+    }
+}
+
+impl Body {
+    pub fn new(solid: &Solid) -> Option<Self> {
+        let mut faces = Vec::new();
+        let size = match solid {
+            Solid::Ball { radius } if *radius > 0.0 => [*radius; 2],
+            Solid::Ellipsoid { semi } => extremes(*semi),
+            Solid::Box { low, high } => extremes([0, 1, 2].map(|k| 0.5 * (high[k] - low[k]))),
+            Solid::Frustum { z, radius } => {
+                let wide = radius[0].max(radius[1]);
+                extremes([wide, wide, 0.5 * (z[1] - z[0])])
+            }
+            Solid::Hull(points) => {
+                let points: Vec<Vector> = points.iter().map(|&p| vector(p)).collect();
+                let hull = ConvexPolyhedron::from_convex_hull(&points)?;
+                for face in hull.faces() {
+                    let first = face.first_vertex_or_edge as usize;
+                    let around = &hull.vertices_adj_to_face()[first..]
+                        [..face.num_vertices_or_edges as usize];
+                    let corners = around.iter().map(|&v| hull.points()[v as usize]).collect();
+                    faces.push((face.normal, corners));
+                }
+                let (low, high) = points.iter().fold(
+                    (
+                        Vector::splat(f64::INFINITY),
+                        Vector::splat(f64::NEG_INFINITY),
+                    ),
+                    |(low, high), p| (low.min(*p), high.max(*p)),
+                );
+                extremes(((high - low) * 0.5).to_array())
+            }
+            Solid::Ball { .. } | Solid::Plane { .. } | Solid::Torus { .. } => return None,
+        };
+        let solid = solid.clone();
+        Some(Self { solid, size, faces })
+    }
+
+    /// The face that looks along a unit vector.
+    pub fn face(&self, dir: Vector) -> Face {
+        let one = |p: Vector| Face {
+            outline: vec![p],
+            stride: 1,
+            normal: None,
+        };
+        match &self.solid {
+            Solid::Box { low, high } => {
+                let size = dir.abs();
+                let axis = if size.x >= size.y && size.x >= size.z {
+                    0
+                } else if size.y >= size.z {
+                    1
+                } else {
+                    2
+                };
+                let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+                let up = dir[axis] >= 0.0;
+                let corner = |ka: bool, kb: bool| {
+                    let mut p = Vector::ZERO;
+                    p[axis] = if up { high } else { low }[axis];
+                    p[a] = if ka { high } else { low }[a];
+                    p[b] = if kb { high } else { low }[b];
+                    p
+                };
+                let mut normal = Vector::ZERO;
+                normal[axis] = if up { 1.0 } else { -1.0 };
+                Face {
+                    outline: vec![
+                        corner(false, false),
+                        corner(true, false),
+                        corner(true, true),
+                        corner(false, true),
+                    ],
+                    stride: 1,
+                    normal: Some(normal),
+                }
+            }
+            Solid::Frustum { z, radius } => {
+                let (c, s) = azimuth(dir);
+                let (up, out) = (dir.z, dir.x * c + dir.y * s);
+                let (height, taper) = (z[1] - z[0], radius[0] - radius[1]);
+                let side = (out * height + up * taper) / height.hypot(taper);
+                if side >= up.abs() {
+                    let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
+                    return Face {
+                        outline: vec![at(0), at(1)],
+                        stride: 1,
+                        normal: None,
+                    };
+                }
+                let end = usize::from(up > 0.0);
+                if radius[end] == 0.0 {
+                    return one(Vector::new(0.0, 0.0, z[end]));
+                }
+                let rim = (0..RIM).map(|k| {
+                    let (sk, ck) = (std::f64::consts::TAU * k as f64 / RIM as f64).sin_cos();
+                    Vector::new(
+                        radius[end] * (c * ck - s * sk),
+                        radius[end] * (s * ck + c * sk),
+                        z[end],
+                    )
+                });
+                Face {
+                    outline: rim.collect(),
+                    stride: RIM / 4,
+                    normal: Some(Vector::new(0.0, 0.0, up.signum())),
+                }
+            }
+            Solid::Hull(_) => {
+                let along = |f: &&(Vector, Vec<Vector>)| f.0.dot(dir);
+                let best = self
+                    .faces
+                    .iter()
+                    .max_by(|a, b| along(a).total_cmp(&along(b)));
+                match best {
+                    Some((normal, corners)) => Face {
+                        outline: corners.clone(),
+                        stride: 1,
+                        normal: Some(*normal),
+                    },
+                    None => one(Vector::ZERO),
+                }
+            }
+            _ => one(self.local_support_point(dir)),
+        }
+    }
+}
+
+/// Least and largest.
+fn extremes(x: [f64; 3]) -> [f64; 2] {
+    [x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2])]
+}
+
+impl SupportMap for Body {
+    /// The farthest point along a direction.
+    fn local_support_point(&self, dir: Vector) -> Vector {
+        match &self.solid {
+            Solid::Ball { radius } => dir.normalize_or(Vector::X) * *radius,
+            Solid::Ellipsoid { semi } => {
+                let a = vector(*semi);
+                let stretched = a * dir;
+                a * stretched.normalize_or(Vector::X)
+            }
+            Solid::Box { low, high } => {
+                let at = |k: usize| if dir[k] >= 0.0 { high[k] } else { low[k] };
+                Vector::new(at(0), at(1), at(2))
+            }
+            Solid::Frustum { z, radius } => {
+                let (c, s) = azimuth(dir);
+                let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
+                if at(1).dot(dir) > at(0).dot(dir) {
+                    at(1)
+                } else {
+                    at(0)
+                }
+            }
+            Solid::Hull(points) => {
+                let along = |p: &&[f64; 3]| vector(**p).dot(dir);
+                let best = points.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+                best.map_or(Vector::ZERO, |p| vector(*p))
+            }
+            Solid::Plane { .. } | Solid::Torus { .. } => Vector::ZERO,
+        }
+    }
+}
