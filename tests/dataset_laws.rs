@@ -64,6 +64,15 @@ fn inputs_that_once_failed_keep_the_laws() {
     }
 }
 
+/// Two joints and one scale mean a scale of 1 before it, also beside a mistake.
+#[test]
+fn what_follows_from_arguments_follows_beside_a_mistake() {
+    let text = "a title\nCOUPLER/4, JOINTS=1,2, SCALES=3, TYPO\nEND\n";
+    models::laws_of_datasets(text);
+    let model = cognate::dataset::read_text(text).model;
+    assert_eq!(model.couplers[&4].scales, [1.0, 3.0]);
+}
+
 /// A dataset ten times as long takes about ten times as long; twice that is allowed for what the machine does besides.
 #[test]
 fn reading_takes_time_in_proportion_to_the_dataset() {

@@ -297,9 +297,10 @@ impl<T: Element> Statement for Numbered<T> {
                 };
             }
         }
-        if problems.is_empty()
+        // what follows from what was given follows also where something else is wrong
+        if let Err(message) = (self.finish)(&mut element)
+            && problems.is_empty()
             && !record.mistaken
-            && let Err(message) = (self.finish)(&mut element)
         {
             problems.push(Problem::new("contradiction", message));
         }
@@ -366,9 +367,9 @@ impl<T: Element> Statement for Single<T> {
         let target = (self.value_mut)(model);
         let mut value = target.clone();
         let mut problems = apply(self.bindings, &mut value, record);
-        if problems.is_empty()
+        if let Err(message) = (self.finish)(&mut value)
+            && problems.is_empty()
             && !record.mistaken
-            && let Err(message) = (self.finish)(&mut value)
         {
             problems.push(Problem::new("contradiction", message));
         }
