@@ -203,7 +203,10 @@ impl Outline {
         let leaves: Vec<usize> = (0..this.cells.len()).map(|c| this.leaf(c)).collect();
         this.tree(&leaves);
         let root = this.nodes.last()?;
-        this.size = root.radius;
+        // circles about circles are larger than what is in them
+        let ends = this.cells.iter().flat_map(|c| c.ends);
+        let sizes = ends.map(|end| length(minus(end, root.centre)));
+        this.size = sizes.fold(0.0, f64::max);
         (this.size > 0.0 && this.size.is_finite()).then_some(this)
     }
 
