@@ -633,3 +633,132 @@ fn a_sensor_shortens_the_next_step_or_begins_anew() {
         assert!(short >= anew + 3, "{method}: {anew} {short}");
     }
 }
+
+/// dₖ₊₁ = 0.8 dₖ + u(tₖ), y = 2 d + 0.5 u, sampled every 0.1; beside it what reads them.
+const SAMPLED: &str = "VARIABLE/1, FUNCTION=1+TIME\nARRAY/10, U, VARIABLES=1\nARRAY/12, Y\nARRAY/14, X\nARRAY/15, IC, NUMBERS=3\n\
+    GSE/1, NO=1, U=10, Y=12, ND=1, XD=14, ICD=15, SAMPLE_PERIOD=0.1, FUNCTION=USER(1)\n";
+
+/// d and y by the recursion itself, at a time that is no sample.
+fn recursion(t: f64) -> [f64; 2] {
+    let (mut d, mut k) = (3.0, 0);
+    while f64::from(k + 1) * 0.1 < t + 1e-9 {
+        d = 0.8 * d + 1.0 + 0.1 * f64::from(k);
+        k += 1;
+    }
+    [d, 2.0 * d + 0.5 * (1.0 + t)]
+}
+
+fn sampled(columns: &[&str]) -> Session {
+    let text = format!("{SAMPLED}DIFF/1, IC=0, FUNCTION=ARYVAL(14,1)\n");
+    let mut s = session(&text, columns, "AUTO");
+    s.register("1", &[], |call, out| {
+        let [u, d] = call.values else { return };
+        out.copy_from_slice(&[2.0 * d + 0.5 * u, 0.8 * d + u]);
+    });
+    s
+}
+
+#[test]
+fn discrete_states_change_at_their_samples_and_hold_in_between() {
+    let columns = ["ARYVAL(14,1)", "ARYVAL(12,1)", "DIF(1)"];
+    let mut s = sampled(&columns);
+    // outputs at samples and between them
+    go(&mut s, 1.0, 40);
+    for (row, &t) in values(&s, "time").iter().enumerate() {
+        let [d, y] = recursion(t);
+        assert!((values(&s, columns[0])[row] - d).abs() < 1e-12, "{t}");
+        assert!((values(&s, columns[1])[row] - y).abs() < 1e-12, "{t}");
+    }
+    // the integral of a staircase is a sum
+    let sum: f64 = (0..10)
+        .map(|k| 0.1 * recursion(0.1 * f64::from(k) + 0.05)[0])
+        .sum();
+    assert!(
+        (last(&s, "DIF(1)") - sum).abs() < 1e-9,
+        "{}",
+        last(&s, "DIF(1)")
+    );
+}
+
+#[test]
+fn samples_go_on_from_one_simulation_to_the_next() {
+    let columns = ["ARYVAL(14,1)", "DIF(1)"];
+    let (mut whole, mut pieces) = (sampled(&columns), sampled(&columns));
+    go(&mut whole, 1.0, 10);
+    for end in [0.03, 0.1, 0.25, 0.4, 1.0] {
+        go(&mut pieces, end, 3);
+    }
+    for c in columns {
+        assert!((last(&whole, c) - last(&pieces, c)).abs() < 1e-9, "{c}");
+    }
+}
+
+#[test]
+fn linear_systems_are_closures_sampled_and_continuous() {
+    use cognate::analysis::samples::LinearSystem;
+    let system = |a: f64| LinearSystem::new([1, 1, 1], &[a], &[1.0], &[2.0], &[0.5]).unwrap();
+    assert!(LinearSystem::new([2, 1, 1], &[1.0], &[1.0], &[2.0], &[0.5]).is_none());
+    let columns = ["ARYVAL(14,1)", "ARYVAL(12,1)"];
+    let mut s = session(SAMPLED, &columns, "AUTO");
+    s.register("GSE/1", &[], system(0.8).sampled());
+    go(&mut s, 0.95, 19);
+    for (row, &t) in values(&s, "time").iter().enumerate() {
+        let [d, y] = recursion(t);
+        assert!((values(&s, columns[0])[row] - d).abs() < 1e-12, "{t}");
+        assert!((values(&s, columns[1])[row] - y).abs() < 1e-12, "{t}");
+    }
+    // ẋ = −x + 1 from 0, y = 2 x + 0.5
+    let text = "VARIABLE/1, FUNCTION=1\nARRAY/10, U, VARIABLES=1\nARRAY/11, X\nARRAY/12, Y\n\
+        GSE/1, NS=1, NO=1, U=10, Y=12, X=11, FUNCTION=USER(1)\n";
+    let mut s = session(text, &["ARYVAL(12,1)"], "AUTO");
+    s.register("GSE/1", &[], system(-1.0).continuous());
+    go(&mut s, 2.0, 4);
+    let y = 2.0 * (1.0 - (-2.0f64).exp()) + 0.5;
+    assert!((last(&s, "ARYVAL(12,1)") - y).abs() < 1e-8);
+}
+
+#[test]
+fn a_sampled_controller_holds_a_body_and_a_model_without_unknowns_samples_too() {
+    // a velocity control that is sampled: v̇ = F, F = −2 vₖ, so vₖ₊₁ = (1 − 2 T) vₖ, seen one sample late
+    let text = "VARIABLE/1, FUNCTION=VZ(2,3,3)\nARRAY/10, U, VARIABLES=1\nARRAY/14, X\n\
+        GSE/1, NO=0, U=10, ND=1, XD=14, SAMPLE_PERIOD=0.05, FUNCTION=USER(1)\n\
+        SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=ARYVAL(14,1)+1\n";
+    let mut s = session(text, &["VZ(2,3,3)"], "AUTO");
+    s.register("1", &[], |call, out| out[0] = -2.0 * call.values[0]);
+    go(&mut s, 1.0, 4);
+    let (mut v, mut d) = (0.0, 0.0);
+    for _ in 0..20 {
+        let next = -2.0 * v;
+        v += 0.05 * (d + 1.0);
+        d = next;
+    }
+    assert!((last(&s, "VZ(2,3,3)") - v).abs() < 1e-9, "{v}");
+    let model = Model::from_text(&format!("{GROUND}{SAMPLED}END\n")).unwrap();
+    let options = Options {
+        columns: vec!["ARYVAL(14,1)".into()],
+        ..Options::default()
+    };
+    let mut s = Session::new(model, "test", options);
+    s.register("1", &[], |call, out| {
+        let [u, d] = call.values else { return };
+        out.copy_from_slice(&[2.0 * d + 0.5 * u, 0.8 * d + u]);
+    });
+    go(&mut s, 1.05, 7);
+    assert!((last(&s, "ARYVAL(14,1)") - recursion(1.05)[0]).abs() < 1e-12);
+}
+
+#[test]
+fn sampling_without_a_period_is_refused() {
+    let text = SAMPLED.replace("SAMPLE_PERIOD=0.1, ", "");
+    let with_law = |text: &str| {
+        let mut s = session(text, &[], "AUTO");
+        s.register("1", &[], |_, _| ());
+        let errors = s
+            .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
+            .expect_err("a mistake");
+        errors.iter().map(|e| format!("{e}\n")).collect::<String>()
+    };
+    assert!(with_law(&text).contains("SAMPLE_PERIOD"));
+    let none = with_law(&SAMPLED.replace("PERIOD=0.1", "PERIOD=-0.1"));
+    assert!(none.contains("GSE/1") && none.contains("-0.1"), "{none}");
+}

@@ -148,13 +148,10 @@ pub fn integrate(
     };
     let mut outputs = outputs.to_vec();
     system.outside.begin(t0, &[]);
+    system.restart_sampling();
     system.begin_sensing();
     if n == 0 {
-        for &t in &outputs {
-            system.numbers[0] = t;
-            out.t.push(t);
-            out.rows.push(system.numbers.clone());
-        }
+        timeless(system, &outputs, options.max_steps, &mut out);
         return out;
     }
     let settings = numeric::Options {
@@ -240,6 +237,27 @@ pub fn integrate(
                 name = "RADAU5".into();
             }
         }
+    }
+}
+
+/// A model without unknowns: time passes, and what is sampled changes.
+fn timeless(system: &mut System, outputs: &[f64], most: usize, out: &mut Trajectory) {
+    for &t in outputs {
+        loop {
+            let due = system.samples.due();
+            if due > t {
+                break;
+            }
+            out.stats.steps += 1;
+            if out.stats.steps > most {
+                let (reason, h) = (Reason::TooManySteps, 0.0);
+                out.ended = Some(Ended::Stop(Stop { reason, t: due, h }));
+                return;
+            }
+            system.sample(due, &[]);
+        }
+        out.t.push(t);
+        out.rows.push(system.row(t, &[]));
     }
 }
 
@@ -389,6 +407,15 @@ impl Leg<'_> {
             self.emit(method, &step);
             self.watch.progress(step.t1, step.h, method.stats());
             let mut switched = verdict == Verdict::Switched;
+            if self.system.is_sampled(step.t1) && self.system.sample(step.t1, method.y()) {
+                switched = true;
+                // discrete states are new from the sample on, the sample itself included
+                if let (Some(&t), Some(row)) = (self.out.t.last(), self.out.rows.last_mut())
+                    && self.system.is_together(t, step.t1)
+                {
+                    *row = self.system.row(t, method.y());
+                }
+            }
             if self.system.outside.remembers()
                 && outside::remember(self.system, method, &step).is_err()
             {
@@ -429,14 +456,15 @@ impl Leg<'_> {
         Finished::Done
     }
 
-    /// How far a step may go: no further than values of the past are known.
+    /// How far a step may go: no further than values of the past are known, and not over a sample.
     fn horizon(&mut self, t: f64, y: &[f64]) -> f64 {
+        let due = self.system.samples.due();
         if !self.system.outside.remembers() {
-            return f64::INFINITY;
+            return due;
         }
         self.system.set(t, y);
         let delay = self.system.outside.shortest_delay(&self.system.numbers);
-        t + delay.max(1e-9 * (self.end - t))
+        due.min(t + delay.max(1e-9 * (self.end - t)))
     }
 
     /// Does what a triggered sensor asks for; whether the integration is to begin anew.

@@ -34,14 +34,15 @@ pub struct Call<'a> {
     pub element: &'a str,
     /// the numbers of `USER(…)`
     pub constants: &'a [f64],
-    /// values of the expressions that the closure was registered with; for a GSE followed by its states and inputs
+    /// values of the expressions that the closure was registered with; for a GSE followed by its states, inputs and discrete states
     pub values: &'a [f64],
 }
 
 /// A closure: fills in the results, which are zero when it is called.
 ///
 /// One number for SFORCE, VARIABLE, DIFF or SENSOR; FX, FY, FZ, TX, TY, TZ for GFORCE, three for VFORCE and VTORQUE; the value and its
-/// first two derivatives in time for MOTION; eight components for REQUEST; rates of the states, then outputs, for GSE.
+/// first two derivatives in time for MOTION; eight components for REQUEST; rates of the states, then outputs, then what the discrete
+/// states are from the next sample on, for GSE.
 pub type Law = dyn Fn(&Call<'_>, &mut [f64]) + Send + Sync;
 
 /// A closure under its name.

@@ -38,6 +38,8 @@ const STAGNANT: f64 = 1e-8;
 const MAX_STEPS: usize = 3000;
 /// Steps at the limit of their length without any change of the loads, after which it falls forever.
 const FALLING: usize = 300;
+/// Iterations of one implicit step.
+const CORRECTIONS: usize = 8;
 /// Saddles that are left before one is accepted.
 const MAX_SADDLES: usize = 8;
 
@@ -267,6 +269,20 @@ impl<'a> Settler<'a> {
 
     /// The step of length `h` in the fall's own time: changes of coordinates and states; `None` where it would not go down.
     fn step(&mut self, p: &Point, jacobian: &DMatrix<f64>, h: f64) -> Option<DVector<f64>> {
+        let rhs = p.force.iter().chain(p.state.iter()).copied().collect();
+        self.solved(p, jacobian, h, rhs, true)
+    }
+
+    /// Changes of coordinates and states that `rhs` asks for, with the matrix of a step of length `h`; `None` where that matrix is singular, or,
+    /// `downhill`, where it would lead up.
+    fn solved(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        h: f64,
+        mut rhs: Vec<f64>,
+        downhill: bool,
+    ) -> Option<DVector<f64>> {
         self.factorizations += 1;
         let (n, m, d) = (self.n_v(), self.rows.len(), self.states.len());
         let size = n + d + m;
@@ -282,11 +298,10 @@ impl<'a> Settler<'a> {
             .copy_from(&(-p.gradient.transpose()));
         a.view_mut((n + d, 0), (m, n)).copy_from(&p.gradient);
         let stiffness = a.view((0, 0), (n, n)).into_owned();
-        let mut rhs: Vec<f64> = p.force.iter().chain(p.state.iter()).copied().collect();
         rhs.resize(size, 0.0);
         let mut lu = Lu::new(size);
         lu.matrix_mut().copy_from_slice(a.as_slice());
-        let upright = goes_down(&stiffness, &p.gradient);
+        let upright = !downhill || goes_down(&stiffness, &p.gradient);
         lu.factor(1e-15).ok()?;
         if !upright && (d == 0 && asymmetry(&stiffness) < 1e-3 || !lu.positive()) {
             return None;
@@ -422,8 +437,12 @@ impl<'a> Settler<'a> {
             // shorter and shorter until the end is what was foretold
             let accepted = loop {
                 let trial = self.step(p, &jacobian, length);
-                if let Some(found) = trial.and_then(|step| self.attempt(p, &jacobian, step)) {
-                    break Some(found);
+                let found = trial.and_then(|step| {
+                    (self.attempt(p, &jacobian, step.clone()))
+                        .or_else(|| self.corrected(p, step, length))
+                });
+                if found.is_some() {
+                    break found;
                 }
                 if small && length >= longest {
                     // Newton's steps no longer improve: what is left is rounding
@@ -497,6 +516,58 @@ impl<'a> Settler<'a> {
             .map(|k| off[k] / (0.3 * expected[k]))
             .fold(0.0, f64::max);
         (quality <= 1.0).then_some((next, quality, shortened))
+    }
+
+    /// Tries a step again whose end is not what was foretold: as an implicit step in earnest, iterated until the loads at its end are
+    /// those that move it there.
+    ///
+    /// ```text
+    /// D Δ/h = f(q + Δ) + Gᵀλ
+    /// ```
+    ///
+    /// Where stiff parts turn with soft ones (blades with a rotor that swings down) their forces grow with the square of a step
+    /// that never leaves the valley; the iteration leads it back to the bottom.
+    fn corrected(&mut self, p: &Point, step: DVector<f64>, h: f64) -> Option<(Point, f64, bool)> {
+        let (n, d) = (self.n_v(), self.states.len());
+        let metric = metric(&self.system.scene, &p.mass);
+        let mut step = step;
+        let mut before = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            if self.excess(&step) > 1.0 {
+                return None;
+            }
+            let numbers = self.moved(p, &step)?;
+            let next = self.point(&numbers)?;
+            let moving = &metric * step.rows(0, n) / h;
+            let lambda = least_multipliers(&p.metric, &p.gradient, &moving);
+            let foretold = &moving + p.gradient.tr_mul(&lambda);
+            let off = [
+                in_metric(&p.metric, &(&next.force - &foretold)),
+                (&next.state - step.rows(n, d) / h).norm(),
+            ];
+            let expected = [
+                p.left[0] + in_metric(&p.metric, &(&foretold - &p.force)),
+                p.left[1] + (step.rows(n, d) / h - &p.state).norm(),
+            ];
+            let quality = (0..2)
+                .filter(|&k| off[k] > 0.0)
+                .map(|k| off[k] / (0.3 * expected[k]))
+                .fold(0.0, f64::max);
+            // a corrected step is as good as a direct one when what is left to correct is a tenth
+            if quality <= 0.1 {
+                return Some((next, 0.5, false));
+            }
+            if quality > before || quality.is_nan() {
+                return None;
+            }
+            before = 0.5 * quality;
+            let mut rhs: Vec<f64> = (0..n).map(|i| next.force[i] - moving[i]).collect();
+            rhs.extend((0..d).map(|k| next.state[k] - step[n + k] / h));
+            // stiff directions have turned on the way: the derivatives have to be those of the end
+            let jacobian = self.jacobian(&next);
+            step += self.solved(&next, &jacobian, h, rhs, false)?;
+        }
+        None
     }
 
     /// How large forces are, in the metric, whatever cancels.

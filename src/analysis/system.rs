@@ -19,6 +19,7 @@ use super::assemble::Mover;
 use super::implicit::Implicit;
 use super::outside::{Hook, Outside};
 use super::passage::Passage;
+use super::samples::Samples;
 use super::sensors::Sensors;
 use super::slopes;
 use super::unknowns::{Unknowns, WIDTH};
@@ -44,6 +45,8 @@ pub struct System {
     pub outside: Outside,
     /// what is watched
     pub sensors: Sensors,
+    /// what is sampled
+    pub samples: Samples,
     /// the loop that had no solution at the last numbers
     unsolved: Option<usize>,
     /// angles whose turns are counted
@@ -224,6 +227,7 @@ impl System {
         let unknowns = Unknowns::new(&scene).map_err(complaints)?;
         let outside = Outside::new(&scene, hooks).map_err(complaints)?;
         let sensors = Sensors::new(&scene).map_err(complaints)?;
+        let samples = Samples::new(&scene).map_err(complaints)?;
         let counted = if scene.counted.is_empty() {
             None
         } else {
@@ -252,6 +256,7 @@ impl System {
             unknowns,
             outside,
             sensors,
+            samples,
             unsolved: None,
             counted,
             gradients: [None, None],

@@ -291,6 +291,19 @@ impl<'m> Builder<'m> {
         n: usize,
         reads: &[String],
     ) -> Vec<usize> {
+        self.user_reading(c, name, formula, n, reads, &[])
+    }
+
+    /// As [`user`](Self::user), for closures that are given values of further formulas as well.
+    pub(super) fn user_reading(
+        &mut self,
+        c: &mut Compiler,
+        name: &str,
+        formula: &ModelFormula,
+        n: usize,
+        reads: &[String],
+        further: &[usize],
+    ) -> Vec<usize> {
         let ModelFormula::User { constants, .. } = formula else {
             return vec![self.formula(c, name, formula); n];
         };
@@ -307,7 +320,8 @@ impl<'m> Builder<'m> {
             return vec![usize::MAX; n];
         };
         let texts = self.hooks[closure].inputs.iter().chain(reads);
-        let inputs = texts.map(|text| self.compiled(c, name, text)).collect();
+        let mut inputs: Vec<usize> = texts.map(|text| self.compiled(c, name, text)).collect();
+        inputs.extend(further);
         let hook = self.scene.hooks.len();
         let places: Vec<usize> = (0..n)
             .map(|k| self.supply(Supplied::Hook(hook, k)))
@@ -321,14 +335,15 @@ impl<'m> Builder<'m> {
             place: places[0],
         });
         let text = format!("USER, {}", self.hooks[closure].name);
-        places
-            .into_iter()
-            .map(|place| {
-                let mut recorder = Recorder::new(Folding::Strict);
-                let value = recorder.input(Input::Delayed(0));
-                self.push(name, &text, recorder.finish(&[value]), vec![place])
-            })
-            .collect()
+        let outside = |place| self.from_outside(name, &text, place);
+        places.into_iter().map(outside).collect()
+    }
+
+    /// A number from outside as a formula.
+    pub(super) fn from_outside(&mut self, name: &str, text: &str, place: usize) -> usize {
+        let mut recorder = Recorder::new(Folding::Strict);
+        let value = recorder.input(Input::Delayed(0));
+        self.push(name, text, recorder.finish(&[value]), vec![place])
     }
 
     /// REQUEST, FUNCTION=USER: eight components, where there is a closure for it.

@@ -381,6 +381,8 @@ pub struct Scene {
     pub plants: BTreeMap<(bool, u32), Vec<usize>>,
     /// sensors
     pub sensors: Vec<outside::SceneSensor>,
+    /// discrete states
+    pub samplers: Vec<outside::SceneSampler>,
     /// values of the past
     pub delays: Vec<outside::SceneDelay>,
     /// calls of the user's closures

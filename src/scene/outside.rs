@@ -17,6 +17,8 @@ pub enum Supplied {
     Delay(usize),
     /// what is added to a VARIABLE that is a plant input: index in the formulas
     Input(usize),
+    /// a discrete state, as it is until the next sample: index in [`Scene::samplers`](super::Scene::samplers), and which
+    Sample(usize, usize),
     /// a result of a closure: index in [`Scene::hooks`](super::Scene::hooks), and which
     Hook(usize, usize),
 }
@@ -50,6 +52,25 @@ pub struct SceneSensor {
     pub stepsize: Option<f64>,
     /// the integration begins anew
     pub restart: bool,
+}
+
+/// The discrete states of a GSE.
+#[derive(Clone, Debug)]
+pub struct SceneSampler {
+    /// user's number
+    pub id: u32,
+    /// "GSE/3"
+    pub name: String,
+    /// time between samples: index in the formulas
+    pub period: usize,
+    /// how many states
+    pub n: usize,
+    /// place of the first among the numbers from outside
+    pub states: usize,
+    /// place of what computes the first
+    pub results: usize,
+    /// what they are at the start
+    pub initial: Vec<f64>,
 }
 
 /// A value of the past: `DELAY(expression, delay, history)`; indices in the formulas.

@@ -12,7 +12,7 @@
 
 use super::build::{Builder, active};
 use super::compile::Compiler;
-use super::outside::{SceneSensor, Supplied};
+use super::outside::{SceneSampler, SceneSensor, Supplied};
 use super::{Entry, Formula, SceneDifferential};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program, Sym};
@@ -415,7 +415,7 @@ impl Builder<'_> {
         self.filled(s.y, false, vec![y])
     }
 
-    /// States and outputs that a closure of the user's computes, from its own inputs, the states and the entries of U.
+    /// States and outputs that a closure of the user's computes, from its own inputs, the states, the entries of U and the discrete states.
     fn general_system(
         &mut self,
         c: &mut Compiler,
@@ -441,23 +441,27 @@ impl Builder<'_> {
             }
             return Ok(());
         }
-        if s.nd > 0 {
-            return Err("its discrete states (ND, XD) are not solved".into());
-        }
-        let (Some(function), true) = (&s.function, s.ns + s.no > 0) else {
+        let (Some(function), true) = (&s.function, s.ns + s.no + s.nd > 0) else {
             return Ok(());
         };
+        let held = self.discrete_states(id, s)?;
         let array = |id: Option<u32>, n: usize| {
             (1..=n).filter_map(move |k| id.map(|id| format!("ARYVAL({id},{k})")))
         };
         let reads: Vec<String> = array(s.x, s.ns).chain(array(s.u, m)).collect();
-        let results = self.user(
+        let n = s.ns + s.no + s.nd;
+        let said = c.errors.len();
+        let results = self.user_reading(
             c,
             &format!("{name} FUNCTION"),
             function,
-            s.ns + s.no,
+            n,
             &reads,
+            &held,
         );
+        if s.nd > 0 && c.errors.len() == said {
+            self.sampler(c, id, s, &held, &results[s.ns + s.no..])?;
+        }
         let mut states = Vec::with_capacity(s.ns);
         for (i, value) in initial.into_iter().enumerate() {
             let start = Start {
@@ -473,7 +477,7 @@ impl Builder<'_> {
         if let Some(x) = s.x {
             self.filled(x, true, states)?;
         }
-        let outputs = results[s.ns..]
+        let outputs = results[s.ns..s.ns + s.no]
             .iter()
             .copied()
             .map(Entry::Formula)
@@ -482,6 +486,58 @@ impl Builder<'_> {
             Some(y) => self.filled(y, false, outputs),
             None => Ok(()),
         }
+    }
+}
+
+impl Builder<'_> {
+    /// Places for the discrete states of a GSE, as formulas.
+    fn discrete_states(&mut self, id: u32, s: &GeneralSystem) -> Result<Vec<usize>, String> {
+        if s.nd == 0 {
+            return Ok(Vec::new());
+        }
+        let sampler = self.scene.samplers.len();
+        let name = |k: usize| format!("GSE/{id} discrete state {}", k + 1);
+        let places: Vec<usize> = (0..s.nd)
+            .map(|k| self.supply(Supplied::Sample(sampler, k)))
+            .collect();
+        let states = places.into_iter().enumerate();
+        let held: Vec<usize> = states
+            .map(|(k, place)| self.from_outside(&name(k), "XD", place))
+            .collect();
+        if let Some(xd) = s.xd {
+            let entries = held.iter().copied().map(Entry::Formula).collect();
+            self.filled(xd, true, entries)?;
+        }
+        Ok(held)
+    }
+
+    /// When and from what the discrete states of a GSE are computed.
+    fn sampler(
+        &mut self,
+        c: &mut Compiler,
+        id: u32,
+        s: &GeneralSystem,
+        held: &[usize],
+        results: &[usize],
+    ) -> Result<(), String> {
+        let name = format!("GSE/{id}");
+        let Some(period) = &s.sample_period else {
+            return Err("its discrete states need a SAMPLE_PERIOD".into());
+        };
+        let period = self.formula(c, &format!("{name} SAMPLE_PERIOD"), period);
+        let place = |f: &usize| self.scene.formulas[*f].delayed[0];
+        let (states, results) = (place(&held[0]), place(&results[0]));
+        let initial = self.initial(s.icd, s.nd)?;
+        self.scene.samplers.push(SceneSampler {
+            id,
+            name,
+            period,
+            n: s.nd,
+            states,
+            results,
+            initial,
+        });
+        Ok(())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::assemble::{self, Assembly};
 use super::super::system::{System, complaints};
-use super::super::{misalignment, outside, placement, wishes};
+use super::super::{misalignment, outside, placement, samples, wishes};
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
@@ -30,6 +30,8 @@ pub(super) struct Carried {
     pub(super) turns: Vec<f64>,
     /// what sensors evaluated last, by their numbers
     pub(super) sensors: BTreeMap<u32, f64>,
+    /// where sampled systems stand, by the numbers of their GSE
+    pub(super) samples: BTreeMap<u32, samples::Held>,
     /// what was before
     pub(super) past: Vec<outside::Past>,
 }
@@ -168,6 +170,9 @@ impl Session {
         system.numbers.copy_from_slice(&row);
         let y = row[l.y()].to_vec();
         system.count_turns(t, &y);
+        let none = BTreeMap::new();
+        let held = self.carried.as_ref().map_or(&none, |c| &c.samples);
+        system.begin_sampling(held).map_err(|d| vec![d])?;
         if mode != STATIC {
             system.begin_sensing();
         }
@@ -184,13 +189,15 @@ impl Session {
     ) -> Result<Vec<f64>, Vec<Diagnostic>> {
         let l = scene.layout;
         let mut numbers = vec![0.0; l.len()];
-        if let Some(carried) = &self.carried {
-            let first = l.supplied().start;
-            for (place, supplied) in scene.supplied.iter().enumerate() {
-                let sensor = scene.sensor_of(*supplied);
-                let value = sensor.and_then(|id| carried.sensors.get(&id));
-                numbers[first + place] = value.copied().unwrap_or(0.0);
-            }
+        let carried = self.carried.as_ref();
+        let none = BTreeMap::new();
+        let held = carried.map_or(&none, |c| &c.samples);
+        let first = l.supplied().start;
+        for (place, supplied) in scene.supplied.iter().enumerate() {
+            let sensor = scene.sensor_of(*supplied);
+            let seen = sensor.and_then(|id| carried?.sensors.get(&id).copied());
+            let value = seen.or_else(|| samples::before(scene, *supplied, held));
+            numbers[first + place] = value.unwrap_or(0.0);
         }
         if !scene.hooks.is_empty() {
             numbers[0] = t;
@@ -248,6 +255,7 @@ impl Session {
             t: numbers[0],
             turns: numbers[system.scene.layout.turns()].to_vec(),
             sensors: sensed(&system.scene, &numbers),
+            samples: system.samples.held(&numbers),
             past: system.outside.past(),
             names: unknown_names(&system.scene),
             at_rest: false,
