@@ -451,14 +451,7 @@ impl Builder<'_> {
         let reads: Vec<String> = array(s.x, s.ns).chain(array(s.u, m)).collect();
         let n = s.ns + s.no + s.nd;
         let said = c.errors.len();
-        let results = self.user_reading(
-            c,
-            &format!("{name} FUNCTION"),
-            function,
-            n,
-            &reads,
-            &held,
-        );
+        let results = self.user_reading(c, &format!("{name} FUNCTION"), function, n, &reads, &held);
         if s.nd > 0 && c.errors.len() == said {
             self.sampler(c, id, s, &held, &results[s.ns + s.no..])?;
         }

@@ -337,9 +337,8 @@ impl Session {
             let clock = Instant::now();
             // states go on by integration, which keeps positions on the rows as well
             let l = system.scene.layout;
-            let moved = l.n_x > 0
-                || l.n_q > 0 && system.outside.remembers()
-                || !system.samples.is_empty();
+            let moved =
+                l.n_x > 0 || l.n_q > 0 && system.outside.remembers() || !system.samples.is_empty();
             trajectory = if kind == Kind::Kinematic && !moved {
                 kinematics::trace(system, &outputs, settings.h_max, watch)
             } else {
