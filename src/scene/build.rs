@@ -335,12 +335,12 @@ impl<'m> Builder<'m> {
             place: places[0],
         });
         let text = format!("USER, {}", self.hooks[closure].name);
-        let outside = |place| self.from_outside(name, &text, place);
+        let outside = |place| self.supplied_formula(name, &text, place);
         places.into_iter().map(outside).collect()
     }
 
     /// A number from outside as a formula.
-    pub(super) fn from_outside(&mut self, name: &str, text: &str, place: usize) -> usize {
+    pub(super) fn supplied_formula(&mut self, name: &str, text: &str, place: usize) -> usize {
         let mut recorder = Recorder::new(Folding::Strict);
         let value = recorder.input(Input::Delayed(0));
         self.push(name, text, recorder.finish(&[value]), vec![place])

@@ -495,7 +495,7 @@ impl Builder<'_> {
             .collect();
         let states = places.into_iter().enumerate();
         let held: Vec<usize> = states
-            .map(|(k, place)| self.from_outside(&name(k), "XD", place))
+            .map(|(k, place)| self.supplied_formula(&name(k), "XD", place))
             .collect();
         if let Some(xd) = s.xd {
             let entries = held.iter().copied().map(Entry::Formula).collect();
