@@ -174,10 +174,20 @@ fn shapes() -> Vec<(&'static str, &'static str)> {
         ),
     ];
     if cfg!(feature = "geometry") {
-        all.push((
-            "BOX, CORNER=4, X=1, Y=1, Z=1",
-            "BOX, CORNER=5, X=0.8, Y=0.8, Z=0.8",
-        ));
+        all.extend([
+            (
+                "BOX, CORNER=4, X=1, Y=1, Z=1",
+                "BOX, CORNER=5, X=0.8, Y=0.8, Z=0.8",
+            ),
+            (
+                "BOX, CORNER=4, X=1, Y=1, Z=1",
+                "CYLINDER, CM=5, LENGTH=0.8, RADIUS=0.4",
+            ),
+            (
+                "FRUSTUM, CM=4, LENGTH=1, BOTTOM=0.8, TOP=0.4",
+                "ELLIPSOID, CM=3, XSCALE=0.6, YSCALE=0.8, ZSCALE=1",
+            ),
+        ]);
     }
     all
 }

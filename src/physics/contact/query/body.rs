@@ -14,6 +14,8 @@ pub(super) struct Body {
     pub solid: Solid,
     /// its smallest and largest extent, roughly
     pub size: [f64; 2],
+    /// middle of its extents
+    pub middle: Vector,
     /// of a hull: outward normals and corners
     faces: Vec<(Vector, Vec<Vector>)>,
 }
@@ -53,11 +55,16 @@ fn azimuth(dir: Vector) -> (f64, f64) {
 impl Body {
     pub fn new(solid: &Solid) -> Option<Self> {
         let mut faces = Vec::new();
+        let mut middle = Vector::ZERO;
         let size = match solid {
             Solid::Ball { radius } if *radius > 0.0 => [*radius; 2],
             Solid::Ellipsoid { semi } => extremes(*semi),
-            Solid::Box { low, high } => extremes([0, 1, 2].map(|k| 0.5 * (high[k] - low[k]))),
+            Solid::Box { low, high } => {
+                middle = (vector(*low) + vector(*high)) * 0.5;
+                extremes([0, 1, 2].map(|k| 0.5 * (high[k] - low[k])))
+            }
             Solid::Frustum { z, radius } => {
+                middle = Vector::Z * (0.5 * (z[0] + z[1]));
                 let wide = radius[0].max(radius[1]);
                 extremes([wide, wide, 0.5 * (z[1] - z[0])])
             }
@@ -78,12 +85,57 @@ impl Body {
                     ),
                     |(low, high), p| (low.min(*p), high.max(*p)),
                 );
+                middle = (high + low) * 0.5;
                 extremes(((high - low) * 0.5).to_array())
             }
             Solid::Ball { .. } | Solid::Plane { .. } | Solid::Torus { .. } => return None,
         };
         let solid = solid.clone();
-        Some(Self { solid, size, faces })
+        Some(Self {
+            solid,
+            size,
+            middle,
+            faces,
+        })
+    }
+
+    /// Outward normals of its faces, where these are not along its axes.
+    pub fn normals(&self) -> impl Iterator<Item = Vector> + '_ {
+        self.faces.iter().map(|f| f.0)
+    }
+
+    /// The edge, or the line on a curved side, that comes nearest to being the farthest in a direction; none of what is round all about.
+    pub fn edge(&self, dir: Vector) -> Option<[Vector; 2]> {
+        match &self.solid {
+            Solid::Box { low, high } => {
+                let corner = self.local_support_point(dir);
+                let lost = |k: usize| dir[k].abs() * (high[k] - low[k]);
+                let axis = (0..3).min_by(|&a, &b| lost(a).total_cmp(&lost(b)))?;
+                let (mut p, mut q) = (corner, corner);
+                (p[axis], q[axis]) = (low[axis], high[axis]);
+                Some([p, q])
+            }
+            Solid::Frustum { z, radius } => {
+                let (c, s) = azimuth(dir);
+                let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
+                Some([at(0), at(1)])
+            }
+            Solid::Hull(_) => {
+                let corner = self.local_support_point(dir);
+                let around = self.faces.iter().filter_map(|(_, corners)| {
+                    let n = corners.len();
+                    let k = corners.iter().position(|c| *c == corner)?;
+                    Some([corners[(k + 1) % n], corners[(k + n - 1) % n]])
+                });
+                let highest = |a: &Vector, b: &Vector| a.dot(dir).total_cmp(&b.dot(dir));
+                let other = around.flatten().max_by(highest)?;
+                Some([corner, other])
+            }
+            Solid::Ball { .. }
+            | Solid::Ellipsoid { .. }
+            | Solid::Plane { .. }
+            | Solid::Torus { .. } => None,
+        }
     }
 
     /// The face that looks along a unit vector.

@@ -1,17 +1,10 @@
 //! Where two convex solids touch for which there is no formula: box, cylinder, frustum, ellipsoid, hull, ball against each other.
 //!
-//! 1. **Direction.** parry finds the direction n from J's solid to I's in which they overlap least: for two boxes among the
-//!    normals of faces and the products of edges, else by the algorithms of Gilbert, Johnson and Keerthi and of expanding
-//!    polytopes. The normals of the nearest faces compete with what these found: the largest gap along its direction is the
-//!    true one, so that faces are exact. Where two curved sides look at each other Newton's iteration makes it exact:
+//! 1. **Direction** (`direction.rs`). The direction n from J's solid to I's in which they overlap least: for two boxes among the
+//!    normals of faces and the products of edges, else by the algorithm of Gilbert, Johnson and Keerthi (parry), made exact by the features
+//!    that look at each other.
 //!
-//! ```text
-//! s(n) = n · (a(−n) − b(n))        a, b: the farthest points of I's and J's solid; at the maximum a − b is parallel to n
-//! ```
-//!
-//! Where an edge is pressed into a curved side it is good to about 1e-7.
-//!
-//! 2. **Points.** The face of each solid that looks at the other is laid along n onto a plane: the points are the corners of
+//! 2. **Points** (`points.rs`). The face of each solid that looks at the other is laid along n onto a plane: the points are the corners of
 //!    each that lie within the other, and where their outlines cross. At each the two faces say how deep it is. A rim is a
 //!    circle of [`RIM`] points with four corners, one of them the deepest; the side of a cylinder is a line.
 //! 3. **Shares.** Points that are near each other share what one point would do, so that the force does not jump
