@@ -116,6 +116,35 @@ pub struct Past {
     pieces: Vec<Piece>,
 }
 
+impl Past {
+    /// As lists of numbers: the start, then each piece with its two ends.
+    pub(super) fn numbers(&self) -> Vec<Vec<f64>> {
+        let piece = |p: &Piece| [&[p.t0, p.t1][..], &p.values[..]].concat();
+        let start = self.start.into_iter().collect();
+        std::iter::once(start)
+            .chain(self.pieces.iter().map(piece))
+            .collect()
+    }
+
+    /// From such lists; `None` where they are none.
+    pub(super) fn of_numbers(lists: &[Vec<f64>]) -> Option<Self> {
+        let (start, pieces) = lists.split_first()?;
+        let piece = |p: &Vec<f64>| {
+            let (ends, values) = p.split_first_chunk::<2>()?;
+            let values = values.try_into().ok()?;
+            Some(Piece {
+                t0: ends[0],
+                t1: ends[1],
+                values,
+            })
+        };
+        Some(Self {
+            start: start.first().copied(),
+            pieces: pieces.iter().map(piece).collect::<Option<_>>()?,
+        })
+    }
+}
+
 #[derive(Debug)]
 struct Track {
     place: usize,

@@ -3,6 +3,7 @@
 use super::dynamics::Watch;
 use super::linear::Wanted;
 use super::output::Output;
+use super::session::state::{self, Saved};
 use super::session::{Analysis, Session};
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::Diagnostic;
@@ -54,6 +55,23 @@ impl Simulate {
         };
         Ok((analysis, end, output))
     }
+}
+
+/// The bytes of a state: of one saved in this run, else of the first file of that name.
+fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
+    let file = state::file_name(name);
+    if let Some(text) = session.saved.get(&file) {
+        return Ok(text.clone().into_bytes());
+    }
+    let given = std::path::PathBuf::from(name.trim().trim_matches('"'));
+    let here = std::path::PathBuf::from(".");
+    let folders = session.folders.iter().chain(std::iter::once(&here));
+    let mut files = folders.flat_map(|folder| [folder.join(&file), folder.join(&given)]);
+    let bytes = files.find_map(|f| std::fs::read(f).ok());
+    bytes.ok_or_else(|| {
+        Diagnostic::error("cannot_open", format!("there is no file {file}"))
+            .help("SAVE/SYSTEM=file writes one, beside the results")
+    })
 }
 
 /// Obeys commands until one of them ends the run; how the last simulation ended.
@@ -114,9 +132,28 @@ pub fn obey(
                 let matrices = command.state_matrices || !command.eigensolution;
                 session.linear.push((command.file.clone(), matrices, found));
             }
-            Command::File { .. } | Command::Save(_) | Command::Reload(_) => {
-                let d = Diagnostic::error("unsupported", "this command is not obeyed yet");
+            Command::Save(Some(name)) => {
+                let file = state::file_name(name);
+                session.saved.insert(file, session.save());
+            }
+            Command::Reload(Some(name)) => {
+                let saved = found(session, name)
+                    .and_then(|bytes| Saved::read(&bytes))
+                    .and_then(|saved| session.reload(saved));
+                saved.map_err(|d| vec![located(d)])?;
+            }
+            Command::Save(None) | Command::Reload(None) => {
+                let d = Diagnostic::error("missing_argument", "SYSTEM = file is needed");
                 return Err(vec![located(d)]);
+            }
+            Command::File { .. } => {
+                let d = Diagnostic::error(
+                    "unsupported",
+                    "a run has one dataset and one table of results",
+                );
+                return Err(vec![located(d.help(
+                    "FILE belongs at the beginning; another dataset needs a command file of its own, a saved state RELOAD/SYSTEM=file",
+                ))]);
             }
         }
     }

@@ -5,6 +5,7 @@ use super::progress::Progress;
 use super::{Exit, Failure, Outcome, interrupt, linear, remark, say, summary};
 use crate::analysis::dynamics::Watch;
 use crate::analysis::script::obey;
+use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Options, Session};
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
@@ -128,6 +129,8 @@ pub fn run(args: &Args) -> Outcome {
     };
     let mut session = Session::new(model, &base, options);
     session.run.record.model = args.model.display().to_string();
+    let folder = args.model.parent().map(Path::to_path_buf);
+    session.folders = args.out.clone().into_iter().chain(folder).collect();
     session
         .run
         .log
@@ -282,6 +285,25 @@ pub(super) fn script(path: &Path) -> Result<Job, Failure> {
     }
     let script = Script::read(path).map_err(failed)?;
     let Some(file) = script.model_file() else {
+        if let Some(Step {
+            command: Command::Reload(Some(name)),
+            ..
+        }) = script.steps.first()
+        {
+            // a state holds its model
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let file = folder.join(state::file_name(name));
+            let bytes = std::fs::read(&file).map_err(|e| {
+                let what = format!("{}: cannot be opened: {e}", file.display());
+                Diagnostic::error("cannot_open", what)
+            })?;
+            let saved = Saved::read(&bytes)?;
+            return Ok(Job {
+                reading: dataset::read_text(&saved.model().to_text()),
+                base: script.output.clone().unwrap_or_else(|| stem(path)),
+                steps: script.steps,
+            });
+        }
         let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
         return Err(d.help("begin it with FILE/MODEL=name").into());
     };
@@ -312,6 +334,9 @@ fn write(
     shelf.put(&own("msg"), &msg::write(run))?;
     for (name, text) in linear::files(session) {
         shelf.put(&name, &text)?;
+    }
+    for (name, text) in &session.saved {
+        shelf.put(name, text)?;
     }
     if let Some(text) = summary::picture(run).filter(|_| picture) {
         shelf.put(&own("svg"), &text)?;

@@ -5,6 +5,7 @@
 //! model is an error.
 
 mod start;
+pub mod state;
 mod told;
 
 use super::columns::Columns;
@@ -69,6 +70,10 @@ pub struct Session {
     hooks: Vec<outside::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether matrices are wanted
     pub linear: Vec<(Option<String>, bool, Linearization)>,
+    /// states that commands saved, by the names of their files
+    pub saved: std::collections::BTreeMap<String, String>,
+    /// folders in which RELOAD looks for files
+    pub folders: Vec<std::path::PathBuf>,
     /// a sensor ended the run, not only its simulation
     halted: bool,
 }
@@ -100,6 +105,8 @@ impl Session {
             carried: None,
             hooks: Vec::new(),
             linear: Vec::new(),
+            saved: std::collections::BTreeMap::new(),
+            folders: Vec::new(),
             halted: false,
         }
     }
@@ -121,14 +128,19 @@ impl Session {
             law: std::sync::Arc::new(law),
         });
         if self.carried.is_none() {
-            let names: Vec<_> = self.hooks.iter().map(outside::Hook::as_name).collect();
-            let known = |id: u32, user: &crate::model::Formula| {
-                let element = format!("REQUEST/{id}");
-                names.iter().any(|n| n.stands_for(&element, user))
-            };
-            let (run, options) = (&mut self.run, &self.options);
-            self.columns = Columns::new(&self.model, run, &options.columns, options.full, &known);
+            self.choose_columns();
         }
+    }
+
+    /// The columns of the results, before there are any.
+    fn choose_columns(&mut self) {
+        let names: Vec<_> = self.hooks.iter().map(outside::Hook::as_name).collect();
+        let known = |id: u32, user: &crate::model::Formula| {
+            let element = format!("REQUEST/{id}");
+            names.iter().any(|n| n.stands_for(&element, user))
+        };
+        let (run, options) = (&mut self.run, &self.options);
+        self.columns = Columns::new(&self.model, run, &options.columns, options.full, &known);
     }
 
     /// Whether a sensor has ended the run.

@@ -326,6 +326,14 @@ The result is that of the model without it, and without what hangs on it: what i
 or couples a joint. It exerts nothing, and functions read zero of it; each of these is named.",
     },
     Code {
+        name: "not_a_state",
+        summary: "RELOAD of a file that holds no state saved by cognate",
+        explanation: "\
+SAVE/SYSTEM=name writes name.state.json beside the results: the model as the commands have left it, what is switched off, and where
+the last simulation ended, every number exactly. RELOAD/SYSTEM=name goes on from there. What Adams saves under the same command is an image of its
+memory, which no other program can read: obey the commands that led there, and SAVE anew.",
+    },
+    Code {
         name: "assembly",
         summary: "the constraints cannot all be satisfied",
         explanation: "\

@@ -1,0 +1,260 @@
+//! SAVE and RELOAD: where a session stands, as a text that reads back exactly.
+//!
+//! The text is JSON: the model as the commands have left it (a dataset), what is switched off, and the state of the last simulation. Numbers stand in
+//! quotes, as the shortest decimals that name them, so that each comes back with every bit whatever program has passed the file on.
+
+use super::super::outside::Past;
+use super::super::samples::Held;
+use super::Session;
+use super::start::Carried;
+use crate::dataset;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::model::Model;
+use crate::space::{MarkerState, Mat3, Vec3};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// The mark of these files, and which form they have.
+const MARK: &str = "cognate_state";
+const VERSION: u64 = 1;
+
+/// The name of the file for a name that SAVE or RELOAD gives: its own ending, or `.state.json`.
+pub fn file_name(name: &str) -> String {
+    let name = name.trim().trim_matches('"');
+    let file = std::path::Path::new(name).file_name();
+    let file = file.map_or_else(|| "saved".into(), |f| f.to_string_lossy().into_owned());
+    if std::path::Path::new(&file).extension().is_some() {
+        file
+    } else {
+        format!("{file}.state.json")
+    }
+}
+
+/// A state that was read: the model, and where it stands.
+#[derive(Debug)]
+pub struct Saved {
+    model: Model,
+    carried: Option<Carried>,
+}
+
+impl Saved {
+    /// Reads the bytes of a file.
+    ///
+    /// # Errors
+    /// What is wrong with it; the binary files that Adams saves are no such states.
+    pub fn read(bytes: &[u8]) -> Result<Self, Diagnostic> {
+        let text = std::str::from_utf8(bytes).ok();
+        let value: Option<Value> = text.and_then(|t| serde_json::from_str(t).ok());
+        let Some(value) = value.filter(|v| v.get(MARK).is_some()) else {
+            let d = Diagnostic::error("not_a_state", "is no state that cognate has saved");
+            return Err(d.help("what Adams saves is an image of its memory, whose layout is nowhere described: obey the commands that led there, and SAVE here"));
+        };
+        let wrong =
+            |what: &str| Diagnostic::error("not_a_state", format!("its {what} cannot be read"));
+        if value[MARK].as_u64() != Some(VERSION) {
+            let what = format!(
+                "is a state of form {}, this program reads form {VERSION}",
+                value[MARK]
+            );
+            return Err(Diagnostic::error("not_a_state", what));
+        }
+        let text = value["model"].as_str().ok_or_else(|| wrong("model"))?;
+        let reading = dataset::read_text(text);
+        if let Some(d) = reading
+            .diagnostics
+            .into_iter()
+            .find(|d| d.severity == Severity::Error)
+        {
+            return Err(d);
+        }
+        let mut model = reading.model;
+        for pair in value["inactive"].as_array().into_iter().flatten() {
+            let id = pair[1].as_u64().and_then(|id| u32::try_from(id).ok());
+            let (Some(keyword), Some(id)) = (pair[0].as_str(), id) else {
+                return Err(wrong("inactive elements"));
+            };
+            model.inactive.insert((keyword.to_string(), id));
+        }
+        let carried = match &value["state"] {
+            Value::Null => None,
+            state => Some(carried(state).ok_or_else(|| wrong("state"))?),
+        };
+        Ok(Self { model, carried })
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+}
+
+impl Session {
+    /// Where the session stands, as a text.
+    pub fn save(&self) -> String {
+        let inactive: Vec<Value> = (self.model.inactive.iter())
+            .map(|(keyword, id)| json!([keyword, id]))
+            .collect();
+        let value = json!({
+            MARK: VERSION,
+            "title": self.model.title,
+            "model": self.model.to_text(),
+            "inactive": inactive,
+            "state": self.carried.as_ref().map(state),
+        });
+        format!("{value:#}\n")
+    }
+
+    /// Goes on from where a session stood.
+    ///
+    /// # Errors
+    /// When the model of the state asks for other results than those that this run already has.
+    pub fn reload(&mut self, saved: Saved) -> Result<(), Diagnostic> {
+        let Saved { model, carried } = saved;
+        // as written, without the places they were read from
+        let asked = |model: &Model| {
+            let only = Model {
+                requests: model.requests.clone(),
+                many_requests: model.many_requests.clone(),
+                ..Model::default()
+            };
+            only.to_text()
+        };
+        let same = asked(&model) == asked(&self.model);
+        if self.run.rows() > 0 && !same {
+            let d = Diagnostic::error(
+                "not_a_state",
+                "its model has other requests than the results so far",
+            );
+            return Err(d.help("a run has one table: reload before the first simulation, or in a command file of its own"));
+        }
+        let fresh = self.run.rows() == 0 && !same;
+        self.model = model;
+        self.carried = carried;
+        self.halted = false;
+        if fresh {
+            self.choose_columns();
+        }
+        Ok(())
+    }
+}
+
+// ------------------------------------------------------------------------------------------------------- numbers in text
+
+fn number(x: f64) -> Value {
+    Value::String(format!("{x:?}"))
+}
+
+fn numbers(all: &[f64]) -> Value {
+    all.iter().map(|&x| number(x)).collect()
+}
+
+fn as_number(v: &Value) -> Option<f64> {
+    v.as_str()?.parse().ok()
+}
+
+fn as_numbers(v: &Value) -> Option<Vec<f64>> {
+    v.as_array()?.iter().map(as_number).collect()
+}
+
+fn state(c: &Carried) -> Value {
+    let parts: Vec<Value> = (c.parts.iter())
+        .map(|(point_mass, id, s)| {
+            let axes: Vec<f64> = s.R_GM.0.iter().flatten().copied().collect();
+            let vectors = [s.p_GM, s.w_GM, s.v_GM, s.alpha_GM, s.a_GM];
+            let vectors: Vec<f64> = vectors.iter().flat_map(|v| v.0).collect();
+            json!({ "point_mass": point_mass, "id": id, "axes": numbers(&axes), "vectors": numbers(&vectors) })
+        })
+        .collect();
+    let sensors: Map<String, Value> = (c.sensors.iter())
+        .map(|(id, x)| (id.to_string(), number(*x)))
+        .collect();
+    let samples: Map<String, Value> = (c.samples.iter())
+        .map(|(id, h)| {
+            let held = json!({ "states": numbers(&h.states), "next": numbers(&h.next), "due": number(h.due) });
+            (id.to_string(), held)
+        })
+        .collect();
+    let past: Vec<Value> = c
+        .past
+        .iter()
+        .map(|p| p.numbers().iter().map(|n| numbers(n)).collect())
+        .collect();
+    json!({
+        "time": number(c.t),
+        "names": c.names,
+        "numbers": numbers(&c.numbers),
+        "at_rest": c.at_rest,
+        "parts": parts,
+        "turns": numbers(&c.turns),
+        "sensors": sensors,
+        "samples": samples,
+        "past": past,
+    })
+}
+
+fn carried(v: &Value) -> Option<Carried> {
+    let names = v["names"]
+        .as_array()?
+        .iter()
+        .map(|n| n.as_str().map(str::to_string));
+    let names: Vec<String> = names.collect::<Option<_>>()?;
+    let all = as_numbers(&v["numbers"])?;
+    // the row begins with time and the unknowns, which have the names
+    if all.len() <= names.len() {
+        return None;
+    }
+    let parts = v["parts"]
+        .as_array()?
+        .iter()
+        .map(part)
+        .collect::<Option<_>>()?;
+    let ids = |key: &str| -> Option<Vec<(u32, Value)>> {
+        let one = |(id, value): (&String, &Value)| Some((id.parse().ok()?, value.clone()));
+        v[key].as_object()?.iter().map(one).collect()
+    };
+    let sensors: Option<BTreeMap<u32, f64>> = (ids("sensors")?.iter())
+        .map(|(id, x)| Some((*id, as_number(x)?)))
+        .collect();
+    let samples: Option<BTreeMap<u32, Held>> = (ids("samples")?.iter())
+        .map(|(id, h)| {
+            let held = Held {
+                states: as_numbers(&h["states"])?,
+                next: as_numbers(&h["next"])?,
+                due: as_number(&h["due"])?,
+            };
+            Some((*id, held))
+        })
+        .collect();
+    let past = v["past"].as_array()?.iter().map(|p| {
+        let lists: Option<Vec<Vec<f64>>> = p.as_array()?.iter().map(as_numbers).collect();
+        Past::of_numbers(&lists?)
+    });
+    Some(Carried {
+        t: as_number(&v["time"])?,
+        numbers: all,
+        names,
+        at_rest: v["at_rest"].as_bool()?,
+        parts,
+        turns: as_numbers(&v["turns"])?,
+        sensors: sensors?,
+        samples: samples?,
+        past: past.collect::<Option<_>>()?,
+    })
+}
+
+fn part(v: &Value) -> Option<(bool, u32, MarkerState<f64>)> {
+    let axes: [f64; 9] = as_numbers(&v["axes"])?.try_into().ok()?;
+    let vectors: [f64; 15] = as_numbers(&v["vectors"])?.try_into().ok()?;
+    let vector = |k: usize| Vec3([vectors[3 * k], vectors[3 * k + 1], vectors[3 * k + 2]]);
+    let row = |k: usize| [axes[3 * k], axes[3 * k + 1], axes[3 * k + 2]];
+    let state = MarkerState {
+        R_GM: Mat3([row(0), row(1), row(2)]),
+        p_GM: vector(0),
+        w_GM: vector(1),
+        v_GM: vector(2),
+        alpha_GM: vector(3),
+        a_GM: vector(4),
+    };
+    let id = u32::try_from(v["id"].as_u64()?).ok()?;
+    Some((v["point_mass"].as_bool()?, id, state))
+}

@@ -1,0 +1,148 @@
+//! SAVE and RELOAD: a run goes on from a saved state as if nothing had happened, to the last bit; what is no such state is refused.
+#![cfg(feature = "solver")]
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::script::obey;
+use cognate::analysis::session::state::{Saved, file_name};
+use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::dataset::command::Script;
+use cognate::model::Model;
+use cognate::results::Status;
+
+/// A pendulum with everything that is carried from one simulation to the next: turns, states, sensors, samples and a past.
+const MODEL: &str = "everything that is carried
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, MASS=2, CM=20, IP=0.1,0.1,0.1
+MARKER/20, PART=2, QP=1,0,0
+MARKER/21, PART=2
+JOINT/1, REVOLUTE, I=21, J=1, IC=0.3,5
+JOINT/2, REVOLUTE, I=21, J=1
+ACCGRAV/JGRAV=-9.81
+DIFF/1, IC=1, FUNCTION=-DIF(1)+AZ(21,1)
+VARIABLE/1, FUNCTION=AZ(21,1)
+VARIABLE/2, FUNCTION=DELAY(VARVAL(1), 0.13, 0)
+SENSOR/1, FUNCTION=AZ(21,1)\\, VALUE=0.5, GE, EVALUATE=TIME
+ARRAY/1, U, VARIABLES=1
+ARRAY/2, X
+GSE/1, NO=0, U=1, ND=1, XD=2, SAMPLE_PERIOD=0.07, FUNCTION=USER(1)
+SFORCE/1, ROTATION, I=21, J=1, FUNCTION=-0.2*VARVAL(2)-0.1*ARYVAL(2,1)+SENVAL(1)
+REQUEST/1, DISPLACEMENT, I=20, J=1
+END
+";
+
+const COLUMNS: [&str; 5] = ["AZ(21,1)", "WZ(21,1)", "DIF(1)", "ARYVAL(2,1)", "VARVAL(2)"];
+
+fn session(model: Model) -> Session {
+    let options = Options {
+        columns: COLUMNS.map(str::to_string).to_vec(),
+        error: Some(1e-7),
+        ..Options::default()
+    };
+    let mut s = Session::new(model, "saved", options);
+    s.register("1", &[], |call, out| {
+        let [u, d] = call.values else { return };
+        out[0] = 0.5 * d + u;
+    });
+    s
+}
+
+fn go(s: &mut Session, end: f64) {
+    let status = s
+        .simulate(Analysis::Dynamic, end, 5, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+}
+
+fn last(s: &Session) -> [u64; 5] {
+    COLUMNS.map(|c| s.run.column(c).unwrap().last().unwrap().to_bits())
+}
+
+#[test]
+fn a_run_goes_on_from_a_saved_state_to_the_last_bit() {
+    let mut whole = session(Model::from_text(MODEL).unwrap());
+    go(&mut whole, 0.5);
+    whole.model.inactive.insert(("JOINT".into(), 2));
+    let text = whole.save();
+    go(&mut whole, 1.5);
+    let saved = Saved::read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let mut other =
+        session(Model::from_text("nothing\nPART/1, GROUND\nMARKER/1, PART=1\nEND\n").unwrap());
+    other.reload(saved).unwrap();
+    assert_eq!(other.time(), 0.5);
+    assert_eq!(other.save(), text, "a state is saved as it was read");
+    go(&mut other, 1.5);
+    assert_eq!(last(&other), last(&whole));
+    assert!(
+        other.run.column("REQUEST_1.MAG").is_some(),
+        "its requests come with it"
+    );
+}
+
+#[test]
+fn commands_save_and_go_back() {
+    let mut s = session(Model::from_text(MODEL).unwrap());
+    let script = "\nsim/dyn, end=0.4, steps=4\nsave/system=here\nsim/dyn, end=0.8, steps=4\nreload/system=here\n\
+        sim/dyn, end=0.8, steps=4\nstop\n";
+    let script = Script::from_text(script).unwrap();
+    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+    let time = s.run.column("TIME").unwrap();
+    let ends: Vec<usize> = (0..time.len()).filter(|&k| time[k] == 0.8).collect();
+    assert_eq!(ends.len(), 2);
+    for c in COLUMNS {
+        let column = s.run.column(c).unwrap();
+        assert_eq!(column[ends[0]].to_bits(), column[ends[1]].to_bits(), "{c}");
+    }
+    assert!(s.saved.contains_key("here.state.json"));
+}
+
+#[test]
+fn a_state_is_found_in_the_folders_of_the_run() {
+    let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("saved");
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut s = session(Model::from_text(MODEL).unwrap());
+    go(&mut s, 0.2);
+    std::fs::write(folder.join(file_name("a")), s.save()).unwrap();
+    std::fs::write(folder.join("adams.sav"), [0u8, 159, 3, 255, 10]).unwrap();
+    let mut other = session(Model::from_text(MODEL).unwrap());
+    other.folders = vec![folder];
+    let run = |s: &mut Session, text: &str| {
+        let script = Script::from_text(text).unwrap();
+        obey(s, &script.steps, |_, _| (), &mut Unwatched)
+    };
+    run(&mut other, "\nreload/system=a\n").unwrap();
+    assert_eq!(other.time(), 0.2);
+    let errors = run(&mut other, "\nreload/system=adams.sav\n").expect_err("a binary");
+    assert_eq!(errors[0].code, "not_a_state");
+    assert!(
+        errors[0].help.iter().any(|h| h.contains("Adams")),
+        "{errors:?}"
+    );
+    let errors = run(&mut other, "\nreload/system=nowhere\n").expect_err("no file");
+    assert_eq!(errors[0].code, "cannot_open");
+    let errors = run(&mut other, "\nsave\n").expect_err("no name");
+    assert_eq!(errors[0].code, "missing_argument");
+}
+
+#[test]
+fn damaged_states_are_refused() {
+    let mut s = session(Model::from_text(MODEL).unwrap());
+    go(&mut s, 0.2);
+    let text = s.save();
+    for (from, to) in [
+        ("\"cognate_state\": 1", "\"cognate_state\": 2"),
+        ("\"cognate_state\"", "\"other\""),
+        ("\"at_rest\": false", "\"at_rest\": 3"),
+        ("\"time\": \"0.2\"", "\"time\": \"soon\""),
+        ("GROUND", "GRND"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        assert!(
+            Saved::read(text.replacen(from, to, 1).as_bytes()).is_err(),
+            "{from}"
+        );
+    }
+    for bytes in [&b""[..], b"{}", b"[1,2", b"\xff\xfe"] {
+        assert!(Saved::read(bytes).is_err());
+    }
+}
