@@ -17,13 +17,16 @@ use std::sync::LazyLock;
 
 /// What SIMULATE runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum SimulationKind {
+    /// motions alone move the mechanism
     Kinematic,
+    /// forces move it
     Dynamic,
+    /// it comes to rest
     Static,
     /// kinematic without freedom, else dynamic
     Transient,
+    /// positions and velocities at the start, and nothing more
     InitialConditions,
 }
 
@@ -44,7 +47,6 @@ pub struct Simulate {
 
 /// LINEAR: what to compute at the present state.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Linear {
     /// EIGENSOL: eigenvalues and mode shapes
     pub eigensolution: bool,
@@ -54,35 +56,46 @@ pub struct Linear {
     pub no_damping: bool,
     /// first and last mode whose shape is wanted
     pub coords: Vec<u32>,
+    /// RM: the marker in whose frame the model is to be looked at
     pub rm: Option<u32>,
+    /// FILE: where the matrices go
     pub file: Option<String>,
+    /// FORMAT of that file
     pub format: Option<String>,
+    /// PINPUT: whose VARIABLEs are the inputs
     pub pinput: Option<u32>,
+    /// POUTPUT: whose VARIABLEs are the outputs
     pub poutput: Option<u32>,
 }
 
 /// One command.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)]
 pub enum Command {
     /// FILE: which dataset to read, the base name of the results, another command file to run
     File {
+        /// MODEL: the dataset
         model: Option<String>,
+        /// OUTPUT_PREFIX: base name of the results
         output_prefix: Option<String>,
+        /// COMMAND: a file of commands
         command: Option<String>,
     },
+    /// SIMULATE
     Simulate(Simulate),
     /// a statement of the dataset: new values for an element or for settings
     Change(Record),
     /// ACTIVATE (`on`) or DEACTIVATE elements of one kind
     Activate {
+        /// ACTIVATE rather than DEACTIVATE
         on: bool,
         /// full keyword of the statement
         keyword: String,
+        /// ID: numbers one by one
         ids: Vec<u32>,
         /// first and last number
         range: Option<[u32; 2]>,
     },
+    /// LINEAR
     Linear(Linear),
     /// SAVE/SYSTEM=file
     Save(Option<String>),
@@ -90,6 +103,7 @@ pub enum Command {
     Reload(Option<String>),
     /// INFO, LIST, SHOW, TIME, HELP, MENU: ask for a print
     Show(String),
+    /// STOP: the end, whatever follows
     Stop,
 }
 

@@ -97,7 +97,6 @@ impl Source {
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum TokenKind {
     /// a word, a number, a sign: anything between marks
     Atom,
@@ -107,11 +106,17 @@ pub enum TokenKind {
     Comma,
     /// a comma that begins a line and continues the statement
     Continuation,
+    /// `=`, between a keyword and its value
     Equals,
+    /// `:`, between words of a list or branches of an IF
     Colon,
+    /// `/`, between a statement and its number, or a division
     Slash,
+    /// `\`, at the end of an expression
     Backslash,
+    /// `(`
     Open,
+    /// `)`
     Close,
     /// `&` at the end of a line
     Carry,

@@ -142,29 +142,43 @@ impl std::fmt::Display for Value {
 
 /// What an argument accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub enum Kind {
+    /// nothing: the keyword stands alone
     Flag,
+    /// the number of an element, or a count
     Id,
+    /// several
     Ids {
+        /// at least so many
         min: usize,
+        /// at most
         max: usize,
     },
+    /// a real number
     Real {
+        /// it is an angle, for which the suffix D is meant
         angle: bool,
     },
+    /// several
     Reals {
+        /// at least so many
         min: usize,
+        /// at most
         max: usize,
+        /// they are angles
         angle: bool,
     },
     /// one of these; any word when empty
     Word(&'static [&'static str]),
     /// several, between colons; any words when empty
     Words(&'static [&'static str]),
+    /// free text up to the next argument
     Text,
+    /// several texts in double quotes
     Texts,
+    /// an expression, or USER
     Formula,
+    /// whatever is written, for arguments that are only kept
     Raw,
 }
 
