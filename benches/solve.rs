@@ -4,7 +4,7 @@
 //! explicit method (DOP853) over the same requests. For each true error the least time that reaches it is taken, medians of runs that
 //! alternate; the ratio is what generality costs. Then chains: the time of one evaluation against the number of links.
 //!
-//! `cargo bench --bench solve`
+//! `cargo bench --bench solve`, or `cargo bench --bench solve -- four table`: only problems whose names contain a word; `table` shows every request.
 
 use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::script::obey;
@@ -415,7 +415,7 @@ fn least(runs: &[(f64, f64)]) -> [Option<f64>; 3] {
     })
 }
 
-fn beside_hand_written() {
+fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
     let squeezer = Squeezer::new();
     let problems: [(&str, &dyn Hand); 4] = [
         ("a01_pendulum", &Pendulum),
@@ -428,7 +428,7 @@ fn beside_hand_written() {
         "problem", "error", "ours", "by hand", "ratio"
     );
     let mut logs = [(0.0, 0); 3];
-    for (problem, hand) in problems {
+    for (problem, hand) in problems.into_iter().filter(|p| chosen(p.0)) {
         let reference = reference(problem);
         let (mut ours, mut theirs) = (Vec::new(), Vec::new());
         for error in REQUESTS {
@@ -444,6 +444,11 @@ fn beside_hand_written() {
             }
             ours.push((ea, median(a)));
             theirs.push((eb, median(b)));
+            if table {
+                let [(ea, a), (eb, b)] = [ours[ours.len() - 1], theirs[theirs.len() - 1]];
+                let [a, b] = [a * 1e3, b * 1e3];
+                println!("  request {error:.0e}: true error {ea:.1e} in {a:.4} ms, by hand {eb:.1e} in {b:.4} ms");
+            }
         }
         for (k, (a, b)) in least(&ours).into_iter().zip(least(&theirs)).enumerate() {
             let ms = |s: Option<f64>| s.map_or("-".into(), |s| format!("{:.4} ms", s * 1e3));
@@ -464,19 +469,22 @@ fn beside_hand_written() {
     for (k, (sum, count)) in logs.into_iter().enumerate() {
         let mean = (sum / f64::from(count.max(1))).exp();
         println!(
-            "geometric mean at {:.0e}: {mean:.2} ({count} of 4; goal 6)",
+            "geometric mean at {:.0e}: {mean:.2} ({count} problems; goal 6)",
             TARGETS[k]
         );
     }
 }
 
-fn chains() {
+fn chains(chosen: &dyn Fn(&str) -> bool) {
     println!(
         "\n{:18} {:>12} {:>16}",
         "chain", "evaluations", "ns per link"
     );
     for links in [10, 40, 160] {
         let problem = format!("chain_{links}");
+        if !chosen(&problem) {
+            continue;
+        }
         let runs = (0..3).map(|_| {
             let record = by_us(&problem, 1e-3, Some("DOP853")).0.run.record;
             (record.solve_seconds, record.counts.evaluations)
@@ -489,6 +497,13 @@ fn chains() {
 }
 
 fn main() {
-    beside_hand_written();
-    chains();
+    let words: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with('-'))
+        .collect();
+    let table = words.iter().any(|w| w == "table");
+    let names: Vec<&String> = words.iter().filter(|w| *w != "table").collect();
+    let chosen = |name: &str| names.is_empty() || names.iter().any(|n| name.contains(n.as_str()));
+    beside_hand_written(&chosen, table);
+    chains(&chosen);
 }

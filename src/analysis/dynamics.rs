@@ -147,6 +147,7 @@ pub fn integrate(
         return out;
     };
     let mut outputs = outputs.to_vec();
+    system.precision = options.error;
     system.outside.begin(t0, &[]);
     system.restart_sampling();
     system.begin_sensing();

@@ -29,11 +29,18 @@ impl Passage {
     }
 
     /// A better length of the step from `t` that was attempted with `h`; `None`: none is. `gap`: the part of a step without
-    /// evaluations. Forgets what was seen after `t`.
-    pub fn place(&mut self, t: f64, h: f64, gap: [f64; 2]) -> Option<f64> {
+    /// evaluations; `harmful`: the strength below which an evaluation is too near. Forgets what was seen after `t`.
+    pub fn place(&mut self, t: f64, h: f64, gap: [f64; 2], harmful: f64) -> Option<f64> {
+        if self.seen.is_empty() {
+            return None;
+        }
         let mut seen = self.seen.clone();
         self.seen.retain(|s| s.0 == t);
         seen.retain(|s| s.0 >= t && s.0 <= t + h * (1.0 + 1e-9) && s.1.is_finite());
+        // where the step begins is no longer a choice
+        if !seen.iter().any(|s| s.0 > t && s.1 * s.1 < harmful) {
+            return None;
+        }
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
         seen.dedup_by(|a, b| a.0 - b.0 < 1e-9 * h);
         let (middle, half) = (0.5 * (gap[0] + gap[1]), 0.5 * (gap[1] - gap[0]));
@@ -108,7 +115,7 @@ mod tests {
             let s = t + c * h - at;
             passage.see(t + c * h, (2.0 * s + 0.3 * s * s).powi(2));
         }
-        passage.place(t, h, GAP)
+        passage.place(t, h, GAP, f64::INFINITY)
     }
 
     #[test]
@@ -136,11 +143,25 @@ mod tests {
     }
 
     #[test]
+    fn a_step_whose_evaluations_do_no_harm_stays_as_it_is() {
+        let mut passage = Passage::default();
+        for c in NODES {
+            passage.see(c, (c - 0.64_f64).powi(2));
+        }
+        // the nearest is 0.011 away
+        assert_eq!(passage.place(0.0, 1.0, GAP, 1e-4), None);
+        for c in NODES {
+            passage.see(c, (c - 0.64_f64).powi(2));
+        }
+        assert!(passage.place(0.0, 1.0, GAP, 1e-3).is_some());
+    }
+
+    #[test]
     fn rows_that_stay_away_from_dependence_leave_steps_alone() {
         let mut passage = Passage::default();
         for c in NODES {
             passage.see(c, 0.01 + 1e-5 * c);
         }
-        assert_eq!(passage.place(0.0, 1.0, GAP), None);
+        assert_eq!(passage.place(0.0, 1.0, GAP, f64::INFINITY), None);
     }
 }

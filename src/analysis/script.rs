@@ -87,6 +87,11 @@ pub fn obey(
     watch: &mut dyn Watch,
 ) -> Result<Status, Vec<Diagnostic>> {
     let mut status = Status::Completed;
+    let changed = steps.iter().filter_map(|s| match &s.command {
+        Command::Change(record) if record.row.keyword() == "VARIABLE" => record.id,
+        _ => None,
+    });
+    session.will_change(changed);
     for step in steps {
         session.run.log.push(Event::Command(step.text.clone()));
         let located = |mut d: Diagnostic| {

@@ -6,6 +6,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
+use crate::numeric::control::worst;
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
@@ -15,7 +16,7 @@ use crate::scene::programs::{self, Switching, record};
 use crate::scene::solve::WEAK;
 use crate::scene::{Scene, Source};
 
-use super::assemble::Mover;
+use super::assemble::{Mover, natural};
 use super::implicit::Implicit;
 use super::outside::{Hook, Outside};
 use super::passage::Passage;
@@ -31,6 +32,15 @@ pub struct System {
     pub scene: Scene,
     rate: Program,
     projection: Option<Program>,
+    /// what violates the rows, and how fast, as parts of what counts as one
+    violation: Option<Program>,
+    /// violations, and the scale of each velocity   (2 rows, n_v)
+    violations: Vec<f64>,
+    scales: Vec<f64>,
+    /// the last state that was to be projected was on the rows
+    clean: bool,
+    /// the permitted local error: evaluations need not be much better
+    pub precision: f64,
     /// values that change sign where a force or a differential equation changes branch
     switching: Option<Switching>,
     /// the numbers, then what the switches read after them: unknowns of linear loops, or sides
@@ -59,6 +69,7 @@ pub struct System {
     pub numbers: Vec<f64>,
     work: Work,
     project_work: Work,
+    violation_work: Work,
     switch_work: Work,
     held_work: Work,
     unknown_work: Work,
@@ -105,6 +116,14 @@ impl Gradient {
         }
     }
 }
+
+/// Violations of rows, relative to what counts as one, that are rounding.
+const ROUNDED: f64 = 1e-14;
+/// Errors of the rates that rows magnify may be this part of the permitted local error.
+const FELT: f64 = 1e-3;
+/// Rounding of an evaluation where the strength is one, over the part of the permitted local error that it may be: a pivot σ² is rounded like one
+/// of size one, so that rates are off by rounding/σ².
+const HARMFUL: f64 = 1e-13;
 
 /// Part of the largest angle (or length) that a small one is measured against: measured, chains of 160 links take a fifth fewer
 /// steps and are still a thousand times more exact than asked for.
@@ -180,6 +199,27 @@ fn projection_program(scene: &Scene) -> Result<Option<Program>, Vec<Diagnostic>>
     program.map(Some).map_err(complaints)
 }
 
+/// What violates the rows that take part, and its rate; `None` when none does.
+fn violation_program(scene: &Scene) -> Result<Option<Program>, Vec<Diagnostic>> {
+    let active = |r: &usize| scene.active.get(*r).copied().unwrap_or(true);
+    let active: Vec<usize> = (0..scene.rows.len()).filter(active).collect();
+    if active.is_empty() {
+        return Ok(None);
+    }
+    let program = record(scene, |at| {
+        let v = at.velocities();
+        let both = |&r: &usize| {
+            let row = at.row(r);
+            let along = row.gradient.iter();
+            let rate = along.fold(row.drift, |s, &(k, g)| s + g * v[k]);
+            let one = 1.0 / natural(scene, r);
+            [row.value.scale(one), rate.scale(one)]
+        };
+        active.iter().flat_map(both).collect()
+    });
+    program.map(Some).map_err(complaints)
+}
+
 /// Rows that are left out without being zero whatever happens, and the program of their values.
 fn left_out(scene: &Scene) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnostic>> {
     let idle = |r: &usize| !scene.active.get(*r).copied().unwrap_or(true);
@@ -221,6 +261,7 @@ impl System {
         usual_pivots(&mut scene);
         let rate = shortest_rate(&mut scene)?;
         let projection = projection_program(&scene)?;
+        let violation = violation_program(&scene)?;
         let left_out = left_out(&scene)?;
         let switching = programs::switching(&scene).map_err(complaints)?;
         let n_switches = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
@@ -249,6 +290,11 @@ impl System {
         Ok(Self {
             rate,
             projection,
+            violations: vec![0.0; violation.as_ref().map_or(0, Program::n_outputs)],
+            violation,
+            scales: programs::weights(&scene).iter().map(|w| w.sqrt().recip()).collect(),
+            clean: false,
+            precision: 1e-6,
             switching,
             switch_numbers: Vec::new(),
             holding: false,
@@ -264,6 +310,7 @@ impl System {
             numbers,
             work: Work::default(),
             project_work: Work::default(),
+            violation_work: Work::default(),
             switch_work: Work::default(),
             held_work: Work::default(),
             unknown_work: Work::default(),
@@ -381,6 +428,19 @@ impl System {
             .run(&self.numbers, &mut self.work, &mut self.rates);
     }
 
+    /// The largest violation of a row at the present numbers, in position or velocity, relative to what counts as one and to how fast it moves.
+    fn violation(&mut self) -> f64 {
+        let Some(program) = &self.violation else {
+            return 0.0;
+        };
+        program.run(&self.numbers, &mut self.violation_work, &mut self.violations);
+        let v = &self.numbers[self.scene.layout.v()];
+        let speeds = v.iter().zip(&self.scales).map(|(v, s)| v.abs() * s);
+        let slow = 1.0 / speeds.fold(1.0, f64::max);
+        let pairs = self.violations.chunks_exact(2);
+        worst(pairs.flat_map(|p| [p[0], p[1] * slow]))
+    }
+
     /// Whether rows have nearly been dependent since this was last asked.
     pub fn take_weak(&mut self) -> bool {
         std::mem::take(&mut self.weak_seen)
@@ -415,6 +475,10 @@ impl System {
         scene.initial_q.clone_from(&self.scene.initial_q);
         self.rate = shortest_rate(&mut scene)?;
         self.projection = projection_program(&scene)?;
+        self.violation = violation_program(&scene)?;
+        let n_violations = self.violation.as_ref().map_or(0, Program::n_outputs);
+        self.violations.resize(n_violations, 0.0);
+        self.clean = false;
         self.left_out = left_out(&scene)?;
         self.switching = programs::switching(&scene).map_err(complaints)?;
         let n_switches = self.n_switches();
@@ -605,15 +669,20 @@ impl Ode for System {
         self.run_rate();
         if self.rates[n] < WEAK && self.projection.is_some() {
             (self.was_weak, self.weak_seen) = (true, true);
-            // near a position where rows become dependent, what violates them is magnified: evaluate on the rows
-            let mut stage = std::mem::take(&mut self.stage);
-            stage.clear();
-            stage.extend_from_slice(y);
-            if self.project(t, &mut stage).is_ok() {
-                self.set(t, &stage);
-                self.run_rate();
+            // near a position where rows become dependent, what violates them is magnified by 1/σ: evaluate on the rows where that matters
+            let strength = self.rates[n].max(0.0);
+            let permitted = (FELT * self.precision * strength.sqrt()).max(ROUNDED);
+            let violation = self.violation();
+            if violation.is_nan() || violation > permitted {
+                let mut stage = std::mem::take(&mut self.stage);
+                stage.clear();
+                stage.extend_from_slice(y);
+                if self.project(t, &mut stage).is_ok() {
+                    self.set(t, &stage);
+                    self.run_rate();
+                }
+                self.stage = stage;
             }
-            self.stage = stage;
             self.passage.see(t, self.rates[n]);
         }
         ydot.copy_from_slice(&self.rates[..n]);
@@ -635,7 +704,14 @@ impl Ode for System {
         let Some(program) = self.projection.take() else {
             return Ok(changed);
         };
-        let mut last = f64::INFINITY;
+        if self.clean {
+            self.set(t, y);
+            if self.violation() <= ROUNDED {
+                self.projection = Some(program);
+                return Ok(changed);
+            }
+        }
+        let (mut first, mut last) = (None, f64::INFINITY);
         let mut outcome = Err(Failure {
             what: 0,
             recoverable: true,
@@ -650,6 +726,7 @@ impl Ode for System {
                 break;
             }
             last = size;
+            first.get_or_insert(size);
             for (v, d) in y[l.n_q..l.n_q + l.n_v].iter_mut().zip(dv) {
                 *v += d;
             }
@@ -669,6 +746,8 @@ impl Ode for System {
         if self.was_weak && last < 1e-9 {
             outcome = Ok(true);
         }
+        // where a mechanism keeps its rows by itself, looking at them is cheaper
+        self.clean = self.contacts.is_empty() && first.is_some_and(|size| size < 10.0 * ROUNDED);
         self.projection = Some(program);
         outcome
     }
@@ -702,7 +781,8 @@ impl Ode for System {
     }
 
     fn place_step(&mut self, t: f64, h: f64, gap: [f64; 2]) -> Option<f64> {
-        self.passage.place(t, h, gap)
+        let harmful = (HARMFUL / self.precision).min(WEAK);
+        self.passage.place(t, h, gap, harmful)
     }
 
     fn jacobian(

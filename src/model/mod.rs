@@ -80,6 +80,16 @@ impl Formula {
         }
     }
 
+    /// The number that an expression without variables is.
+    pub fn constant(&self) -> Option<f64> {
+        let Formula::Expression { text, .. } = self else {
+            return None;
+        };
+        // most of them are plain, and asked for often
+        let plain = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
+        plain.or_else(|| crate::expr::Expr::parse(text).ok()?.eval(&[]).ok())
+    }
+
     /// Line and column in the file of a byte of the expression; `None` when it was not read from a file.
     pub fn file_place(&self, offset: usize) -> Option<(usize, usize)> {
         let Formula::Expression {

@@ -47,6 +47,8 @@ pub struct Options {
     pub zero_user: bool,
     /// VARIABLEs to which numbers from outside are added: inputs of a linear system
     pub plant_inputs: Vec<u32>,
+    /// VARIABLEs whose functions commands will change: where one is a number, it is supplied from outside rather than part of the equations
+    pub changing: BTreeSet<u32>,
 }
 
 /// Whether an element of a model has not been switched off.
@@ -117,7 +119,7 @@ impl Scene {
         b.forces(&mut c);
         b.contacts(&mut c, &options.skip);
         b.frictions(&mut c);
-        b.systems(&mut c);
+        b.systems(&mut c, &options.changing);
         b.plant_inputs(&mut c, &options.plant_inputs);
         b.timed(&mut c);
         b.user_requests(&mut c);

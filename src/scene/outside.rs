@@ -1,4 +1,5 @@
-//! Numbers that come from outside the equations: last values of sensors, values of the past, results of the user's closures.
+//! Numbers that come from outside the equations: last values of sensors, values of the past, results of the user's closures,
+//! constants that commands change from one simulation to the next.
 //!
 //! They have places of their own at the end of the row that programs read. Whoever fills the row computes them from what stands
 //! before them, so that the programs need not know where they come from.
@@ -19,6 +20,8 @@ pub enum Supplied {
     Input(usize),
     /// a discrete state, as it is until the next sample: index in [`Scene::samplers`](super::Scene::samplers), and which
     Sample(usize, usize),
+    /// the value of a VARIABLE whose function is a number that commands will change: its number
+    Constant(u32),
     /// a result of a closure: index in [`Scene::hooks`](super::Scene::hooks), and which
     Hook(usize, usize),
 }

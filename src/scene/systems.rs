@@ -37,11 +37,18 @@ struct Numbers {
 type Term = (f64, u32, usize);
 
 impl Builder<'_> {
-    /// All system elements.
-    pub(super) fn systems(&mut self, c: &mut Compiler) {
+    /// All system elements. `changing`: VARIABLEs whose functions, where these are numbers, are not written into the equations.
+    pub(super) fn systems(&mut self, c: &mut Compiler, changing: &BTreeSet<u32>) {
         let model = self.model;
         for (id, variable) in active(model, "VARIABLE", &model.variables) {
-            let f = self.formula(c, &format!("VARIABLE/{id} FUNCTION"), &variable.function);
+            let name = format!("VARIABLE/{id} FUNCTION");
+            let f = match variable.function.constant() {
+                Some(_) if changing.contains(&id) => {
+                    let place = self.supply(Supplied::Constant(id));
+                    self.supplied_formula(&name, "a number that commands change", place)
+                }
+                _ => self.formula(c, &name, &variable.function),
+            };
             self.scene.variables.insert(id, f);
         }
         self.input_arrays(c);

@@ -5,7 +5,7 @@ use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::dataset::command::{Command, Script, SimulationKind};
-use cognate::model::Model;
+use cognate::model::{Model, Orientation};
 use cognate::results::{self, Run, Status};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -204,6 +204,132 @@ fn a_robot_arm_driven_by_recorded_torques_moves_as_in_adams() {
     let (place, turn, _) = apart(&ours, &theirs);
     println!("as backward Euler: {place:.2e} m, {turn:.2e}");
     assert!(place < 1e-5 && turn < 1e-5, "{place} {turn}");
+}
+
+/// A dataset with its parts where a row of somebody's results has them.
+fn placed(file: &Path, theirs: &Run, row: usize) -> Model {
+    let mut model = Model::read(file).unwrap_or_else(|e| panic!("{e}"));
+    for (id, columns) in parts(theirs) {
+        let at = columns.map(|c| theirs.columns[c].values[row]);
+        let Some(part) = model.parts.get_mut(&(id as u32)) else {
+            continue;
+        };
+        part.qg = [at[0], at[1], at[2]];
+        part.orientation = Orientation::Euler([at[3], at[4], at[5]]);
+    }
+    model
+}
+
+/// Values of expressions in the state that a model begins with.
+fn at_the_start(model: Model, columns: &[&str], full: bool) -> (Session, Vec<f64>) {
+    let options = Options {
+        full,
+        columns: columns.iter().map(ToString::to_string).collect(),
+        ..Options::default()
+    };
+    let mut session = Session::new(model, "start", options);
+    session
+        .simulate(Analysis::InitialConditions, 0.0, 1, &mut Unwatched)
+        .unwrap_or_else(|e| panic!("{}", e[0]));
+    let last = |c: &&str| *session.run.column(c).unwrap().last().unwrap();
+    let values = columns.iter().map(last).collect();
+    (session, values)
+}
+
+const ROBOT: &str = "ssernap__T_MSC_ADAMS/RD3.msg";
+/// Angular velocities and accelerations of the robot's three cranks, the names that Adams' results have for them, and the joints they turn in.
+const CRANKS: [(&str, &str, &str, u32); 3] = [
+    ("WZ(2,1,0)", "WDTZ(2,1,0)", "G", 17),
+    ("WZ(4,3,0)", "WDTZ(4,3,0)", "Y", 11),
+    ("WZ(6,5,0)", "WDTZ(6,5,0)", "R", 5),
+];
+
+/// Accelerations of the robot's cranks in the state of a row of Adams' results, under the torques of the `k`-th recorded simulation over time.
+fn accelerations(log: &Path, theirs: &Run, row: usize, k: usize) -> [f64; 3] {
+    let mut model = placed(&log.with_extension("adm"), theirs, row);
+    let mut seen = 0;
+    for step in Script::from_message_log(log).unwrap().steps {
+        match &step.command {
+            Command::Simulate(s) if s.kind != SimulationKind::InitialConditions => seen += 1,
+            Command::Change(_) => model.apply(&step.command).unwrap(),
+            _ => {}
+        }
+        if seen == k {
+            break;
+        }
+    }
+    let value = |name: &str| theirs.column(name).unwrap()[row];
+    for (_, _, crank, joint) in CRANKS {
+        let joint = model.joints.get_mut(&joint).unwrap();
+        joint.ic_rotation = [None, Some(value(&format!("{crank}_Vel.Q")))];
+    }
+    let columns: Vec<&str> = CRANKS.iter().flat_map(|c| [c.0, c.1]).collect();
+    let (_, values) = at_the_start(model, &columns, false);
+    for (pair, (_, _, crank, _)) in values.chunks(2).zip(CRANKS) {
+        let speed = value(&format!("{crank}_Vel.Q"));
+        assert!((pair[0] - speed).abs() < 1e-9, "{crank}: {} {speed}", pair[0]);
+    }
+    [values[1], values[3], values[5]]
+}
+
+#[test]
+fn a_parallel_robot_with_friction_accelerates_as_in_adams_where_its_log_has_led_it() {
+    let Some(root) = corpus() else { return };
+    let log = root.join(ROBOT);
+    let theirs = results::read(&log.with_extension("res")).unwrap();
+    let time = &theirs.columns[0].values;
+    for k in [0, 1, 2, 10, 40, 100, 150, 199] {
+        // intervals of 5 ms
+        let t = 0.005 * k as f64;
+        let row = time.iter().rposition(|x| (x - t).abs() < 1e-9).unwrap();
+        let ours = accelerations(&log, &theirs, row, k);
+        for (a, (_, _, crank, _)) in ours.into_iter().zip(CRANKS) {
+            let b = theirs.column(&format!("{crank}_Ac.Q")).unwrap()[row];
+            println!("{t} s {crank}: {a:.6} {b:.6}");
+        }
+        let next = accelerations(&log, &theirs, row, k + 1);
+        let after = time.iter().rposition(|x| (x - t - 0.005).abs() < 1e-9);
+        if let Some(after) = after {
+            let v = theirs.column("G_Vel.Q").unwrap();
+            println!("   then {:.3}, mean {:.3}, end {:.3}", next[0], (v[after] - v[row]) / 0.005, theirs.column("G_Ac.Q").unwrap()[after]);
+        }
+    }
+}
+
+#[test]
+fn a_parallel_robot_obeys_its_log() {
+    let Some(root) = corpus() else { return };
+    let log = root.join(ROBOT);
+    let theirs = results::read(&log.with_extension("res")).unwrap();
+    let Some((ours, _)) = replay(ROBOT, 1e-5, 9) else {
+        return;
+    };
+    let (place, turn, rows) = apart(&ours, &theirs);
+    println!("{place:.2e} m, {turn:.2e} over {rows} rows");
+}
+
+#[test]
+fn positions_that_a_wiper_passed_in_adams_fit_its_joints() {
+    let Some(root) = corpus() else { return };
+    let file = root
+        .join("Dinh-Hao-Nguyen__MSCAdams_Wiper_Project/ControlSimulink/Controls_Plant_5.adm");
+    let theirs = results::read(&file.with_extension("gra")).unwrap();
+    // its log does not say which torques the motor was given: what can be compared is where everything is
+    for row in [1, 50, 150, 300, 700, 1500] {
+        let (session, _) = at_the_start(placed(&file, &theirs, row), &[], true);
+        let (ours, columns) = (parts(&session.run), parts(&theirs));
+        let last = session.run.rows() - 1;
+        let mut moved = 0.0_f64;
+        for (id, theirs_at) in &columns {
+            for k in 0..3 {
+                let a = session.run.columns[ours[id][k]].values[last];
+                let b = theirs.columns[theirs_at[k]].values[row];
+                moved = moved.max((a - b).abs());
+            }
+        }
+        println!("row {row}: freedom {}, {moved:.2e} mm", session.run.record.freedom);
+        assert_eq!(session.run.record.freedom, 1);
+    }
 }
 
 /// Command files of wind turbines whose loads come from a program that is not there.

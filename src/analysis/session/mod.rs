@@ -16,9 +16,11 @@ use super::output::{self, Output};
 use super::system::System;
 use super::{drives, kinematics, outside, statics};
 use crate::diagnostic::Diagnostic;
+use crate::expr::program::Program;
 use crate::model::Model;
 use crate::results::{self, Event, Kind, Run, Status};
-use start::Carried;
+use start::{Carried, Kept};
+use std::collections::BTreeSet;
 use std::time::Instant;
 use told::{counts, units};
 
@@ -67,6 +69,13 @@ pub struct Session {
     options: Options,
     columns: Columns,
     carried: Option<Carried>,
+    /// VARIABLEs that commands will change
+    changing: BTreeSet<u32>,
+    /// what the last simulation ran, for the next one
+    kept: Option<Box<Kept>>,
+    /// programs of the present scene: of the columns; of energies and rows
+    columns_program: Option<Program>,
+    account: Option<Program>,
     hooks: Vec<outside::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether matrices are wanted
     pub linear: Vec<(Option<String>, bool, Linearization)>,
@@ -103,6 +112,10 @@ impl Session {
             options,
             columns,
             carried: None,
+            changing: BTreeSet::new(),
+            kept: None,
+            columns_program: None,
+            account: None,
             hooks: Vec::new(),
             linear: Vec::new(),
             saved: std::collections::BTreeMap::new(),
@@ -141,6 +154,12 @@ impl Session {
         };
         let (run, options) = (&mut self.run, &self.options);
         self.columns = Columns::new(&self.model, run, &options.columns, options.full, &known);
+    }
+
+    /// Tells which VARIABLEs will be changed between simulations: where their functions are numbers, these stay outside the equations, which then
+    /// need not be written anew.
+    pub fn will_change(&mut self, variables: impl IntoIterator<Item = u32>) {
+        self.changing.extend(variables);
     }
 
     /// Whether a sensor has ended the run.
@@ -263,18 +282,7 @@ impl Session {
             let element = told.element.as_deref().unwrap_or("the model");
             self.warn(&format!("{element}: {}", told.message));
         }
-        let (program, complaints) = self.columns.program(&system.scene);
-        for complaint in complaints {
-            if self
-                .options
-                .columns
-                .iter()
-                .any(|c| complaint.starts_with(c.as_str()))
-            {
-                return Err(vec![Diagnostic::error("unavailable", complaint)]);
-            }
-            self.warn(&complaint);
-        }
+        let program = self.columns_program(&system)?;
         let start = self.time();
         let first = system.numbers.clone();
         if self.carried.is_none() || analysis == Analysis::InitialConditions {
@@ -288,6 +296,7 @@ impl Session {
                 std::slice::from_ref(&first),
             );
         }
+        let active = system.scene.active.clone();
         let status = match analysis {
             Analysis::InitialConditions => Status::Completed,
             Analysis::Static => self.at_rest(&mut system, (start, end, output), &program, watch),
@@ -296,7 +305,28 @@ impl Session {
         if matches!(analysis, Analysis::InitialConditions) {
             self.keep(&system, first);
         }
+        let same = system.scene.active == active && self.hooks.is_empty();
+        if same && analysis == Analysis::Dynamic && status == Status::Completed {
+            self.kept = Some(Box::new(Kept::new(&self.model, mode, system, assembly)));
+        }
         Ok(status)
+    }
+
+    /// The program of the columns.
+    fn columns_program(&mut self, system: &System) -> Result<Program, Vec<Diagnostic>> {
+        if let Some(program) = &self.columns_program {
+            return Ok(program.clone());
+        }
+        let (program, complaints) = self.columns.program(&system.scene);
+        for complaint in complaints {
+            let mut wanted = self.options.columns.iter();
+            if wanted.any(|c| complaint.starts_with(c.as_str())) {
+                return Err(vec![Diagnostic::error("unavailable", complaint)]);
+            }
+            self.warn(&complaint);
+        }
+        self.columns_program = Some(program.clone());
+        Ok(program)
     }
 
     /// A simulation over time.
@@ -305,7 +335,7 @@ impl Session {
         system: &mut System,
         analysis: Analysis,
         (start, end, output): (f64, f64, Output),
-        program: &crate::expr::program::Program,
+        program: &Program,
         watch: &mut dyn Watch,
     ) -> Status {
         let kind = if analysis == Analysis::Kinematic {
@@ -410,7 +440,7 @@ impl Session {
         &mut self,
         system: &mut System,
         (start, end, output): (f64, f64, Output),
-        program: &crate::expr::program::Program,
+        program: &Program,
         watch: &mut dyn Watch,
     ) -> Status {
         let (kind, times) = if end > start {

@@ -205,13 +205,18 @@ impl Session {
     pub(super) fn drift(&mut self, system: &System, first: &[f64], rows: &[Vec<f64>]) {
         let scene = &system.scene;
         let n_rows = scene.rows.len();
-        let program = crate::scene::programs::record(scene, |at| {
-            let [kinetic, potential] = at.energy();
-            let mut out = vec![kinetic, potential];
-            out.extend((0..n_rows).map(|r| at.row(r).value));
-            out
-        });
-        let Ok(program) = program else { return };
+        if self.account.is_none() {
+            let program = crate::scene::programs::record(scene, |at| {
+                let [kinetic, potential] = at.energy();
+                let mut out = vec![kinetic, potential];
+                out.extend((0..n_rows).map(|r| at.row(r).value));
+                out
+            });
+            self.account = program.ok();
+        }
+        let Some(program) = self.account.clone() else {
+            return;
+        };
         let mut work = crate::expr::program::Work::default();
         let mut out = vec![0.0; 2 + n_rows];
         let (mut worst, mut scale, mut change, mut start) = (0.0_f64, 0.0_f64, 0.0_f64, None);

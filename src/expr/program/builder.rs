@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub enum Folding {
     /// Only what keeps every bit of every result, NaN and signed zeros included: the compiled expression is the walked one.
     Strict,
-    /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `0/x → 0`. For recorded physics, where a zero is
+    /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `(x + y) − y → x`, `0/x → 0`. For recorded physics, where a zero is
     /// a part that is not there.
     Structural,
 }
@@ -189,6 +189,9 @@ impl Builder {
             Pow => return self.simpler_power(a, cb?),
             _ => {}
         }
+        if structural && let Some(v) = self.cancelled(op, a, b, ca, cb) {
+            return Some(v);
+        }
         // minus signs: a + (−b) is a − b to the bit, and so on
         let negated = |v: Value| match self.nodes[v.index()] {
             Node::Unary(UnaryOp::Neg, y) => Some(y),
@@ -225,6 +228,77 @@ impl Builder {
             (Mul | Div, None, Some(y)) => {
                 let product = self.binary(op, a, y);
                 Some(self.unary(UnaryOp::Neg, product))
+            }
+            _ => None,
+        }
+    }
+
+    /// Sums of which a part goes, and constants that meet: `(x + y) − y → x`, `c₁ (c₂ x) → (c₁ c₂) x`. That is the arm of a lever, the difference of
+    /// two places on one part, without the rounding of these places.
+    fn cancelled(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        ca: Option<f64>,
+        cb: Option<f64>,
+    ) -> Option<Value> {
+        use BinaryOp::{Add, Mul, Sub};
+        let (na, nb) = (self.nodes[a.index()], self.nodes[b.index()]);
+        match (op, na, nb) {
+            (Sub, Node::Binary(Add, x, y), _) if y == b => return Some(x),
+            (Sub, Node::Binary(Add, x, y), _) if x == b => return Some(y),
+            (Sub, Node::Binary(Sub, x, y), _) if x == b => return Some(self.unary(UnaryOp::Neg, y)),
+            (Sub, _, Node::Binary(Add, x, y)) if x == a => return Some(self.unary(UnaryOp::Neg, y)),
+            (Sub, _, Node::Binary(Add, x, y)) if y == a => return Some(self.unary(UnaryOp::Neg, x)),
+            (Sub, _, Node::Binary(Sub, x, y)) if x == a => return Some(y),
+            (Add, Node::Binary(Sub, x, y), _) if y == b => return Some(x),
+            (Add, _, Node::Binary(Sub, x, y)) if y == a => return Some(x),
+            _ => {}
+        }
+        // a constant and an operation with another
+        let (c, other, first) = match (ca, cb) {
+            (Some(c), None) => (c, nb, true),
+            (None, Some(c)) => (c, na, false),
+            _ => return None,
+        };
+        let Node::Binary(inner, x, y) = other else {
+            return None;
+        };
+        let (cx, cy) = (self.constant_of(x), self.constant_of(y));
+        let fits = |k: f64| k.is_normal() || k == 0.0;
+        match (op, inner, cx, cy) {
+            (Mul, Mul, Some(k), _) if (c * k).is_normal() => {
+                let k = self.constant(c * k);
+                Some(self.binary(Mul, k, y))
+            }
+            (Mul, Mul, _, Some(k)) if (c * k).is_normal() => {
+                let k = self.constant(c * k);
+                Some(self.binary(Mul, k, x))
+            }
+            (Add, Add, Some(k), _) if fits(c + k) => {
+                let k = self.constant(c + k);
+                Some(self.binary(Add, k, y))
+            }
+            (Add, Add, _, Some(k)) if fits(c + k) => {
+                let k = self.constant(c + k);
+                Some(self.binary(Add, k, x))
+            }
+            (Add, Sub, Some(k), _) if fits(c + k) => {
+                let k = self.constant(c + k);
+                Some(self.binary(Sub, k, y))
+            }
+            (Sub, Add, Some(k), _) if first && fits(c - k) => {
+                let k = self.constant(c - k);
+                Some(self.binary(Sub, k, y))
+            }
+            (Sub, Add, Some(k), _) if !first && fits(k - c) => {
+                let k = self.constant(k - c);
+                Some(self.binary(Add, k, y))
+            }
+            (Sub, Sub, Some(k), _) if first && fits(c - k) => {
+                let k = self.constant(c - k);
+                Some(self.binary(Add, k, y))
             }
             _ => None,
         }
