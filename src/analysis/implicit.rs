@@ -227,7 +227,11 @@ impl System {
     /// # Errors
     /// Functions that read what is solved for.
     pub fn make_implicit(&mut self, formulation: Formulation) -> Result<(), Vec<Diagnostic>> {
-        if self.implicit.as_ref().is_none_or(|i| i.formulation != formulation) {
+        if self
+            .implicit
+            .as_ref()
+            .is_none_or(|i| i.formulation != formulation)
+        {
             self.implicit = Some(Box::new(Implicit::new(&self.scene, formulation)?));
         }
         Ok(())

@@ -292,7 +292,10 @@ impl System {
             projection,
             violations: vec![0.0; violation.as_ref().map_or(0, Program::n_outputs)],
             violation,
-            scales: programs::weights(&scene).iter().map(|w| w.sqrt().recip()).collect(),
+            scales: programs::weights(&scene)
+                .iter()
+                .map(|w| w.sqrt().recip())
+                .collect(),
             clean: false,
             precision: 1e-6,
             switching,
@@ -433,7 +436,11 @@ impl System {
         let Some(program) = &self.violation else {
             return 0.0;
         };
-        program.run(&self.numbers, &mut self.violation_work, &mut self.violations);
+        program.run(
+            &self.numbers,
+            &mut self.violation_work,
+            &mut self.violations,
+        );
         let v = &self.numbers[self.scene.layout.v()];
         let speeds = v.iter().zip(&self.scales).map(|(v, s)| v.abs() * s);
         let slow = 1.0 / speeds.fold(1.0, f64::max);

@@ -245,7 +245,8 @@ const CRANKS: [(&str, &str, &str, u32); 3] = [
 ];
 
 /// Accelerations of the robot's cranks in the state of a row of Adams' results, under the torques of the `k`-th recorded simulation over time.
-fn accelerations(log: &Path, theirs: &Run, row: usize, k: usize) -> [f64; 3] {
+/// `along`: what WZ is, which is taken along the z axis of ground, where a joint turns at one.
+fn accelerations(log: &Path, theirs: &Run, row: usize, k: usize, along: [f64; 3]) -> [f64; 3] {
     let mut model = placed(&log.with_extension("adm"), theirs, row);
     let mut seen = 0;
     for step in Script::from_message_log(log).unwrap().steps {
@@ -258,16 +259,15 @@ fn accelerations(log: &Path, theirs: &Run, row: usize, k: usize) -> [f64; 3] {
             break;
         }
     }
-    let value = |name: &str| theirs.column(name).unwrap()[row];
-    for (_, _, crank, joint) in CRANKS {
-        let joint = model.joints.get_mut(&joint).unwrap();
-        joint.ic_rotation = [None, Some(value(&format!("{crank}_Vel.Q")))];
+    let speeds = CRANKS.map(|c| theirs.column(&format!("{}_Vel.Q", c.2)).unwrap()[row]);
+    for c in 0..3 {
+        let joint = model.joints.get_mut(&CRANKS[c].3).unwrap();
+        joint.ic_rotation = [None, Some(speeds[c] / along[c])];
     }
     let columns: Vec<&str> = CRANKS.iter().flat_map(|c| [c.0, c.1]).collect();
     let (_, values) = at_the_start(model, &columns, false);
-    for (pair, (_, _, crank, _)) in values.chunks(2).zip(CRANKS) {
-        let speed = value(&format!("{crank}_Vel.Q"));
-        assert!((pair[0] - speed).abs() < 1e-9, "{crank}: {} {speed}", pair[0]);
+    for (pair, speed) in values.chunks(2).zip(speeds) {
+        assert!((pair[0] - speed).abs() < 1e-9, "{} {speed}", pair[0]);
     }
     [values[1], values[3], values[5]]
 }
@@ -278,44 +278,60 @@ fn a_parallel_robot_with_friction_accelerates_as_in_adams_where_its_log_has_led_
     let log = root.join(ROBOT);
     let theirs = results::read(&log.with_extension("res")).unwrap();
     let time = &theirs.columns[0].values;
-    for k in [0, 1, 2, 10, 40, 100, 150, 199] {
-        // intervals of 5 ms
+    // intervals of 5 ms
+    let row = |k: usize| {
         let t = 0.005 * k as f64;
-        let row = time.iter().rposition(|x| (x - t).abs() < 1e-9).unwrap();
-        let ours = accelerations(&log, &theirs, row, k);
-        for (a, (_, _, crank, _)) in ours.into_iter().zip(CRANKS) {
-            let b = theirs.column(&format!("{crank}_Ac.Q")).unwrap()[row];
-            println!("{t} s {crank}: {a:.6} {b:.6}");
-        }
-        let next = accelerations(&log, &theirs, row, k + 1);
-        let after = time.iter().rposition(|x| (x - t - 0.005).abs() < 1e-9);
-        if let Some(after) = after {
-            let v = theirs.column("G_Vel.Q").unwrap();
-            println!("   then {:.3}, mean {:.3}, end {:.3}", next[0], (v[after] - v[row]) / 0.005, theirs.column("G_Ac.Q").unwrap()[after]);
+        let at = time.iter().rposition(|x| (x - t).abs() < 1e-9);
+        at.unwrap()
+    };
+    let value = |name: &str, k: usize| theirs.column(name).unwrap()[row(k)];
+    let mut model = placed(&log.with_extension("adm"), &theirs, row(0));
+    for (_, _, _, joint) in CRANKS {
+        model.joints.get_mut(&joint).unwrap().ic_rotation = [None, Some(1.0)];
+    }
+    let speeds = CRANKS.map(|c| c.0);
+    let (_, along) = at_the_start(model, &speeds, false);
+    let along = [along[0], along[1], along[2]];
+    for k in [0, 1, 100] {
+        let ours = accelerations(&log, &theirs, row(k), k, along);
+        let adams = CRANKS.map(|c| value(&format!("{}_Ac.Q", c.2), k));
+        println!("{ours:?} {adams:?}");
+        let most = adams.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
+        // at the start Adams solves for them; later they are differences of velocities, with an error of 1e-4 permitted in each step
+        let permitted = if k == 0 { 1e-7 } else { 2e-3 };
+        for (a, b) in ours.into_iter().zip(adams) {
+            assert!((a - b).abs() < permitted * most, "{k}: {a} {b}");
         }
     }
+    // Between two commands the torques stand still, and accelerations go smoothly from the one at the beginning to the one at the end. Velocities in
+    // Adams gain more than either: its multi-step formula goes on over the jump of the torque, which it smears backwards. That is
+    // why replays of its logs come near to what it wrote, and no nearer.
+    let begin = accelerations(&log, &theirs, row(1), 2, along)[0];
+    let end = value("G_Ac.Q", 2);
+    let mean = (value("G_Vel.Q", 2) - value("G_Vel.Q", 1)) / 0.005;
+    println!("{begin} {mean} {end}");
+    assert!(begin > end && mean > 1.05 * begin);
 }
 
 #[test]
 fn a_parallel_robot_obeys_its_log() {
-    let Some(root) = corpus() else { return };
-    let log = root.join(ROBOT);
-    let theirs = results::read(&log.with_extension("res")).unwrap();
-    let Some((ours, _)) = replay(ROBOT, 1e-5, 9) else {
+    let Some((ours, theirs)) = replay(ROBOT, 1e-5, 3) else {
         return;
     };
     let (place, turn, rows) = apart(&ours, &theirs);
     println!("{place:.2e} m, {turn:.2e} over {rows} rows");
+    // up to the first jump Adams' own error of 1e-4; after it 2 % of a velocity, for 5 ms (see the accelerations)
+    assert!(rows > 2 && place < 5e-5 && turn < 4e-4);
 }
 
 #[test]
 fn positions_that_a_wiper_passed_in_adams_fit_its_joints() {
     let Some(root) = corpus() else { return };
-    let file = root
-        .join("Dinh-Hao-Nguyen__MSCAdams_Wiper_Project/ControlSimulink/Controls_Plant_5.adm");
+    let file =
+        root.join("Dinh-Hao-Nguyen__MSCAdams_Wiper_Project/ControlSimulink/Controls_Plant_5.adm");
     let theirs = results::read(&file.with_extension("gra")).unwrap();
     // its log does not say which torques the motor was given: what can be compared is where everything is
-    for row in [1, 50, 150, 300, 700, 1500] {
+    for row in [1, 150, 700] {
         let (session, _) = at_the_start(placed(&file, &theirs, row), &[], true);
         let (ours, columns) = (parts(&session.run), parts(&theirs));
         let last = session.run.rows() - 1;
@@ -327,8 +343,13 @@ fn positions_that_a_wiper_passed_in_adams_fit_its_joints() {
                 moved = moved.max((a - b).abs());
             }
         }
-        println!("row {row}: freedom {}, {moved:.2e} mm", session.run.record.freedom);
+        println!(
+            "row {row}: freedom {}, {moved:.2e} mm",
+            session.run.record.freedom
+        );
         assert_eq!(session.run.record.freedom, 1);
+        // six digits of up to 1000 mm, and of angles at as long levers
+        assert!(moved < 0.02, "{moved}");
     }
 }
 

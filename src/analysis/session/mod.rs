@@ -305,8 +305,11 @@ impl Session {
         if matches!(analysis, Analysis::InitialConditions) {
             self.keep(&system, first);
         }
-        let same = system.scene.active == active && self.hooks.is_empty();
-        if same && analysis == Analysis::Dynamic && status == Status::Completed {
+        if system.scene.active != active {
+            // reactions are others
+            self.columns_program = None;
+        }
+        if self.hooks.is_empty() && analysis == Analysis::Dynamic && status == Status::Completed {
             self.kept = Some(Box::new(Kept::new(&self.model, mode, system, assembly)));
         }
         Ok(status)

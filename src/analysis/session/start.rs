@@ -82,6 +82,7 @@ impl Session {
         let same = kept.mode == mode
             && inputs.is_empty()
             && self.hooks.is_empty()
+            && system.scene.samplers.is_empty()
             && !carried.at_rest
             && carried.numbers.len() == system.numbers.len()
             && without_constants(&self.model, &system.scene) == kept.model;

@@ -130,6 +130,7 @@ impl Session {
         let fresh = self.run.rows() == 0 && !same;
         self.model = model;
         self.carried = carried;
+        (self.kept, self.columns_program) = (None, None);
         self.halted = false;
         if fresh {
             self.choose_columns();

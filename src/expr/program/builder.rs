@@ -248,9 +248,15 @@ impl Builder {
         match (op, na, nb) {
             (Sub, Node::Binary(Add, x, y), _) if y == b => return Some(x),
             (Sub, Node::Binary(Add, x, y), _) if x == b => return Some(y),
-            (Sub, Node::Binary(Sub, x, y), _) if x == b => return Some(self.unary(UnaryOp::Neg, y)),
-            (Sub, _, Node::Binary(Add, x, y)) if x == a => return Some(self.unary(UnaryOp::Neg, y)),
-            (Sub, _, Node::Binary(Add, x, y)) if y == a => return Some(self.unary(UnaryOp::Neg, x)),
+            (Sub, Node::Binary(Sub, x, y), _) if x == b => {
+                return Some(self.unary(UnaryOp::Neg, y));
+            }
+            (Sub, _, Node::Binary(Add, x, y)) if x == a => {
+                return Some(self.unary(UnaryOp::Neg, y));
+            }
+            (Sub, _, Node::Binary(Add, x, y)) if y == a => {
+                return Some(self.unary(UnaryOp::Neg, x));
+            }
             (Sub, _, Node::Binary(Sub, x, y)) if x == a => return Some(y),
             (Add, Node::Binary(Sub, x, y), _) if y == b => return Some(x),
             (Add, _, Node::Binary(Sub, x, y)) if y == a => return Some(x),
@@ -266,42 +272,32 @@ impl Builder {
             return None;
         };
         let (cx, cy) = (self.constant_of(x), self.constant_of(y));
-        let fits = |k: f64| k.is_normal() || k == 0.0;
-        match (op, inner, cx, cy) {
-            (Mul, Mul, Some(k), _) if (c * k).is_normal() => {
-                let k = self.constant(c * k);
-                Some(self.binary(Mul, k, y))
-            }
-            (Mul, Mul, _, Some(k)) if (c * k).is_normal() => {
-                let k = self.constant(c * k);
-                Some(self.binary(Mul, k, x))
-            }
-            (Add, Add, Some(k), _) if fits(c + k) => {
-                let k = self.constant(c + k);
-                Some(self.binary(Add, k, y))
-            }
-            (Add, Add, _, Some(k)) if fits(c + k) => {
-                let k = self.constant(c + k);
-                Some(self.binary(Add, k, x))
-            }
-            (Add, Sub, Some(k), _) if fits(c + k) => {
-                let k = self.constant(c + k);
-                Some(self.binary(Sub, k, y))
-            }
-            (Sub, Add, Some(k), _) if first && fits(c - k) => {
-                let k = self.constant(c - k);
-                Some(self.binary(Sub, k, y))
-            }
-            (Sub, Add, Some(k), _) if !first && fits(k - c) => {
-                let k = self.constant(k - c);
-                Some(self.binary(Add, k, y))
-            }
-            (Sub, Sub, Some(k), _) if first && fits(c - k) => {
-                let k = self.constant(c - k);
-                Some(self.binary(Add, k, y))
-            }
-            _ => None,
+        if let (Mul, Mul) = (op, inner) {
+            let (k, v) = cx.map(|k| (k, y)).or(cy.map(|k| (k, x)))?;
+            let both = c * k;
+            return both.is_normal().then(|| {
+                let both = self.constant(both);
+                self.binary(Mul, both, v)
+            });
         }
+        // the other is k + v or k − v
+        let (k, plus, v) = match (inner, cx, cy) {
+            (Add, Some(k), _) => (k, true, y),
+            (Add, _, Some(k)) => (k, true, x),
+            (Sub, Some(k), _) => (k, false, y),
+            (Sub, _, Some(k)) => (-k, true, x),
+            _ => return None,
+        };
+        let (sum, plus) = match op {
+            Add => (c + k, plus),
+            Sub if first => (c - k, !plus),
+            Sub => (k - c, plus),
+            _ => return None,
+        };
+        (sum.is_normal() || sum == 0.0).then(|| {
+            let sum = self.constant(sum);
+            self.binary(if plus { Add } else { Sub }, sum, v)
+        })
     }
 
     /// A power with a constant exponent, by the same multiplications and roots that `f64`'s `powf` uses.

@@ -582,3 +582,46 @@ fn a_difference_and_its_contrary_are_one_switch() {
         assert_eq!(out, [want], "held on the side {side}");
     }
 }
+
+#[test]
+fn sums_of_which_a_part_goes_and_constants_that_meet_are_one_operation() {
+    let mut b = Builder::new(Folding::Structural);
+    let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
+    let (two, three) = (b.constant(2.0), b.constant(3.0));
+    let minus_y = b.unary(UnaryOp::Neg, y);
+    let sum = b.binary(BinaryOp::Add, x, y);
+    let difference = b.binary(BinaryOp::Sub, x, y);
+    for (op, left, right, want) in [
+        (BinaryOp::Sub, sum, x, y),
+        (BinaryOp::Sub, sum, y, x),
+        (BinaryOp::Sub, x, sum, minus_y),
+        (BinaryOp::Sub, difference, x, minus_y),
+        (BinaryOp::Sub, x, difference, y),
+        (BinaryOp::Add, difference, y, x),
+        (BinaryOp::Add, y, difference, x),
+    ] {
+        assert_eq!(b.binary(op, left, right), want, "{op:?}");
+    }
+    let (six, five, one, minus_one) = (
+        b.constant(6.0),
+        b.constant(5.0),
+        b.constant(1.0),
+        b.constant(-1.0),
+    );
+    let more = b.binary(BinaryOp::Add, x, three);
+    let less = b.binary(BinaryOp::Sub, three, x);
+    let twice = b.binary(BinaryOp::Mul, two, x);
+    for (op, left, right, (want, c, v)) in [
+        (BinaryOp::Mul, three, twice, (BinaryOp::Mul, six, x)),
+        (BinaryOp::Add, more, two, (BinaryOp::Add, five, x)),
+        (BinaryOp::Sub, more, two, (BinaryOp::Add, one, x)),
+        (BinaryOp::Sub, two, more, (BinaryOp::Sub, minus_one, x)),
+        (BinaryOp::Add, less, two, (BinaryOp::Sub, five, x)),
+        (BinaryOp::Sub, two, less, (BinaryOp::Add, minus_one, x)),
+    ] {
+        assert_eq!(b.binary(op, left, right), b.binary(want, c, v), "{op:?}");
+    }
+    // to the bit, nothing of this holds
+    b.set_folding(Folding::Strict);
+    assert_ne!(b.binary(BinaryOp::Sub, sum, x), y);
+}
