@@ -509,3 +509,37 @@ fn models_of_many_people_run() {
         assert!(lost.is_none(), "{file}: {}", lost.unwrap().name);
     }
 }
+
+/// Models whose contacts are solids of a kernel, whose curves and forces are programs: without these they assemble, and say what is missing.
+#[test]
+fn models_that_lack_something_stand_without_it() {
+    let Some(root) = corpus() else { return };
+    for (file, gone, reader) in [
+        (
+            "bthornton191__adamspy/test/files/real_analysis_with_spikes/FRS5_doe_8_LAUL_analysis.adm",
+            "CONTACT/57: is left out",
+            "SENSOR/1000 FUNCTION: reads CONTACT of CONTACT/57",
+        ),
+        (
+            "bthornton191__adamspy/test/existing_drillsim/test_analysis_1.adm",
+            "PTCV/9000001: is left out: CURVE/9001",
+            "",
+        ),
+    ] {
+        let model = Model::read(root.join(file)).unwrap_or_else(|e| panic!("{e}"));
+        let options = Options {
+            zero_user: true,
+            skip: ["CONTACT".to_string()].into(),
+            ..Options::default()
+        };
+        let mut session = Session::new(model, "run", options);
+        let status = session
+            .simulate(Analysis::InitialConditions, 0.0, 1, &mut Unwatched)
+            .unwrap_or_else(|e| panic!("{file}: {}", e[0]));
+        assert_eq!(status, Status::Completed, "{file}");
+        let warnings = &session.run.record.warnings;
+        for said in [gone, reader] {
+            assert!(warnings.iter().any(|w| w.contains(said)), "{file}: {said}");
+        }
+    }
+}
