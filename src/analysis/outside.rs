@@ -205,6 +205,8 @@ struct Bound {
     places: Range<usize>,
     inputs: Program,
     output_only: bool,
+    /// what it is given is the pose of one solid in the frame of another
+    is_pose: bool,
     values: Vec<f64>,
     results: Vec<f64>,
     /// ∂ result / ∂ value, result after result
@@ -238,9 +240,17 @@ impl Bound {
     fn differentiate(&mut self, time: f64) {
         let (n, m) = (self.values.len(), self.results.len());
         self.slopes.resize(n * m, 0.0);
+        let largest = |m: f64, x: &f64| m.max(x.abs());
+        let distance = self.values.iter().take(3).fold(1e-3, largest);
         for k in 0..n {
             let x = self.values[k];
-            let h = 6e-6 * x.abs().max(1e-3);
+            // numbers of a pose are measured by its distance and by 1, whichever of them happen to be zero
+            let unit = match (self.is_pose, k) {
+                (true, 0..3) => distance,
+                (true, _) => 1.0,
+                (false, _) => 1e-3,
+            };
+            let h = 6e-6 * x.abs().max(unit);
             let mut ends = [Vec::new(), Vec::new()];
             for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
                 self.values[k] = x + sign * h;
@@ -311,6 +321,7 @@ impl Outside {
                         places,
                         inputs,
                         output_only: hook.output_only,
+                        is_pose: matches!(hook.kind, HookKind::Touches { .. }),
                     });
                 }
                 _ => {}

@@ -145,8 +145,12 @@ impl Curves {
         let mut all = Vec::new();
         self.smooth(pose, &mut all);
         let limit = DEPTH * self.size;
+        let near = NEIGHBOURS * self.size;
         for corner in self.i.corners.iter().filter(|c| c.convex) {
             let p = pose.point(corner.at);
+            if !self.j.may_hold(p, near, limit) {
+                continue;
+            }
             if let Some(Foot {
                 at: on_j,
                 normal,
@@ -169,6 +173,9 @@ impl Curves {
         }
         for corner in self.j.corners.iter().filter(|c| c.convex) {
             let p = pose.back(minus(corner.at, pose.at));
+            if !self.i.may_hold(p, near, limit) {
+                continue;
+            }
             if let Some(Foot {
                 at: on_i,
                 normal,
@@ -340,7 +347,7 @@ impl Curves {
                 found.push(f);
             }
             // what is not as deep is hardly ever as many
-            if found.len() == 8 * TOUCHES {
+            if found.len() == 2 * TOUCHES {
                 break;
             }
         }
@@ -349,7 +356,13 @@ impl Curves {
             let part = |other: &Found| {
                 let near = 1.0 - (length(minus(other.on_j, f.on_j)) / reach).powi(2);
                 let alike = dot(other.normal, f.normal).max(0.0);
-                other.weight * near.max(0.0).powi(2) * alike * alike
+                // one that is less deep takes less away, and nothing while it is above
+                let deep = if f.depth > 0.0 {
+                    (other.depth / f.depth).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                other.weight * near.max(0.0).powi(2) * alike * alike * deep
             };
             found.iter().map(part).sum()
         };

@@ -145,6 +145,8 @@ pub struct Outline {
     pub(super) nodes: Vec<Node>,
     /// it returns to its beginning
     pub(super) closed: bool,
+    /// its solid lies within it
+    encloses: bool,
     /// radius of the circle about it
     pub size: f64,
 }
@@ -176,6 +178,7 @@ impl Outline {
             corners: Vec::new(),
             nodes: Vec::new(),
             closed,
+            encloses: closed && !flipped,
             size: 0.0,
         };
         if matches!(this.rim, Rim::Point) {
@@ -409,14 +412,26 @@ impl Outline {
         self.nodes.len().checked_sub(1)
     }
 
+    /// Whether a point may be in the solid, or near it: no farther than `near` from a solid that lies within its outline, than `limit`
+    /// from any other.
+    pub(super) fn may_hold(&self, p: Flat, near: f64, limit: f64) -> bool {
+        let margin = if self.encloses { near } else { limit };
+        self.nodes
+            .last()
+            .is_some_and(|root| length(minus(p, root.centre)) <= root.radius + margin)
+    }
+
     /// The parameter of the point of a cell that is nearest to `p`, and that point.
     fn nearest_of(&self, cell: usize, p: Flat) -> (f64, Flat) {
-        let Cell {
-            s: [a, b], ends, ..
-        } = self.cells[cell];
+        let c = &self.cells[cell];
+        let ([a, b], ends) = (c.s, c.ends);
         let chord = minus(ends[1], ends[0]);
         let u = dot(minus(p, ends[0]), chord) / dot(chord, chord);
-        let mut s = a + (b - a) * u.clamp(0.0, 1.0);
+        let u = u.clamp(0.0, 1.0);
+        let mut s = a + (b - a) * u;
+        if c.straight {
+            return (s, along(ends[0], u, chord));
+        }
         for _ in 0..20 {
             let [c, t, bend] = [0, 1, 2].map(|k| self.rim.at(s, k));
             let d = minus(p, c);
