@@ -630,7 +630,12 @@ fn a_sensor_shortens_the_next_step_or_begins_anew() {
         // a step ends at the sensor and one begins there; a short one has to grow again, at most tenfold each time
         // (implicit methods grow their steps so slowly that beginning anew may even save some)
         assert!(anew > plain || method != "DOP853", "{plain} {anew}");
-        assert!(short >= anew + 3, "{method}: {anew} {short}");
+        assert!(short >= plain + 3, "{method}: {plain} {short}");
+        // what BDF loses by beginning anew is its order, which costs it more than a short step
+        assert!(
+            short >= anew + 3 || method == "BDF",
+            "{method}: {anew} {short}"
+        );
     }
 }
 

@@ -428,7 +428,7 @@ impl<'a> Settler<'a> {
                 }
                 return (Err(self.unbalanced(p)), jacobian);
             }
-            if small && self.is_rounding(p, &jacobian) {
+            if small && p.left[1] <= ROUNDING * scales[1] && self.is_rounding(p, &jacobian) {
                 // stiff contacts make more of the last digits than any step could take away
                 return (Ok(()), jacobian);
             }
