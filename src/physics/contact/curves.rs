@@ -14,7 +14,7 @@
 //! their corners touch. A corner counts where the normal lies between those of its sides, and where straight sides face each other a little
 //! farther, with a share that fades, so that a box stands on both its lower corners. Touches that are near each other share what one would do.
 //!
-//! A solid is no deeper than [`DEPTH`] of the smaller outline: what is deeper comes from the other side. The line between the two points must not
+//! A solid is no deeper than `DEPTH` of the smaller outline: what is deeper comes from the other side. The line between the two points must not
 //! cross either outline elsewhere: then it is another solid's turn. What is lost: where two places of touch melt into one, as a
 //! rounded edge does that comes to lie in a hollow of its own radius, the force of one of them ends at once.
 

@@ -5,7 +5,7 @@
 //! and JFLIP turn the outside over: a closed curve becomes a hole. (Adams does not say in public which side is the default of
 //! an open curve; this is the y axis of the floating markers of CVCV.)
 //!
-//! - A **cell** lies between two parameters, within one polynomial, and turns by no more than [`TURN`].
+//! - A **cell** lies between two parameters, within one polynomial, and turns by no more than `TURN`.
 //! - A **corner** is where the tangent jumps, or an open curve ends: a point that touches with every normal between those of its sides.
 //!   Behind an end the outside goes round by a quarter turn.
 //! - Cells hang in a binary **tree**; each node knows a circle about its cells and the directions of their normals.
