@@ -30,6 +30,28 @@ fn near(found: &[f64], expected: &[f64]) {
     }
 }
 
+#[test]
+fn an_initial_condition_that_fits_with_its_numbers_exchanged_is_told() {
+    let slide = |ic: &str| {
+        let text = format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1, QG=0,0,1.5\nMARKER/2, PART=2\nJOINT/7, TRANSLATIONAL, I=2, J=1, IC={ic}\n"
+        );
+        start(&text, &["DZ(2,1)", "VZ(2,1)"], Analysis::Dynamic)
+    };
+    let (found, warnings) = slide("-0.2, 1.4");
+    near(&found, &[-0.2, 1.4]);
+    assert!(
+        warnings
+            .iter()
+            .any(|w| w.starts_with("JOINT/7: ") && w.contains("stand at 1.5")),
+        "{warnings:?}"
+    );
+    for ic in ["1.4, -0.2", "0.7, 0", "1.4"] {
+        let (_, warnings) = slide(ic);
+        assert!(warnings.is_empty(), "{ic}: {warnings:?}");
+    }
+}
+
 /// A four-bar of links 1, 2, 2 on a base of 2, drawn as a square with the crank up; JOINT/4 closes the loop.
 fn four_bar(ic: &str) -> String {
     format!(

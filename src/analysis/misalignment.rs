@@ -104,6 +104,38 @@ pub fn misaligned(scene: &Scene, model: &Model) -> Vec<String> {
     told
 }
 
+/// Joints whose initial condition fits the dataset better with its numbers exchanged.
+///
+/// `IC = displacement, velocity` is how the statement is documented; a dataset whose results Adams has left beside it was solved there with
+/// velocity, displacement. Nobody can tell by the numbers alone, but by where the parts stand.
+pub fn exchanged(scene: &Scene, model: &Model) -> Vec<String> {
+    let mut told = Vec::new();
+    for (id, joint) in &model.joints {
+        let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
+        let (Some(I), Some(J)) = (frame(joint.i), frame(joint.j)) else {
+            continue;
+        };
+        let kinds = [
+            (Law::Along(2), joint.ic_translation, scene.length),
+            (Law::Angle, joint.ic_rotation, 1.0),
+        ];
+        for (law, given, size) in kinds {
+            let [Some(first), Some(second)] = given else {
+                continue;
+            };
+            let stands = law.value(&I, &J, None);
+            let off = |x: f64| (x - stands).abs();
+            if second != 0.0 && off(first) > 0.01 * size && off(second) < 0.2 * off(first) {
+                let [first, second, stands] = [first, second, stands].map(short);
+                told.push(format!(
+                    "JOINT/{id}: its initial condition {first}, {second} is read as displacement {first} and velocity {second}, but the parts stand at {stands}; Adams has been seen to read velocity, displacement: exchange the two if that is meant"
+                ));
+            }
+        }
+    }
+    told
+}
+
 /// Whether the z axes of a tie must point the same way.
 fn is_directed(tie: Tie) -> bool {
     use JointKind as J;

@@ -206,6 +206,10 @@ impl Session {
         let unmet = wishes::unmet(&scene, &wishes, &starts, t, &q, &x);
         assembly.warnings.extend(unmet);
         assembly.warnings.splice(0..0, misaligned);
+        if first && joints {
+            let exchanged = misalignment::exchanged(&scene, &self.model);
+            assembly.warnings.extend(exchanged);
+        }
         if first {
             let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
             let turned = misalignment::turned(&scene, &self.model, &numbers);
