@@ -552,7 +552,7 @@ fn a_planar_robot_is_put_together_as_in_adams_with_its_initial_condition_exchang
     let Some(root) = corpus() else { return };
     let folder = root.join("kiterunner347__3-RPR-parallel--robot/RPRAdams/fitestv1");
     let theirs = results::read(&folder.join("Fkinev1.gra")).unwrap();
-    let mut model = Model::read(&folder.join("Fkinev1.adm")).unwrap();
+    let mut model = Model::read(folder.join("Fkinev1.adm")).unwrap();
     let (as_it_is, _) = at_the_start(model.clone(), &["TIME"], true);
     let warnings = &as_it_is.run.record.warnings;
     assert!(
