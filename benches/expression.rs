@@ -322,8 +322,13 @@ type Contestant<'a> = Box<dyn FnMut(usize) -> f64 + 'a>;
 /// How long a contestant runs at a stretch.
 const SLICE: Duration = Duration::from_micros(60);
 
-/// Medians of nanoseconds per evaluation; every round runs each contestant once.
-fn medians(contestants: &mut [Contestant], per_round: usize, rounds: usize) -> Vec<f64> {
+/// Medians of nanoseconds per evaluation, and medians of the ratio to the first contestant in the same round. Every round runs each
+/// contestant once; processors change their speed between rounds, which ratios within a round do not feel.
+fn medians(
+    contestants: &mut [Contestant],
+    per_round: usize,
+    rounds: usize,
+) -> (Vec<f64>, Vec<f64>) {
     // evaluations per slice, by a first trial
     let mut counts: Vec<usize> = Vec::new();
     for contestant in contestants.iter_mut() {
@@ -354,7 +359,19 @@ fn medians(contestants: &mut [Contestant], per_round: usize, rounds: usize) -> V
             times.push(start.elapsed().as_secs_f64() * 1e9 / (n * per_round) as f64);
         }
     }
-    times.iter_mut().map(|t| median(t)).collect()
+    let ratios = times
+        .iter()
+        .map(|t| {
+            median(
+                &mut t
+                    .iter()
+                    .zip(&times[0])
+                    .map(|(t, first)| t / first)
+                    .collect::<Vec<_>>(),
+            )
+        })
+        .collect();
+    (times.iter_mut().map(|t| median(t)).collect(), ratios)
 }
 
 fn go_round(contestant: &mut Contestant, n: usize) {
@@ -424,7 +441,8 @@ static COUNTING: Counting = Counting;
 struct Table {
     title: &'static str,
     columns: Vec<&'static str>,
-    rows: Vec<(&'static str, Vec<f64>)>,
+    /// name, times, ratios to the first column
+    rows: Vec<(&'static str, Vec<f64>, Vec<f64>)>,
     /// what one of ours must keep to the first column: mean, worst
     goal: (f64, f64),
 }
@@ -442,7 +460,7 @@ impl Table {
         println!();
         let n = self.columns.len();
         let mut ratios: Vec<Vec<f64>> = vec![Vec::new(); n];
-        for (name, times) in &self.rows {
+        for (name, times, to_first) in &self.rows {
             print!("{name:<12}");
             for t in times {
                 if t.is_nan() {
@@ -452,7 +470,7 @@ impl Table {
                 }
             }
             for k in 1..n {
-                let ratio = times[k] / times[0];
+                let ratio = to_first[k];
                 if ratio.is_nan() {
                     print!("{:>14}", "–");
                 } else {
@@ -536,11 +554,11 @@ fn values(cases: &[Case], points: &[[f64; SLOTS]], rounds: usize) -> Table {
             }
         }
         let measured = medians(&mut contestants, POINTS, rounds);
-        let mut row = vec![f64::NAN; 4];
-        for (column, t) in times.into_iter().zip(measured) {
-            row[column] = t;
+        let [mut row, mut ratios] = [vec![f64::NAN; 4], vec![f64::NAN; 4]];
+        for (k, column) in times.into_iter().enumerate() {
+            (row[column], ratios[column]) = (measured.0[k], measured.1[k]);
         }
-        rows.push((case.name, row));
+        rows.push((case.name, row, ratios));
     }
     Table {
         title: "Value",
@@ -574,7 +592,8 @@ fn gradients(cases: &[Case], points: &[[f64; SLOTS]], rounds: usize) -> Table {
                 out[0]
             }),
         ];
-        rows.push((case.name, medians(&mut contestants, POINTS, rounds)));
+        let (times, ratios) = medians(&mut contestants, POINTS, rounds);
+        rows.push((case.name, times, ratios));
     }
     Table {
         title: "Value and gradient",
@@ -610,11 +629,9 @@ fn batches(cases: &[Case], rounds: usize) -> Table {
                 out[BATCH - 1]
             }),
         ];
-        let times = medians(&mut contestants, 1, rounds)
-            .into_iter()
-            .map(|t| t / BATCH as f64)
-            .collect();
-        rows.push((case.name, times));
+        let (times, ratios) = medians(&mut contestants, 1, rounds);
+        let times = times.into_iter().map(|t| t / BATCH as f64).collect();
+        rows.push((case.name, times, ratios));
     }
     Table {
         title: "Batch of 1024 points, per point",
