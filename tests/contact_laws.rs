@@ -10,7 +10,7 @@ use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::script::obey;
 use cognate::dataset::command::Script;
 use curves::{circle, curve, line};
-use running::{Analysis, Session, go, last, session, values};
+use running::{Analysis, Options, Session, go, last, model, options, session, values};
 
 fn run(text: &str, columns: &[&str], end: f64, steps: usize, error: f64) -> Session {
     let mut s = session(text, columns, error);
@@ -485,5 +485,41 @@ fn a_ball_just_touching_an_ellipsoid_is_not_turned() {
         );
         assert!((last(&s, "DZ(2)") - 2.5).abs() < 1e-8);
         assert!(values(&s, "WM(2)").iter().all(|w| *w < 1e-9));
+    }
+}
+
+/// A fall of 60, or a throw, on a plate that is thin against the way of one step: nothing may come out on the other side.
+#[test]
+fn nothing_passes_through_a_thin_body_within_a_step() {
+    let plate = "BOX, CORNER=3, X=200, Y=200, Z=2\nMARKER/3, PART=1, QP=-100,-100,-2";
+    let ball = "ELLIPSOID, CM=2, XSCALE=4, YSCALE=4, ZSCALE=4";
+    for (body, other) in [
+        ("CYLINDER, CM=2, RADIUS=2, LENGTH=2", plate),
+        (ball, plate),
+        (ball, "ELLIPSOID, CM=1, XSCALE=2, YSCALE=2, ZSCALE=2"),
+        ("BOX, CORNER=2, X=3, Y=3, Z=3", plate),
+        ("CIRCLE, CM=4, RADIUS=4", "CIRCLE, CM=5, RADIUS=30"),
+    ] {
+        for speed in [0.0, -500.0] {
+            for method in ["DOP853", "RADAU5"] {
+                let text = format!(
+                    "PART/2, MASS=1, CM=2, IP=2,2,2, QG=0,0,60, VZ={speed}\nMARKER/2, PART=2\n\
+                     MARKER/4, PART=2, REULER=0,90D,0\nMARKER/5, PART=1, QP=0,0,-30, REULER=0,90D,0\n\
+                     GRAPHICS/1, {body}\nGRAPHICS/2, {other}\n\
+                     CONTACT/1, IGEOM=1, JGEOM=2, IMPACT, STIFFNESS=1E7, EXPONENT=1.5, DAMPING=10, DMAX=0.1\n\
+                     ACCGRAV/KGRAV=-9806.65\n"
+                );
+                let options = Options {
+                    method: Some(method.into()),
+                    ..options(&["DZ(2,1)"], 1e-3)
+                };
+                let mut s = Session::new(model(&text), "test", options);
+                go(&mut s, Analysis::Dynamic, 0.3, 60);
+                let lowest = values(&s, "DZ(2,1)")
+                    .iter()
+                    .fold(f64::INFINITY, |m, &z| m.min(z));
+                assert!(lowest > -1.0, "{body} on {other} by {method}: {lowest}");
+            }
+        }
     }
 }

@@ -457,9 +457,10 @@ impl Leg<'_> {
         Finished::Done
     }
 
-    /// How far a step may go: no further than values of the past are known, and not over a sample.
+    /// How far a step may go: no further than values of the past are known, not over a sample, and not through a body.
     fn horizon(&mut self, t: f64, y: &[f64]) -> f64 {
-        let due = self.system.samples.due();
+        let unseen = self.system.longest_unseen(t, y).max(1e-6 * (self.end - t));
+        let due = self.system.samples.due().min(t + unseen);
         if !self.system.outside.remembers() {
             return due;
         }

@@ -15,6 +15,7 @@ pub mod outside;
 mod passage;
 pub mod placement;
 pub mod ranks;
+mod reach;
 pub mod samples;
 pub mod script;
 pub mod sensors;

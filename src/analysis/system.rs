@@ -20,6 +20,7 @@ use super::assemble::{Mover, natural};
 use super::implicit::Implicit;
 use super::outside::{Hook, Outside};
 use super::passage::Passage;
+use super::reach::Reaches;
 use super::samples::Samples;
 use super::sensors::Sensors;
 use super::slopes;
@@ -57,6 +58,8 @@ pub struct System {
     pub sensors: Sensors,
     /// what is sampled
     pub samples: Samples,
+    /// what could pass through what
+    reaches: Reaches,
     /// the loop that had no solution at the last numbers
     unsolved: Option<usize>,
     /// angles whose turns are counted
@@ -269,6 +272,7 @@ impl System {
         let outside = Outside::new(&scene, hooks).map_err(complaints)?;
         let sensors = Sensors::new(&scene).map_err(complaints)?;
         let samples = Samples::new(&scene).map_err(complaints)?;
+        let reaches = Reaches::new(&scene, scene.layout.y().len()).map_err(complaints)?;
         let counted = if scene.counted.is_empty() {
             None
         } else {
@@ -306,6 +310,7 @@ impl System {
             outside,
             sensors,
             samples,
+            reaches,
             unsolved: None,
             counted,
             gradients: [None, None],
@@ -431,6 +436,22 @@ impl System {
             .run(&self.numbers, &mut self.work, &mut self.rates);
     }
 
+    /// How long a step from here may be so that no body of a contact passes unseen through another.
+    pub(super) fn longest_unseen(&mut self, t: f64, y: &[f64]) -> f64 {
+        if self.reaches.is_empty() {
+            return f64::INFINITY;
+        }
+        // accelerations read what loops and the outside yield here
+        let mut rates = std::mem::take(&mut self.reaches.rates);
+        let done = self.rate(t, y, &mut rates);
+        self.reaches.rates = rates;
+        match done {
+            Ok(()) => self.reaches.time(&self.scene, &self.numbers),
+            // the step itself will say so
+            Err(_) => f64::INFINITY,
+        }
+    }
+
     /// The largest violation of a row at the present numbers, in position or velocity, relative to what counts as one and to how fast it moves.
     fn violation(&mut self) -> f64 {
         let Some(program) = &self.violation else {
@@ -482,6 +503,7 @@ impl System {
         scene.initial_q.clone_from(&self.scene.initial_q);
         self.rate = shortest_rate(&mut scene)?;
         self.projection = projection_program(&scene)?;
+        self.reaches = Reaches::new(&scene, scene.layout.y().len()).map_err(complaints)?;
         self.violation = violation_program(&scene)?;
         let n_violations = self.violation.as_ref().map_or(0, Program::n_outputs);
         self.violations.resize(n_violations, 0.0);

@@ -19,7 +19,7 @@
 //! Source of ITP: Oliveira & Takahashi, ACM TOMS 47 (2020).
 
 /// Interior samples per step.
-const SAMPLES: usize = 4;
+pub const SAMPLES: usize = 4;
 /// Further samples at dips, per step.
 const DIPS: usize = 8;
 

@@ -4,8 +4,10 @@ use super::build::{Builder, active};
 use super::compile::Compiler;
 use super::forces::{ForceLaw, Touching};
 use super::outside::{HookKind, SceneHook, Supplied};
+use super::reach::Reach;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Contact, ContactLaw, CoulombFriction, Shape};
+use crate::physics::contact::extent::Extent;
 use crate::physics::contact::law::{Coulomb, Law, Normal};
 use crate::physics::contact::outline::{Outline, Rim};
 use crate::physics::contact::ring::Ring;
@@ -35,6 +37,8 @@ enum Body {
 /// Two bodies of a contact with their markers, and how their touches are found.
 struct Couple {
     markers: [u32; 2],
+    /// none of a plane
+    extents: [Option<Extent>; 2],
     how: How,
 }
 
@@ -138,6 +142,12 @@ impl Body {
             Body::Outline(..) => "curve",
         }
     }
+    fn extent(&self) -> Option<Extent> {
+        match self {
+            Body::Solid(placed) => Extent::of(&placed.solid),
+            Body::Outline(_, outline) => Some(Extent::of_outline(outline)),
+        }
+    }
     /// As a curve, or the point that can touch one.
     fn as_outline(&self) -> Option<Arc<Outline>> {
         match self {
@@ -211,7 +221,18 @@ impl Builder<'_> {
             };
             match self.couples(c, contact) {
                 Ok(couples) => {
-                    for Couple { markers, how } in couples {
+                    for Couple {
+                        markers,
+                        extents,
+                        how,
+                    } in couples
+                    {
+                        let [i, j] = markers.map(|m| c.marker(m, &name));
+                        if let ([Some(a), Some(b)], Some(i), Some(j)) = (extents, i, j) {
+                            let outlines = matches!(how, How::Question(Question::Outlines(_)));
+                            let reach = Reach::new([i, j], [a, b], a.overlap(&b, outlines));
+                            self.scene.reaches.push(reach);
+                        }
                         let touching = match how {
                             How::Formula(pair) => Touching::Formula(pair),
                             How::Question(q) => match self.asked(c, &name, markers, q) {
@@ -343,6 +364,7 @@ impl Builder<'_> {
                 })?;
                 out.push(Couple {
                     markers: [i.marker(), j.marker()],
+                    extents: [i.extent(), j.extent()],
                     how,
                 });
             }

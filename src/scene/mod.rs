@@ -21,6 +21,7 @@ pub mod left_out;
 pub mod loops;
 pub mod outside;
 pub mod programs;
+mod reach;
 mod reads;
 pub mod solve;
 pub mod sweep;
@@ -381,6 +382,8 @@ pub struct Scene {
     pub plants: BTreeMap<(bool, u32), Vec<usize>>,
     /// sensors
     pub sensors: Vec<outside::SceneSensor>,
+    /// bodies that could pass through each other within a step
+    pub reaches: Vec<reach::Reach>,
     /// discrete states
     pub samplers: Vec<outside::SceneSampler>,
     /// values of the past

@@ -25,7 +25,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Depth of a solid, as a part of the radius of the circle about the smaller outline; gaps that are larger are not looked at either.
-const DEPTH: f64 = 0.5;
+pub(super) const DEPTH: f64 = 0.5;
 /// Corners beside a straight side touch another straight side up to this angle beyond its normal.
 const BESIDE: f64 = 0.35;
 /// Relative curvature, as a part of the reciprocal size, below which sides lie in each other.

@@ -19,6 +19,7 @@
 
 pub mod ball;
 pub mod curves;
+pub mod extent;
 pub mod law;
 pub mod outline;
 pub mod plane;

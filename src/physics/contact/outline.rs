@@ -349,6 +349,11 @@ impl Outline {
         }
     }
 
+    /// Centre of the circle about it.
+    pub fn middle(&self) -> Flat {
+        self.nodes.last().map_or([0.0; 2], |root| root.centre)
+    }
+
     /// The node of a cell.
     fn leaf(&mut self, cell: usize) -> usize {
         let c = &self.cells[cell];

@@ -285,7 +285,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     /// A marker with all its accelerations.
-    fn accelerated_marker(&self, m: usize) -> MarkerState<S> {
+    pub(in crate::scene) fn accelerated_marker(&self, m: usize) -> MarkerState<S> {
         sweep::marker_state(&self.scene.markers[m], &self.solved().links)
     }
 
