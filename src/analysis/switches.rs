@@ -24,6 +24,8 @@ use crate::numeric::{Failure, Method, Step};
 const BURST: usize = 40;
 /// Part of the duration that is hardly any time.
 const HARDLY: f64 = 1e-7;
+/// Distance from zero where a switch was to be, as a part of the way within the step, that is no longer rounding and error.
+const LANDED: f64 = 0.1;
 /// Steps without watching after a burst.
 const REST: usize = 20;
 
@@ -213,6 +215,7 @@ impl Switches {
         let landed = self.landing.take() == Some(step.t1);
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
+        let landed = landed && self.has_landed(step.h);
         let near = (0..self.sides.len()).any(|k| {
             if landed && self.next[k] != 0 {
                 return false;
@@ -269,6 +272,18 @@ impl Switches {
         self.landing = Some(at);
         self.locator.begin_on(&self.g0, &self.sides);
         Verdict::Redo(at)
+    }
+
+    /// Whether what was to switch at the end of a step is there at zero, as far as the steps that said so were right: one of them may have been much
+    /// longer than its method could see, and its interpolant wrong.
+    fn has_landed(&mut self, h: f64) -> bool {
+        for k in 0..self.next.len() {
+            let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
+            if sign(self.g1[k]) == -self.next[k] && self.g1[k].abs() > LANDED * h * steepest {
+                self.next[k] = 0;
+            }
+        }
+        self.next.iter().any(|&side| side != 0)
     }
 
     /// The end of a step becomes the beginning of the next.

@@ -5,8 +5,9 @@
 //!
 //! ```text
 //! 1  sample     t0 < s₁ < … < s_m < t1; the first interval at whose end a function has changed sides holds the event
-//! 2  dips       where |g| has a minimum between samples of one sign, the vertex of the parabola through three of them is sampled too:
-//!               so a function that crosses and returns between two samples (a double root) is seen
+//! 2  dips       where |g| has a minimum between samples of one sign, the vertex of the parabola through three of them is sampled too, and the
+//!               notch in which the secants beside an interval meet, when that lies across zero (a convex function is above both secants):
+//!               so a function that crosses and returns between two samples (a double root, or a distance that shrinks and grows) is seen
 //! 3  bracket    at `a` no function has crossed, at `b` one has; the next point is the earliest secant root of those that have, drawn
 //!               to the middle as far as needed to keep the bracket of bisection (method ITP)
 //! 4  end        b − a is a few units in the last place; the event is at `b`, where the sign is the new one
@@ -20,8 +21,10 @@
 
 /// Interior samples per step.
 pub const SAMPLES: usize = 4;
-/// Further samples at dips, per step.
+/// Further samples at dips, per step, for one function.
 const DIPS: usize = 8;
+/// Further samples at dips, per step, for all.
+const ALL_DIPS: usize = 64;
 
 /// Which crossings count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +49,7 @@ pub struct Locator {
     zero_counts: bool,
     /// functions that crossed at the last event
     crossed: Vec<usize>,
-    /// times and values of the samples of this step, in order   (SAMPLES + DIPS + 2, each n)
+    /// times and values of the samples of this step, in order   (SAMPLES + 2 + dips, each n)
     times: Vec<f64>,
     values: Vec<Vec<f64>>,
     /// values at both ends of the bracket and at the trial point   (n each)
@@ -58,7 +61,7 @@ pub struct Locator {
 impl Locator {
     /// A locator for `n` functions, all crossings counting.
     pub fn new(n: usize) -> Self {
-        let room = SAMPLES + DIPS + 2;
+        let room = SAMPLES + 2 + (DIPS + n).min(ALL_DIPS);
         Locator {
             direction: vec![Direction::Either; n],
             side: vec![0; n],
@@ -178,29 +181,35 @@ impl Locator {
         }
     }
 
-    /// Samples the vertices of parabolas that reach across zero; gives the sample that has crossed, put into its place.
+    /// Samples where a function may have been across zero between samples; gives the sample that has crossed, put into its place.
     fn find_dip<E>(
         &mut self,
         g: &mut impl FnMut(f64, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<usize>, E> {
-        let mut added = 0;
+        let room = self.values.len();
         let mut i = 1;
-        while i + 1 < self.times.len() && added < DIPS {
-            let Some(t) = (0..self.side.len()).find_map(|k| self.vertex(i, k)) else {
+        while i < self.times.len() && self.times.len() < room {
+            let functions = 0..self.side.len();
+            let dip = |k: usize| self.vertex(i, k).or_else(|| self.notch(i, k));
+            let dip = functions.clone().find_map(dip);
+            let place = |t: f64| self.times.partition_point(|&s| s < t);
+            // a time between two samples: they may be neighbours in the last place
+            let Some((t, place)) = dip
+                .map(|t| (t, place(t)))
+                .filter(|&(t, p)| (1..self.times.len()).contains(&p) && self.times[p] != t)
+            else {
                 i += 1;
                 continue;
             };
-            let place = if t < self.times[i] { i } else { i + 1 };
             let end = self.times.len();
             g(t, &mut self.values[end])?;
             self.times.insert(place, t);
             self.values[place..=end].rotate_right(1);
-            added += 1;
             // sides are those at the beginning of the dip, since nothing before it has crossed
             let (before, here) = (&self.values[place - 1], &self.values[place]);
             let crossed = |k: usize| self.counts(k, sign(before[k]), sign(here[k]));
-            if (0..self.side.len()).any(crossed) {
-                for k in 0..self.side.len() {
+            if functions.clone().any(crossed) {
+                for k in functions {
                     if sign(self.values[place - 1][k]) != 0 {
                         self.side[k] = sign(self.values[place - 1][k]);
                     }
@@ -212,8 +221,48 @@ impl Locator {
         Ok(None)
     }
 
+    /// Where the secants of function `k` beside the interval from sample i − 1 to i meet within it, when that lies across zero. At the end of the
+    /// step the secant that is missing is the other one's mirror image.
+    fn notch(&self, i: usize, k: usize) -> Option<f64> {
+        let value = |i: usize| self.values[i][k];
+        let secant = |i: usize| {
+            let h = self.times[i] - self.times[i - 1];
+            (value(i) - value(i - 1)) / h
+        };
+        let s = sign(value(i));
+        if s == 0 || sign(value(i - 1)) != s {
+            return None;
+        }
+        // as if it were positive: falling before, rising after
+        let up = f64::from(s);
+        let falling = (i > 1 && sign(value(i - 2)) == s).then(|| up * secant(i - 1));
+        let rising =
+            (i + 1 < self.times.len() && sign(value(i + 1)) == s).then(|| up * secant(i + 1));
+        let (falling, rising) = match (falling, rising) {
+            (Some(f), Some(r)) => (f, r),
+            (Some(f), None) => (f, -f),
+            (None, Some(r)) => (-r, r),
+            (None, None) => return None,
+        };
+        if !(falling < 0.0 && rising > 0.0) {
+            return None;
+        }
+        // a + falling x = b − rising (h − x)
+        let (a, b, h) = (
+            up * value(i - 1),
+            up * value(i),
+            self.times[i] - self.times[i - 1],
+        );
+        let x = (a - b + rising * h) / (rising - falling);
+        let inside = x > 1e-3 * h && x < 0.999 * h;
+        (inside && a + falling * x < 0.0).then(|| self.times[i - 1] + x)
+    }
+
     /// Where the parabola of function `k` through samples i − 1, i, i + 1 of one sign has its vertex, when that lies across zero.
     fn vertex(&self, i: usize, k: usize) -> Option<f64> {
+        if i + 1 >= self.times.len() {
+            return None;
+        }
         let [f0, f1, f2] = [
             self.values[i - 1][k],
             self.values[i][k],
@@ -328,8 +377,8 @@ mod tests {
     use super::*;
 
     /// All events of scalar functions over equal steps, with the number of evaluations.
-    fn events(
-        functions: &[fn(f64) -> f64],
+    fn events<F: Fn(f64) -> f64>(
+        functions: &[F],
         steps: &[f64],
         set: impl Fn(&mut Locator),
     ) -> (Vec<(f64, Vec<usize>)>, usize) {
@@ -400,13 +449,37 @@ mod tests {
     #[test]
     fn a_dip_between_samples_is_two_events_and_a_touch_is_none() {
         // below zero for 2 % of the step, between two samples
-        let (found, _) = events(&[|t| (t - 0.5) * (t - 0.5) - 1e-4], &[0.0, 1.0], |_| ());
+        let (found, _) = events(
+            &[|t: f64| (t - 0.5) * (t - 0.5) - 1e-4],
+            &[0.0, 1.0],
+            |_| (),
+        );
         assert_eq!(found.len(), 2);
         assert!((found[0].0 - 0.49).abs() < 1e-14 && (found[1].0 - 0.51).abs() < 1e-14);
-        let (found, _) = events(&[|t| (t - 0.5) * (t - 0.5)], &[0.0, 1.0], |_| ());
+        let (found, _) = events(&[|t: f64| (t - 0.5) * (t - 0.5)], &[0.0, 1.0], |_| ());
         assert!(found.is_empty());
-        let (found, _) = events(&[|t| -(t - 0.47) * (t - 0.47) + 1e-6], &[0.0, 1.0], |_| ());
+        let (found, _) = events(
+            &[|t: f64| -(t - 0.47) * (t - 0.47) + 1e-6],
+            &[0.0, 1.0],
+            |_| (),
+        );
         assert_eq!(found.len(), 2);
+    }
+
+    #[test]
+    fn a_distance_that_shrinks_and_grows_within_a_step_is_two_events() {
+        for place in 1..100 {
+            let c = f64::from(place) / 100.0;
+            for (apart, sign) in [(0.0, 1.0), (3e-4, -1.0)] {
+                let r = 5e-4f64;
+                let g = |t: f64| sign * ((t - c).hypot(apart) - r);
+                let (found, _) = events(&[g], &[0.0, 1.0], |_| ());
+                let half = (r * r - apart * apart).sqrt();
+                assert_eq!(found.len(), 2, "{c} {apart}");
+                assert!((found[0].0 - c + half).abs() < 1e-12);
+                assert!((found[1].0 - c - half).abs() < 1e-12);
+            }
+        }
     }
 
     #[test]
@@ -420,10 +493,10 @@ mod tests {
     #[test]
     fn what_has_just_switched_does_not_switch_again() {
         // the restart is at the event itself, where the value is nearly zero
-        let (found, _) = events(&[|t| (t - 0.25).sin()], &[0.0, 1.0, 2.0, 3.0], |_| ());
+        let (found, _) = events(&[|t: f64| (t - 0.25).sin()], &[0.0, 1.0, 2.0, 3.0], |_| ());
         assert_eq!(found.len(), 1);
         // begins exactly at zero: no event; leaves upward, comes back
-        let (found, _) = events(&[|t| t * (1.0 - t)], &[0.0, 0.4, 0.8, 1.2], |_| ());
+        let (found, _) = events(&[|t: f64| t * (1.0 - t)], &[0.0, 0.4, 0.8, 1.2], |_| ());
         assert_eq!(found.len(), 1);
         assert!((found[0].0 - 1.0).abs() < 1e-15);
         // stays at zero
@@ -455,7 +528,7 @@ mod tests {
     #[test]
     fn not_a_number_is_no_event_and_errors_pass_through() {
         let (found, _) = events(
-            &[|t| if t > 0.5 { f64::NAN } else { 1.0 }],
+            &[|t: f64| if t > 0.5 { f64::NAN } else { 1.0 }],
             &[0.0, 1.0],
             |_| (),
         );

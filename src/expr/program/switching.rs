@@ -27,7 +27,8 @@ impl Builder {
     /// The outputs with the branches of `sources` held, and the values that change sign where these change, with the others held.
     ///
     /// What decides a branch is not computed but read: the sign of the `k`-th of these values, as −1, 0 or 1, from the input
-    /// `sign(k)`.
+    /// `sign(k)`. A root or a power of one of these values goes on beyond its end as that of the magnitude, with the sign of the value where the
+    /// power has one: without that, a step far beyond the end of a contact would see no force anywhere.
     pub fn held(
         &mut self,
         outputs: &[Value],
@@ -41,10 +42,23 @@ impl Builder {
         let needed = self.needed(&wanted, n);
         let zero = self.constant(0.0);
         let mut images: Vec<Value> = (0..n as u32).map(Value).collect();
+        let watched = self.watched(&differences, n);
         for k in (0..n).filter(|&k| needed[k]) {
             let of = |v: Value| images[v.index()];
             let Some((which, contrary)) = asked.get(k).copied().flatten() else {
-                images[k] = self.again(Value(k as u32), of);
+                images[k] = match self.nodes[k] {
+                    Node::Unary(UnaryOp::Sqrt, x) if watched[x.index()] => {
+                        let magnitude = self.unary(UnaryOp::Abs, of(x));
+                        self.unary(UnaryOp::Sqrt, magnitude)
+                    }
+                    Node::Binary(BinaryOp::Pow, x, e) if watched[x.index()] => {
+                        let (x, e) = (of(x), of(e));
+                        let magnitude = self.unary(UnaryOp::Abs, x);
+                        let power = self.binary(BinaryOp::Pow, magnitude, e);
+                        self.binary(BinaryOp::Along, power, x)
+                    }
+                    _ => self.again(Value(k as u32), of),
+                };
                 continue;
             };
             let node = self.nodes[k];
@@ -74,6 +88,29 @@ impl Builder {
             outputs.iter().map(image).collect(),
             differences.iter().map(image).collect(),
         )
+    }
+
+    /// Which of the first `n` nodes change sign with one of the differences only: these, their contraries, and choices of such.
+    fn watched(&self, differences: &[Value], n: usize) -> Vec<bool> {
+        let mut watched = vec![false; n];
+        let mut contrary = std::collections::HashSet::new();
+        for v in differences {
+            if let Some(w) = watched.get_mut(v.index()) {
+                *w = true;
+            }
+            if let Node::Binary(BinaryOp::Sub, a, b) = self.nodes[v.index()] {
+                contrary.insert((b, a));
+            }
+        }
+        for k in 0..n {
+            watched[k] |= match self.nodes[k] {
+                Node::Unary(UnaryOp::Neg, x) => watched[x.index()],
+                Node::Binary(BinaryOp::Sub, a, b) => contrary.contains(&(a, b)),
+                Node::Select(_, a, b) => watched[a.index()] && watched[b.index()],
+                _ => false,
+            };
+        }
+        watched
     }
 
     /// Which of the first `n` nodes some values need.
