@@ -743,3 +743,44 @@ fn what_a_model_cannot_do_is_shown_at_its_statement() {
         }
     }
 }
+
+#[test]
+fn a_first_line_that_says_model_is_told_what_it_lacks() {
+    let acf = scratch(
+        "answered",
+        "m.acf",
+        "model=nomass.adm\nsimulate/dynamic, end=1\n",
+    );
+    let done = cognate(&["run", path(&acf)]);
+    assert_eq!(done.code, 3);
+    assert!(
+        done.err.contains("FILE/MODEL=nomass.adm is meant?"),
+        "{}",
+        done.err
+    );
+    assert!(done.err.contains("m.acf:1:1"), "{}", done.err);
+    let acf = scratch(
+        "answered",
+        "n.acf",
+        "\nfile/model=nowhere\nsimulate/dynamic, end=1\n",
+    );
+    let done = cognate(&["run", path(&acf)]);
+    assert_eq!(done.code, 3);
+    assert!(done.err.contains("nowhere.adm"), "{}", done.err);
+    assert!(!done.err.contains("first line"), "{}", done.err);
+}
+
+#[test]
+fn a_system_of_orient_without_meaning_names_its_element_and_says_what_serves() {
+    let adm = scratch(
+        "orient",
+        "o.adm",
+        "t\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2\nMARKER/2, PART=2\nVARIABLE/7, FUNCTION=ORIENT(25,1,2,1)\nEND\n",
+    );
+    let out = path(adm.parent().unwrap());
+    let done = cognate(&["run", path(&adm), "--end", "1", "--out", out]);
+    assert_eq!(done.code, 4);
+    assert!(done.err.contains("VARIABLE/7"), "{}", done.err);
+    assert!(done.err.contains("o.adm:6:1"), "{}", done.err);
+    assert!(done.err.contains("YAW"), "{}", done.err);
+}

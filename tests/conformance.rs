@@ -479,3 +479,81 @@ fn malformed_texts_give_the_stated_kind_and_column() {
         }
     });
 }
+
+#[test]
+fn orient_gives_back_the_rotation_that_its_angles_make() {
+    use cognate::expr::measures::Measure;
+    use std::f64::consts::PI;
+    let about = |axis: usize, angle: f64| {
+        let (s, c) = angle.sin_cos();
+        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut m = [[0.0; 3]; 3];
+        (m[axis][axis], m[j][j], m[k][k]) = (1.0, c, c);
+        (m[j][k], m[k][j]) = (-s, s);
+        Mat3(m)
+    };
+    // systems 1 and 13 first
+    let sequences = [
+        [0, 1, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [0, 2, 1],
+        [1, 0, 2],
+        [2, 1, 0],
+        [0, 1, 0],
+        [0, 2, 0],
+        [1, 0, 1],
+        [1, 2, 1],
+        [2, 0, 2],
+        [2, 1, 2],
+    ];
+    for angles in [[0.3, 0.7, -0.9], [2.5, -0.4, 1.1], [-1.9, 1.2, PI - 0.1]] {
+        let r = from_313(angles[0], angles[1], angles[2]);
+        let state = MarkerState {
+            R_GM: r,
+            ..MarkerState::ground()
+        };
+        let orient = |system: u32, component: u32| {
+            let arguments = [system, component, 1, 0];
+            kinematic_of(Measure::Orient, arguments, |_| Some(state)).unwrap()
+        };
+        let near = |what: &str, found: Mat3<f64>| {
+            for (a, b) in found.0.iter().flatten().zip(r.0.iter().flatten()) {
+                // a few roundings
+                assert!((a - b).abs() < 1e-13, "{what}: {found:?} {r:?}");
+            }
+        };
+        for (k, [a, b, c]) in sequences.into_iter().enumerate() {
+            let system = k as u32 + 1;
+            let t = [1, 2, 3].map(|n| orient(system, n));
+            near(
+                "moving axes",
+                about(a, t[0]) * about(b, t[1]) * about(c, t[2]),
+            );
+            let t = [1, 2, 3].map(|n| orient(system + 12, n));
+            near(
+                "fixed axes",
+                about(c, t[2]) * about(b, t[1]) * about(a, t[0]),
+            );
+        }
+        let cosine = |row: usize, column: usize| orient(29, (3 * column + row + 1) as u32);
+        near(
+            "cosines",
+            Mat3(std::array::from_fn(|r| {
+                std::array::from_fn(|c| cosine(r, c))
+            })),
+        );
+        for n in 1..=3 {
+            let rodrigues = orient(27, n + 1) / orient(27, 1);
+            assert!((orient(28, n) - rodrigues).abs() < 1e-13 * (1.0 + rodrigues.abs()));
+        }
+        assert_eq!(
+            kinematic_of(Measure::Orient, [25, 1, 1, 0], |_| Some(state)),
+            None
+        );
+        assert_eq!(
+            kinematic_of(Measure::Orient, [28, 4, 1, 0], |_| Some(state)),
+            None
+        );
+    }
+}

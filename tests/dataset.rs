@@ -107,7 +107,7 @@ fn tabs_and_form_feeds_are_blanks() {
 fn bytes_outside_utf8_are_latin_1_and_come_back_the_same() {
     let bytes = b"t\xe9\nPART/1, GROUND\n! gr\xfc\xdfe\nEND\n";
     let source = dataset::syntax::Source::from_bytes(None, bytes);
-    assert!(source.latin1);
+    assert_eq!(source.encoding, dataset::syntax::Encoding::Latin1);
     let reading = dataset::read_source(source);
     assert_eq!(reading.model.title, "té");
     let formatted = reading.dataset.formatted();

@@ -178,3 +178,15 @@ fn the_floating_marker_of_a_force_is_where_i_is() {
         assert!((x - expected).abs() < 1e-12, "{found:?}");
     }
 }
+
+#[test]
+fn a_contact_that_is_left_out_is_not_said_to_be_approximate() {
+    let poisson = CONTACT.replace(
+        "IMPACT, STIFFNESS=1E4, EXPONENT=1, DAMPING=0, DMAX=1E-3",
+        "POISSON, PENALTY=1E4, RESTITUTION_COEFFICIENT=0.5",
+    );
+    let mut s = session(&poisson, &[], &["CONTACT"], false);
+    go(&mut s, 1.0);
+    assert!(warns(&s, &["CONTACT/5", "left out"]));
+    assert!(!warns(&s, &["POISSON"]), "{:?}", s.run.record.warnings);
+}

@@ -350,6 +350,71 @@ fn odd_datasets_mean_what_the_plain_one_means() {
     );
     let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
     same("Latin-1", &latin, expected);
+    for big_endian in [false, true] {
+        let wide = |text: &str| -> Vec<u8> {
+            let bytes = |unit: u16| match big_endian {
+                true => unit.to_be_bytes(),
+                false => unit.to_le_bytes(),
+            };
+            text.encode_utf16().flat_map(bytes).collect()
+        };
+        same("UTF-16", &wide(&text), expected);
+        same(
+            "UTF-16 with its mark",
+            &wide(&format!("\u{FEFF}{text}")),
+            expected,
+        );
+    }
+    same(
+        "UTF-8 with its mark",
+        format!("\u{FEFF}{text}").as_bytes(),
+        expected,
+    );
+}
+
+#[test]
+fn bytes_that_are_not_quite_utf_16_come_back_as_they_were() {
+    let odd: [&[u8]; 6] = [
+        b"\xFF\xFEa\0b",
+        b"\xFF\xFEa\0\x00\xD8",
+        b"\xFE\xFF",
+        b"t\0u\0\xFF\xDF",
+        b"\0\0\0\0",
+        b"P\0\0A\0R\0T",
+    ];
+    for bytes in odd {
+        let source = Source::from_bytes(None, bytes);
+        assert_eq!(source.encode(&source.text), bytes);
+        read_source(source);
+    }
+}
+
+#[test]
+fn command_files_may_be_utf_16_too() {
+    let folder = std::env::temp_dir().join("cognate_odd_commands");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("wide.acf");
+    for text in [
+        "\nfile/model=p\nsim/dyn, end=1\n",
+        "file/model=p\nsim/dyn, end=1\n",
+    ] {
+        for mark in ["", "\u{FEFF}"] {
+            let units = format!("{mark}{text}").encode_utf16().collect::<Vec<_>>();
+            let bytes: Vec<u8> = units.iter().flat_map(|u| u.to_le_bytes()).collect();
+            std::fs::write(&file, bytes).unwrap();
+            let script = Script::read(&file).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(
+                (script.model.as_deref(), script.steps.len()),
+                (Some("p"), 1)
+            );
+            std::fs::write(&file, format!("{mark}{text}")).unwrap();
+            let script = Script::read(&file).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(
+                (script.model.as_deref(), script.steps.len()),
+                (Some("p"), 1)
+            );
+        }
+    }
 }
 
 /// (what is odd, the commands): all simulate the pendulum up to 0.4.

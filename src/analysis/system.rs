@@ -10,10 +10,10 @@ use crate::numeric::control::worst;
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
-use crate::scene::equations::Equations;
+use crate::scene::equations::{Equations, KINEMATIC, STATIC};
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, Switching, record};
-use crate::scene::solve::WEAK;
+use crate::scene::solve::{self, WEAK};
 use crate::scene::{Scene, Source};
 
 use super::assemble::{Mover, natural};
@@ -136,9 +136,14 @@ const SHARE_OF_SPEED: f64 = 0.02;
 
 /// A model whose equations cannot be written down.
 pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
-    what.into_iter()
-        .map(|w| Diagnostic::error("unsupported", w))
-        .collect()
+    let said = |w: String| match w.split_once(": ") {
+        // "VARIABLE/7 FUNCTION: …" begins with the element that asks
+        Some((asks, what)) if asks.contains('/') => {
+            Diagnostic::error("unsupported", what).element(asks)
+        }
+        _ => Diagnostic::error("unsupported", w),
+    };
+    what.into_iter().map(said).collect()
 }
 
 /// The rate by whichever elimination takes fewer operations; deep forests are not tried the quadratic way.
@@ -156,6 +161,20 @@ fn shortest_rate(scene: &mut Scene) -> Result<Program, Vec<Diagnostic>> {
     }
     scene.articulated = true;
     Ok(articulated)
+}
+
+/// Freedoms without inertia that rows determine.
+fn lend_inertia(scene: &mut Scene) {
+    scene.padding = Vec::new();
+    if scene.rows.is_empty() || scene.mode == KINEMATIC || scene.mode == STATIC {
+        return;
+    }
+    let mut numbers = vec![0.0; scene.layout.len()];
+    numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+    let rows = Equations::new(scene, &numbers).mass_rows();
+    let free = scene.freedoms.iter().filter(|f| f.v.is_some());
+    let turns: Vec<bool> = free.map(|f| f.turn).collect();
+    scene.padding = solve::padding(rows, &turns, scene.length);
 }
 
 /// What the diagonal of `G M⁻¹ Gᵀ` is in an ordinary position: a pivot much below that is weak.
@@ -261,6 +280,7 @@ impl System {
     /// # Errors
     /// Functions that the equations cannot supply.
     pub fn with_hooks(mut scene: Scene, hooks: &[Hook]) -> Result<Self, Vec<Diagnostic>> {
+        lend_inertia(&mut scene);
         usual_pivots(&mut scene);
         let rate = shortest_rate(&mut scene)?;
         let projection = projection_program(&scene)?;

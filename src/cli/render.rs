@@ -1,5 +1,6 @@
 //! Diagnostics as people read them: the source line, a caret below the place, and advice.
 
+use crate::dataset::syntax::Source;
 use crate::diagnostic::{Diagnostic, Severity};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use serde_json::{Value, json};
@@ -25,7 +26,7 @@ impl Sources {
             if sources.text(Some(file)).is_none()
                 && let Ok(bytes) = std::fs::read(file)
             {
-                sources.add(file, String::from_utf8_lossy(&bytes));
+                sources.add(file, Source::from_bytes(None, &bytes).text);
             }
         }
         sources

@@ -308,11 +308,36 @@ pub(super) fn script(path: &Path) -> Result<Job, Failure> {
         return Err(d.help("begin it with FILE/MODEL=name").into());
     };
     let base = script.output.clone().unwrap_or_else(|| stem(path));
+    if !file.exists() {
+        return Err(missing(&script, path, &file));
+    }
     Ok(Job {
         reading: read(&file)?,
         base,
         steps: script.steps,
     })
+}
+
+/// The dataset of a command file is not there: which line names it, and what may be meant.
+fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
+    let name = script.model.as_deref().unwrap_or_default();
+    let mut d = Diagnostic::error(
+        "cannot_open",
+        format!("there is no dataset {}", file.display()),
+    );
+    d.file = Some(path.display().to_string());
+    if !script.answered {
+        return Failure::in_files(Exit::Input, vec![d]);
+    }
+    (d.line, d.column) = (1, 1);
+    let d = match name.split_once('=') {
+        Some((_, model)) => d.help(format!("FILE/MODEL={} is meant?", model.trim())),
+        None => d,
+    };
+    let d = d.help(
+        "a first line that is no command is taken as the name of the dataset; the command is FILE/MODEL=name",
+    );
+    Failure::in_files(Exit::Input, vec![d])
 }
 
 /// Writes everything the run produced; the names of the files, and the record. The record comes last: who sees it finds the

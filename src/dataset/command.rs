@@ -125,6 +125,8 @@ pub struct Script {
     pub path: Option<PathBuf>,
     /// dataset named at its beginning
     pub model: Option<String>,
+    /// the dataset was named by the first line, as an answer to the old prompt, and not by FILE/MODEL
+    pub answered: bool,
     /// base name of the results, where one is given
     pub output: Option<String>,
     /// the commands, in order; FILE at the beginning is not among them
@@ -350,6 +352,7 @@ fn of_source(source: &Source) -> Result<Script, Errors> {
             (!text.is_empty() && !text.starts_with('!')).then(|| text.to_owned())
         };
         (script.model, script.output) = (answer(0), answer(1));
+        script.answered = script.model.is_some();
         // The answers are no commands: blanked, so that all places stay.
         for span in spans {
             body.text
@@ -396,6 +399,7 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
         } = &command
             && script.steps.is_empty()
         {
+            script.answered &= model.is_none();
             script.model = model.clone().or(script.model.take());
             script.output = output_prefix.clone().or(script.output.take());
             continue;

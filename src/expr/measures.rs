@@ -157,8 +157,9 @@ measures! {
         /// history it lies between 0 and π.
         Incang "INCANG" THREE_MARKERS "angle" "atan2(|p_JI × p_JK|, p_JI · p_JK)";
         /// Component of the orientation of i in j. System 1 to 12: angles of the body-fixed sequences 1-2-3, 2-3-1, 3-1-2,
-        /// 1-3-2, 2-1-3, 3-2-1, 1-2-1, 1-3-1, 2-1-2, 2-3-2, 3-1-3, 3-2-3; system 27: Euler parameters, components 1 to 4.
-        /// The other systems are read but have no value here.
+        /// 1-3-2, 2-1-3, 3-2-1, 1-2-1, 1-3-1, 2-1-2, 2-3-2, 3-1-3, 3-2-3; 13 to 24: of the same sequences about the axes of j,
+        /// which stay; 27: Euler parameters, components 1 to 4; 28: Rodrigues parameters; 29: direction cosines, components
+        /// 1 to 3 the x axis of i, 4 to 6 its y axis, 7 to 9 its z axis. Systems 25 and 26 are read but have no value here.
         Orient "ORIENT" ORIENTATION "angle or none" "";
     }
     Velocity {
@@ -306,6 +307,15 @@ impl Measure {
             self,
             Measure::Ax | Measure::Ay | Measure::Az | Measure::Incang | Measure::Orient
         )
+    }
+}
+
+/// How many components a system of ORIENT has.
+pub fn orientation_components(system: u32) -> u32 {
+    match system {
+        27 => 4,
+        29 => 9,
+        _ => 3,
     }
 }
 

@@ -212,15 +212,15 @@ impl Builder<'_> {
                 }
                 continue;
             }
-            let law = match self.law(&name, contact) {
-                Ok(law) => law,
-                Err(why) => {
-                    c.error(&name, why);
-                    continue;
-                }
-            };
             match self.couples(c, contact) {
                 Ok(couples) => {
+                    let law = match self.law(&name, contact) {
+                        Ok(law) => law,
+                        Err(why) => {
+                            c.error(&name, why);
+                            continue;
+                        }
+                    };
                     for Couple {
                         markers,
                         extents,

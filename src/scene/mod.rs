@@ -426,6 +426,8 @@ pub struct Scene {
     pub warnings: Vec<crate::diagnostic::Diagnostic>,
     /// typical diagonal of `G M⁻¹ Gᵀ` over the rows that take part; empty: not known
     pub usual: Vec<f64>,
+    /// inertia lent to freedoms that carry none, and taken back (see [`solve::accelerations`]); empty: none   (n_v)
+    pub padding: Vec<f64>,
     /// eliminate freedoms link by link (long chains) rather than from the mass matrix (short ones)
     pub articulated: bool,
     /// a typical length of the mechanism, for tolerances and scales

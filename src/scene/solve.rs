@@ -123,7 +123,79 @@ impl<S: Scalar> MassFactor<S> {
 /// Accelerations and multipliers. `g[r]`: sparse row r of G; `gamma[r]` its right side; `f`: loads, overwritten by v̇.
 ///
 /// `usual`: typical diagonal of S, row by row. Returns λ and how well the rows determine it, with `M v̇ = f + Gᵀ λ`.
+///
+/// `padding`: what the factored matrix has on its diagonal beyond M, where freedoms have no inertia that rows determine (a coupler without
+/// mass); empty: nothing. It is taken back by iteration, E = diag(padding):
+///
+/// ```text
+/// (M + E) v̇ₖ₊₁ = f + E v̇ₖ + Gᵀ λₖ₊₁        G v̇ₖ₊₁ = γ
+/// ```
+///
+/// whose error shrinks by |E|/|M| over the directions that the rows leave free, [`LENT`] or less each time.
 pub fn accelerations<S: Scalar>(
+    m: &Factor<'_, S>,
+    g: &[Vec<(usize, S)>],
+    gamma: &[S],
+    f: &mut [S],
+    usual: &[f64],
+    padding: &[f64],
+) -> Solution<S> {
+    let loads = f.to_vec();
+    let mut solution = accelerations_once(m, g, gamma, f, usual);
+    if padding.iter().any(|&lent| lent > 0.0) {
+        for _ in 0..TAKEN_BACK {
+            let next = loads.iter().zip(padding).zip(f.iter());
+            let mut next: Vec<S> = next.map(|((&l, &lent), &v)| l + v.scale(lent)).collect();
+            solution = accelerations_once(m, g, gamma, &mut next, usual);
+            f.copy_from_slice(&next);
+        }
+    }
+    solution
+}
+
+/// What is lent to a freedom without inertia, as a part of the least inertia that some freedom has.
+pub const LENT: f64 = 1e-4;
+
+/// Iterations after which [`LENT`] has left no trace: LENT⁴ is rounding.
+const TAKEN_BACK: usize = 3;
+
+/// Inertia to lend to the freedoms that have none, given the mass matrix as for [`MassFactor::new`] and a length that makes turns and slides
+/// comparable; empty where all have some   (n_v)
+pub fn padding(mut rows: Vec<Vec<(usize, f64)>>, turns: &[bool], length: f64) -> Vec<f64> {
+    let n = rows.len();
+    let unit = |k: usize| if turns[k] { length * length } else { 1.0 };
+    let own: Vec<f64> = (0..n).map(|k| rows[k][0].1 / unit(k)).collect();
+    let largest = own.iter().copied().fold(0.0, f64::max);
+    let mut pivots = vec![0.0; n];
+    for k in (0..n).rev() {
+        let row = std::mem::take(&mut rows[k]);
+        // what remains of an entry when all of it is taken away is its rounding
+        let nothing = 1e-13 * own[k] + f64::EPSILON * f64::EPSILON * largest;
+        if row[0].1 / unit(k) <= nothing {
+            continue;
+        }
+        pivots[k] = row[0].1 / unit(k);
+        for (at, &(i, m_ki)) in row.iter().enumerate().skip(1) {
+            for &(j, m_kj) in &row[at..] {
+                if let Some(entry) = rows[i].iter_mut().find(|e| e.0 == j) {
+                    entry.1 -= m_ki * m_kj / row[0].1;
+                }
+            }
+        }
+    }
+    if pivots.iter().all(|&d| d > 0.0) {
+        return Vec::new();
+    }
+    let some = pivots.iter().copied().filter(|&d| d > 0.0);
+    let least = some.fold(f64::INFINITY, f64::min);
+    let lent = |k: usize| match pivots[k] > 0.0 || least.is_infinite() {
+        true => 0.0,
+        false => LENT * least * unit(k),
+    };
+    (0..n).map(lent).collect()
+}
+
+fn accelerations_once<S: Scalar>(
     m: &Factor<'_, S>,
     g: &[Vec<(usize, S)>],
     gamma: &[S],
@@ -280,7 +352,7 @@ mod tests {
         ];
         let m = Factor::Matrix(MassFactor::new(rows));
         let mut x = vec![1.0, 2.0, 3.0];
-        accelerations(&m, &[], &[], &mut x, &[]);
+        accelerations(&m, &[], &[], &mut x, &[], &[]);
         approx::assert_relative_eq!(5.0 * x[0] + x[1] - x[2], 1.0, max_relative = 1e-14);
         approx::assert_relative_eq!(x[0] + 2.0 * x[1], 2.0, max_relative = 1e-14);
         approx::assert_relative_eq!(-x[0] + 3.0 * x[2], 3.0, max_relative = 1e-14);

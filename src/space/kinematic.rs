@@ -127,7 +127,9 @@ pub fn kinematic_of<S: Scalar>(
 
 /// ORIENT: a component, from 1, of the orientation of `i` in `j`.
 ///
-/// Systems 1 to 12 are angles of body-fixed sequences, 27 the Euler parameters. `None` for other systems and components.
+/// Systems 1 to 12 are angles of body-fixed sequences, 13 to 24 those of the same sequences about axes of j, which do not move,
+/// 27 the Euler parameters, 28 the Rodrigues parameters (u tan ½φ), 29 the direction cosines, the axes of i one after another
+/// (the order in which the routine RCNVRT is documented to list them). `None` for other systems and components.
 pub fn orientation<S: Scalar>(
     system: u32,
     component: u32,
@@ -138,12 +140,22 @@ pub fn orientation<S: Scalar>(
     let component = (component as usize).checked_sub(1)?;
     match system {
         1..=12 if component < 3 => Some(body_angle(SEQUENCES[system as usize - 1], component, r)),
+        // turns about fixed axes a, b, c are turns about moving axes c, b, a
+        13..=24 if component < 3 => {
+            let [a, b, c] = SEQUENCES[system as usize - 13];
+            Some(body_angle([c, b, a], 2 - component, r))
+        }
         27 => euler_parameters(r).get(component).copied(),
+        28 if component < 3 => {
+            let e = euler_parameters(r);
+            Some(e[component + 1] / e[0])
+        }
+        29 if component < 9 => Some(r(component % 3, component / 3)),
         _ => None,
     }
 }
 
-/// The axes of the body-fixed sequences of ORIENT, system 1 first.
+/// The axes of the sequences of ORIENT, systems 1 and 13 first.
 const SEQUENCES: [[usize; 3]; 12] = [
     [0, 1, 2],
     [1, 2, 0],

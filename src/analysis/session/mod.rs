@@ -14,11 +14,13 @@ use super::implicit::Formulation;
 use super::linear::{self, Linearization};
 use super::output::{self, Output};
 use super::system::System;
+use super::verify::massless::massless;
 use super::{drives, kinematics, outside, statics};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::Model;
 use crate::results::{self, Event, Kind, Run, Status};
+use crate::scene::Scene;
 use start::{Carried, Kept};
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -261,6 +263,15 @@ impl Session {
         }
         if analysis == Analysis::Kinematic && mode != KINEMATIC {
             (system, _) = self.prepare(KINEMATIC, &[])?;
+        }
+        if analysis == Analysis::Dynamic && self.carried.is_none() && may_ask(&system.scene) {
+            let numbers = &system.numbers;
+            let l = system.scene.layout;
+            let (q, x) = (&numbers[l.q()], &numbers[l.x()]);
+            let massless = massless(&system.scene, &self.model, numbers[0], q, x);
+            if !massless.is_empty() {
+                return Err(massless);
+            }
         }
         if matches!(analysis, Analysis::Kinematic | Analysis::Dynamic) {
             let breaks = drives::breaks(&system.scene, self.time(), end)?;
@@ -562,4 +573,11 @@ impl Session {
             ..dynamics::Options::default()
         }
     }
+}
+
+/// Whether the free directions of a scene are few enough to look for those without mass before each run.
+fn may_ask(scene: &Scene) -> bool {
+    // a motion of all links takes about a microsecond per link
+    const MOST: usize = 200_000;
+    scene.layout.n_v * scene.links.len() <= MOST
 }

@@ -36,12 +36,14 @@ pub struct Free {
     pub parts: Vec<Moving>,
     /// "PART/3 slides along its Z; PART/4 goes with it"
     pub words: String,
+    /// rates of all unknowns   (n_v)
+    pub rates: Vec<f64>,
 }
 
 /// All free directions at a position.
-pub(super) fn motions(scene: &Scene, model: &Model, q: &[f64], x: &[f64]) -> Vec<Free> {
+pub(super) fn motions(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Vec<Free> {
     let w = weights(scene);
-    let (_, gradient, _) = assemble::rows_at(scene, 0.0, q, x);
+    let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
     let rows = assemble::scaled_rows(&gradient, &w);
     let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
     let mut owner = vec![0; w.len()];
@@ -51,7 +53,7 @@ pub(super) fn motions(scene: &Scene, model: &Model, q: &[f64], x: &[f64]) -> Vec
         }
     }
     let moving = |v: &[f64]| -> Vec<(Vec3<f64>, MarkerState<f64>)> {
-        let numbers = assemble::numbers(scene, 0.0, q, v, x);
+        let numbers = assemble::numbers(scene, t, q, v, x);
         let at = Equations::new(scene, &numbers);
         (0..scene.parts.len())
             .map(|k| {
@@ -110,6 +112,7 @@ pub(super) fn motions(scene: &Scene, model: &Model, q: &[f64], x: &[f64]) -> Vec
                 unknown: coordinate.name.clone(),
                 parts,
                 words,
+                rates: v,
             }
         })
         .collect()

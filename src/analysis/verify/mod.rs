@@ -10,6 +10,7 @@
 
 mod advice;
 mod free;
+pub(crate) mod massless;
 mod words;
 
 pub use free::{Free, Moving};
@@ -285,8 +286,14 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     let turned = misalignment::turned(&scene, &model, &numbers);
     found.warnings.extend(turned);
     explain(&scene, &numbers, &assembly, &mut found);
-    found.free = free::motions(&scene, &model, &q, &x);
+    found.free = free::motions(&scene, &model, 0.0, &q, &x);
     found.advice = advice::advice(&scene, &numbers, &assembly);
+    let massless = massless::massless(&scene, &model, 0.0, &q, &x);
+    let dynamic = massless.iter().map(|d| {
+        let element = d.element.as_deref().unwrap_or("the model");
+        format!("{element}: {}; a dynamic simulation needs it", d.message)
+    });
+    found.warnings.extend(dynamic);
     if assembly.freedom != assembly.freedom_here {
         found.warnings.push(format!(
             "at this position {} of the free directions lead nowhere, or to another branch: nearby the freedom is {}",

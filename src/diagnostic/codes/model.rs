@@ -7,7 +7,18 @@ pub static MODEL_CODES: &[Code] = &[
     Code {
         name: "cannot_open",
         summary: "a file cannot be opened",
-        explanation: "The system's own words say why: it is not there, it is a folder, or it may not be read.",
+        explanation: "The system's own words say why: it is not there, it is a folder, or it may not be read. The first line of a command
+file that is no command is taken as the name of the dataset; FILE/MODEL=name is the command that names one.",
+    },
+    Code {
+        name: "no_mass",
+        summary: "a part can move in a direction in which it has neither mass nor inertia",
+        explanation: "\
+An acceleration follows from a force and a mass. Where no constraint holds a direction and nothing that moves in it has mass or inertia, no
+acceleration follows. PART without MASS or IP has none; a mass in the axis of a turn does not resist it without IP. Parts without mass are
+fine where what they carry has mass, or where joints and motions hold them; statics and kinematics do not ask.
+
+    PART/2, MASS=2, CM=22, IP=0.1,0.1,0.1",
     },
     Code {
         name: "unreadable",

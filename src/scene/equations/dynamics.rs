@@ -95,7 +95,9 @@ impl<S: Scalar> Equations<'_, S> {
             self.supporting(&g, &mut f)
         } else {
             match self.mass_factor() {
-                Some(factor) => accelerations(&factor, &g, &gamma, &mut f, &scene.usual),
+                Some(factor) => {
+                    accelerations(&factor, &g, &gamma, &mut f, &scene.usual, &scene.padding)
+                }
                 None => self.determined(&wrenches, &g, &gamma, &mut f),
             }
         };
@@ -133,10 +135,15 @@ impl<S: Scalar> Equations<'_, S> {
         if self.scene.mode == KINEMATIC || self.scene.mode == STATIC {
             return None;
         }
-        Some(if self.scene.articulated {
+        let padding = &self.scene.padding;
+        Some(if self.scene.articulated && padding.is_empty() {
             Factor::Articulated(ArticulatedFactor::new(self.scene, &self.links))
         } else {
-            Factor::Matrix(MassFactor::new(self.mass_rows()))
+            let mut rows = self.mass_rows();
+            for (row, &lent) in rows.iter_mut().zip(padding) {
+                row[0].1 += S::constant(lent);
+            }
+            Factor::Matrix(MassFactor::new(rows))
         })
     }
 

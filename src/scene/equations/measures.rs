@@ -1,7 +1,8 @@
 //! What the functions of the model read: displacements, velocities, accelerations, angles with their turns, values of system elements.
 
 use super::Equations;
-use crate::expr::measures::{Family, Measure};
+use crate::expr::measures::{Family, Measure, orientation_components};
+use crate::expr::program::Input;
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
 use crate::scene::{Counted, Entry, sweep};
@@ -28,10 +29,7 @@ impl<S: Scalar> Equations<'_, S> {
                         self.turned(Counted::Measure(measure, ids), value)
                     }
                     Some(value) => value,
-                    None => self.complain(format!(
-                        "{asked_by}: {} has no value for these arguments",
-                        row.name
-                    )),
+                    None => self.complain(without_value(measure, ids, asked_by)),
                 }
             }
             Family::Acceleration => {
@@ -79,7 +77,14 @@ impl<S: Scalar> Equations<'_, S> {
     /// Value of an angle whose turns are counted.
     pub fn counted(&self, angle: Counted) -> S {
         match angle {
-            Counted::Measure(measure, ids) => self.measure(measure, ids, measure.name()),
+            Counted::Measure(measure, ids) => {
+                let asks = Input::Measure(measure, ids);
+                let formulas = self.scene.formulas.iter();
+                let asked_by = formulas
+                    .filter(|f| f.program.inputs().contains(&asks))
+                    .next();
+                self.measure(measure, ids, asked_by.map_or(measure.name(), |f| &f.name))
+            }
             Counted::Angle { gauge, i, j } => {
                 let frame = |m: usize| sweep::marker_frame(&self.scene.markers[m], &self.links);
                 self.turned(angle, gauge.value(&frame(i), &frame(j)))
@@ -149,5 +154,25 @@ impl<S: Scalar> Equations<'_, S> {
             // at rest there is no rate
             (true, Some(_)) => self.unknown(Key::Rate(d)).unwrap_or_else(S::zero),
         }
+    }
+}
+
+/// Why a measure of markers has no value: a marker is missing, or ORIENT is asked for what has no meaning here.
+fn without_value(measure: Measure, ids: [u32; 4], asked_by: &str) -> String {
+    let name = measure.name();
+    match (measure, ids) {
+        (Measure::Orient, [system @ (25 | 26), component, ..]) => format!(
+            "{asked_by}: ORIENT({system}, {component}, …): what system {system} means is not documented; \
+             YAW, PITCH and ROLL, AX, AY and AZ, or another system (`cognate functions ORIENT`) give an orientation"
+        ),
+        (Measure::Orient, [system, component, ..])
+            if component > orientation_components(system) =>
+        {
+            format!(
+                "{asked_by}: ORIENT({system}, {component}, …): system {system} has components 1 to {}",
+                orientation_components(system)
+            )
+        }
+        _ => format!("{asked_by}: {name} names a marker that does not exist or is left out"),
     }
 }

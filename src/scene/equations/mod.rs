@@ -37,7 +37,7 @@ use std::cell::{Cell, OnceCell, RefCell};
 use std::ops::Range;
 
 /// Value of MODE in a kinematic analysis.
-const KINEMATIC: f64 = 1.0;
+pub const KINEMATIC: f64 = 1.0;
 /// Value of MODE in a static analysis: nothing moves, motions stand still where they are.
 pub const STATIC: f64 = 5.0;
 
@@ -126,6 +126,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
             complaints.push(what);
         }
         S::constant(f64::NAN)
+    }
+
+    /// Where every link is and how it moves.
+    pub fn links(&self) -> &[sweep::LinkState<S>] {
+        &self.links
     }
 
     fn coordinates<'a>(&'a self, vdot: &'a [S]) -> Coordinates<'a, S> {
