@@ -79,10 +79,8 @@ impl<S: Scalar> Equations<'_, S> {
         match angle {
             Counted::Measure(measure, ids) => {
                 let asks = Input::Measure(measure, ids);
-                let formulas = self.scene.formulas.iter();
-                let asked_by = formulas
-                    .filter(|f| f.program.inputs().contains(&asks))
-                    .next();
+                let mut formulas = self.scene.formulas.iter();
+                let asked_by = formulas.find(|f| f.program.inputs().contains(&asks));
                 self.measure(measure, ids, asked_by.map_or(measure.name(), |f| &f.name))
             }
             Counted::Angle { gauge, i, j } => {
