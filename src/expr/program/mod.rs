@@ -165,6 +165,14 @@ impl Program {
         &self.core
     }
 
+    /// The same program as threaded code, where it would run as code of the processor.
+    #[cfg(test)]
+    fn threaded(&self) -> Self {
+        let mut program = self.clone();
+        program.machine.do_without_translation();
+        program
+    }
+
     /// What the host supplies, in this order.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
@@ -381,6 +389,7 @@ impl Program {
             .resize(core.size as usize, S::constant(f64::NAN));
         work.registers.extend(self.machine.tail().map(S::constant));
         assert!(work.registers.len() >= self.machine.n_registers());
+        self.machine.prepare();
         work.owner = self.id;
     }
 }

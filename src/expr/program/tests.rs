@@ -209,6 +209,7 @@ proptest! {
         let (mut work, mut out) = (Work::default(), vec![0.0; outputs.len()]);
         let (mut work_gradient, mut run) = (Work::default(), vec![0.0; with_gradient.n_outputs()]);
         let mut evaluated = run.clone();
+        let (mut work_threaded, mut threaded) = (Work::default(), run.clone());
         for x in [x, y] {
             program.run(&x, &mut work, &mut out);
             for (got, f) in out.iter().zip(&formulas) {
@@ -222,6 +223,14 @@ proptest! {
             with_gradient.eval(&x, &mut Work::default(), &mut evaluated);
             for (got, want) in run.iter().zip(&evaluated) {
                 prop_assert!(same_bits(*got, *want) || got == want, "{got} {want}");
+            }
+            with_gradient.threaded().run(&x, &mut work_threaded, &mut threaded);
+            for (got, want) in run.iter().zip(&threaded) {
+                prop_assert!(same_bits(*got, *want), "translated {got}, threaded {want}");
+            }
+            program.threaded().run(&x, &mut Work::default(), &mut threaded[..outputs.len()]);
+            for (got, want) in threaded.iter().zip(&out) {
+                prop_assert!(same_bits(*got, *want), "threaded {got}, translated {want}");
             }
         }
     }

@@ -35,7 +35,7 @@ pub(super) const LAST: u8 = 2;
 pub(super) const ADDED: u8 = 3;
 
 /// No operation (of a selector).
-const PLAIN: u8 = 9;
+pub(super) const PLAIN: u8 = 9;
 
 #[inline(always)]
 fn arithmetic<const OP: u8>(a: f64, b: f64) -> f64 {

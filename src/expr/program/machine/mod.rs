@@ -6,6 +6,10 @@
 //! operations form one; functions with constant parameters have handlers of their own; what only one side of an IF needs is
 //! jumped over where that pays.
 //!
+//! On processors that we know this code is translated once more when a program first runs (`native`): straight code of the
+//! processor, which is one operation that does the work of all. The threaded code is what there is everywhere else, and the
+//! reference in tests.
+//!
 //! # Safety
 //!
 //! Handlers read and write registers without bounds checks, through pointers. This is sound because
@@ -20,11 +24,18 @@
 
 mod handlers;
 mod lower;
+#[cfg(all(target_arch = "x86_64", target_os = "linux", not(miri)))]
+mod native;
+#[cfg(not(all(target_arch = "x86_64", target_os = "linux", not(miri))))]
+#[path = "threaded.rs"]
+mod native;
 
 pub(super) use lower::lower;
 
 use super::Core;
+use native::Native;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicPtr, Ordering};
 
 /// Most operations between two returns to the loop.
 const LONGEST_CHAIN: usize = 128;
@@ -70,9 +81,49 @@ enum Kind {
     Halt,
 }
 
-/// Threaded code.
-#[derive(Clone)]
+/// What an operation means to the translation into code of the processor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meaning {
+    /// what its handler does; its first operand may be expected in `acc`
+    Handled,
+    /// what its handler does, with the value of this register in `acc`
+    HandledWith(u32),
+    Arithmetic(Shape, [u8; 3]),
+    Inputs,
+    /// a → o[1]
+    Copy,
+    /// a → o[1], to o[2]
+    CopyAndGo,
+    Go,
+    /// by the code of a comparison
+    Select(u8),
+    Unless(u8),
+    /// by the code of the operation that yields the selector
+    Branch(u8),
+    Pause,
+    Halt,
+}
+
+/// How arithmetic is fused; p, q, r are its operations in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    /// a p b
+    One,
+    /// (a p b) q c
+    Two,
+    /// ((a p b) q c) r d
+    Chain,
+    /// (a p b) q (c r d)
+    Balanced,
+    /// ((a·b) q e) r (c·d), where e is the fifth operand
+    Dot,
+}
+
+/// Threaded code, and its translation into code of the processor where there is one.
 pub(super) struct Machine {
+    /// where a run begins: the first of `ops`, or the operation that is the translation of all of them
+    start: AtomicPtr<Op>,
+    native: Option<Arc<Native>>,
     ops: Arc<[Op]>,
     /// numbers behind the registers of the core: parameters of prepared functions
     parameters: Vec<f64>,
@@ -84,6 +135,19 @@ pub(super) struct Machine {
     core: Arc<Core>,
     /// there is one output, which is the last result, and no pause
     yields_the_value_at_once: bool,
+}
+
+impl Clone for Machine {
+    fn clone(&self) -> Self {
+        Self {
+            start: AtomicPtr::new(self.start.load(Ordering::Acquire)),
+            native: self.native.clone(),
+            ops: self.ops.clone(),
+            parameters: self.parameters.clone(),
+            core: self.core.clone(),
+            ..*self
+        }
+    }
 }
 
 impl std::fmt::Debug for Machine {
@@ -111,6 +175,20 @@ impl Machine {
         std::iter::repeat_n(f64::NAN, scratch).chain(self.parameters.iter().copied())
     }
 
+    /// Has the translation run from now on, if there is one.
+    pub(super) fn prepare(&self) {
+        if let Some(op) = self.native.as_ref().and_then(|native| native.start()) {
+            self.start.store(op.cast_mut(), Ordering::Release);
+        }
+    }
+
+    /// Has the threaded code run from now on.
+    #[cfg(test)]
+    pub(super) fn do_without_translation(&mut self) {
+        self.native = None;
+        self.start = AtomicPtr::new(self.ops.as_ptr().cast_mut());
+    }
+
     /// Runs over a frame whose constants and parameters are in place.
     ///
     /// # Safety
@@ -118,7 +196,7 @@ impl Machine {
     /// There are at least `n_registers` registers, and as many inputs as the program says.
     #[inline(always)]
     pub(super) unsafe fn run(&self, registers: *mut f64, inputs: *const f64) {
-        let op: *const Op = self.ops.as_ptr();
+        let op: *const Op = self.start.load(Ordering::Acquire);
         // SAFETY: see the head of this file
         let mut stop = unsafe { ((*op).run)(op, registers, inputs, 0.0) };
         while !stop.next.is_null() {
@@ -140,7 +218,7 @@ impl Machine {
     /// As [`Machine::run`].
     #[inline(always)]
     pub(super) unsafe fn value(&self, registers: *mut f64, inputs: *const f64) -> f64 {
-        let op: *const Op = self.ops.as_ptr();
+        let op: *const Op = self.start.load(Ordering::Acquire);
         // SAFETY: see the head of this file
         unsafe { ((*op).run)(op, registers, inputs, 0.0) }.acc
     }

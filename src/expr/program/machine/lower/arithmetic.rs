@@ -3,7 +3,7 @@
 use super::super::handlers::{
     self, ADD, ADDED, ALONG, BUS, DIV, FIRST, LAST, MUL, REGISTERS, SQRT, SUB, VID,
 };
-use super::super::{Handler, Kind};
+use super::super::{Handler, Kind, Meaning, Shape};
 use super::functions::prepared_handler;
 use super::{Lowering, Produced};
 use crate::expr::program::operation::{BinaryOp, Value};
@@ -24,20 +24,6 @@ pub(super) struct Pending {
 pub(super) struct Operand {
     pub(super) register: u32,
     pub(super) node: Option<Value>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
-    /// a p b
-    One,
-    /// (a p b) q c
-    Two,
-    /// ((a p b) q c) r d
-    Chain,
-    /// (a p b) q (c r d)
-    Balanced,
-    /// ((a·b) q e) r (c·d), where e is the fifth operand
-    Dot,
 }
 
 impl Lowering<'_> {
@@ -168,6 +154,7 @@ impl Lowering<'_> {
             return false;
         }
         self.ops[op].run = prepared_handler(prepared, ADDED);
+        self.meanings[op] = Meaning::HandledWith(self.register(before));
         self.ops[op].operands[produced.operand] = self.register(v);
         self.addable = None;
         self.produced = Some(Produced {
@@ -230,6 +217,7 @@ impl Lowering<'_> {
                 code
             })
         });
+        let meaning = Meaning::Arithmetic(shape, [p, q, r]);
         let [p, q, r] = [p, q, r].map(usize::from);
         let first = in_acc(a);
         let source = |last: Operand| match (first, in_acc(last)) {
@@ -252,6 +240,7 @@ impl Lowering<'_> {
             Shape::Dot => (handlers::DOTS[q][r][source(e)], &[ra, rb, rc, rd, re, to]),
         };
         let op = self.emit(handler, operands, Kind::Registers(operands.len() as u8));
+        self.meanings[op] = meaning;
         self.produced(node, op, operands.len() - 1);
     }
 }

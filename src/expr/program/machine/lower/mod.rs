@@ -5,16 +5,18 @@ mod functions;
 mod sides;
 
 use super::handlers::{self, ABS, ADD, FIRST, MUL, REGISTERS, SQRT};
-use super::{Handler, Kind, LONGEST_CHAIN, Machine, Op};
+use super::native::Native;
+use super::{Handler, Kind, LONGEST_CHAIN, Machine, Meaning, Op, Shape};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::Prepared;
 use crate::expr::program::Core;
 use crate::expr::program::operation::{Node, UnaryOp, Value};
 use crate::expr::program::order::Item;
 use crate::expr::program::schedule::Schedule;
-use arithmetic::{Operand, Pending, Shape, code, reversed};
+use arithmetic::{Operand, Pending, code, reversed};
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::sync::atomic::AtomicPtr;
 
 /// The threaded code of a schedule.
 ///
@@ -70,6 +72,7 @@ struct Lowering<'a> {
     core: &'a Arc<Core>,
     ops: Vec<Op>,
     kinds: Vec<Kind>,
+    meanings: Vec<Meaning>,
     parameters: Vec<f64>,
     /// operations by the place of their parameters, to be placed when the number of registers is known
     parameter_operands: Vec<(usize, usize)>,
@@ -104,6 +107,7 @@ impl<'a> Lowering<'a> {
             core,
             ops: Vec::new(),
             kinds: Vec::new(),
+            meanings: Vec::new(),
             parameters: Vec::new(),
             parameter_operands: Vec::new(),
             pending: Vec::new(),
@@ -128,7 +132,8 @@ impl<'a> Lowering<'a> {
                 .chain(numbers.iter().copied())
                 .collect();
             let n = numbers.len();
-            self.emit(handlers::LOADS[n - 1], &operands, Kind::Inputs(n as u8));
+            let op = self.emit(handlers::LOADS[n - 1], &operands, Kind::Inputs(n as u8));
+            self.meanings[op] = Meaning::Inputs;
         }
     }
 
@@ -139,13 +144,15 @@ impl<'a> Lowering<'a> {
         {
             // the last result shall be the output
             let register = self.register(output);
-            self.emit(
+            let op = self.emit(
                 handlers::copy,
                 &[register, self.core.size],
                 Kind::Registers(2),
             );
+            self.meanings[op] = Meaning::Copy;
         }
-        self.emit(handlers::halt, &[], Kind::Halt);
+        let end = self.emit(handlers::halt, &[], Kind::Halt);
+        self.meanings[end] = Meaning::Halt;
         // behind the registers of the core: one scratch register, then parameters
         let first_parameter = self.core.size + 1;
         for &(op, operand) in &self.parameter_operands {
@@ -153,9 +160,16 @@ impl<'a> Lowering<'a> {
         }
         let n_registers = first_parameter as usize + self.parameters.len();
         let n_inputs = used.iter().map(|&k| k as usize + 1).max().unwrap_or(0);
-        let (ops, parameters, core) = (self.ops.into(), self.parameters, self.core.clone());
+        let ops: Arc<[Op]> = self.ops.into();
+        let (parameters, core) = (self.parameters, self.core.clone());
         let yields_the_value_at_once = outputs.len() == 1 && !self.has_paused;
+        let outputs: Vec<u32> = outputs
+            .iter()
+            .map(|&v| self.schedule.registers[v.index()])
+            .collect();
         let machine = Machine {
+            start: AtomicPtr::new(ops.as_ptr().cast_mut()),
+            native: None,
             ops,
             parameters,
             n_registers,
@@ -164,7 +178,16 @@ impl<'a> Lowering<'a> {
             yields_the_value_at_once,
         };
         machine.check(&self.kinds);
-        machine
+        let (kinds, meanings) = (&self.kinds, &self.meanings);
+        let native = Native::of(
+            &machine.ops,
+            kinds,
+            meanings,
+            &machine.core,
+            n_registers,
+            &outputs,
+        );
+        Machine { native, ..machine }
     }
 
     /// Emits the first of these items, perhaps with those that follow; how many it took.
@@ -240,7 +263,9 @@ impl<'a> Lowering<'a> {
                             _ => handlers::select::<2>,
                         };
                         let operands = [a, b, yes, no, v].map(|x| self.register(x));
+                        let code = handlers::comparison_code(op);
                         let op = self.emit(handler, &operands, Kind::Registers(5));
+                        self.meanings[op] = Meaning::Select(code);
                         self.stores(v, op, 4);
                     }
                     _ => {
@@ -251,6 +276,7 @@ impl<'a> Lowering<'a> {
                             &[zero, condition, yes, no, to],
                             Kind::Registers(5),
                         );
+                        self.meanings[op] = Meaning::Select(0);
                         self.stores(v, op, 4);
                     }
                 }
@@ -315,6 +341,7 @@ impl<'a> Lowering<'a> {
                 operands: [0; 6],
             });
             self.kinds.push(Kind::Registers(0));
+            self.meanings.push(Meaning::Pause);
             self.chain = 0;
             self.has_paused = true;
         }
@@ -324,6 +351,7 @@ impl<'a> Lowering<'a> {
         all[..operands.len()].copy_from_slice(operands);
         self.ops.push(Op { run, operands: all });
         self.kinds.push(kind);
+        self.meanings.push(Meaning::Handled);
         self.ops.len() - 1
     }
 

@@ -3,8 +3,8 @@
 //! Selections by the same condition share their sides. A value of a side goes where the selection has its register as soon as
 //! it is computed; only what was there before (an input, a constant, a value with other users) is copied.
 
-use super::super::Kind;
 use super::super::handlers::{self, FIRST, REGISTERS, VID};
+use super::super::{Kind, Meaning, Shape};
 use super::{Closed, Lowering, Sides, reversed};
 use crate::expr::program::operation::{Node, Value};
 use crate::expr::program::order::side_operands;
@@ -66,6 +66,7 @@ impl Lowering<'_> {
     fn copy(&mut self, handler: super::Handler, from: u32, m: Value) {
         let to = self.register(m);
         let op = self.emit(handler, &[from, to], Kind::Registers(2));
+        self.meanings[op] = Meaning::Copy;
         self.stores(m, op, 1);
     }
 
@@ -73,6 +74,7 @@ impl Lowering<'_> {
     fn exit(&mut self, handler: super::Handler, from: u32, m: Value) {
         let to = self.register(m);
         let op = self.emit(handler, &[from, to, 1], Kind::Jumps(2, 1));
+        self.meanings[op] = Meaning::CopyAndGo;
         self.stores(m, op, 1);
         self.leaves_by(op, 2);
     }
@@ -97,19 +99,23 @@ impl Lowering<'_> {
                             1 => handlers::unless::<1>,
                             _ => handlers::unless::<2>,
                         };
-                        self.emit(
+                        let branch = self.emit(
                             handler,
                             &[self.register(a), self.register(b), 1],
                             Kind::Jumps(2, 1),
-                        )
+                        );
+                        self.meanings[branch] = Meaning::Unless(handlers::comparison_code(op));
+                        branch
                     }
                     _ => {
                         let zero = self.constant(0.0).register;
-                        self.emit(
+                        let branch = self.emit(
                             handlers::unless::<0>,
                             &[zero, self.register(condition), 1],
                             Kind::Jumps(2, 1),
-                        )
+                        );
+                        self.meanings[branch] = Meaning::Unless(0);
+                        branch
                     }
                 }
             }
@@ -120,7 +126,7 @@ impl Lowering<'_> {
                 // an operation that only the selector needs joins the branch
                 if let Some(last) = self.pending.last().copied()
                     && last.node == selector
-                    && last.shape == super::Shape::One
+                    && last.shape == Shape::One
                     && last.codes[0] <= VID
                     && self.is_only_for(selector, v)
                 {
@@ -137,17 +143,21 @@ impl Lowering<'_> {
                         REGISTERS
                     };
                     let handler = handlers::BRANCHES[code as usize][source as usize];
-                    return self.emit(
+                    let branch = self.emit(
                         handler,
                         &[a.register, b.register, 1, 1, 1],
                         Kind::Jumps(2, 3),
                     );
+                    self.meanings[branch] = Meaning::Branch(code);
+                    return branch;
                 }
                 self.flush();
                 let handler = handlers::BRANCHES[handlers::BRANCHES.len() - 1]
                     [self.source(selector) as usize];
                 let register = self.register(selector);
-                self.emit(handler, &[register, register, 1, 1, 1], Kind::Jumps(2, 3))
+                let branch = self.emit(handler, &[register, register, 1, 1, 1], Kind::Jumps(2, 3));
+                self.meanings[branch] = Meaning::Branch(handlers::PLAIN);
+                branch
             }
         }
     }
@@ -208,10 +218,12 @@ impl Lowering<'_> {
         {
             let m = copies.remove(first);
             held = Some(m);
+            // where it is stored already, too
+            let from = self.register(operand_of(m));
             if copies.is_empty() && !is_last {
-                self.exit(handlers::leave, self.register(m), m);
+                self.exit(handlers::leave, from, m);
             } else {
-                self.copy(handlers::keep, self.register(m), m);
+                self.copy(handlers::keep, from, m);
             }
         }
         for (k, &m) in copies.iter().enumerate() {
@@ -229,6 +241,7 @@ impl Lowering<'_> {
             .is_some_and(|open| open.exits.iter().any(|&(op, _)| op + 1 == self.ops.len()));
         if !is_last && !has_left {
             let op = self.emit(handlers::go, &[1], Kind::Jumps(0, 1));
+            self.meanings[op] = Meaning::Go;
             self.leaves_by(op, 0);
         }
         if let Some(open) = self.sides.last_mut() {

@@ -1,0 +1,207 @@
+//! The instructions of x86-64 that translated programs consist of, as bytes.
+//!
+//! Numbers are doubles in the low halves of the sixteen vector registers, or stand in the frame; the arithmetic is that of SSE2, which
+//! every processor of this kind has and which the compiler uses for the same operations: the bits are the same.
+
+/// A vector register, 0 … 15.
+pub(super) type Xmm = u8;
+
+/// Where an instruction finds its second operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Xmm(Xmm),
+    /// a register of the frame
+    Slot(u32),
+    /// a number among the inputs
+    Input(u32),
+}
+
+/// Instructions on doubles: prefix and code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Instruction(u8, u8);
+
+pub(super) const LOAD: Instruction = Instruction(0xF2, 0x10);
+pub(super) const ADD: Instruction = Instruction(0xF2, 0x58);
+pub(super) const MULTIPLY: Instruction = Instruction(0xF2, 0x59);
+pub(super) const SUBTRACT: Instruction = Instruction(0xF2, 0x5C);
+pub(super) const DIVIDE: Instruction = Instruction(0xF2, 0x5E);
+pub(super) const ROOT: Instruction = Instruction(0xF2, 0x51);
+/// flags: carry where below, zero where equal, all where not ordered
+pub(super) const COMPARE: Instruction = Instruction(0x66, 0x2E);
+const STORE: Instruction = Instruction(0xF2, 0x11);
+const MASK: Instruction = Instruction(0xF2, 0xC2);
+const ONES: Instruction = Instruction(0x66, 0x76);
+const SHIFT: Instruction = Instruction(0x66, 0x73);
+
+/// Bitwise, between registers only: operands in memory would have to be aligned.
+pub(super) const AND: Instruction = Instruction(0x66, 0x54);
+/// the contrary of the first, and the second
+pub(super) const AND_NOT: Instruction = Instruction(0x66, 0x55);
+pub(super) const OR: Instruction = Instruction(0x66, 0x56);
+pub(super) const XOR: Instruction = Instruction(0x66, 0x57);
+
+/// What a mask is set by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Relation {
+    Equal = 0,
+    Less = 1,
+    LessOrEqual = 2,
+    Unordered = 3,
+    NotEqual = 4,
+}
+
+/// When a jump is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum When {
+    Always,
+    Below,
+    BelowOrEqual,
+    Above,
+    NotEqual,
+    Unordered,
+}
+
+/// The registers for addresses that are used.
+const RDX: u8 = 2;
+const RBX: u8 = 3;
+const RSI: u8 = 6;
+
+/// A jump whose distance is not known yet: the place of the distance in the code.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Jump(usize);
+
+/// Code in the making.
+#[derive(Debug)]
+pub(super) struct Assembler {
+    code: Vec<u8>,
+    calls: bool,
+}
+
+impl Assembler {
+    /// Begins a function that is given the frame and the inputs as second and third argument.
+    pub(super) fn new(calls: bool) -> Self {
+        let mut code = Vec::new();
+        if calls {
+            // push rbx (that aligns the stack); rbx = rsi
+            code.extend([0x53, 0x48, 0x89, 0xF3]);
+        }
+        Self { code, calls }
+    }
+
+    /// Ends it: null is returned, and what is in the vector register 0.
+    pub(super) fn end(&mut self) {
+        // eax = 0
+        self.code.extend([0x31, 0xC0]);
+        if self.calls {
+            self.code.push(0x5B);
+        }
+        self.code.push(0xC3);
+    }
+
+    pub(super) fn finish(self) -> Vec<u8> {
+        self.code
+    }
+
+    /// `x ← x op place`
+    pub(super) fn operate(&mut self, op: Instruction, x: Xmm, place: Place) {
+        self.code.push(op.0);
+        self.operands(op.1, x, place);
+    }
+
+    /// `x ← y`, all of it.
+    pub(super) fn copy(&mut self, x: Xmm, y: Xmm) {
+        self.operands(0x28, x, Place::Xmm(y));
+    }
+
+    pub(super) fn load(&mut self, x: Xmm, place: Place) {
+        match place {
+            Place::Xmm(y) if y == x => {}
+            Place::Xmm(y) => self.copy(x, y),
+            _ => self.operate(LOAD, x, place),
+        }
+    }
+
+    pub(super) fn store(&mut self, x: Xmm, slot: u32) {
+        self.operate(STORE, x, Place::Slot(slot));
+    }
+
+    /// All bits of `x` where it stands so to `place`, else none.
+    pub(super) fn mask(&mut self, x: Xmm, relation: Relation, place: Place) {
+        self.operate(MASK, x, place);
+        self.code.push(relation as u8);
+    }
+
+    /// The bit of the sign alone.
+    pub(super) fn sign_bit(&mut self, x: Xmm) {
+        self.operate(ONES, x, Place::Xmm(x));
+        self.operate(SHIFT, 6, Place::Xmm(x));
+        self.code.push(63);
+    }
+
+    /// All bits but that of the sign.
+    pub(super) fn all_but_sign_bit(&mut self, x: Xmm) {
+        self.operate(ONES, x, Place::Xmm(x));
+        self.operate(SHIFT, 2, Place::Xmm(x));
+        self.code.push(1);
+    }
+
+    /// Jumps somewhere; [`Assembler::lands`] says where.
+    pub(super) fn jump(&mut self, when: When) -> Jump {
+        match when {
+            When::Always => self.code.push(0xE9),
+            When::Below => self.code.extend([0x0F, 0x82]),
+            When::BelowOrEqual => self.code.extend([0x0F, 0x86]),
+            When::Above => self.code.extend([0x0F, 0x87]),
+            When::NotEqual => self.code.extend([0x0F, 0x85]),
+            When::Unordered => self.code.extend([0x0F, 0x8A]),
+        }
+        self.code.extend([0; 4]);
+        Jump(self.code.len())
+    }
+
+    /// A jump leads here.
+    pub(super) fn lands(&mut self, jump: Jump) {
+        let distance = (self.code.len() - jump.0) as u32;
+        self.code[jump.0 - 4..jump.0].copy_from_slice(&distance.to_le_bytes());
+    }
+
+    /// Calls a function with a first argument and the frame. All vector registers are lost, but for the result in the first.
+    pub(super) fn call(&mut self, function: usize, argument: usize) {
+        debug_assert!(self.calls, "the frame must survive the call");
+        // rdi = argument; rsi = rbx; rax = function; call rax
+        self.code.extend([0x48, 0xBF]);
+        self.code.extend((argument as u64).to_le_bytes());
+        self.code.extend([0x48, 0x89, 0xDE, 0x48, 0xB8]);
+        self.code.extend((function as u64).to_le_bytes());
+        self.code.extend([0xFF, 0xD0]);
+    }
+
+    /// What follows the prefix: extension of register numbers, code, operands.
+    fn operands(&mut self, code: u8, x: Xmm, place: Place) {
+        let (low, high) = (x & 7, x >> 3);
+        let (base, number) = match place {
+            Place::Xmm(y) => {
+                let extension = high << 2 | y >> 3;
+                if extension != 0 {
+                    self.code.push(0x40 | extension);
+                }
+                self.code.extend([0x0F, code, 0xC0 | low << 3 | (y & 7)]);
+                return;
+            }
+            Place::Slot(k) if self.calls => (RBX, k),
+            Place::Slot(k) => (RSI, k),
+            Place::Input(k) => (RDX, k),
+        };
+        if high != 0 {
+            self.code.push(0x44);
+        }
+        self.code.extend([0x0F, code]);
+        let distance = 8 * number;
+        if distance < 128 {
+            self.code.extend([0x40 | low << 3 | base, distance as u8]);
+        } else {
+            self.code.push(0x80 | low << 3 | base);
+            self.code.extend(distance.to_le_bytes());
+        }
+    }
+}
