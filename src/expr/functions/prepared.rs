@@ -101,6 +101,12 @@ pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) ->
     )
 }
 
+/// A step between its ends.
+pub(crate) fn rising<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
+    let [x0, _, h0, _, per_length, rise] = *p;
+    S::constant(h0) + shape((x - S::constant(x0)).scale(per_length)).scale(rise)
+}
+
 /// A step whose three pieces are all computed: the better way for many samples at once.
 #[inline(always)]
 pub(crate) fn step_everywhere<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {

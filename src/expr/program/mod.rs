@@ -132,6 +132,9 @@ pub struct Work<S = f64> {
     registers: Vec<S>,
 }
 
+/// Added to the owner of registers that are laid out for the machine, which needs more of them.
+const FOR_THE_MACHINE: u64 = 1;
+
 impl<S> Default for Work<S> {
     fn default() -> Self {
         Self {
@@ -149,8 +152,8 @@ impl Program {
         core: Arc<Core>,
         machine: machine::Machine,
     ) -> Self {
-        static NEXT: AtomicU64 = AtomicU64::new(1);
-        let id = NEXT.fetch_add(1, Ordering::Relaxed);
+        static NEXT: AtomicU64 = AtomicU64::new(2);
+        let id = NEXT.fetch_add(2, Ordering::Relaxed);
         Self {
             id,
             inputs,
@@ -304,9 +307,9 @@ impl Program {
     /// When there are fewer inputs than the program has, or no output.
     #[inline]
     pub fn value(&self, inputs: &[f64], work: &mut Work) -> f64 {
-        self.enter(inputs, work);
+        self.enter_machine(inputs, work);
         if self.machine.yields_the_value_at_once() {
-            // SAFETY: `enter` has seen to there being enough inputs, and to the registers being those of this program
+            // SAFETY: `enter_machine` has seen to there being enough inputs, and to the registers being those of this program
             unsafe {
                 self.machine
                     .value(work.registers.as_mut_ptr(), inputs.as_ptr())
@@ -326,8 +329,8 @@ impl Program {
     /// Runs the machine.
     #[inline(always)]
     fn start(&self, inputs: &[f64], work: &mut Work) {
-        self.enter(inputs, work);
-        // SAFETY: `enter` has seen to there being enough inputs, and to the registers being those of this program
+        self.enter_machine(inputs, work);
+        // SAFETY: `enter_machine` has seen to there being enough inputs, and to the registers being those of this program
         unsafe {
             self.machine
                 .run(work.registers.as_mut_ptr(), inputs.as_ptr())
@@ -370,6 +373,17 @@ impl Program {
         }
     }
 
+    /// As [`Program::enter`], for the machine.
+    #[inline(always)]
+    fn enter_machine(&self, inputs: &[f64], work: &mut Work) {
+        if inputs.len() < self.inputs.len() {
+            self.lacks_inputs(inputs.len());
+        }
+        if work.owner != self.id + FOR_THE_MACHINE {
+            self.prepare_machine(work);
+        }
+    }
+
     #[cold]
     #[inline(never)]
     fn lacks_inputs(&self, n: usize) {
@@ -389,8 +403,17 @@ impl Program {
             .resize(core.size as usize, S::constant(f64::NAN));
         work.registers.extend(self.machine.tail().map(S::constant));
         assert!(work.registers.len() >= self.machine.n_registers());
-        self.machine.prepare();
         work.owner = self.id;
+    }
+
+    /// Lays out the registers, and has the machine made ready.
+    #[cold]
+    fn prepare_machine(&self, work: &mut Work) {
+        self.prepare(work);
+        work.owner = 0;
+        let n = work.registers.len() + self.machine.prepare();
+        work.registers.resize(n, f64::NAN);
+        work.owner = self.id + FOR_THE_MACHINE;
     }
 }
 

@@ -33,6 +33,7 @@ mod native;
 pub(super) use lower::lower;
 
 use super::Core;
+use crate::expr::functions::prepared::Prepared;
 use native::Native;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicPtr, Ordering};
@@ -86,8 +87,12 @@ enum Kind {
 enum Meaning {
     /// what its handler does; its first operand may be expected in `acc`
     Handled,
-    /// what its handler does, with the value of this register in `acc`
-    HandledWith(u32),
+    /// a function of one variable, perhaps with its slope, perhaps added to a register
+    Prepared {
+        function: Prepared,
+        slope: bool,
+        added: Option<u32>,
+    },
     Arithmetic(Shape, [u8; 3]),
     Inputs,
     /// a → o[1]
@@ -175,11 +180,13 @@ impl Machine {
         std::iter::repeat_n(f64::NAN, scratch).chain(self.parameters.iter().copied())
     }
 
-    /// Has the translation run from now on, if there is one.
-    pub(super) fn prepare(&self) {
-        if let Some(op) = self.native.as_ref().and_then(|native| native.start()) {
-            self.start.store(op.cast_mut(), Ordering::Release);
-        }
+    /// Has the translation run from now on, if there is one; how many registers it needs besides.
+    pub(super) fn prepare(&self) -> usize {
+        let Some((native, op)) = self.native.as_ref().and_then(|n| Some((n, n.start()?))) else {
+            return 0;
+        };
+        self.start.store(op.cast_mut(), Ordering::Release);
+        native.n_spare()
     }
 
     /// Has the threaded code run from now on.

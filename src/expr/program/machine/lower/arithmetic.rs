@@ -154,7 +154,11 @@ impl Lowering<'_> {
             return false;
         }
         self.ops[op].run = prepared_handler(prepared, ADDED);
-        self.meanings[op] = Meaning::HandledWith(self.register(before));
+        self.meanings[op] = Meaning::Prepared {
+            function: prepared,
+            slope: false,
+            added: Some(self.register(before)),
+        };
         self.ops[op].operands[produced.operand] = self.register(v);
         self.addable = None;
         self.produced = Some(Produced {

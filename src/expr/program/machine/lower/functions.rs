@@ -1,7 +1,7 @@
 //! Functions of the table as operations of the machine: their constant arguments prepared, value and slopes together.
 
 use super::super::handlers::{self, ADDED, FIRST, REGISTERS};
-use super::super::{Handler, Kind, halves};
+use super::super::{Handler, Kind, Meaning, halves};
 use super::Lowering;
 use crate::expr::functions::prepared::Prepared;
 use crate::expr::program::operation::{Node, UnaryOp, Value};
@@ -115,6 +115,11 @@ impl Lowering<'_> {
                     2,
                     n_parameters,
                 );
+                self.meanings[op] = Meaning::Prepared {
+                    function: prepared,
+                    slope: false,
+                    added: None,
+                };
                 self.produced(v, op, 1);
                 if source == REGISTERS {
                     self.addable = Some((op, prepared));
@@ -148,6 +153,11 @@ impl Lowering<'_> {
                 length,
             ];
             let op = self.with_parameters(slope_handler(prepared), &operands, 3, n_parameters);
+            self.meanings[op] = Meaning::Prepared {
+                function: prepared,
+                slope: true,
+                added: None,
+            };
             for (v, operand) in [value, slopes[0]].into_iter().zip(1..) {
                 if let Some(v) = v {
                     self.stores(v, op, operand);

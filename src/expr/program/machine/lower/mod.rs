@@ -5,7 +5,7 @@ mod functions;
 mod sides;
 
 use super::handlers::{self, ABS, ADD, FIRST, MUL, REGISTERS, SQRT};
-use super::native::Native;
+use super::native::{Native, Threaded};
 use super::{Handler, Kind, LONGEST_CHAIN, Machine, Meaning, Op, Shape};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::Prepared;
@@ -178,15 +178,15 @@ impl<'a> Lowering<'a> {
             yields_the_value_at_once,
         };
         machine.check(&self.kinds);
-        let (kinds, meanings) = (&self.kinds, &self.meanings);
-        let native = Native::of(
-            &machine.ops,
-            kinds,
-            meanings,
-            &machine.core,
+        let native = Native::of(Threaded {
+            ops: machine.ops.clone(),
+            kinds: self.kinds,
+            meanings: self.meanings,
+            core: machine.core.clone(),
+            parameters: machine.parameters.clone(),
             n_registers,
-            &outputs,
-        );
+            outputs,
+        });
         Machine { native, ..machine }
     }
 

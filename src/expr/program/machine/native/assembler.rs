@@ -14,6 +14,8 @@ pub(super) enum Place {
     Slot(u32),
     /// a number among the inputs
     Input(u32),
+    /// a constant behind the code
+    Constant(u32),
 }
 
 /// Instructions on doubles: prefix and code.
@@ -75,6 +77,8 @@ pub(super) struct Jump(usize);
 pub(super) struct Assembler {
     code: Vec<u8>,
     calls: bool,
+    /// distances to constants: where they stand in the code, and which constant
+    distances: Vec<(usize, u32)>,
 }
 
 impl Assembler {
@@ -85,7 +89,11 @@ impl Assembler {
             // push rbx (that aligns the stack); rbx = rsi
             code.extend([0x53, 0x48, 0x89, 0xF3]);
         }
-        Self { code, calls }
+        Self {
+            code,
+            calls,
+            distances: Vec::new(),
+        }
     }
 
     /// Ends it: null is returned, and what is in the vector register 0.
@@ -98,7 +106,20 @@ impl Assembler {
         self.code.push(0xC3);
     }
 
-    pub(super) fn finish(self) -> Vec<u8> {
+    /// The code, and behind it these constants.
+    pub(super) fn finish(mut self, constants: &[f64]) -> Vec<u8> {
+        if !constants.is_empty() {
+            self.code.resize(self.code.len().next_multiple_of(8), 0xCC);
+        }
+        let first = self.code.len();
+        for &(place, k) in &self.distances {
+            // counted from the next instruction
+            let distance = (first + 8 * k as usize - (place + 4)) as u32;
+            self.code[place..place + 4].copy_from_slice(&distance.to_le_bytes());
+        }
+        for c in constants {
+            self.code.extend(c.to_bits().to_le_bytes());
+        }
         self.code
     }
 
@@ -127,6 +148,10 @@ impl Assembler {
 
     /// All bits of `x` where it stands so to `place`, else none.
     pub(super) fn mask(&mut self, x: Xmm, relation: Relation, place: Place) {
+        debug_assert!(
+            !matches!(place, Place::Constant(_)),
+            "distances count from behind the operand"
+        );
         self.operate(MASK, x, place);
         self.code.push(relation as u8);
     }
@@ -191,6 +216,15 @@ impl Assembler {
             Place::Slot(k) if self.calls => (RBX, k),
             Place::Slot(k) => (RSI, k),
             Place::Input(k) => (RDX, k),
+            Place::Constant(k) => {
+                if high != 0 {
+                    self.code.push(0x44);
+                }
+                self.code.extend([0x0F, code, 0x05 | low << 3]);
+                self.distances.push((self.code.len(), k));
+                self.code.extend([0; 4]);
+                return;
+            }
         };
         if high != 0 {
             self.code.push(0x44);

@@ -2,15 +2,16 @@
 //!
 //! The translation is one operation like any other: it is given the frame and the inputs, and does what all operations of
 //! the threaded code do, in the same order, with the same roundings: the results are the same bits. What has a handler of
-//! its own (functions, tables) is called. Code is written when the program is made, which takes little, and brought
-//! into memory that can be executed when the program first runs. Where the system refuses that, the threaded code runs.
+//! its own (functions, tables) is called. It is made when the program
+//! first runs. Where the system refuses that, the threaded code runs.
 //!
 //! # Safety
 //!
 //! The code reads and writes what the threaded code does, which [`super::Machine::check`] has seen to be inside the frame;
-//! slots beyond the frame live in registers only.
+//! slots of the translation's own stand behind them ([`Native::n_spare`]).
 
 mod assembler;
+mod inline;
 mod pages;
 mod steps;
 mod translate;
@@ -19,32 +20,79 @@ use super::{Handler, Kind, Meaning, Op, handlers};
 use crate::expr::program::Core;
 use pages::Pages;
 use std::collections::HashMap;
+use std::ffi::c_void;
 use std::sync::{Arc, OnceLock};
 use steps::{Step, Steps};
 
-/// The translation of a program.
+/// What is translated.
+pub(super) struct Threaded {
+    pub(super) ops: Arc<[Op]>,
+    pub(super) kinds: Vec<Kind>,
+    pub(super) meanings: Vec<Meaning>,
+    pub(super) core: Arc<Core>,
+    /// the last of the registers
+    pub(super) parameters: Vec<f64>,
+    pub(super) n_registers: usize,
+    /// registers of the outputs
+    pub(super) outputs: Vec<u32>,
+}
+
+/// A program that is translated when it first runs.
 pub(super) struct Native {
-    code: Vec<u8>,
-    /// operations that the code calls, each followed by the end
+    threaded: Threaded,
+    loaded: OnceLock<Option<Loaded>>,
+}
+
+/// Code that can run.
+struct Loaded {
+    /// the operation that is the whole program
+    op: Op,
+    n_spare: usize,
+    /// where the code stands
+    _pages: Pages,
+    /// operations that it calls, each followed by the end
     _called: Box<[[Op; 2]]>,
-    /// where the code stands once it has run, and the operation that is the code
-    loaded: OnceLock<Option<(Pages, Op)>>,
+}
+
+impl Threaded {
+    /// The parameters at a place in the frame.
+    fn parameters(&self, place: u32, length: u32) -> &[f64] {
+        let first = place as usize + self.parameters.len() - self.n_registers;
+        &self.parameters[first..first + length as usize]
+    }
 }
 
 impl Native {
-    pub(super) fn of(
-        ops: &[Op],
-        kinds: &[Kind],
-        meanings: &[Meaning],
-        core: &Core,
-        n_registers: usize,
-        outputs: &[u32],
-    ) -> Option<Arc<Self>> {
+    pub(super) fn of(threaded: Threaded) -> Option<Arc<Self>> {
         // places in the frame are distances of 32 bits
-        if n_registers >= 1 << 27 {
-            return None;
-        }
-        let steps = Steps::of(ops, kinds, meanings, core, n_registers, outputs);
+        (threaded.n_registers < 1 << 26).then(|| {
+            Arc::new(Self {
+                threaded,
+                loaded: OnceLock::new(),
+            })
+        })
+    }
+
+    fn loaded(&self) -> Option<&Loaded> {
+        self.loaded
+            .get_or_init(|| Loaded::new(&self.threaded))
+            .as_ref()
+    }
+
+    /// The operation that is the whole program; `None` where there can be none.
+    pub(super) fn start(&self) -> Option<*const Op> {
+        self.loaded().map(|loaded| std::ptr::from_ref(&loaded.op))
+    }
+
+    /// How many registers it needs behind those of the threaded code.
+    pub(super) fn n_spare(&self) -> usize {
+        self.loaded().map_or(0, |loaded| loaded.n_spare)
+    }
+}
+
+impl Loaded {
+    fn new(threaded: &Threaded) -> Option<Self> {
+        let steps = Steps::of(threaded);
         let end = Op {
             run: handlers::halt,
             operands: [0; 6],
@@ -57,34 +105,25 @@ impl Native {
                 _ => None,
             })
             .collect();
-        let called: Box<[[Op; 2]]> = numbers.iter().map(|&k| [ops[k as usize], end]).collect();
+        let called: Box<[[Op; 2]]> = numbers
+            .iter()
+            .map(|&k| [threaded.ops[k as usize], end])
+            .collect();
         let places: HashMap<u32, *const Op> = numbers
             .into_iter()
             .zip(called.iter().map(|pair| pair.as_ptr()))
             .collect();
-        let code = translate::translate(&steps, &places, outputs);
-        Some(Arc::new(Self {
-            code,
+        let pages = Pages::new(&translate::translate(&steps, &places, &threaded.outputs))?;
+        // SAFETY: the code is a function of this kind
+        let run = unsafe { std::mem::transmute::<*const c_void, Handler>(pages.start()) };
+        Some(Self {
+            op: Op {
+                run,
+                operands: [0; 6],
+            },
+            n_spare: steps.first_constant - threaded.n_registers,
+            _pages: pages,
             _called: called,
-            loaded: OnceLock::new(),
-        }))
-    }
-
-    /// The operation that is the whole program; `None` where there can be none.
-    pub(super) fn start(&self) -> Option<*const Op> {
-        let loaded = self.loaded.get_or_init(|| {
-            let pages = Pages::new(&self.code)?;
-            // SAFETY: the code is a function of this kind
-            let run =
-                unsafe { std::mem::transmute::<*const std::ffi::c_void, Handler>(pages.start()) };
-            Some((
-                pages,
-                Op {
-                    run,
-                    operands: [0; 6],
-                },
-            ))
-        });
-        loaded.as_ref().map(|(_, op)| std::ptr::from_ref(op))
+        })
     }
 }

@@ -4,8 +4,11 @@
 //! stored. Jumps lead forward only, so that one pass from the end sees what is still needed.
 
 use super::super::{Kind, Meaning, Op, Shape, handlers};
+use super::Threaded;
+use super::inline::{Formula, Slots, formula};
 use crate::expr::program::{Code, Core};
 use handlers::{ADD, BUS, DIV, MUL, SUB, VID};
+use std::collections::HashMap;
 
 /// One step. Targets are numbers of operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +68,7 @@ pub(super) const NEVER: u32 = u32::MAX;
 /// It is perhaps needed behind a jump or a label.
 const FAR: u32 = u32::MAX - 1;
 
-/// How many values there may be between the parts of one operation.
+/// How many values there are between the parts of fused arithmetic, at most.
 const BETWEEN: usize = 2;
 
 /// When slots are needed again behind a step: those that it reads, in order, and last the one that it writes.
@@ -74,8 +77,9 @@ pub(super) type Next = [u32; 5];
 pub(super) struct Steps {
     pub(super) steps: Vec<Step>,
     pub(super) next: Vec<Next>,
-    /// how many slots there are
-    pub(super) n_slots: usize,
+    /// the slots from here on are these constants, which stand behind the code
+    pub(super) first_constant: usize,
+    pub(super) constants: Vec<f64>,
     pub(super) has_calls: bool,
 }
 
@@ -108,14 +112,15 @@ impl Step {
 }
 
 impl Steps {
-    pub(super) fn of(
-        ops: &[Op],
-        kinds: &[Kind],
-        meanings: &[Meaning],
-        core: &Core,
-        n_registers: usize,
-        outputs: &[u32],
-    ) -> Self {
+    pub(super) fn of(threaded: &Threaded) -> Self {
+        let Threaded {
+            ops,
+            kinds,
+            meanings,
+            core,
+            n_registers,
+            ..
+        } = threaded;
         let mut is_target = vec![false; ops.len()];
         for (k, (op, kind)) in ops.iter().zip(kinds).enumerate() {
             if let Kind::Jumps(first, count) = *kind {
@@ -126,31 +131,61 @@ impl Steps {
         }
         let mut parts = Parts {
             steps: Vec::with_capacity(2 * ops.len()),
-            first_between: n_registers as u32,
+            first_between: *n_registers as u32,
+            formulas: formulas(threaded),
+            n_between: BETWEEN,
+            constants: Vec::new(),
+            places: HashMap::new(),
+            next_label: ops.len() as u32,
         };
+        let longest = parts.formulas.values().map(|f| f.operations.len()).max();
+        parts.n_between = longest.map_or(BETWEEN, |n| n.max(BETWEEN));
         for (k, op) in ops.iter().enumerate() {
             if is_target[k] {
                 parts.steps.push(Step::Label(k as u32));
             }
             parts.take_apart(k as u32, op, kinds[k], meanings[k]);
         }
-        let steps = parts.steps;
+        let first_constant = n_registers + parts.n_between;
+        let (steps, constants) = (parts.steps, parts.constants);
         let has_calls = steps.iter().any(|s| matches!(s, Step::Call { .. }));
-        let next = needs(&steps, n_registers as u32, |step, read| match step {
+        let (first_between, n_slots) = (*n_registers as u32, first_constant + constants.len());
+        let next = needs(&steps, first_between, n_slots, |step, read| match step {
             Step::Call { op, acc } => {
                 acc.into_iter().for_each(&mut *read);
                 read_by_call(&ops[op as usize], kinds[op as usize], core, read);
             }
-            Step::End => outputs.iter().for_each(|&slot| read(slot)),
+            Step::End => threaded.outputs.iter().for_each(|&slot| read(slot)),
             _ => {}
         });
         Self {
             steps,
             next,
-            n_slots: n_registers + BETWEEN,
+            first_constant,
+            constants,
             has_calls,
         }
     }
+}
+
+/// The prepared functions that are written out, by operation.
+fn formulas(threaded: &Threaded) -> HashMap<u32, Formula> {
+    let mut formulas = HashMap::new();
+    for (k, &meaning) in threaded.meanings.iter().enumerate() {
+        let Meaning::Prepared {
+            function, slope, ..
+        } = meaning
+        else {
+            continue;
+        };
+        let operands = &threaded.ops[k].operands;
+        let first = if slope { 3 } else { 2 };
+        let parameters = threaded.parameters(operands[first], operands[first + 1]);
+        if let Some(formula) = formula(function, parameters, slope) {
+            formulas.insert(k as u32, formula);
+        }
+    }
+    formulas
 }
 
 /// Calls `read` with all slots that an operation may read.
@@ -185,11 +220,11 @@ fn read_by_call(op: &Op, kind: Kind, core: &Core, read: &mut dyn FnMut(u32)) {
 fn needs(
     steps: &[Step],
     first_between: u32,
+    n_slots: usize,
     mut others: impl FnMut(Step, &mut dyn FnMut(u32)),
 ) -> Vec<Next> {
     let mut next = vec![[NEVER; 5]; steps.len()];
     // by slot: the stretch without jumps in which this was noted, and the step
-    let n_slots = first_between as usize + BETWEEN;
     let mut noted = vec![(u32::MAX, NEVER); n_slots];
     let mut is_read_later = vec![false; n_slots];
     let mut stretch = 0;
@@ -227,6 +262,13 @@ fn needs(
 struct Parts {
     steps: Vec<Step>,
     first_between: u32,
+    formulas: HashMap<u32, Formula>,
+    n_between: usize,
+    /// constants of formulas, and where they are by their bits
+    constants: Vec<f64>,
+    places: HashMap<u64, u32>,
+    /// labels that are no operations
+    next_label: u32,
 }
 
 impl Parts {
@@ -317,6 +359,30 @@ impl Parts {
                     positive: k + o[4],
                 });
             }
+            Meaning::Prepared { slope, added, .. } => {
+                let Some(formula) = self.formulas.remove(&k) else {
+                    let acc = Some(added.unwrap_or(o[0]));
+                    self.steps.push(Step::Call { op: k, acc });
+                    return;
+                };
+                let slots = Slots {
+                    x: o[0],
+                    value: o[1],
+                    slope: slope.then_some(o[2]),
+                    added,
+                    between: self.first_between,
+                    label: self.next_label,
+                };
+                self.next_label += 3;
+                let first_constant = self.first_between + self.n_between as u32;
+                let (constants, places) = (&mut self.constants, &mut self.places);
+                formula.steps(&slots, &mut self.steps, |c| {
+                    *places.entry(c.to_bits()).or_insert_with(|| {
+                        constants.push(c);
+                        first_constant + constants.len() as u32 - 1
+                    })
+                });
+            }
             Meaning::Handled => {
                 let acc = match kind {
                     Kind::Registers(n) | Kind::Parameters(n) | Kind::Fixed(n, _) if n > 0 => {
@@ -326,10 +392,6 @@ impl Parts {
                 };
                 self.steps.push(Step::Call { op: k, acc });
             }
-            Meaning::HandledWith(acc) => self.steps.push(Step::Call {
-                op: k,
-                acc: Some(acc),
-            }),
             Meaning::Pause => {}
             Meaning::Halt => self.steps.push(Step::End),
         }

@@ -33,6 +33,8 @@ struct Translation<'a> {
     held: [Option<Held>; N_HOLDING],
     /// by slot: the register
     places: Vec<u8>,
+    /// slots from here on are constants
+    first_constant: usize,
     /// registers that the step at hand still needs
     pinned: u16,
     /// by operation: the jumps that lead there
@@ -50,7 +52,8 @@ pub(super) fn translate(
     let mut translation = Translation {
         assembler: Assembler::new(steps.has_calls),
         held: [None; N_HOLDING],
-        places: vec![NOWHERE; steps.n_slots],
+        places: vec![NOWHERE; steps.first_constant],
+        first_constant: steps.first_constant,
         pinned: 0,
         jumps: HashMap::new(),
         calls,
@@ -58,7 +61,7 @@ pub(super) fn translate(
     for (&step, next) in steps.steps.iter().zip(&steps.next) {
         translation.step(step, next, outputs);
     }
-    translation.assembler.finish()
+    translation.assembler.finish(&steps.constants)
 }
 
 impl Translation<'_> {
@@ -171,9 +174,8 @@ impl Translation<'_> {
             _ => return self.magnitude(a, to, next),
         };
         // the result takes the place of an operand that is not needed any more
-        let goes = |this: &Self, slot: u32, next: u32| {
-            next == NEVER && this.places[slot as usize] != NOWHERE
-        };
+        let goes =
+            |this: &Self, slot: u32, next: u32| next == NEVER && this.register(slot) != NOWHERE;
         let is_symmetric = matches!(code, ADD | MUL);
         if is_symmetric && goes(self, b, next_of_b) && !goes(self, a, next_of_a) {
             (a, b) = (b, a);
@@ -250,9 +252,17 @@ impl Translation<'_> {
         self.jumps.entry(target).or_default().push(jump);
     }
 
+    /// The register of a slot.
+    fn register(&self, slot: u32) -> u8 {
+        self.places.get(slot as usize).copied().unwrap_or(NOWHERE)
+    }
+
     /// Where the value of a slot stands. It stays there for this step.
     fn place(&mut self, slot: u32) -> Place {
-        match self.places[slot as usize] {
+        match self.register(slot) {
+            _ if slot as usize >= self.first_constant => {
+                Place::Constant(slot - self.first_constant as u32)
+            }
             NOWHERE => Place::Slot(slot),
             x => {
                 self.pinned |= 1 << x;
@@ -328,7 +338,7 @@ impl Translation<'_> {
     }
 
     fn used_once(&mut self, slot: u32, next: u32) {
-        let x = self.places[slot as usize];
+        let x = self.register(slot);
         if x == NOWHERE {
             return;
         }
