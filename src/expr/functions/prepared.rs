@@ -83,25 +83,22 @@ impl Prepared {
 /// A step; `p` as [`Prepared::Step`] says.
 #[inline(always)]
 pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
-    let [x0, x1, h0, h1, per_length, rise] = *p;
-    let x0 = S::constant(x0);
-    let x1 = S::constant(x1);
-    let h0 = S::constant(h0);
-    let h1 = S::constant(h1);
+    let [x0, x1, h0, h1, ..] = *p;
     S::choose(
-        x.le(x0),
-        || h0,
+        x.le(S::constant(x0)),
+        || S::constant(h0),
         || {
             S::choose(
-                x1.le(x),
-                || h1,
-                || h0 + shape((x - x0).scale(per_length)).scale(rise),
+                S::constant(x1).le(x),
+                || S::constant(h1),
+                || rising(x, p, shape),
             )
         },
     )
 }
 
 /// A step between its ends.
+#[inline(always)]
 pub(crate) fn rising<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
     let [x0, _, h0, _, per_length, rise] = *p;
     S::constant(h0) + shape((x - S::constant(x0)).scale(per_length)).scale(rise)

@@ -473,6 +473,57 @@ fn registers_are_used_again() {
     assert!(program.work_size() <= fixed + 3, "{}", program.work_size());
 }
 
+/// Where there is no translation, this says nothing.
+#[test]
+#[cfg(all(target_arch = "x86_64", target_os = "linux", not(miri)))]
+fn programs_are_translated_when_they_first_run() {
+    let mut builder = Builder::new(Folding::Strict);
+    let t = builder.input(Input::Time);
+    let square = builder.binary(BinaryOp::Mul, t, t);
+    let program = builder.finish(&[square]);
+    let mut out = [0.0];
+    program.eval(&[3.0], &mut Work::<f64>::default(), &mut out);
+    assert!(!program.machine.is_translated());
+    let mut work = Work::default();
+    program.run(&[3.0], &mut work, &mut out);
+    assert!(program.machine.is_translated());
+    assert_eq!(out, [9.0]);
+    // a copy has it from the start, and runs over the same registers
+    let copy = program.clone();
+    assert!(copy.machine.is_translated());
+    drop(program);
+    assert_eq!(copy.value(&[4.0], &mut work), 16.0);
+}
+
+#[test]
+fn more_values_than_the_processor_has_registers_are_kept() {
+    // all sums are needed until the end, in the order in which they were made and in the contrary one
+    let n = 60;
+    let mut builder = Builder::new(Folding::Strict);
+    let inputs: Vec<Value> = (0..n).map(|k| builder.input(Input::Slot(k))).collect();
+    let sums: Vec<Value> = inputs
+        .windows(2)
+        .map(|pair| builder.binary(BinaryOp::Add, pair[0], pair[1]))
+        .collect();
+    let mut there = sums[0];
+    for &sum in &sums {
+        there = builder.binary(BinaryOp::Sub, sum, there);
+    }
+    let mut back = there;
+    for &sum in sums.iter().rev() {
+        back = builder.binary(BinaryOp::Mul, back, sum);
+    }
+    let program = builder.finish(&[back, there]);
+    let numbers: Vec<f64> = (0..n).map(|k| 0.2 + 0.01 * f64::from(k * k % 17)).collect();
+    let (mut translated, mut threaded, mut evaluated) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+    program.run(&numbers, &mut Work::default(), &mut translated);
+    program
+        .threaded()
+        .run(&numbers, &mut Work::default(), &mut threaded);
+    program.eval(&numbers, &mut Work::default(), &mut evaluated);
+    assert_eq!((translated, threaded), (evaluated, evaluated));
+}
+
 #[test]
 fn long_programs_need_no_stack() {
     // an alternating sum of products, an IF now and then: the machine pauses many times

@@ -189,6 +189,12 @@ impl Machine {
         native.n_spare()
     }
 
+    /// Whether the translation is what runs.
+    #[cfg(test)]
+    pub(super) fn is_translated(&self) -> bool {
+        self.start.load(Ordering::Acquire).cast_const() != self.ops.as_ptr()
+    }
+
     /// Has the threaded code run from now on.
     #[cfg(test)]
     pub(super) fn do_without_translation(&mut self) {
