@@ -20,6 +20,7 @@ pub mod samples;
 pub mod script;
 pub mod sensors;
 pub mod session;
+mod shells;
 mod slopes;
 pub mod statics;
 pub mod switches;

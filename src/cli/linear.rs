@@ -69,6 +69,12 @@ pub fn run(args: &Args) -> Outcome {
         ..Options::default()
     };
     let mut session = Session::new(reading.model, &base, options);
+    session.folders = args
+        .model
+        .parent()
+        .map(std::path::Path::to_path_buf)
+        .into_iter()
+        .collect();
     let dataset = reading.dataset;
     let in_model = |errors| Failure::in_model(&dataset, errors);
     let mut status = obey(&mut session, &steps, |_, _| (), &mut Quiet).map_err(in_model)?;

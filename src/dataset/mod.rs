@@ -9,6 +9,7 @@
 
 pub mod command;
 pub mod lens;
+pub mod mesh;
 pub mod read;
 pub mod row;
 pub mod statement;

@@ -339,13 +339,13 @@ pub static STATEMENTS: &[&dyn Statement] = &[
             .required().group("shape");
         kept_shape "SPdp" ().required().group("shape");
         kept_shape "FOrce" ().required().group("shape");
-        kept_shape "SHELL" ().required().group("shape");
+        variant "SHELL" (shape, Shape::Shell { .. } => Shape::Shell { rm: 0, file: String::new() }).required().group("shape");
         kept_shape "EXTRUSION" ().required().group("shape");
         kept_shape "REVOLUTION" ().required().group("shape");
         kept_shape "GRID" ().required().group("shape");
         shape "CORner" (Shape::Box { corner, .. } => corner);
         own "CM" (IDS, put_graphics_cm, graphics_cm);
-        shape "RM" (Shape::Plane { rm, .. } | Shape::Point { rm } | Shape::External { rm, .. } => rm);
+        shape "RM" (Shape::Plane { rm, .. } | Shape::Point { rm } | Shape::External { rm, .. } | Shape::Shell { rm, .. } => rm);
         shape "CID" (Shape::Curve { curve, .. } => curve);
         shape "CRM" (Shape::Curve { rm, .. } => rm);
         shape "X" (Shape::Box { size: [x, _, _], .. } => x);
@@ -364,7 +364,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         own "XMAX" (REAL, |g, v| put_bound(g, false, 1, v), |g| bound(g, false, 1));
         own "YMIN" (REAL, |g, v| put_bound(g, true, 0, v), |g| bound(g, true, 0));
         own "YMAX" (REAL, |g, v| put_bound(g, true, 1, v), |g| bound(g, true, 1));
-        shape "FILE" (Shape::External { file, .. } => file);
+        shape "FILE" (Shape::External { file, .. } | Shape::Shell { file, .. } => file);
         own "ELEMENT" (Kind::Text,
             |g, v| match &mut g.shape { Shape::External { element, .. } => element.put(v), _ => Err("ELEMENT goes with EXTERNAL".into()) },
             |g| match &g.shape { Shape::External { element, .. } => element.written(), _ => None });

@@ -132,6 +132,11 @@ pub enum Shape {
         file: String,
         element: Option<String>,
     },
+    /// polygons in a file
+    Shell {
+        rm: u32,
+        file: String,
+    },
     /// by its keyword; arguments in the place's `extra`
     Other(String),
     #[default]

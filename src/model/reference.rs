@@ -396,9 +396,10 @@ impl Model {
                 | Shape::Torus { cm, .. }
                 | Shape::Circle { cm, .. }
                 | Shape::Arc { cm, .. } => ("CM", cm),
-                Shape::Plane { rm, .. } | Shape::Point { rm } | Shape::External { rm, .. } => {
-                    ("RM", rm)
-                }
+                Shape::Plane { rm, .. }
+                | Shape::Point { rm }
+                | Shape::External { rm, .. }
+                | Shape::Shell { rm, .. } => ("RM", rm),
                 Shape::Curve { curve, rm } => {
                     all.one("GRAPHICS", id, &g.place, "CID", Target::Curve, curve);
                     ("CRM", rm)

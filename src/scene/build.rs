@@ -1,6 +1,7 @@
 //! The last passes of compilation: what drives, what pushes, what is counted; and the finished [`Scene`].
 
 use super::compile::{Compiler, NamedTie, part_name};
+use super::contacts::Shell;
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
 use super::left_out::LeftOut;
@@ -25,6 +26,7 @@ use crate::physics::row::Law;
 use crate::physics::spring_damper::SpringDamper;
 use crate::space::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// How a scene is made.
 #[derive(Clone, Debug, Default)]
@@ -49,6 +51,8 @@ pub struct Options {
     pub plant_inputs: Vec<u32>,
     /// VARIABLEs whose functions commands will change: where one is a number, it is supplied from outside rather than part of the equations
     pub changing: BTreeSet<u32>,
+    /// what the files of GRAPHICS hold, or why they do not, by the numbers of these
+    pub shells: Arc<BTreeMap<u32, Result<Shell, String>>>,
 }
 
 /// Whether an element of a model has not been switched off.
@@ -89,6 +93,7 @@ impl Scene {
             unusable,
             hooks: &options.hooks,
             zero_user: options.zero_user,
+            shells: &options.shells,
         };
         for d in std::mem::take(&mut left_out.told) {
             match d.severity {
@@ -203,6 +208,7 @@ pub(super) struct Builder<'m> {
     unusable: Vec<Diagnostic>,
     hooks: &'m [HookName],
     pub(super) zero_user: bool,
+    pub(super) shells: &'m BTreeMap<u32, Result<Shell, String>>,
 }
 
 impl<'m> Builder<'m> {

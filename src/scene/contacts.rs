@@ -21,6 +21,19 @@ const COPLANAR: f64 = 1e-6;
 /// Small speed that makes POISSON smooth, as a part of the speed of a fall through the mechanism's own size.
 const SMOOTHING: f64 = 1e-3;
 
+/// The convex hull of the points of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shell {
+    /// as the dataset names it
+    pub file: String,
+    /// how many points it holds
+    pub points: usize,
+    /// those that make the hull
+    pub corners: Vec<[f64; 3]>,
+    /// how far points lie outside the hull of the corners, where these would be too many
+    pub outside: f64,
+}
+
 /// A solid and the marker in whose frame it stands.
 struct Placed {
     marker: u32,
@@ -99,9 +112,9 @@ fn solid(shape: &Shape) -> Result<Placed, String> {
         Shape::Torus { cm, ring, tube } => placed(cm, Solid::Torus { ring, tube }),
         Shape::Plane { rm, x, y } => placed(rm, Solid::Plane { x, y }),
         Shape::Point { rm } => placed(rm, Solid::Ball { radius: 0.0 }),
-        Shape::External { ref file, .. } => Err(format!(
-            "is the solid of a CAD kernel in {file:?}, which cannot be read"
-        )),
+        Shape::External { .. } | Shape::Shell { .. } => {
+            unreachable!("it is the hull of what its file holds")
+        }
         Shape::Circle { .. } | Shape::Arc { .. } | Shape::Curve { .. } => {
             unreachable!("it is an outline")
         }
@@ -298,13 +311,35 @@ impl Builder<'_> {
         Some(Touching::Query(places[0]))
     }
 
+    /// What of a shell is not as it is drawn.
+    fn told_of_hull(&mut self, id: u32, shell: &Shell) {
+        let Shell {
+            file,
+            points,
+            corners,
+            outside,
+        } = shell;
+        let mut what = format!(
+            "the convex hull of {file:?} touches, {} corners of {points} points: hollows are filled",
+            corners.len()
+        );
+        if *outside > 0.0 {
+            what += &format!("; the shell stands out of it by {outside:.3e} at most");
+        }
+        let warning = Diagnostic::warning("approximate", what).element(format!("GRAPHICS/{id}"));
+        if !self.scene.warnings.contains(&warning) {
+            self.scene.warnings.push(warning);
+        }
+    }
+
     /// The bodies of one side of a contact, with the numbers of their GRAPHICS.
     fn bodies(
-        &self,
+        &mut self,
         c: &mut Compiler,
         ids: &[u32],
         flipped: bool,
     ) -> Result<Vec<(u32, Body)>, String> {
+        let shells = self.shells;
         let mut out = Vec::new();
         for &id in ids {
             let graphics = self.model.graphics.get(&id);
@@ -331,6 +366,20 @@ impl Builder<'_> {
                     }
                     outline(rm, Rim::Path(Box::new(path)), flipped)
                 }
+                Shape::External { rm, ref file, .. } | Shape::Shell { rm, ref file } => {
+                    let shell = match shells.get(&id) {
+                        Some(Ok(shell)) => shell,
+                        Some(Err(why)) => return Err(format!("GRAPHICS/{id} {why}")),
+                        None => {
+                            return Err(format!(
+                                "GRAPHICS/{id} stands in {file:?}, which was not asked for"
+                            ));
+                        }
+                    };
+                    self.told_of_hull(id, shell);
+                    let solid = Solid::Hull(shell.corners.clone());
+                    Some(Body::Solid(Placed { marker: rm, solid }))
+                }
                 _ => {
                     let placed = solid(shape).map_err(|why| format!("GRAPHICS/{id} {why}"))?;
                     let sized = !is_degenerate(&placed.solid);
@@ -349,7 +398,7 @@ impl Builder<'_> {
     }
 
     /// The pairs of a contact.
-    fn couples(&self, c: &mut Compiler, contact: &Contact) -> Result<Vec<Couple>, String> {
+    fn couples(&mut self, c: &mut Compiler, contact: &Contact) -> Result<Vec<Couple>, String> {
         let all_i = self.bodies(c, &contact.i_geometry, contact.flip[0])?;
         let all_j = self.bodies(c, &contact.j_geometry, contact.flip[1])?;
         let mut out = Vec::new();

@@ -8,7 +8,7 @@ pub mod build;
 pub mod cams;
 pub mod compile;
 mod compliance;
-mod contacts;
+pub mod contacts;
 mod couplers;
 pub mod equations;
 pub mod forces;

@@ -21,8 +21,10 @@ use crate::expr::program::Program;
 use crate::model::Model;
 use crate::results::{self, Event, Kind, Run, Status};
 use crate::scene::Scene;
+use crate::scene::contacts::Shell;
 use start::{Carried, Kept};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use std::time::Instant;
 use told::{counts, units};
 
@@ -83,10 +85,11 @@ pub struct Session {
     pub linear: Vec<(Option<String>, bool, Linearization)>,
     /// states that commands saved, by the names of their files
     pub saved: std::collections::BTreeMap<String, String>,
-    /// folders in which RELOAD looks for files
+    /// folders in which RELOAD, and GRAPHICS that contacts name, look for files
     pub folders: Vec<std::path::PathBuf>,
     /// a sensor ended the run, not only its simulation
     halted: bool,
+    shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
 }
 
 /// Values of MODE.
@@ -123,6 +126,7 @@ impl Session {
             saved: std::collections::BTreeMap::new(),
             folders: Vec::new(),
             halted: false,
+            shells: None,
         }
     }
 

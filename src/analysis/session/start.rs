@@ -2,7 +2,7 @@
 
 use super::super::assemble::{self, Assembly};
 use super::super::system::{System, complaints};
-use super::super::{misalignment, outside, placement, samples, wishes};
+use super::super::{misalignment, outside, placement, samples, shells, wishes};
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
@@ -10,11 +10,13 @@ use crate::model::{Formula, Model, Orientation, Place};
 use crate::scene::Scene;
 use crate::scene::build::{self, unknown_names};
 use crate::scene::compile::orientation;
+use crate::scene::contacts::Shell;
 use crate::scene::equations::Equations;
 use crate::scene::outside::Supplied;
 use crate::space::kinematic::kinematic;
 use crate::space::{MarkerState, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// State carried from one simulation to the next, by the names of the unknowns.
 #[derive(Clone, Debug)]
@@ -116,6 +118,7 @@ impl Session {
             zero_user: self.options.zero_user,
             plant_inputs: inputs.to_vec(),
             changing: self.changing.clone(),
+            shells: self.shells(),
             ..build::Options::default()
         };
         let mut scene = match Scene::compile(&self.model, &options) {
@@ -253,6 +256,12 @@ impl Session {
             system.begin_sensing();
         }
         Ok((system, assembly))
+    }
+
+    /// The shells of contacts, read when they are first asked for.
+    fn shells(&mut self) -> Arc<BTreeMap<u32, Result<Shell, String>>> {
+        let load = || Arc::new(shells::load(&self.model, &self.folders));
+        self.shells.get_or_insert_with(load).clone()
     }
 
     /// Numbers from outside where assembly begins: what sensors evaluated before, and what closures say of the configuration.

@@ -16,6 +16,7 @@
 mod body;
 mod direction;
 mod flat;
+pub mod hull;
 mod points;
 
 use super::{Solid, TOUCH_NUMBERS};

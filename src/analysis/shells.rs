@@ -1,0 +1,80 @@
+//! The shells of contacts that stand in files: found beside the dataset, read, and made into the corners of their convex hulls.
+
+use crate::dataset::mesh;
+use crate::model::{Model, Shape};
+use crate::scene::contacts::Shell;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What to do about a shell that cannot be used.
+const ADVICE: &str = "export it as STL, OBJ or SHL in the units of the model, beside the dataset";
+
+/// The shells of all GRAPHICS that contacts name, by the numbers of these; or why there is none.
+pub fn load(model: &Model, folders: &[PathBuf]) -> BTreeMap<u32, Result<Shell, String>> {
+    let sides = |c: &crate::model::Contact| [c.i_geometry.clone(), c.j_geometry.clone()].concat();
+    let mut out = BTreeMap::new();
+    for id in model.contacts.values().flat_map(sides) {
+        let Some(Shape::External { file, .. } | Shape::Shell { file, .. }) =
+            model.graphics.get(&id).map(|g| &g.shape)
+        else {
+            continue;
+        };
+        out.entry(id).or_insert_with(|| shell(file, folders));
+    }
+    out
+}
+
+fn shell(name: &str, folders: &[PathBuf]) -> Result<Shell, String> {
+    let refuse = |why: String| format!("stands in {name:?}: {why}; {ADVICE}");
+    let kernel = [
+        ".x_t", ".x_b", ".xmt_txt", ".xmt_bin", ".xmt", ".step", ".stp", ".igs", ".iges", ".sat",
+    ];
+    if kernel
+        .iter()
+        .any(|e| name.to_ascii_lowercase().ends_with(e))
+    {
+        return Err(refuse(
+            "a solid of a CAD kernel, which cannot be read".into(),
+        ));
+    }
+    let Some(path) = find(name, folders) else {
+        return Err(refuse("there is no such file".into()));
+    };
+    let size = std::fs::metadata(&path).map_or(0, |m| m.len());
+    if size > mesh::MOST_BYTES {
+        return Err(refuse(format!("{size} bytes are too many")));
+    }
+    let bytes = std::fs::read(&path).map_err(|e| refuse(format!("it cannot be opened: {e}")))?;
+    let points = mesh::points(name, &bytes).map_err(refuse)?;
+    let (n, corners, outside) = hull(points).map_err(refuse)?;
+    Ok(Shell {
+        file: name.to_owned(),
+        points: n,
+        corners,
+        outside,
+    })
+}
+
+#[cfg(feature = "geometry")]
+#[allow(clippy::type_complexity)]
+fn hull(points: Vec<[f64; 3]>) -> Result<(usize, Vec<[f64; 3]>, f64), String> {
+    match crate::physics::contact::query::hull::corners(&points) {
+        Some(found) => Ok((points.len(), found.corners, found.outside)),
+        None => Err("its points span no volume; what is flat is a GRAPHICS PLANE".into()),
+    }
+}
+
+#[cfg(not(feature = "geometry"))]
+#[allow(clippy::type_complexity)]
+fn hull(_: Vec<[f64; 3]>) -> Result<(usize, Vec<[f64; 3]>, f64), String> {
+    Err("this program was built without the feature geometry".into())
+}
+
+/// The file of this name, as given or beside the dataset; of a path of another machine its last part.
+fn find(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let here = [PathBuf::new()];
+    let all = folders.iter().chain(&here);
+    let mut named = all.flat_map(|folder| [folder.join(name), folder.join(last)]);
+    named.find(|p: &PathBuf| Path::is_file(p))
+}
