@@ -64,7 +64,7 @@ pub fn corners(points: &[[f64; 3]]) -> Option<Corners> {
                 .get(face.first_vertex_or_edge as usize)?;
             let height = hull.points()[first as usize].dot(face.normal);
             let thickness = corners.iter().map(|p| height - p.dot(face.normal));
-            if !(thickness.fold(0.0, f64::max) > FLUSH * extent) {
+            if thickness.fold(0.0, f64::max) <= FLUSH * extent {
                 return None;
             }
             let k = farthest(face.normal);
