@@ -10,10 +10,12 @@
 //!
 //! Source: Gear, Gupta & Leimkuhler 1985 for SI2.
 
+use super::outside::Outside;
 use super::system::System;
 use super::unknowns::WIDTH;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
+use crate::numeric::pattern::Pattern;
 use crate::numeric::{Dae, Failure, Kind, Levels, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::Scene;
@@ -55,8 +57,9 @@ enum Jacobian {
         entries: Vec<(usize, usize, Option<usize>, Option<usize>)>,
         out: Vec<f64>,
     },
-    /// by duals, all entries: where the program would be too long, and where numbers come from outside
+    /// by duals, columns that share no row together: where the program would be too long, and where numbers come from outside
     Duals {
+        pattern: Pattern,
         work: Work<Dual<WIDTH>>,
         numbers: Vec<Dual<WIDTH>>,
         out: Vec<Dual<WIDTH>>,
@@ -107,7 +110,11 @@ impl Implicit {
     ///
     /// # Errors
     /// Functions that read what is solved for: their loops are solved beside explicit rates only.
-    pub fn new(scene: &Scene, formulation: Formulation) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(
+        scene: &Scene,
+        formulation: Formulation,
+        outside: &Outside,
+    ) -> Result<Self, Vec<Diagnostic>> {
         if !scene.loops.is_empty() {
             let loops = scene.loops.iter().map(|u| u.name.as_str());
             return Err(vec![Diagnostic::error(
@@ -144,7 +151,7 @@ impl Implicit {
             formulation,
             n,
             m,
-            jacobian: Jacobian::new(scene, &program, n, size),
+            jacobian: Jacobian::new(scene, &program, n, size, outside),
             residual: program,
             multipliers,
             work: Work::default(),
@@ -168,13 +175,37 @@ impl Implicit {
     }
 }
 
+/// Where the residual reads unknown `j`: numbers 1 … n, and of the multipliers those after ẏ, which begins at `first`.
+fn place(j: usize, n: usize, first: usize) -> usize {
+    if j < n { 1 + j } else { first + j }
+}
+
 impl Jacobian {
-    fn new(scene: &Scene, residual: &Program, n: usize, size: usize) -> Self {
+    fn new(
+        scene: &Scene,
+        residual: &Program,
+        n: usize,
+        size: usize,
+        outside: &Outside,
+    ) -> Self {
         let first = scene.layout.len();
-        let by_duals = || Jacobian::Duals {
-            work: Work::default(),
-            numbers: Vec::new(),
-            out: Vec::new(),
+        let by_duals = || {
+            let mut along = vec![Vec::new(); first + size];
+            for j in 0..size {
+                along[place(j, n, first)].push(j as u32);
+                if j < n {
+                    along[first + j].push(j as u32);
+                }
+            }
+            outside.depend(&mut along);
+            let mut rows = residual.dependence(&along);
+            (rows.iter_mut().enumerate()).for_each(|(i, row)| row.push(i as u32));
+            Jacobian::Duals {
+                pattern: Pattern::of_rows(size, &rows),
+                work: Work::default(),
+                numbers: Vec::new(),
+                out: Vec::new(),
+            }
         };
         // what closures and queries yield is differentiated by differences, beside the programs
         if size * residual.n_operations() > LONGEST || !scene.hooks.is_empty() {
@@ -183,9 +214,9 @@ impl Jacobian {
         let mut builder = Builder::new(Folding::Structural);
         let rows = residual.record(&mut builder);
         let slot = |k: usize| Input::Slot(k as u32);
-        // y: numbers 1 … n and, of the multipliers, those after ẏ; then ẏ
+        // y, then ẏ
         let places = (0..size)
-            .map(|j| slot(if j < n { 1 + j } else { first + j }))
+            .map(|j| slot(place(j, n, first)))
             .chain((0..n).map(|j| slot(first + j)));
         let places: Vec<_> = places.map(|input| builder.input(input)).collect();
         let mut wanted = Vec::new();
@@ -232,7 +263,11 @@ impl System {
             .as_ref()
             .is_none_or(|i| i.formulation != formulation)
         {
-            self.implicit = Some(Box::new(Implicit::new(&self.scene, formulation)?));
+            self.implicit = Some(Box::new(Implicit::new(
+                &self.scene,
+                formulation,
+                &self.outside,
+            )?));
         }
         Ok(())
     }
@@ -244,7 +279,7 @@ impl System {
     pub(super) fn renew_implicit(&mut self, scene: &Scene) -> Result<(), Vec<Diagnostic>> {
         if let Some(implicit) = &self.implicit {
             let formulation = implicit.formulation;
-            self.implicit = Some(Box::new(Implicit::new(scene, formulation)?));
+            self.implicit = Some(Box::new(Implicit::new(scene, formulation, &self.outside)?));
         }
         Ok(())
     }
@@ -284,10 +319,9 @@ impl Dae for System {
     }
 
     fn pattern(&self) -> Vec<(usize, usize)> {
-        let size = Dae::size(self);
         match &self.implicit().jacobian {
             Jacobian::Recorded { entries, .. } => entries.iter().map(|e| (e.0, e.1)).collect(),
-            Jacobian::Duals { .. } => (0..size * size).map(|e| (e % size, e / size)).collect(),
+            Jacobian::Duals { pattern, .. } => pattern.entries().collect(),
         }
     }
 
@@ -317,28 +351,36 @@ impl Dae for System {
                             by_y.map_or(0.0, |k| out[k]) + by_ydot.map_or(0.0, |k| cj * out[k]);
                     }
                 }
-                Jacobian::Duals { work, numbers, out } => {
+                Jacobian::Duals {
+                    pattern,
+                    work,
+                    numbers,
+                    out,
+                } => {
                     numbers.clear();
                     numbers.extend(i.numbers.iter().map(|&x| Dual::<WIDTH>::constant(x)));
                     out.resize(size, Dual::constant(0.0));
-                    for begin in (0..size).step_by(WIDTH) {
-                        let columns = begin..(begin + WIDTH).min(size);
+                    for (chunk, groups) in pattern.groups().chunks(WIDTH).enumerate() {
                         let mark = |numbers: &mut [Dual<WIDTH>], by_y: f64, by_ydot: f64| {
-                            for j in columns.clone() {
-                                let place = if j < n { 1 + j } else { first + j };
-                                numbers[place].eps[j - begin] = by_y;
-                                if j < n {
-                                    numbers[first + j].eps[j - begin] = by_ydot;
+                            for (k, group) in groups.iter().enumerate() {
+                                for &j in group {
+                                    numbers[place(j, n, first)].eps[k] = by_y;
+                                    if j < n {
+                                        numbers[first + j].eps[k] = by_ydot;
+                                    }
                                 }
                             }
                         };
                         mark(numbers, 1.0, cj);
-                        self.outside.follow(numbers, begin == 0);
+                        self.outside.follow(numbers, chunk == 0);
                         i.residual.eval(numbers, work, out);
                         mark(numbers, 0.0, 0.0);
-                        for j in columns.clone() {
-                            for (row, x) in out.iter().enumerate() {
-                                values[row + size * j] = x.eps[j - begin];
+                        self.outside.forget(numbers);
+                        for (k, group) in groups.iter().enumerate() {
+                            for &j in group {
+                                for (e, row) in pattern.column(j) {
+                                    values[e] = out[row].eps[k];
+                                }
                             }
                         }
                     }

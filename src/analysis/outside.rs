@@ -416,6 +416,16 @@ impl Outside {
         }
     }
 
+    /// Tells along which directions the results change: those along which what they are given does.
+    pub fn depend(&self, along: &mut [Vec<u32>]) {
+        for hook in self.hooks.iter().filter(|h| !h.output_only) {
+            let mut all: Vec<u32> = hook.inputs.dependence(along).concat();
+            all.sort_unstable();
+            all.dedup();
+            along[hook.places.clone()].fill(all);
+        }
+    }
+
     /// Takes the derivatives of the results away again.
     pub fn forget(&self, numbers: &mut [Dual<WIDTH>]) {
         for hook in &self.hooks {

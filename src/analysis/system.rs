@@ -4,9 +4,12 @@
 //! program; rows that close loops hold at acceleration level within a step, and each accepted step is projected back onto
 //! them in position and velocity.
 
+mod jacobian;
+
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::numeric::control::worst;
+use crate::numeric::pattern::Pattern;
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
@@ -23,8 +26,9 @@ use super::passage::Passage;
 use super::reach::Reaches;
 use super::samples::Samples;
 use super::sensors::Sensors;
-use super::slopes;
 use super::unknowns::{Unknowns, WIDTH};
+use jacobian::Gradient;
+use std::sync::Arc;
 
 /// A scene with its programs, ready to be integrated.
 #[derive(Debug)]
@@ -66,6 +70,8 @@ pub struct System {
     counted: Option<Program>,
     /// derivatives of the rate, of the one with branches held, once they have been asked for
     gradients: [Option<Gradient>; 2],
+    /// where their Jacobian has entries, if it is mostly empty, once that has been asked for
+    pattern: Option<Option<Arc<Pattern>>>,
     /// the same as an implicit system, when a method asks for it
     pub(super) implicit: Option<Box<Implicit>>,
     /// what the programs read: t | q | v | x | turns | loops | supplied
@@ -96,28 +102,6 @@ pub struct System {
     /// a stage of a method on the rows   (n)
     stage: Vec<f64>,
     mover: Mover,
-}
-
-/// Derivatives of all rates with respect to all unknowns, then to time.
-#[derive(Debug)]
-enum Gradient {
-    /// recorded: rate by rate
-    Recorded(Box<Program>, Work, Vec<f64>),
-    /// by duals
-    Duals,
-}
-
-impl Gradient {
-    /// Of the first `n` outputs of a program, by whichever way takes less.
-    fn new(rate: &Program, n: usize) -> Self {
-        // unknowns are numbers 1 … n of the row, time is number 0
-        match slopes::recorded(rate, n, (1..=n).chain([0])) {
-            Some(program) => {
-                Gradient::Recorded(Box::new(program), Work::default(), vec![0.0; n * (n + 1)])
-            }
-            None => Gradient::Duals,
-        }
-    }
 }
 
 /// Violations of rows, relative to what counts as one, that are rounding.
@@ -334,6 +318,7 @@ impl System {
             unsolved: None,
             counted,
             gradients: [None, None],
+            pattern: None,
             implicit: None,
             numbers,
             work: Work::default(),
@@ -532,7 +517,7 @@ impl System {
         self.switching = programs::switching(&scene).map_err(complaints)?;
         let n_switches = self.n_switches();
         self.sides.resize(n_switches, 0.0);
-        self.gradients = [None, None];
+        (self.gradients, self.pattern) = ([None, None], None);
         self.renew_implicit(&scene)?;
         self.unknowns = Unknowns::new(&scene).map_err(complaints)?;
         self.was_weak = false;
@@ -642,62 +627,6 @@ impl System {
                 }),
             None => Ok(()),
         }
-    }
-}
-
-impl System {
-    /// The Jacobian at the present numbers, several columns at a time.
-    fn jacobian_by_duals(
-        &mut self,
-        n: usize,
-        jacobian: &mut [f64],
-        dfdt: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.dual_numbers.clear();
-        let sides = if self.holding { &self.sides[..] } else { &[] };
-        let numbers = self.numbers.iter().chain(sides);
-        self.dual_numbers.extend(numbers.map(|&x| Dual {
-            re: x,
-            eps: [0.0; WIDTH],
-        }));
-        self.dual_out.resize(
-            n + 1,
-            Dual {
-                re: 0.0,
-                eps: [0.0; WIDTH],
-            },
-        );
-        // unknowns are numbers 1 … n of the row, time is number 0
-        for first in (0..=n).step_by(WIDTH) {
-            let last = (first + WIDTH).min(n + 1);
-            for k in first..last {
-                self.dual_numbers[k].eps[k - first] = 1.0;
-            }
-            self.follow(first == 0)?;
-            let rate = match &self.switching {
-                Some(Switching {
-                    held: Some(held), ..
-                }) if self.holding => held,
-                _ => &self.rate,
-            };
-            rate.eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
-            for k in first..last {
-                self.dual_numbers[k].eps[k - first] = 0.0;
-                let column = if k == 0 {
-                    &mut *dfdt
-                } else {
-                    &mut jacobian[n * (k - 1)..n * k]
-                };
-                for (entry, out) in column.iter_mut().zip(&self.dual_out) {
-                    *entry = out.eps[k - first];
-                }
-            }
-            self.outside.forget(&mut self.dual_numbers);
-            if let Some(unknowns) = &self.unknowns {
-                unknowns.forget(&mut self.dual_numbers);
-            }
-        }
-        Ok(())
     }
 }
 
@@ -842,48 +771,16 @@ impl Ode for System {
         dfdt: &mut [f64],
     ) -> Result<(), Failure> {
         self.set(t, y);
-        let n = y.len();
-        let holding = usize::from(self.holding);
-        let rate = match &self.switching {
-            Some(Switching {
-                held: Some(held), ..
-            }) if self.holding => held,
-            _ => &self.rate,
-        };
-        let gradient = self.gradients[holding].get_or_insert_with(|| {
-            if self.unknowns.is_some() || !self.outside.is_empty() {
-                Gradient::Duals
-            } else {
-                Gradient::new(rate, n)
-            }
-        });
-        match gradient {
-            Gradient::Recorded(program, work, entries) => {
-                let numbers = if self.holding {
-                    let all = &mut self.switch_numbers;
-                    all.clear();
-                    all.extend(self.numbers.iter().chain(&self.sides));
-                    &all[..]
-                } else {
-                    &self.numbers[..]
-                };
-                program.run(numbers, work, entries);
-                for (i, row) in entries.chunks(n + 1).enumerate() {
-                    for (j, &entry) in row[..n].iter().enumerate() {
-                        jacobian[i + n * j] = entry;
-                    }
-                    dfdt[i] = row[n];
-                }
-            }
-            Gradient::Duals => self.jacobian_by_duals(n, jacobian, dfdt)?,
-        }
-        match jacobian.iter().position(|x| !x.is_finite()) {
-            Some(e) => Err(Failure {
-                what: e % n.max(1),
-                recoverable: true,
-            }),
-            None => Ok(()),
-        }
+        self.full_jacobian(y.len(), jacobian, dfdt)
+    }
+
+    fn pattern(&mut self) -> Option<Arc<Pattern>> {
+        self.jacobian_pattern()
+    }
+
+    fn jacobian_entries(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y);
+        self.jacobian_by_groups(entries)
     }
 
     fn typical(&self, typical: &mut [f64]) {

@@ -262,6 +262,14 @@ impl Unknowns {
         Ok(())
     }
 
+    /// Tells along which directions the unknowns change: as they are solved for together, those along which any loop does.
+    pub fn depend(&self, along: &mut [Vec<u32>]) {
+        let mut all: Vec<u32> = self.residual.dependence(along).concat();
+        all.sort_unstable();
+        all.dedup();
+        along[self.places.clone()].fill(all);
+    }
+
     /// Takes the derivatives of the unknowns away again.
     pub fn forget(&self, numbers: &mut [Dual<WIDTH>]) {
         for z in &mut numbers[self.places.clone()] {

@@ -22,7 +22,9 @@ pub mod dense;
 pub mod event;
 pub mod hht;
 pub mod newton;
+pub mod pattern;
 pub mod radau;
+mod radau_systems;
 pub mod rank;
 pub mod runge_kutta;
 pub mod sparse;
@@ -82,6 +84,18 @@ pub trait Ode {
         jacobian: &mut [f64],
         dfdt: &mut [f64],
     ) -> Result<(), Failure>;
+    /// Where `∂f/∂y` has entries, if most of it is empty: then [`Ode::jacobian_entries`] is asked for it. As long as it stays the same it is the same
+    /// `Arc`. Asked at the start, and whenever a method begins anew.
+    fn pattern(&mut self) -> Option<std::sync::Arc<pattern::Pattern>> {
+        None
+    }
+    /// `∂f/∂y` at the entries of the pattern.
+    ///
+    /// # Errors
+    /// When it has no finite value there.
+    fn jacobian_entries(&mut self, _t: f64, _y: &[f64], _entries: &mut [f64]) -> Result<(), Failure> {
+        unreachable!("a problem that tells the pattern of its Jacobian tells its entries")
+    }
     /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)
     fn typical(&self, typical: &mut [f64]);
     /// How the magnitudes of unknowns hang together   (n)

@@ -20,7 +20,7 @@
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
 use super::control::{self, Weights, worst, worst_index};
-use super::dense::{ComplexLu, Lu};
+use super::radau_systems::Systems;
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 
 /// Order of the method.
@@ -114,11 +114,7 @@ pub struct Radau {
     /// the step that (5) describes: end and length (0: none)
     p_end: f64,
     p_h: f64,
-    /// ∂f/∂y by columns, ∂f/∂t   (n × n, n)
-    jacobian: Vec<f64>,
-    dfdt: Vec<f64>,
-    real: Lu,
-    complex: ComplexLu,
+    systems: Systems,
 }
 
 /// How the Newton iteration ended.
@@ -172,10 +168,7 @@ impl Radau {
             p: three(),
             p_end: 0.0,
             p_h: 0.0,
-            jacobian: vec![0.0; n * n],
-            dfdt: zeros(),
-            real: Lu::new(n),
-            complex: ComplexLu::new(n),
+            systems: Systems::new(n),
         }
     }
 
@@ -188,6 +181,7 @@ impl Radau {
         (self.jacobian_here, self.jacobian_stale, self.h_factored) = (false, true, 0.0);
         (self.rate_factor, self.theta, self.p_h) = (1.0, KEEP_JACOBIAN, 0.0);
         self.stats.evaluations += 1;
+        self.systems.shape(problem);
         let stop = |reason| Stop { reason, t, h: 0.0 };
         problem
             .rate(t, &self.y0, &mut self.f0)
@@ -218,13 +212,9 @@ impl Radau {
     /// The Jacobian at t0.
     fn evaluate_jacobian<P: Ode + ?Sized>(&mut self, problem: &mut P) -> Result<(), Reason> {
         self.stats.jacobians += 1;
-        problem
-            .jacobian(self.t0, &self.y0, &mut self.jacobian, &mut self.dfdt)
-            .map_err(Reason::Evaluation)?;
-        if !worst(self.jacobian.iter().copied()).is_finite() {
-            return Err(Reason::NotFinite(
-                worst_index(self.jacobian.iter().copied()) % self.y0.len().max(1),
-            ));
+        (self.systems.evaluate(problem, self.t0, &self.y0)).map_err(Reason::Evaluation)?;
+        if let Some(row) = self.systems.not_finite() {
+            return Err(Reason::NotFinite(row));
         }
         (self.jacobian_here, self.jacobian_stale, self.h_factored) = (true, false, 0.0);
         Ok(())
@@ -232,21 +222,9 @@ impl Radau {
 
     /// The two matrices of (3) for step `h`.
     fn factor(&mut self, h: f64) -> Result<(), usize> {
-        let n = self.y0.len();
         self.stats.factorizations += 1;
-        let real = self.real.matrix_mut();
-        let (re, im) = self.complex.matrix_mut();
-        for (e, j) in self.jacobian.iter().enumerate() {
-            (real[e], re[e], im[e]) = (-j, -j, 0.0);
-        }
-        for i in 0..n {
-            real[i + n * i] += GAMMA / h;
-            re[i + n * i] += ALPHA / h;
-            im[i + n * i] = BETA / h;
-        }
         self.h_factored = 0.0;
-        self.real.factor(0.0)?;
-        self.complex.factor()?;
+        self.systems.factor(GAMMA / h, ALPHA / h, BETA / h)?;
         self.h_factored = h;
         Ok(())
     }
@@ -317,8 +295,8 @@ impl Radau {
                 g3[i] =
                     TI[2][0] * f1 + TI[2][1] * f2 + TI[2][2] * f3 - alpha * w3[i] - beta * w2[i];
             }
-            self.real.solve(g1);
-            self.complex.solve(g2, g3);
+            self.systems.solve(g1);
+            self.systems.solve_complex(g2, g3);
             self.stats.newton_iterations += 1;
             // the corrections
             let [z1, z2, z3] = &mut self.z;
@@ -375,7 +353,7 @@ impl Radau {
             self.defect[i] = (E[0] * self.z[0][i] + E[1] * self.z[1][i] + E[2] * self.z[2][i]) / h;
             self.error[i] = self.defect[i] + self.f0[i];
         }
-        self.real.solve(&mut self.error);
+        self.systems.solve(&mut self.error);
         let norm = |e: &[f64], scale: &[f64]| worst(e.iter().zip(scale).map(|(e, s)| e * s));
         let mut error = norm(&self.error, &self.scale);
         if error >= 1.0 && (self.first || self.calm) {
@@ -387,7 +365,7 @@ impl Radau {
             for i in 0..n {
                 self.error[i] += self.defect[i];
             }
-            self.real.solve(&mut self.error);
+            self.systems.solve(&mut self.error);
             error = norm(&self.error, &self.scale);
         }
         Ok(error.max(1e-10))

@@ -17,6 +17,7 @@
 mod batch;
 mod breaks;
 mod builder;
+mod dependence;
 mod display;
 mod expand;
 mod gradient;

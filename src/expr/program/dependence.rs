@@ -1,0 +1,76 @@
+//! Which directions an output has a derivative along: the pattern of a program's Jacobian, seen from its code without running it.
+//!
+//! ```text
+//! D(input) = the directions that change it        D(a ∘ b) = D(a) ∪ D(b)        D(c ? a : b) = D(a) ∪ D(b)        D(a < b) = ∅
+//! ```
+//!
+//! A superset of what any numbers can give: products that happen to be zero count. Conditions have no derivative.
+
+use super::operation::BinaryOp;
+use super::{Code, Core, Instruction, Program};
+
+/// Directions per word.
+const BITS: usize = u64::BITS as usize;
+
+impl Program {
+    /// For each output the directions, ascending, along which its derivative is not zero whatever the numbers are.
+    /// `along`: for each position among the inputs the directions that change it; positions beyond its end have none.
+    pub fn dependence(&self, along: &[Vec<u32>]) -> Vec<Vec<u32>> {
+        let core = self.core();
+        let n = along.iter().flatten().map(|&d| d as usize + 1).max();
+        let words = n.unwrap_or(0).div_ceil(BITS);
+        let mut sets = vec![0u64; words * core.size as usize];
+        let first = core.constants.len();
+        for (k, &input) in self.used.iter().enumerate() {
+            for &d in along.get(input as usize).map_or(&[][..], Vec::as_slice) {
+                sets[(first + k) * words + d as usize / BITS] |= 1 << (d as usize % BITS);
+            }
+        }
+        let mut sum = vec![0u64; words];
+        for instruction in &core.code {
+            sum.fill(0);
+            core.differentiated(instruction, |register| {
+                let from = register as usize * words;
+                for (s, x) in sum.iter_mut().zip(&sets[from..from + words]) {
+                    *s |= x;
+                }
+            });
+            let to = instruction.to as usize * words;
+            sets[to..to + words].copy_from_slice(&sum);
+        }
+        let members = |r: &u32| -> Vec<u32> {
+            let set = &sets[*r as usize * words..][..words];
+            let of_word = |(w, bits): (usize, &u64)| {
+                let (first, bits) = ((w * BITS) as u32, *bits);
+                (0..u64::BITS)
+                    .filter(move |b| bits >> b & 1 == 1)
+                    .map(move |b| first + b)
+            };
+            set.iter().enumerate().flat_map(of_word).collect()
+        };
+        self.outputs.iter().map(members).collect()
+    }
+}
+
+impl Core {
+    /// The registers by which the result of an instruction has derivatives.
+    fn differentiated(&self, instruction: &Instruction, mut each: impl FnMut(u32)) {
+        let Instruction { code, a, b, c, d, .. } = *instruction;
+        match code {
+            Code::Compare(_) | Code::Binary(BinaryOp::And | BinaryOp::Or) => {}
+            Code::Unary(_)
+            | Code::Whole(_)
+            | Code::Lookup { .. }
+            | Code::Binary(BinaryOp::Along) => each(a),
+            Code::Binary(_) => [a, b].into_iter().for_each(each),
+            Code::HalfPower(_) => each(c),
+            Code::Select => [b, c].into_iter().for_each(each),
+            Code::CompareSelect(_) => [c, d].into_iter().for_each(each),
+            Code::If => [b, c, d].into_iter().for_each(each),
+            Code::Call(_, count) | Code::Partial(_, count, _) => {
+                let arguments = &self.lists[a as usize..(a + count) as usize];
+                arguments.iter().copied().for_each(each);
+            }
+        }
+    }
+}

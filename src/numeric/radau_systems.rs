@@ -1,0 +1,192 @@
+//! The linear systems of Radau's iteration: one real, one complex, of the same Jacobian.
+//!
+//! ```text
+//! (γ − J) x = b            (α + iβ − J)(x + iy) = b + ic                         (1)
+//! ```
+//!
+//! Full where the Jacobian is, sparse where the problem tells its pattern. Then the complex system is solved as a real one of twice the size,
+//! whose entries beyond `J` stand on and beside the diagonal only:
+//!
+//! ```text
+//! ⎡α − J   −β  ⎤ ⎡x⎤   ⎡b⎤
+//! ⎣  β    α − J⎦ ⎣y⎦ = ⎣c⎦        x and y of one unknown stand together         (2)
+//! ```
+//!
+//! The elimination of positions (`q̇ = v`: their rows have two entries) comes first by itself, as pivots are chosen where they cost least: what is left
+//! has the size of the velocities.
+
+use super::dense::{ComplexLu, Lu};
+use super::pattern::Pattern;
+use super::sparse::Factors;
+use super::{Failure, Ode};
+use std::sync::Arc;
+
+/// Both systems (1), with the Jacobian they are made of.
+#[derive(Clone, Debug)]
+pub(super) struct Systems {
+    n: usize,
+    /// ∂f/∂y: by columns, or at the entries of the pattern
+    jacobian: Vec<f64>,
+    /// ∂f/∂t   (n)
+    dfdt: Vec<f64>,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Full(Lu, ComplexLu),
+    Sparse(Box<Sparse>),
+}
+
+#[derive(Clone, Debug)]
+struct Sparse {
+    pattern: Arc<Pattern>,
+    real: Factors,
+    /// (2)
+    complex: Factors,
+    /// entries of either; right-hand side of (2)   (2 · entries + 4 n; 2 n)
+    values: Vec<f64>,
+    both: Vec<f64>,
+}
+
+impl Sparse {
+    fn new(pattern: Arc<Pattern>) -> Self {
+        let n = pattern.n_columns();
+        let diagonal = (0..n).map(|i| (i, i));
+        let real: Vec<_> = pattern.entries().chain(diagonal).collect();
+        let mut complex = Vec::with_capacity(2 * pattern.n_entries() + 4 * n);
+        for (i, j) in pattern.entries() {
+            complex.extend([(2 * i, 2 * j), (2 * i + 1, 2 * j + 1)]);
+        }
+        for i in 0..n {
+            let (x, y) = (2 * i, 2 * i + 1);
+            complex.extend([(x, x), (y, y), (x, y), (y, x)]);
+        }
+        Self {
+            real: Factors::new(n, &real),
+            complex: Factors::new(2 * n, &complex),
+            values: Vec::with_capacity(complex.len()),
+            both: vec![0.0; 2 * n],
+            pattern,
+        }
+    }
+
+    fn factor(&mut self, jacobian: &[f64], gamma: f64, alpha: f64, beta: f64) -> Result<(), usize> {
+        let n = self.pattern.n_columns();
+        let values = &mut self.values;
+        values.clear();
+        values.extend(jacobian.iter().map(|j| -j));
+        values.resize(values.len() + n, gamma);
+        self.real.factor(values)?;
+        values.clear();
+        values.extend(jacobian.iter().flat_map(|j| [-j, -j]));
+        values.extend((0..n).flat_map(|_| [alpha, alpha, -beta, beta]));
+        self.complex.factor(values).map_err(|column| column / 2)
+    }
+
+    fn solve_complex(&mut self, re: &mut [f64], im: &mut [f64]) {
+        for ((b, re), im) in self.both.chunks_exact_mut(2).zip(&*re).zip(&*im) {
+            b.copy_from_slice(&[*re, *im]);
+        }
+        self.complex.solve(&mut self.both);
+        for ((x, re), im) in self.both.chunks_exact(2).zip(re).zip(im) {
+            (*re, *im) = (x[0], x[1]);
+        }
+    }
+}
+
+impl Systems {
+    /// Full ones of `n` unknowns.
+    pub fn new(n: usize) -> Self {
+        Systems {
+            n,
+            jacobian: Vec::new(),
+            dfdt: Vec::new(),
+            kind: Kind::Full(Lu::new(0), ComplexLu::new(0)),
+        }
+    }
+
+    /// Takes the form that the problem's Jacobian has.
+    pub fn shape<P: Ode + ?Sized>(&mut self, problem: &mut P) {
+        let n = self.n;
+        match (problem.pattern(), &self.kind) {
+            (Some(pattern), Kind::Sparse(s)) if Arc::ptr_eq(&pattern, &s.pattern) => {}
+            (Some(pattern), _) => {
+                self.jacobian = vec![0.0; pattern.n_entries()];
+                self.kind = Kind::Sparse(Box::new(Sparse::new(pattern)));
+            }
+            (None, Kind::Full(..)) if self.jacobian.len() == n * n => {}
+            (None, _) => {
+                (self.jacobian, self.dfdt) = (vec![0.0; n * n], vec![0.0; n]);
+                self.kind = Kind::Full(Lu::new(n), ComplexLu::new(n));
+            }
+        }
+    }
+
+    /// The Jacobian at a point.
+    pub fn evaluate<P: Ode + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        t: f64,
+        y: &[f64],
+    ) -> Result<(), Failure> {
+        match &self.kind {
+            Kind::Full(..) => problem.jacobian(t, y, &mut self.jacobian, &mut self.dfdt),
+            Kind::Sparse(_) => problem.jacobian_entries(t, y, &mut self.jacobian),
+        }
+    }
+
+    /// A row whose derivatives are not finite.
+    pub fn not_finite(&self) -> Option<usize> {
+        let sum: f64 = self.jacobian.iter().map(|x| x * 0.0).sum();
+        if sum == 0.0 {
+            return None;
+        }
+        let entry = self.jacobian.iter().position(|x| !x.is_finite())?;
+        match &self.kind {
+            Kind::Full(..) => Some(entry % self.n.max(1)),
+            Kind::Sparse(s) => s.pattern.entries().nth(entry).map(|(i, _)| i),
+        }
+    }
+
+    /// Factors (1).
+    ///
+    /// # Errors
+    /// The unknown that nothing determines.
+    pub fn factor(&mut self, gamma: f64, alpha: f64, beta: f64) -> Result<(), usize> {
+        match &mut self.kind {
+            Kind::Sparse(s) => s.factor(&self.jacobian, gamma, alpha, beta),
+            Kind::Full(real, complex) => {
+                let n = self.n;
+                let a = real.matrix_mut();
+                let (re, im) = complex.matrix_mut();
+                for (e, j) in self.jacobian.iter().enumerate() {
+                    (a[e], re[e], im[e]) = (-j, -j, 0.0);
+                }
+                for i in 0..n {
+                    a[i + n * i] += gamma;
+                    re[i + n * i] += alpha;
+                    im[i + n * i] = beta;
+                }
+                real.factor(0.0)?;
+                complex.factor()
+            }
+        }
+    }
+
+    /// `x ← (γ − J)⁻¹ x`
+    pub fn solve(&mut self, x: &mut [f64]) {
+        match &mut self.kind {
+            Kind::Full(real, _) => real.solve(x),
+            Kind::Sparse(s) => s.real.solve(x),
+        }
+    }
+
+    /// `re + i im ← (α + iβ − J)⁻¹ (re + i im)`
+    pub fn solve_complex(&mut self, re: &mut [f64], im: &mut [f64]) {
+        match &mut self.kind {
+            Kind::Full(_, complex) => complex.solve(re, im),
+            Kind::Sparse(s) => s.solve_complex(re, im),
+        }
+    }
+}
