@@ -181,13 +181,7 @@ fn place(j: usize, n: usize, first: usize) -> usize {
 }
 
 impl Jacobian {
-    fn new(
-        scene: &Scene,
-        residual: &Program,
-        n: usize,
-        size: usize,
-        outside: &Outside,
-    ) -> Self {
+    fn new(scene: &Scene, residual: &Program, n: usize, size: usize, outside: &Outside) -> Self {
         let first = scene.layout.len();
         let by_duals = || {
             let mut along = vec![Vec::new(); first + size];

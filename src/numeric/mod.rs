@@ -93,7 +93,12 @@ pub trait Ode {
     ///
     /// # Errors
     /// When it has no finite value there.
-    fn jacobian_entries(&mut self, _t: f64, _y: &[f64], _entries: &mut [f64]) -> Result<(), Failure> {
+    fn jacobian_entries(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _entries: &mut [f64],
+    ) -> Result<(), Failure> {
         unreachable!("a problem that tells the pattern of its Jacobian tells its entries")
     }
     /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)

@@ -15,7 +15,7 @@
 use super::{MarkerState, Vec3};
 use crate::expr::measures::{Family, Measure};
 use crate::scalar::{Mask, Scalar};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Below this, sin θ of 3-1-3 angles and cos of PITCH count as zero.
 const SINGULAR: f64 = 1e-12;
@@ -305,8 +305,8 @@ fn angle<S: Scalar>(y: S, x: S) -> S {
     let zero = S::zero();
     let origin = y.same(zero).and(x.same(zero));
     let angle = S::select(origin, zero, y).atan2(S::select(origin, S::one(), x));
-    // −0 as first argument gave −π
-    let below = y.same(zero).and(angle.lt(zero));
+    // −0 as first argument gave −π; asked as an equality, since whether an angle is below zero would count as a change of branch
+    let below = y.same(zero).and(angle.same(S::constant(-PI)));
     S::select(below, angle + S::constant(TAU), angle)
 }
 

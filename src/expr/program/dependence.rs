@@ -55,7 +55,9 @@ impl Program {
 impl Core {
     /// The registers by which the result of an instruction has derivatives.
     fn differentiated(&self, instruction: &Instruction, mut each: impl FnMut(u32)) {
-        let Instruction { code, a, b, c, d, .. } = *instruction;
+        let Instruction {
+            code, a, b, c, d, ..
+        } = *instruction;
         match code {
             Code::Compare(_) | Code::Binary(BinaryOp::And | BinaryOp::Or) => {}
             Code::Unary(_)

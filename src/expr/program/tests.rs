@@ -685,3 +685,22 @@ fn sums_of_which_a_part_goes_and_constants_that_meet_are_one_operation() {
     b.set_folding(Folding::Strict);
     assert_ne!(b.binary(BinaryOp::Sub, sum, x), y);
 }
+
+#[test]
+fn an_output_depends_on_what_it_has_a_derivative_by() {
+    let mut b = Builder::new(Folding::Strict);
+    let slots = [0, 1, 2, 3].map(|k| b.input(Input::Slot(k)));
+    let [x, y, z, w] = slots;
+    let product = b.binary(BinaryOp::Mul, x, y);
+    let smaller = b.compare(Comparison::Lt, w, x);
+    let either = b.select(smaller, product, z);
+    let larger = b.call(Function::Max, &[z, w]);
+    let program = b.finish_with_inputs(&[product, smaller, either, larger, y], &layout());
+    // directions: of x alone, of y and z together, of w
+    let along = [vec![0], vec![1], vec![1], vec![70]];
+    let dependence = program.dependence(&along);
+    let wanted: [&[u32]; 5] = [&[0, 1], &[], &[0, 1], &[1, 70], &[1]];
+    for (found, wanted) in dependence.iter().zip(wanted) {
+        assert_eq!(found, wanted);
+    }
+}
