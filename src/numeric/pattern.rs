@@ -123,9 +123,9 @@ mod tests {
                 rows[*i].push(*j);
             }
             let pattern = Pattern::of_rows(30, &rows);
-            let mut seen = vec![0; 30];
+            let mut seen = [0; 30];
             for group in pattern.groups() {
-                let mut rows = vec![0; 20];
+                let mut rows = [0; 20];
                 for &j in group {
                     seen[j] += 1;
                     pattern.column(j).for_each(|(_, i)| rows[i] += 1);

@@ -34,7 +34,7 @@ pub(super) struct Systems {
 
 #[derive(Clone, Debug)]
 enum Kind {
-    Full(Lu, ComplexLu),
+    Full(Box<(Lu, ComplexLu)>),
     Sparse(Box<Sparse>),
 }
 
@@ -102,7 +102,7 @@ impl Systems {
             n,
             jacobian: Vec::new(),
             dfdt: Vec::new(),
-            kind: Kind::Full(Lu::new(0), ComplexLu::new(0)),
+            kind: Kind::Full(Box::new((Lu::new(0), ComplexLu::new(0)))),
         }
     }
 
@@ -118,7 +118,7 @@ impl Systems {
             (None, Kind::Full(..)) if self.jacobian.len() == n * n => {}
             (None, _) => {
                 (self.jacobian, self.dfdt) = (vec![0.0; n * n], vec![0.0; n]);
-                self.kind = Kind::Full(Lu::new(n), ComplexLu::new(n));
+                self.kind = Kind::Full(Box::new((Lu::new(n), ComplexLu::new(n))));
             }
         }
     }
@@ -156,8 +156,9 @@ impl Systems {
     pub fn factor(&mut self, gamma: f64, alpha: f64, beta: f64) -> Result<(), usize> {
         match &mut self.kind {
             Kind::Sparse(s) => s.factor(&self.jacobian, gamma, alpha, beta),
-            Kind::Full(real, complex) => {
+            Kind::Full(both) => {
                 let n = self.n;
+                let (real, complex) = &mut **both;
                 let a = real.matrix_mut();
                 let (re, im) = complex.matrix_mut();
                 for (e, j) in self.jacobian.iter().enumerate() {
@@ -177,7 +178,7 @@ impl Systems {
     /// `x ← (γ − J)⁻¹ x`
     pub fn solve(&mut self, x: &mut [f64]) {
         match &mut self.kind {
-            Kind::Full(real, _) => real.solve(x),
+            Kind::Full(both) => both.0.solve(x),
             Kind::Sparse(s) => s.real.solve(x),
         }
     }
@@ -185,7 +186,7 @@ impl Systems {
     /// `re + i im ← (α + iβ − J)⁻¹ (re + i im)`
     pub fn solve_complex(&mut self, re: &mut [f64], im: &mut [f64]) {
         match &mut self.kind {
-            Kind::Full(_, complex) => complex.solve(re, im),
+            Kind::Full(both) => both.1.solve(re, im),
             Kind::Sparse(s) => s.solve_complex(re, im),
         }
     }
