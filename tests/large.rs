@@ -1,5 +1,7 @@
 //! Models of many parts: what makes them quick changes nothing of what comes out.
 
+#![cfg(feature = "solver")]
+
 use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::outline::outline;
 use cognate::analysis::session::{Analysis, Options, Session};
