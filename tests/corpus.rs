@@ -7,6 +7,8 @@ mod chrono;
 mod meaning;
 #[path = "corpus/runs.rs"]
 mod runs;
+#[path = "corpus/skipped.rs"]
+mod skipped;
 
 use cognate::dataset;
 use cognate::dataset::command::{Command, Script, Step};

@@ -10,7 +10,7 @@ use cognate::results::{self, Run, Status};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-fn corpus() -> Option<PathBuf> {
+pub fn corpus() -> Option<PathBuf> {
     let root = std::env::var_os("COGNATE_CORPUS");
     if root.is_none() {
         println!("skipped: COGNATE_CORPUS is not set");
@@ -27,7 +27,7 @@ fn options(error: f64) -> Options {
 }
 
 /// Obeys a script on a model.
-fn obeyed(model: &Path, script: &Script, options: Options) -> Session {
+pub fn obeyed(model: &Path, script: &Script, options: Options) -> Session {
     let name = model.file_stem().unwrap().to_string_lossy().into_owned();
     let model = Model::read(model).unwrap_or_else(|e| panic!("{e}"));
     let mut session = Session::new(model, &name, options);
@@ -70,7 +70,7 @@ fn rotation([psi, theta, phi]: [f64; 3]) -> [[f64; 3]; 3] {
 
 /// Largest distance of a part's frame, and largest element of the difference of its rotations, over all rows of theirs that have one of
 /// ours at the same time; how many rows these are.
-fn apart(ours: &Run, theirs: &Run) -> (f64, f64, usize) {
+pub fn apart(ours: &Run, theirs: &Run) -> (f64, f64, usize) {
     let (a, b) = (parts(ours), parts(theirs));
     assert!(!b.is_empty() && b.keys().all(|id| a.contains_key(id)));
     let time = &ours.columns[0].values;
