@@ -26,5 +26,6 @@ pub mod statics;
 pub mod switches;
 pub mod system;
 mod unknowns;
+mod valueless;
 pub mod verify;
 mod wishes;

@@ -96,6 +96,9 @@ pub fn obey(
         session.run.log.push(Event::Command(step.text.clone()));
         let located = |mut d: Diagnostic| {
             d.element.get_or_insert_with(|| step.text.clone());
+            if d.file.is_none() && d.line == 0 {
+                (d.line, d.column) = (step.line, usize::from(step.line > 0));
+            }
             d
         };
         match &step.command {
@@ -117,7 +120,8 @@ pub fn obey(
                 }
             }
             Command::Change(_) | Command::Activate { .. } => {
-                session.model.apply(&step.command).map_err(|e| e.0)?;
+                let applied = session.model.apply(&step.command);
+                applied.map_err(|e| e.0.into_iter().map(located).collect::<Vec<_>>())?;
             }
             Command::Stop => break,
             Command::Show(_) => {}

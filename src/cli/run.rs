@@ -111,8 +111,9 @@ pub fn run(args: &Args) -> Outcome {
         .collect();
     if !args.quiet && !warnings.is_empty() {
         remark(format!(
-            "{} warnings in the dataset: cognate check tells them",
-            warnings.len()
+            "{} warning{} in the dataset: cognate check tells more",
+            warnings.len(),
+            if warnings.len() == 1 { "" } else { "s" }
         ));
     }
     let (model, dataset) = (reading.model, reading.dataset);
@@ -177,7 +178,15 @@ pub fn run(args: &Args) -> Outcome {
         say(&summary::table(&session.run));
         remark(summary::facts(&session.run, &written).trim_end());
     }
-    if let Some(diagnostics) = failure {
+    if let Some(mut diagnostics) = failure {
+        // a place without a file is one of the commands
+        let commands = args.model.display().to_string();
+        for d in diagnostics
+            .iter_mut()
+            .filter(|d| is_command && d.file.is_none() && d.line > 0)
+        {
+            d.file = Some(commands.clone());
+        }
         return Err(Failure::in_model(&dataset, diagnostics));
     }
     if status != Status::Completed && (args.quiet || args.json) {

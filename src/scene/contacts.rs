@@ -431,6 +431,15 @@ impl Builder<'_> {
             }
         };
         let mut approximate = Vec::new();
+        let (stiffness, what) = match contact.law {
+            ContactLaw::Poisson => (contact.penalty, "PENALTY"),
+            ContactLaw::Impact | ContactLaw::User => (contact.stiffness, "STIFFNESS"),
+        };
+        if stiffness == 0.0 && contact.law != ContactLaw::User {
+            return Err(format!(
+                "without a {what} larger than 0 nothing keeps its bodies apart"
+            ));
+        }
         let normal = match contact.law {
             ContactLaw::Poisson => {
                 let weight = self.scene.gravity.norm() * self.scene.length;

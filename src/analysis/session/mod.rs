@@ -233,6 +233,7 @@ impl Session {
                     .help(format!("the methods are {}", names.join(", "))),
             ]);
         }
+        self.check_settings()?;
         let asked = output.count(self.time(), end);
         if asked > output::MOST {
             return Err(vec![
@@ -555,6 +556,56 @@ impl Session {
             }
             settings.method = "RADAU5".into();
         }
+    }
+
+    /// Whether INTEGRATOR and the options have numbers that an integration can keep.
+    fn check_settings(&self) -> Result<(), Vec<Diagnostic>> {
+        let i = &self.model.integrator;
+        let positive = |x: f64| x > 0.0 && !x.is_nan();
+        let whole = |k: Option<u32>| k.map(f64::from);
+        let given = [
+            (
+                "--error",
+                "the permitted error",
+                self.options
+                    .error
+                    .filter(|e| !(positive(*e) && e.is_finite())),
+            ),
+            (
+                "INTEGRATOR",
+                "ERROR",
+                i.error.filter(|e| !(positive(*e) && e.is_finite())),
+            ),
+            ("INTEGRATOR", "HMAX", i.hmax.filter(|h| !positive(*h))),
+            ("INTEGRATOR", "HINIT", i.hinit.filter(|h| !positive(*h))),
+            (
+                "INTEGRATOR",
+                "KMAX",
+                whole(i.kmax).filter(|k| !positive(*k)),
+            ),
+            (
+                "INTEGRATOR",
+                "MAXIT",
+                whole(i.maxit).filter(|k| !positive(*k)),
+            ),
+            (
+                "INTEGRATOR",
+                "HMIN",
+                i.hmin.filter(|h| h.is_nan() || *h < 0.0),
+            ),
+        ];
+        let wrong = given.into_iter().filter_map(|(element, name, value)| {
+            let what = format!("{name} must be positive, not {}", value?);
+            Some(Diagnostic::error("unfit_value", what).element(element))
+        });
+        let mut wrong: Vec<Diagnostic> = wrong.collect();
+        if let (Some(least), Some(most)) = (i.hmin, i.hmax)
+            && least > most
+        {
+            let what = format!("HMIN = {least} is larger than HMAX = {most}");
+            wrong.push(Diagnostic::error("unfit_value", what).element("INTEGRATOR"));
+        }
+        if wrong.is_empty() { Ok(()) } else { Err(wrong) }
     }
 
     /// INTEGRATOR, overruled by the options.

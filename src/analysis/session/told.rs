@@ -3,8 +3,8 @@
 use super::super::assemble::Assembly;
 use super::super::columns;
 use super::super::dynamics::{Ended, Trajectory};
-use super::super::ranks;
 use super::super::system::System;
+use super::super::{ranks, valueless};
 use super::Session;
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};
@@ -34,6 +34,43 @@ impl Session {
         self.run.begin(kind);
         columns::append(&mut self.run, program, rows);
         self.run.end();
+        self.told_of_gaps(rows.len());
+    }
+
+    /// Names the columns that have values, but not in all of the last rows.
+    fn told_of_gaps(&mut self, n: usize) {
+        let from = self.run.rows().saturating_sub(n);
+        let time = &self.run.columns[0].values;
+        let gap = |column: &results::Column| -> Option<String> {
+            let gap = column.values[from..].iter().position(|x| !x.is_finite())?;
+            let some = column.values.iter().any(|x| x.is_finite());
+            some.then(|| {
+                format!(
+                    "{} has no finite value at time {}",
+                    column.name,
+                    time[from + gap]
+                )
+            })
+        };
+        let known = |what: &String| {
+            let name = what.split(" has no").next().unwrap_or_default();
+            let told = format!("{name} has no finite value");
+            self.run
+                .record
+                .warnings
+                .iter()
+                .any(|w| w.starts_with(&told))
+        };
+        let gaps: Vec<String> = self
+            .run
+            .columns
+            .iter()
+            .filter_map(gap)
+            .filter(|w| !known(w))
+            .collect();
+        for what in gaps {
+            self.warn(&what);
+        }
     }
 
     /// The rows of a simulation, each with the columns of the rows that took part there.
@@ -55,6 +92,7 @@ impl Session {
         }
         columns::append(&mut self.run, &program, &trajectory.rows[from..]);
         self.run.end();
+        self.told_of_gaps(trajectory.rows.len());
     }
 
     /// Tells when and where the rank of the rows changed.
@@ -177,6 +215,15 @@ impl Session {
             Some(Ended::Stop(stop)) => {
                 let (status, mut sentence, mut worst) = explain(system, stop);
                 let stands = trajectory.rows.last().unwrap_or(&system.numbers);
+                let lost = !matches!(stop.reason, Reason::TooManySteps | Reason::Projection(_));
+                if let Some(why) = lost
+                    .then(|| valueless::named(&system.scene, stands))
+                    .flatten()
+                {
+                    sentence = format!("stopped at time {}: {why}", stop.t);
+                    worst = why.split(':').next().unwrap_or_default().to_string();
+                    return (status, sentence, vec![worst]);
+                }
                 let rows = !matches!(stop.reason, Reason::TooManySteps | Reason::Singular(_));
                 if let (true, Some(lock)) = (rows, ranks::locked(&system.scene, stands)) {
                     let why = match &lock.motion {

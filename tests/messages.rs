@@ -1,0 +1,131 @@
+//! What is said where a simulation cannot begin or go on, or a column loses its value: the element, the operation, the command.
+#![cfg(feature = "solver")]
+
+#[path = "common/running.rs"]
+mod running;
+
+use cognate::analysis::dynamics::Unwatched;
+use cognate::analysis::script::obey;
+use cognate::dataset::command::Script;
+use cognate::diagnostic::Diagnostic;
+use cognate::results::Status;
+use running::{Analysis, go, refused, session};
+
+const HINGE: &str = "PART/2, MASS=2, CM=2, IP=0.3,0.3,0.5\nMARKER/2, PART=2\nMARKER/3, PART=1\nJOINT/1, REVOLUTE, I=2, J=3\n";
+
+#[test]
+fn a_function_that_loses_its_value_is_named_with_its_operation() {
+    for (function, said) in [
+        ("SQRT(0.5-TIME)", "SQRT of -"),
+        ("SQRT(0.3+AZ(2,3))-2", "SQRT of -"),
+        ("ACOS(1.2*COS(TIME))", "ACOS of 1.2"),
+    ] {
+        let text = format!(
+            "{HINGE}SFORCE/7, ROTATION, I=2, J=3, FUNCTION=0.5\nVARIABLE/9, FUNCTION={function}\nSFORCE/8, ROTATION, I=2, J=3, FUNCTION=VARVAL(9)\n"
+        );
+        for method in ["DOP853", "RADAU5"] {
+            let mut s = session(&text, &[], 1e-6);
+            s.model.integrator.method = Some(method.into());
+            let status = s
+                .simulate(Analysis::Dynamic, 3.0, 3, &mut Unwatched)
+                .unwrap();
+            let record = &s.run.record;
+            assert_ne!(status, Status::Completed);
+            assert!(
+                record.stop_reason.contains(said) && record.stop_reason.contains("VARIABLE/9"),
+                "{method}: {}",
+                record.stop_reason
+            );
+            assert!(record.stop_reason.contains("stopped at time"));
+        }
+    }
+}
+
+#[test]
+fn a_column_that_loses_its_value_is_told_once_with_its_time() {
+    let text = format!("{HINGE}REQUEST/1, F2=LOG(0.5-TIME)\\F3=TIME\n");
+    let mut s = session(&text, &["SQRT(0.7-TIME)"], 1e-6);
+    go(&mut s, Analysis::Dynamic, 1.0, 4);
+    go(&mut s, Analysis::Dynamic, 2.0, 4);
+    let told = |name: &str| -> Vec<&String> {
+        let all = s.run.record.warnings.iter();
+        all.filter(|w| w.starts_with(name) && w.contains("no finite value"))
+            .collect()
+    };
+    assert_eq!(
+        told("REQUEST_1.F2"),
+        ["REQUEST_1.F2 has no finite value at time 0.5"]
+    );
+    assert_eq!(told("SQRT").len(), 1);
+    assert_eq!(told("REQUEST_1.F3").len(), 0);
+}
+
+#[test]
+fn settings_that_no_integration_can_keep_are_refused() {
+    for (setting, name) in [
+        ("ERROR=0", "ERROR"),
+        ("ERROR=-1E-3", "ERROR"),
+        ("HMAX=0", "HMAX"),
+        ("HINIT=-1", "HINIT"),
+        ("KMAX=0", "KMAX"),
+        ("MAXIT=0", "MAXIT"),
+        ("HMIN=1, HMAX=0.1", "HMIN"),
+    ] {
+        let d = refused(
+            &format!("{HINGE}INTEGRATOR/GSTIFF, {setting}\n"),
+            Analysis::Dynamic,
+        );
+        assert_eq!(
+            (d.code, d.element.as_deref()),
+            ("unfit_value", Some("INTEGRATOR"))
+        );
+        assert!(d.message.contains(name), "{}", d.message);
+    }
+    for error in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let mut s = session(HINGE, &[], error);
+        let d = s
+            .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
+            .unwrap_err();
+        assert_eq!(d[0].element.as_deref(), Some("--error"), "{error}");
+    }
+}
+
+#[test]
+fn a_contact_without_stiffness_is_refused() {
+    let text = |law: &str| {
+        format!(
+            "PART/2, MASS=2, CM=2, IP=0.3,0.3,0.5, QG=0,0,1\nMARKER/2, PART=2\nGRAPHICS/1, PLANE, RM=1\n\
+             GRAPHICS/2, ELLIPSOID, CM=2, XSCALE=1, YSCALE=1, ZSCALE=1\nCONTACT/1, IGEOM=2, JGEOM=1, {law}\n"
+        )
+    };
+    for (law, lacks) in [
+        ("IMPACT", "STIFFNESS"),
+        ("POISSON, RESTITUTION_COEFFICIENT=0.5", "PENALTY"),
+    ] {
+        let d = refused(&text(law), Analysis::Dynamic);
+        assert_eq!(d.element.as_deref(), Some("CONTACT/1"));
+        assert!(d.message.contains(lacks), "{}", d.message);
+    }
+}
+
+/// What is said of a command, after one that is right.
+fn command(wrong: &str) -> Diagnostic {
+    let mut s = session(HINGE, &[], 1e-6);
+    let script = Script::from_text(&format!("\nSIM/DYN, END=1, STEPS=2\n{wrong}\n")).unwrap();
+    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched)
+        .unwrap_err()
+        .remove(0)
+}
+
+#[test]
+fn what_is_wrong_with_a_command_has_its_line() {
+    for (wrong, code) in [
+        ("DEACTIVATE/JOINT, ID=7", "unknown_element"),
+        ("VARIABLE/9, FUNCTION=3", "unknown_element"),
+        ("SIM/DYN, END=0.5, STEPS=2", "no_end"),
+        ("RELOAD/SYSTEM=nowhere", "cannot_open"),
+    ] {
+        let d = command(wrong);
+        assert_eq!((d.code, d.line), (code, 3), "{wrong}: {d}");
+    }
+}
