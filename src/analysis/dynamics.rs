@@ -165,6 +165,7 @@ pub fn integrate(
         max_steps: options.max_steps,
         ..numeric::Options::default()
     };
+    let landings = system.landings(t0, end);
     let auto = options.method.eq_ignore_ascii_case("AUTO");
     let mut name = if auto {
         options.first.clone()
@@ -192,6 +193,7 @@ pub fn integrate(
         let mut leg = Leg {
             system,
             outputs: &mut outputs,
+            landings: &landings,
             end,
             most: options.max_steps,
             out: &mut out,
@@ -322,6 +324,8 @@ enum Finished {
 struct Leg<'a> {
     system: &'a mut System,
     outputs: &'a mut Vec<f64>,
+    /// times at which steps have to end
+    landings: &'a [f64],
     end: f64,
     /// attempted steps permitted
     most: usize,
@@ -357,6 +361,8 @@ impl Leg<'_> {
             }
             let horizon = self.horizon(method.t(), method.y());
             let limit = std::mem::replace(&mut landing, self.end).min(horizon);
+            let passed = self.landings.partition_point(|&l| l <= method.t());
+            let limit = self.landings.get(passed).map_or(limit, |&l| limit.min(l));
             if has_rows {
                 before.copy_from_slice(method.y());
             }

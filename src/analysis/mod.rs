@@ -1,6 +1,7 @@
 //! What to do with a scene: assemble, move, balance, integrate, linearize, verify.
 
 pub mod assemble;
+mod clock;
 pub mod columns;
 pub mod drives;
 pub mod dynamics;

@@ -20,6 +20,7 @@ use crate::scene::solve::{self, WEAK};
 use crate::scene::{Scene, Source};
 
 use super::assemble::{Mover, natural};
+use super::clock::Clock;
 use super::implicit::Implicit;
 use super::outside::{Hook, Outside};
 use super::passage::Passage;
@@ -48,6 +49,8 @@ pub struct System {
     pub precision: f64,
     /// values that change sign where a force or a differential equation changes branch
     switching: Option<Switching>,
+    /// what time alone does
+    clock: Clock,
     /// the numbers, then what the switches read after them: unknowns of linear loops, or sides
     switch_numbers: Vec<f64>,
     /// whether branches are held
@@ -271,6 +274,7 @@ impl System {
         let violation = violation_program(&scene)?;
         let left_out = left_out(&scene)?;
         let switching = programs::switching(&scene).map_err(complaints)?;
+        let clock = Clock::new(&scene, switching.as_ref().map(|s| &s.switches))?;
         let n_switches = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
         let unknowns = Unknowns::new(&scene).map_err(complaints)?;
         let outside = Outside::new(&scene, hooks).map_err(complaints)?;
@@ -307,6 +311,7 @@ impl System {
             clean: false,
             precision: 1e-6,
             switching,
+            clock,
             switch_numbers: Vec::new(),
             holding: false,
             sides: vec![0.0; n_switches],
@@ -558,6 +563,11 @@ impl System {
             .filter_map(|(_, f)| f.v)
             .map(|v| y[l.n_q + v].abs())
             .sum()
+    }
+
+    /// Times at which steps have to end, lest a pulse passes unseen.
+    pub fn landings(&self, start: f64, end: f64) -> Vec<f64> {
+        self.clock.landings(start, end)
     }
 
     /// All numbers at a state, projected onto the rows.
