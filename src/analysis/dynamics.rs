@@ -463,10 +463,12 @@ impl Leg<'_> {
         Finished::Done
     }
 
-    /// How far a step may go: no further than values of the past are known, not over a sample, and not through a body.
+    /// How far a step may go: no further than values of the past are known, not over a sample, not over what time alone
+    /// brings, and not through a body.
     fn horizon(&mut self, t: f64, y: &[f64]) -> f64 {
         let unseen = self.system.longest_unseen(t, y).max(1e-6 * (self.end - t));
-        let due = self.system.samples.due().min(t + unseen);
+        let moment = self.system.moments.next(t, self.end);
+        let due = self.system.samples.due().min(t + unseen).min(moment);
         if !self.system.outside.remembers() {
             return due;
         }

@@ -9,6 +9,7 @@ pub mod implicit;
 pub mod kinematics;
 pub mod linear;
 pub mod misalignment;
+mod moments;
 pub mod nearby;
 pub mod outline;
 pub mod output;

@@ -22,6 +22,7 @@ use crate::scene::{Scene, Source};
 use super::assemble::{Mover, natural};
 use super::clock::Clock;
 use super::implicit::Implicit;
+use super::moments::Moments;
 use super::outside::{Hook, Outside};
 use super::passage::Passage;
 use super::reach::Reaches;
@@ -67,6 +68,8 @@ pub struct System {
     pub samples: Samples,
     /// what could pass through what
     reaches: Reaches,
+    /// what breaks at times that are fixed beforehand
+    pub(super) moments: Moments,
     /// the loop that had no solution at the last numbers
     unsolved: Option<usize>,
     /// angles whose turns are counted
@@ -281,6 +284,7 @@ impl System {
         let sensors = Sensors::new(&scene).map_err(complaints)?;
         let samples = Samples::new(&scene).map_err(complaints)?;
         let reaches = Reaches::new(&scene, scene.layout.y().len()).map_err(complaints)?;
+        let moments = Moments::new(&scene).map_err(complaints)?;
         let counted = if scene.counted.is_empty() {
             None
         } else {
@@ -320,6 +324,7 @@ impl System {
             sensors,
             samples,
             reaches,
+            moments,
             unsolved: None,
             counted,
             gradients: [None, None],

@@ -9,12 +9,14 @@
 
 mod dual;
 mod germ;
+mod interval;
 mod jet;
 mod lanes;
 mod power;
 
 pub use dual::Dual;
 pub use germ::{Germ, ORDERS};
+pub use interval::Interval;
 pub use jet::Jet;
 pub use lanes::Lanes;
 pub use power::Exponent;

@@ -2,9 +2,10 @@
 
 use super::Scene;
 use super::equations::{Equations, STATIC};
+use super::layout::Layout;
 use super::loops;
 use super::solve::{gram, solve_symmetric};
-use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
+use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value};
 use crate::scalar::Scalar;
 use std::cell::RefCell;
 
@@ -114,6 +115,43 @@ fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S> {
         S::select(beyond.lt(S::zero()), S::zero(), S::one())
     }));
     sources
+}
+
+/// What depends on time alone, and where loads, differential equations and motions may break because of it.
+#[derive(Debug)]
+pub(crate) struct Timed {
+    /// the values, which read nothing but the time among the layout's numbers
+    pub values: Program,
+    /// at which levels each of them breaks
+    pub levels: Vec<Levels>,
+}
+
+/// Where loads, differential equations and motions may break at times that are fixed beforehand.
+///
+/// # Errors
+/// What the equations complained about.
+pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<String>> {
+    let linear = scene.loops_linear && !scene.loops.is_empty();
+    let n_more = if linear { scene.loops.len() } else { 0 };
+    let mut levels = Vec::new();
+    let time = Input::Slot(Layout::TIME as u32);
+    let (mut programs, complaints) = recorded(
+        scene,
+        n_more,
+        linear,
+        |at, _| sources(at, scene),
+        |builder, values| {
+            let breaks = builder.timed_breaks(&values, time);
+            let (values, all) = breaks.into_iter().map(|b| (b.value, b.levels)).unzip();
+            levels = all;
+            vec![values]
+        },
+    );
+    if !complaints.is_empty() {
+        return Err(complaints);
+    }
+    let values = programs.remove(0);
+    Ok(Timed { values, levels })
 }
 
 /// Where loads, differential equations and motions change branch. `None`: nowhere.
