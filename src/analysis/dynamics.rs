@@ -408,12 +408,15 @@ impl Leg<'_> {
                 continue;
             }
             if let Some((t, broken)) = self.broken(method, &step) {
-                self.emit(method, &Step { t1: t, ..step });
+                self.emit(method, &Step { t1: t, ..step }, t);
                 return Finished::Ended(Ended::Broken { t, broken });
             }
-            self.emit(method, &step);
+            // what breaks here at a fixed time: the state stays, the time is the first one behind
+            let behind = self.system.moments.behind(step.t1);
+            let anew = behind.unwrap_or(step.t1).min(self.end);
+            self.emit(method, &step, anew);
             self.watch.progress(step.t1, step.h, method.stats());
-            let mut switched = verdict == Verdict::Switched;
+            let mut switched = verdict == Verdict::Switched || anew > step.t1;
             if self.system.is_sampled(step.t1) && self.system.sample(step.t1, method.y()) {
                 switched = true;
                 // discrete states are new from the sample on, the sample itself included
@@ -444,9 +447,9 @@ impl Leg<'_> {
             if switched && step.t1 < self.end {
                 self.out.events += 1;
                 let state = method.y().to_vec();
-                switches.change(self.system, step.t1, &state);
+                switches.change(self.system, anew, &state);
                 if let Err(stop) = method
-                    .reinitialize(self.system, step.t1, &state)
+                    .reinitialize(self.system, anew, &state)
                     .and_then(|()| self.begin(method, &mut switches))
                 {
                     return Finished::Ended(Ended::Stop(stop));
@@ -467,7 +470,12 @@ impl Leg<'_> {
     /// brings, and not through a body.
     fn horizon(&mut self, t: f64, y: &[f64]) -> f64 {
         let unseen = self.system.longest_unseen(t, y).max(1e-6 * (self.end - t));
-        let moment = self.system.moments.next(t, self.end);
+        // however near, it must be further on
+        let moment = self
+            .system
+            .moments
+            .next(t, self.end)
+            .max(t + 4.0 * f64::EPSILON * t.abs());
         let due = self.system.samples.due().min(t + unseen).min(moment);
         if !self.system.outside.remembers() {
             return due;
@@ -611,8 +619,8 @@ impl Leg<'_> {
         Ok(())
     }
 
-    /// Output times inside an accepted step, and the turns at its end.
-    fn emit(&mut self, method: &mut dyn Method<System>, step: &numeric::Step) {
+    /// Output times inside an accepted step, and up to `until` just behind it; the turns at its end.
+    fn emit(&mut self, method: &mut dyn Method<System>, step: &numeric::Step, until: f64) {
         let counts = self.system.counts_turns();
         let mut state = method.y().to_vec();
         // while an angle is followed it must not turn by more than half a turn between looks
@@ -626,7 +634,7 @@ impl Leg<'_> {
         }
         let mut look = 1;
         while let Some(&t) = self.outputs.get(self.out.t.len()) {
-            if t > step.t1 {
+            if t > until {
                 break;
             }
             while look < looks && step.t0 + step.h * look as f64 / looks as f64 <= t {
@@ -636,7 +644,7 @@ impl Leg<'_> {
                 }
                 look += 1;
             }
-            if t == step.t1 {
+            if t >= step.t1 {
                 state.copy_from_slice(method.y());
             } else if method.interpolate(self.system, t, &mut state).is_err() {
                 // tried before the step was accepted: a method that could say it once can say it again

@@ -10,7 +10,8 @@
 //!                                           a break between them is closed in to the last place
 //! ```
 //!
-//! A step ends where something breaks, just on the other side, so that the switch that belongs to it is seen there without looking for it.
+//! A step ends just before something breaks, and integration begins anew at the first number behind it: no evaluation of the one
+//! step is on the other's side, and no switch is looked for.
 
 use crate::expr::program::{Levels, Program, Work};
 use crate::scalar::Interval;
@@ -22,6 +23,8 @@ use crate::scene::programs;
 const BUDGET: usize = 400;
 /// What is left of a search that came to its end may be gone over in so many steps.
 const BLIND: f64 = 100.0;
+/// Distance kept from what breaks, as a part of the time.
+const ROOM: f64 = 4.0 * f64::EPSILON;
 /// Shortest stretch that is looked at, as a part of the run.
 const SHORTEST: f64 = 1e-10;
 
@@ -36,8 +39,15 @@ pub struct Moments {
     inputs: Vec<Interval>,
     values: Vec<Interval>,
     point: Point,
-    /// the last answer: from where, up to where nothing breaks, and whether something breaks there
-    known: Option<(f64, f64)>,
+    /// the last answer, and from where it was asked for
+    known: Option<(f64, Moment)>,
+}
+
+/// How far nothing breaks, and the first time behind what breaks there.
+#[derive(Clone, Copy, Debug)]
+struct Moment {
+    before: f64,
+    behind: Option<f64>,
 }
 
 /// The values at one time.
@@ -74,30 +84,36 @@ impl Moments {
         })
     }
 
-    /// The first time after `t` at which something breaks, or up to which nothing does; no later than `end`.
+    /// A time after `t` just before something breaks, or up to which nothing does; no later than `end`.
     pub fn next(&mut self, t: f64, end: f64) -> f64 {
         if self.program.is_none() || t >= end {
             return end;
         }
-        if let Some((from, next)) = self.known
-            && from <= t
-            && t < next
-        {
-            return next.min(end);
-        }
-        let next = self.search(t, end);
-        self.known = Some((t, next));
-        next
+        let known = self.known.filter(|(from, m)| *from <= t && t < m.before);
+        let (from, moment) = known.unwrap_or_else(|| (t, self.search(t, end)));
+        self.known = Some((from, moment));
+        moment.before.min(end)
     }
 
-    fn search(&mut self, t: f64, end: f64) -> f64 {
-        let shortest = (SHORTEST * (end - t)).max(8.0 * f64::EPSILON * t.abs().max(end.abs()));
+    /// The first time behind what breaks just after `t`, when that has been found.
+    pub fn behind(&self, t: f64) -> Option<f64> {
+        let (_, moment) = self.known.filter(|(_, m)| m.before == t)?;
+        moment.behind
+    }
+
+    fn search(&mut self, t: f64, end: f64) -> Moment {
+        let clear = |before: f64| Moment {
+            before,
+            behind: None,
+        };
+        let room = ROOM * t.abs().max(end.abs());
+        let shortest = (SHORTEST * (end - t)).max(4.0 * room);
         // what breaks just here has been seen
-        let mut from = t + 0.01 * shortest.max(8.0 * f64::EPSILON * t.abs());
+        let mut from = t + (0.01 * shortest).max(2.0 * room);
         let mut h = end - from;
         for _ in 0..BUDGET {
             if from >= end {
-                return end;
+                return clear(end);
             }
             let to = (from + h).min(end);
             if self.is_clear(from, to) {
@@ -106,13 +122,16 @@ impl Moments {
             } else if h > shortest {
                 h *= 0.5;
             } else {
-                if let Some(at) = self.crossing(from, to) {
-                    return at;
+                if let Some((before, behind)) = self.crossing(from, to, to >= end) {
+                    let behind = Some(behind);
+                    // what evaluates at the end of a step may miss it by a rounding
+                    let before = before - room;
+                    return Moment { before, behind };
                 }
                 from = to;
             }
         }
-        from.max(t + (end - t) / BLIND)
+        clear(from.max(t + (end - t) / BLIND))
     }
 
     /// Whether all values surely stay where they are between two times.
@@ -129,8 +148,9 @@ impl Moments {
         })
     }
 
-    /// The first time behind the first break between two times, if their ends lie on different sides of one.
-    fn crossing(&mut self, from: f64, to: f64) -> Option<f64> {
+    /// The last time before the first break between two times and the first one behind it, if their ends lie on different sides of one;
+    /// what is on a level counts where nothing comes after it.
+    fn crossing(&mut self, from: f64, to: f64, last: bool) -> Option<(f64, f64)> {
         let places =
             |point: &mut Point, program: &Program, levels: &[Levels], t: f64| -> Vec<f64> {
                 point.numbers[Layout::TIME] = t;
@@ -140,11 +160,13 @@ impl Moments {
             };
         let program = self.program.as_ref()?;
         let before = places(&mut self.point, program, &self.levels, from);
-        // between levels, that is with an odd number, and between others than before
+        // not just on a level, that is with an odd number, and between others than before
         let mut crossed = |t: f64| {
             let here = places(&mut self.point, program, &self.levels, t);
             let mut both = here.iter().zip(&before);
-            both.any(|(here, before)| here % 2.0 != 0.0 && here != before && !here.is_nan())
+            both.any(|(here, before)| {
+                (last || here % 2.0 != 0.0) && here != before && !here.is_nan()
+            })
         };
         if !crossed(to) {
             return None;
@@ -153,7 +175,7 @@ impl Moments {
         loop {
             let middle = a + 0.5 * (b - a);
             if middle <= a || middle >= b {
-                return Some(b);
+                return Some((a, b));
             }
             if crossed(middle) {
                 b = middle;
