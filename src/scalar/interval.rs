@@ -138,7 +138,8 @@ impl Interval {
         if self.is_none() {
             return self;
         }
-        if !(self.hi - self.lo < TAU) {
+        let width = self.hi - self.lo;
+        if width.is_nan() || width >= TAU {
             return Self::between(-1.0, 1.0);
         }
         let mut image = self.monotone(f);
