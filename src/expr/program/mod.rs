@@ -30,6 +30,8 @@ mod schedule;
 mod switching;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "solver")]
+mod timed;
 
 pub use batch::Batch;
 pub(crate) use breaks::{Break, Levels};
