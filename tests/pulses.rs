@@ -4,7 +4,7 @@
 #[path = "common/running.rs"]
 mod running;
 
-use running::{Analysis, Session, go, last, model, options};
+use running::{Analysis, Options, Session, go, last, model, options};
 
 /// A unit mass that slides along z, pushed by a function of time.
 fn pushed(function: &str, method: &str, error: f64, end: f64) -> Session {
@@ -70,5 +70,65 @@ fn what_goes_on_smoothly_takes_no_more_steps_for_it() {
             "{function}: {}",
             s.run.record.counts.steps
         );
+    }
+}
+
+/// The velocity after ten seconds of a mass of one under a force over time, with steps as long as the method likes.
+fn velocity(force: &str, method: &str) -> f64 {
+    let text = format!(
+        "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\n\
+         SPLINE/1, X=0,4,4.001,4.002,4.003,10, Y=0,0,1000,1000,0,0\n\
+         SFORCE/1, I=2, J=1, TRANSLATIONAL, ACTIONONLY, FUNCTION={force}\n"
+    );
+    let options = Options {
+        method: Some(method.into()),
+        ..options(&["VZ(2,1)"], 1e-6)
+    };
+    let mut s = Session::new(model(&text), "test", options);
+    go(&mut s, Analysis::Dynamic, 10.0, 2);
+    last(&s, "VZ(2,1)")
+}
+
+#[test]
+fn pulses_over_time_are_felt_by_every_method_whatever_their_length() {
+    // the part of a turn in which the sine is above 0.9999, and the area between
+    let angle = 0.9999f64.acos();
+    let high = angle / std::f64::consts::PI;
+    let area = (angle.sin() - 0.9999 * angle) / std::f64::consts::PI;
+    for (force, expected) in [
+        ("IF(MOD(TIME,1)-0.001: 1000,0,0)", 10.0),
+        ("IF(SIN(2*PI*TIME)-0.9999: 0,0,100)", 1000.0 * high),
+        ("MAX(0,SIN(2*PI*TIME)-0.9999)*1E5", 1e6 * area),
+        ("IF(ABS(TIME-5)-1E-5: 1E5,0,0)", 2.0),
+        ("IF(ABS(MOD(TIME,0.5)-0.05)-1E-4: 1000,0,0)", 4.0),
+        (
+            "STEP(TIME,3,0,3.0001,1E4)*STEP(TIME,3.0002,1,3.0003,0)",
+            2.0,
+        ),
+        (
+            "STEP5(TIME,3,0,3.001,1E4)-STEP5(TIME,3.002,0,3.003,1E4)",
+            20.0,
+        ),
+        ("SIGN(1,SIN(7*PI*TIME))", 0.0),
+        ("MOD(TIME,1)**50", 10.0 / 51.0),
+    ] {
+        for method in ["DOP853", "RADAU5", "BDF", "HHT"] {
+            let v = velocity(force, method);
+            // multi-step methods and those of low order add up their errors over many starts
+            let room = if method == "DOP853" { 1e-6 } else { 1e-3 };
+            assert!(
+                (v - expected).abs() < room * (1.0 + expected),
+                "{force} by {method}: {v}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_short_pulse_drawn_by_a_few_points_is_felt() {
+    // straight lines between the points: half a millisecond up, one at the top, half a millisecond down
+    for method in ["DOP853", "RADAU5"] {
+        let v = velocity("INTERP(TIME,1,1)", method);
+        assert!((v - 2.0).abs() < 1e-6, "{v}");
     }
 }

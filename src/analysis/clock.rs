@@ -1,17 +1,14 @@
-//! What happens at known times and is over soon: pulses of functions of time, which a long step would not notice.
+//! Smooth pulses of functions of time, which a long step would not notice.
 //!
 //! A step says nothing of what lies between the places where it evaluates. A force that is zero but for a hundredth of a second leaves long
-//! steps no reason to become shorter, neither by its value nor by a branch that ends and begins again within one step. Functions that read TIME alone
-//! can be looked at before the first step, at [`LOOKS`] times:
+//! steps no reason to become shorter. Where such a pulse begins with a break, [`Moments`] knows it. Where it is smooth, as a bell curve is, it is
+//! looked for before the first step: functions that read TIME alone are looked at at [`LOOKS`] times, and one that is at rest, or bends as it does
+//! nearly everywhere, moves for a short while, and does so again, has a pulse.
 //!
-//! ```text
-//! a switch         is on the other side for a short while, and comes back
-//! a function       is at rest, or bends as it does nearly everywhere, moves for a short while, and does so again
-//! ```
-//!
-//! Steps end just before such a while and at the looks within it; there error control and the search for switches see what is going on.
-//! Switches that come once, and functions that go on moving, are seen without help and left alone.
+//! Steps end just before such a while and at the looks within it; there error control sees what is going on. Functions that go on moving are seen
+//! without help and left alone.
 
+use super::moments::Moments;
 use super::system::complaints;
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
@@ -23,10 +20,6 @@ use std::collections::BTreeSet;
 
 /// Times at which functions are looked at.
 const LOOKS: usize = 4096;
-/// How many times closer they are where a switch changes [`OFTEN`]: pulses that come again and again may be shorter still.
-const CLOSER: usize = 16;
-/// Changes of a switch that are many.
-const OFTEN: usize = 8;
 /// What lasts longer than the simulation divided by this is no pulse.
 const SHORT: usize = 20;
 /// Most ends of steps within one pulse.
@@ -38,93 +31,70 @@ const REST: f64 = 1e-6;
 /// A function bends unusually by more than this many times its usual bend.
 const UNUSUAL: f64 = 100.0;
 
-/// Functions and switches of a model that read TIME and nothing else.
+/// Functions of a model that read TIME and nothing else.
 #[derive(Debug, Default)]
 pub struct Clock {
-    /// switches first; reads the time alone
+    /// reads the time alone
     program: Option<Program>,
-    switches: usize,
 }
 
 impl Clock {
-    /// Of a scene, and the values whose signs say which branches hold.
+    /// Of a scene.
     ///
     /// # Errors
     /// Functions that cannot be written down.
-    pub fn new(scene: &Scene, switches: Option<&Program>) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(scene: &Scene) -> Result<Self, Vec<Diagnostic>> {
         let timed: Vec<usize> = (0..scene.formulas.len())
             .filter(|&f| acts(scene, f))
             .collect();
-        let functions = if timed.is_empty() {
-            None
-        } else {
-            let all = &timed;
-            let values = record(scene, |at| all.iter().map(|&f| at.formula(f)).collect());
-            Some(values.map_err(complaints)?)
-        };
+        if timed.is_empty() {
+            return Ok(Self::default());
+        }
+        let all = &timed;
+        let values = record(scene, |at| all.iter().map(|&f| at.formula(f)).collect());
+        let values = values.map_err(complaints)?;
         let time = Input::Slot(Layout::TIME as u32);
         let mut builder = Builder::new(Folding::Strict);
-        let mut of_time = |program: Option<&Program>| -> Vec<_> {
-            let values = program.map_or_else(Vec::new, |p| p.record(&mut builder));
-            let own = |v: &_| builder.inputs_of(&[*v]) == [time];
-            values.into_iter().filter(own).collect()
-        };
-        let mut watched = of_time(switches);
-        let n = watched.len();
-        watched.extend(of_time(functions.as_ref()));
+        let mut watched = values.record(&mut builder);
+        watched.retain(|v| builder.inputs_of(&[*v]) == [time]);
         let program = builder.finish_with_inputs(&watched, &[time]);
         Ok(Self {
             program: (!watched.is_empty()).then_some(program),
-            switches: n,
         })
     }
 
     /// Times between two others at which a step has to end, ascending.
-    pub fn landings(&self, start: f64, end: f64) -> Vec<f64> {
-        match &self.program {
-            Some(program) if end > start && (end - start).is_finite() => {
-                self.pulses(program, [start, end], LOOKS)
-            }
-            _ => Vec::new(),
+    pub fn landings(&self, moments: &mut Moments, start: f64, end: f64) -> Vec<f64> {
+        let Some(program) = &self.program else {
+            return Vec::new();
+        };
+        if !(end > start && (end - start).is_finite()) {
+            return Vec::new();
         }
-    }
-
-    fn pulses(&self, program: &Program, [start, end]: [f64; 2], looks: usize) -> Vec<f64> {
-        let time = |k: usize| start + (end - start) * k as f64 / looks as f64;
+        let time = |k: usize| start + (end - start) * k as f64 / LOOKS as f64;
         let n = program.n_outputs();
-        let mut seen = vec![0.0; n * (looks + 1)];
+        let mut seen = vec![0.0; n * (LOOKS + 1)];
         let mut work = Work::default();
         for (k, look) in seen.chunks_mut(n).enumerate() {
             program.run(&[time(k)], &mut work, look);
         }
-        let (mut found, mut switched) = (BTreeSet::new(), BTreeSet::new());
-        let mut values = vec![0.0; looks + 1];
+        let mut found = BTreeSet::new();
+        let mut values = vec![0.0; LOOKS + 1];
         for k in 0..n {
             for (value, look) in values.iter_mut().zip(seen.chunks(n)) {
                 *value = look[k];
             }
-            let pulses = if k < self.switches {
-                let (once, pulses) = crossings(&values);
-                if looks == LOOKS && once.len() + 2 * pulses.len() > OFTEN {
-                    return self.pulses(program, [start, end], CLOSER * looks);
-                }
-                switched.extend(once);
-                pulses
-            } else {
-                // a step that ends at a switch begins anew there, and sees what follows
-                let unseen = |p: &(usize, usize)| !(p.0..=p.0 + 2).any(|k| switched.contains(&k));
-                bends(&values).into_iter().filter(unseen).collect()
-            };
-            for (from, to) in pulses {
-                if found.len() > MOST {
-                    break;
+            for (from, to) in bends(&values) {
+                // where something breaks a step ends and the next one begins anew, and sees what follows
+                if found.len() > MOST || moments.next(time(from), time(to)) < time(to) {
+                    continue;
                 }
                 let stride = (to - from).div_ceil(WITHIN).max(1);
                 found.extend((from..to).step_by(stride));
                 found.insert(to);
             }
         }
-        let inner = found.into_iter().filter(|k| (1..looks).contains(k));
+        let inner = found.into_iter().filter(|k| (1..LOOKS).contains(k));
         inner.map(time).collect()
     }
 }
@@ -157,27 +127,6 @@ fn timed(scene: &Scene, f: usize, open: &mut Vec<usize>) -> bool {
         });
     open.pop();
     own
-}
-
-/// Looks after which a switch has come to the other side for good, and looks from just before to just after a short while there.
-fn crossings(values: &[f64]) -> (Vec<usize>, Vec<(usize, usize)>) {
-    let side = |x: f64| x >= 0.0;
-    let changes: Vec<usize> = (1..values.len())
-        .filter(|&k| side(values[k]) != side(values[k - 1]))
-        .collect();
-    let soon = |a: usize, b: usize| b - a <= values.len() / SHORT;
-    let pairs = changes.windows(2).filter(|w| soon(w[0], w[1]));
-    let pulses = pairs.map(|w| (w[0] - 1, w[1])).collect();
-    let alone = |k: usize| {
-        let before = k > 0 && soon(changes[k - 1], changes[k]);
-        let after = k + 1 < changes.len() && soon(changes[k], changes[k + 1]);
-        !before && !after
-    };
-    let once = (0..changes.len())
-        .filter(|&k| alone(k))
-        .map(|k| changes[k])
-        .collect();
-    (once, pulses)
 }
 
 /// Looks from just before to just after a short while in which a function bends unusually.
@@ -222,17 +171,6 @@ mod tests {
 
     fn over(n: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
         (0..=n).map(|k| f(k as f64 / n as f64)).collect()
-    }
-
-    #[test]
-    fn a_switch_that_comes_back_soon_is_a_pulse_and_one_that_stays_is_none() {
-        let (once, pulses) = crossings(&over(1000, |t| t - 0.5));
-        assert_eq!((once, pulses.len()), (vec![500], 0));
-        let (once, pulses) = crossings(&over(1000, |t| 1.5e-4 - (t - 0.5).powi(2)));
-        assert_eq!((once.len(), pulses), (0, vec![(487, 513)]));
-        // half of the time on either side
-        let (_, pulses) = crossings(&over(1000, |t| (20.0 * t + 0.1).sin()));
-        assert!(pulses.is_empty());
     }
 
     #[test]

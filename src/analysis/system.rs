@@ -277,7 +277,7 @@ impl System {
         let violation = violation_program(&scene)?;
         let left_out = left_out(&scene)?;
         let switching = programs::switching(&scene).map_err(complaints)?;
-        let clock = Clock::new(&scene, switching.as_ref().map(|s| &s.switches))?;
+        let clock = Clock::new(&scene)?;
         let n_switches = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
         let unknowns = Unknowns::new(&scene).map_err(complaints)?;
         let outside = Outside::new(&scene, hooks).map_err(complaints)?;
@@ -571,8 +571,8 @@ impl System {
     }
 
     /// Times at which steps have to end, lest a pulse passes unseen.
-    pub fn landings(&self, start: f64, end: f64) -> Vec<f64> {
-        self.clock.landings(start, end)
+    pub fn landings(&mut self, start: f64, end: f64) -> Vec<f64> {
+        self.clock.landings(&mut self.moments, start, end)
     }
 
     /// All numbers at a state, projected onto the rows.
