@@ -26,6 +26,9 @@ const BURST: usize = 40;
 const HARDLY: f64 = 1e-7;
 /// Distance from zero where a switch was to be, as a part of the way within the step, that is no longer rounding and error.
 const LANDED: f64 = 0.1;
+/// Part of the duration that no step is shorter than because of a switch: at time 0 there is always a shorter one, and a function whose
+/// branches are noise would lead there.
+const SHORTEST: f64 = 1e-13;
 /// Steps without watching after a burst.
 const REST: usize = 20;
 
@@ -258,6 +261,7 @@ impl Switches {
                 return Verdict::Switched;
             }
         };
+        let at = at.max(step.t0 + SHORTEST * self.duration).min(step.t1);
         let at_end = step.t1 - at <= 1e-14 * step.t1.abs() + 1e-9 * step.h;
         if !(landed && at_end) {
             self.next.fill(0);
