@@ -132,3 +132,27 @@ fn a_short_pulse_drawn_by_a_few_points_is_felt() {
         assert!((v - 2.0).abs() < 1e-6, "{v}");
     }
 }
+
+#[test]
+fn a_branch_that_comes_and_goes_in_every_turn_of_a_free_wheel_is_seen_in_each() {
+    let part = 0.99f64.acos() / std::f64::consts::PI;
+    for method in ["DOP853", "RADAU5"] {
+        for wheel in [
+            "PART/2, MASS=1, CM=2, IP=1,1,1, WZ=62.83185307179586\n",
+            "PART/2, MASS=1, CM=2, IP=1,1,1, WZ=62.83185307179586\nJOINT/2, REVOLUTE, I=2, J=1\n",
+        ] {
+            let text = format!(
+                "{wheel}MARKER/2, PART=2\nPART/3, MASS=1, CM=3, IP=1,1,1\nMARKER/3, PART=3\nJOINT/1, TRANSLATIONAL, I=3, J=1\n\
+                 SFORCE/1, I=3, J=1, TRANSLATIONAL, ACTIONONLY, FUNCTION=IF(SIN(AZ(2,1))-0.99: 0,0,100)\n"
+            );
+            let options = Options {
+                method: Some(method.into()),
+                ..options(&["VZ(3,1)"], 1e-6)
+            };
+            let mut s = Session::new(model(&text), "test", options);
+            go(&mut s, Analysis::Dynamic, 10.0, 2);
+            let v = last(&s, "VZ(3,1)");
+            assert!((v - 1000.0 * part).abs() < 1e-3, "{method} {wheel}: {v}");
+        }
+    }
+}

@@ -359,7 +359,7 @@ impl Leg<'_> {
             if self.watch.interrupted() {
                 return Finished::Ended(Ended::Interrupted);
             }
-            let horizon = self.horizon(method.t(), method.y());
+            let horizon = self.horizon(method);
             let limit = std::mem::replace(&mut landing, self.end).min(horizon);
             let passed = self.landings.partition_point(|&l| l <= method.t());
             let limit = self.landings.get(passed).map_or(limit, |&l| limit.min(l));
@@ -468,8 +468,11 @@ impl Leg<'_> {
 
     /// How far a step may go: no further than values of the past are known, not over a sample, not over what time alone
     /// brings, and not through a body.
-    fn horizon(&mut self, t: f64, y: &[f64]) -> f64 {
-        let unseen = self.system.longest_unseen(t, y).max(1e-6 * (self.end - t));
+    fn horizon(&mut self, method: &dyn Method<System>) -> f64 {
+        let (t, y) = (method.t(), method.y());
+        let turn = self.system.longest_turn(y, method.ydot());
+        let unseen = self.system.longest_unseen(t, y).min(turn);
+        let unseen = unseen.max(1e-6 * (self.end - t));
         // however near, it must be further on
         let moment = self
             .system

@@ -50,6 +50,8 @@ pub struct System {
     pub precision: f64,
     /// values that change sign where a force or a differential equation changes branch
     switching: Option<Switching>,
+    /// places in v of the angles that decide a branch
+    watched_angles: Vec<usize>,
     /// what time alone does
     clock: Clock,
     /// the numbers, then what the switches read after them: unknowns of linear loops, or sides
@@ -123,6 +125,8 @@ const HARMFUL: f64 = 1e-13;
 const SHARE: f64 = 0.1;
 /// The same for speeds, which may differ more: a wheel on a slow arm.
 const SHARE_OF_SPEED: f64 = 0.02;
+/// Angle by which what decides a branch may turn within a step: a quarter of a turn, in which a step is looked at several times.
+const FOLLOWED: f64 = std::f64::consts::FRAC_PI_2;
 
 /// A model whose equations cannot be written down.
 pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
@@ -256,6 +260,20 @@ fn rate_program(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     record(scene, |at| programs::rate(at)).map_err(complaints)
 }
 
+/// Places in v of the angles that a switch reads; of those of a ball all three.
+fn watched_angles(scene: &Scene, switching: Option<&Switching>) -> Vec<usize> {
+    let Some(Switching { switches, .. }) = switching else {
+        return Vec::new();
+    };
+    let first = scene.layout.q().start;
+    let angular = scene.coordinates.iter().filter(|c| c.angular);
+    let free = angular.filter_map(|c| match c.source {
+        Source::Free { q, v } if switches.reads(first + q) => Some(v),
+        _ => None,
+    });
+    free.collect()
+}
+
 impl System {
     /// Records the programs of a scene.
     ///
@@ -314,6 +332,7 @@ impl System {
                 .collect(),
             clean: false,
             precision: 1e-6,
+            watched_angles: watched_angles(&scene, switching.as_ref()),
             switching,
             clock,
             switch_numbers: Vec::new(),
@@ -568,6 +587,18 @@ impl System {
             .filter_map(|(_, f)| f.v)
             .map(|v| y[l.n_q + v].abs())
             .sum()
+    }
+
+    /// How long a step may be so that no angle which decides a branch turns by more than [`FOLLOWED`]: a free flight or a free rotation leaves long steps no
+    /// reason to become shorter, and a branch may come and go in every turn.
+    pub(super) fn longest_turn(&self, y: &[f64], ydot: &[f64]) -> f64 {
+        let v = self.scene.layout.n_q;
+        let time = |&k: &usize| {
+            let (speed, acceleration) = (y[v + k].abs(), ydot[v + k].abs());
+            2.0 * FOLLOWED / (speed + (speed * speed + 2.0 * FOLLOWED * acceleration).sqrt())
+        };
+        let times = self.watched_angles.iter().map(time);
+        times.filter(|h| !h.is_nan()).fold(f64::INFINITY, f64::min)
     }
 
     /// Times at which steps have to end, lest a pulse passes unseen.

@@ -229,15 +229,17 @@ impl Locator {
             let h = self.times[i] - self.times[i - 1];
             (value(i) - value(i - 1)) / h
         };
-        let s = sign(value(i));
-        if s == 0 || sign(value(i - 1)) != s {
+        // a step may end just on zero
+        let [before, here] = [i - 1, i].map(|i| sign(value(i)));
+        let s = if here == 0 { before } else { here };
+        if s == 0 || before == -s {
             return None;
         }
         // as if it were positive: falling before, rising after
         let up = f64::from(s);
-        let falling = (i > 1 && sign(value(i - 2)) == s).then(|| up * secant(i - 1));
+        let falling = (i > 1 && sign(value(i - 2)) != -s).then(|| up * secant(i - 1));
         let rising =
-            (i + 1 < self.times.len() && sign(value(i + 1)) == s).then(|| up * secant(i + 1));
+            (i + 1 < self.times.len() && sign(value(i + 1)) != -s).then(|| up * secant(i + 1));
         let (falling, rising) = match (falling, rising) {
             (Some(f), Some(r)) => (f, r),
             (Some(f), None) => (f, -f),
@@ -480,6 +482,16 @@ mod tests {
                 assert!((found[1].0 - c - half).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn a_dip_that_ends_with_its_step_is_seen() {
+        // back at zero to the last bit
+        let g = |t: f64| (t - 0.875) * (t - 1.0);
+        let (found, _) = events(&[g], &[0.0, 1.0, 2.0], |_| ());
+        let times: Vec<f64> = found.iter().map(|f| f.0).collect();
+        assert_eq!(times.len(), 2, "{times:?}");
+        assert!((times[0] - 0.875).abs() < 1e-14 && (times[1] - 1.0).abs() < 1e-14);
     }
 
     #[test]
