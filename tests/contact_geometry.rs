@@ -459,7 +459,7 @@ fn nothing_that_can_be_asked_has_no_answer() {
 
 #[test]
 fn a_torus_that_begins_within_a_cylinder_is_pushed_out_of_it() {
-    // its ring lies level above the flat end: where it is nearest is a matter of rounding at time 0, and so is which side its switches are on
+    // one place of the tube overlaps the upper rim; a switch of what it rubs there lies at time 0, to rounding
     let text = "ACCGRAV/KGRAV=-10\nPART/2, MASS=1, CM=2, IP=1,1,1, QG=0.1,0.2,1.3\nMARKER/2, PART=2\n\
          GRAPHICS/1, CYLINDER, CM=1, LENGTH=1, RADIUS=0.5\nGRAPHICS/2, TORUS, CM=2, MAJOR_RADIUS=1, MINOR_RADIUS=0.5\n\
          CONTACT/1, IGEOM=2, JGEOM=1, IMPACT, STIFFNESS=1E5, EXPONENT=1.5, DAMPING=100, DMAX=1E-3, COULOMB_FRICTION=ON, MU_STATIC=0.3,\
@@ -477,8 +477,10 @@ fn a_torus_that_begins_within_a_cylinder_is_pushed_out_of_it() {
     let status = s.simulate(analysis, 1.0, 10, watch).unwrap();
     assert_eq!(status, cognate::results::Status::Completed);
     let far = s.run.column("DM(2)").unwrap();
-    // it overlaps by 0.2: k δ^1.5 throws a unit mass out at tens of metres per second
-    assert!(far[10] > 5.0, "{far:?}");
+    // the ring passes the rim at √((1 − 0.2236 − 0.5)² + 0.3²) = 0.408, an overlap of 0.092: k δ^2.5/2.5 is 100 J, for a mass of 1 kg; nothing else
+    // than the ground of gravity holds it, so that it is out, and off by more than tube and ring together
+    let farthest = far.iter().copied().fold(0.0, f64::max);
+    assert!(farthest > 2.5 && farthest < 15.0, "{far:?}");
     // 128 when this was written; thousands of steps of 1e-163 before
     assert!(
         s.run.record.counts.steps < 2000,
