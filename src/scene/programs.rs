@@ -10,7 +10,7 @@ use crate::scalar::Scalar;
 use std::cell::RefCell;
 
 /// Records what `f` computes from the instant it is given. The program reads the row of numbers that
-/// [`Layout`](super::layout::Layout) describes.
+/// [`Layout`] describes.
 ///
 /// # Errors
 /// What the equations complained about.
