@@ -288,3 +288,25 @@ fn a_sequence_of_equilibria_follows_a_motion() {
     );
     assert_eq!(s.run.sequences[1].name, "quasiStatic_001");
 }
+
+/// The hook of a crane as datasets write it: a state that is sought makes the force. It follows at once; a state that came to rest in its own time would be too
+/// late for a spring so stiff, and the load would be thrown up and down.
+#[test]
+fn a_force_made_by_a_state_holds_a_load() {
+    let text = "HOOK\nPART/1, GROUND\nMARKER/1, PART=1\nACCGRAV/KGRAV=-9.81\n\
+                PART/2, MASS=1000, CM=2, IP=1,1,1, QG=0,0,0.5\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\n\
+                DIFF/1, IC=0, FUNCTION=IF(MODE-5: 0, -DIF(1)-1E7*(DZ(2,1)-0.2), 0)\n\
+                SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=DIF(1)\nEND\n";
+    let mut s = session(text, &["DZ(2,1)", "DIF(1)"]);
+    assert_eq!(
+        rest(&mut s),
+        Status::Completed,
+        "{}",
+        s.run.record.stop_reason
+    );
+    println!("{:?}", s.run.record.counts);
+    // a weight of 9810 N on 1e7 N/m; forces are balanced to 1e-13 of those there were
+    assert!((last(&s, "DZ(2,1)") - (0.2 - 9.81e-4)).abs() < 1e-10);
+    assert!((last(&s, "DIF(1)") - 9810.0).abs() < 1e-3);
+    assert!(s.run.record.counts.steps < 60, "{:?}", s.run.record.counts);
+}

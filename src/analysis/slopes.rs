@@ -2,6 +2,7 @@
 
 use super::unknowns::WIDTH;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
+use crate::numeric::pattern::Pattern;
 use crate::scalar::{Dual, Scalar};
 use nalgebra::DMatrix;
 
@@ -34,7 +35,8 @@ pub fn recorded(
 /// A direction: places in the row of numbers, each with the slope of its number.
 pub type Direction = Vec<(usize, f64)>;
 
-/// ∂out/∂direction of a program at `numbers`   (outputs × directions). `follow` puts into the marked numbers what depends on
+/// ∂out/∂direction of a program at `numbers`   (outputs × directions). `pattern`: which outputs change along which directions; those of a group
+/// are followed together. `follow` puts into the marked numbers what depends on
 /// them without being part of a direction; its second argument says that the numbers are new.
 ///
 /// # Errors
@@ -44,22 +46,36 @@ pub fn along<E>(
     work: &mut Work<Dual<WIDTH>>,
     numbers: impl Iterator<Item = f64>,
     directions: &[Direction],
+    pattern: Option<&Pattern>,
     mut follow: impl FnMut(&mut [Dual<WIDTH>], bool) -> Result<(), E>,
 ) -> Result<DMatrix<f64>, E> {
     let mut numbers: Vec<Dual<WIDTH>> = numbers.map(Dual::constant).collect();
     let mut out = vec![Dual::constant(0.0); program.n_outputs()];
     let mut slopes = DMatrix::zeros(program.n_outputs(), directions.len());
-    for (chunk, some) in directions.chunks(WIDTH).enumerate() {
-        for (k, direction) in some.iter().enumerate() {
-            for &(place, slope) in direction {
+    let alone: Vec<Vec<usize>>;
+    let groups = match pattern {
+        Some(pattern) => pattern.groups(),
+        None => {
+            alone = (0..directions.len()).map(|d| vec![d]).collect();
+            &alone
+        }
+    };
+    for (chunk, some) in groups.chunks(WIDTH).enumerate() {
+        for (k, group) in some.iter().enumerate() {
+            for &(place, slope) in group.iter().flat_map(|&d| &directions[d]) {
                 numbers[place].eps[k] += slope;
             }
         }
         follow(&mut numbers, chunk == 0)?;
         program.eval(&numbers, work, &mut out);
-        for k in 0..some.len() {
-            for (i, x) in out.iter().enumerate() {
-                slopes[(i, chunk * WIDTH + k)] = x.eps[k];
+        for (k, group) in some.iter().enumerate() {
+            for &d in group {
+                match pattern {
+                    Some(pattern) => {
+                        (pattern.column(d)).for_each(|(_, i)| slopes[(i, d)] = out[i].eps[k]);
+                    }
+                    None => (out.iter().enumerate()).for_each(|(i, x)| slopes[(i, d)] = x.eps[k]),
+                }
             }
         }
         for x in &mut numbers {

@@ -648,6 +648,14 @@ impl System {
         self.unsolved.map_or(Ok(()), Err)
     }
 
+    /// Tells along which directions closures' results and loops' unknowns change, where `along` says it of the other numbers.
+    pub fn depend_along(&self, along: &mut [Vec<u32>]) {
+        self.outside.depend(along);
+        if let Some(unknowns) = &self.unknowns {
+            unknowns.depend(along);
+        }
+    }
+
     /// Derivatives of closures' results and loops' unknowns along the directions of a row of numbers, into their places; `first`: at new numbers.
     ///
     /// # Errors

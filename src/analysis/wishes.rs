@@ -221,8 +221,14 @@ fn equations(
     }
     let all = numbers.iter().copied();
     let nothing = |_: &mut [_], _| Ok(());
-    let Ok::<_, Infallible>(mut gradient) =
-        along(quantities, &mut Work::default(), all, &directions, nothing);
+    let Ok::<_, Infallible>(mut gradient) = along(
+        quantities,
+        &mut Work::default(),
+        all,
+        &directions,
+        None,
+        nothing,
+    );
     for w in 0..wishes.len() {
         let bad = !residual[w].is_finite() || gradient.row(w).iter().any(|x| !x.is_finite());
         if bad {

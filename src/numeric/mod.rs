@@ -19,6 +19,7 @@ pub mod bdf;
 pub mod control;
 pub mod corrector;
 pub mod dense;
+pub mod envelope;
 pub mod event;
 pub mod hht;
 pub mod newton;

@@ -443,6 +443,69 @@ fn a_wind_turbine_settles_under_its_weight() {
     assert!(session.run.sequences.iter().any(|s| s.name == "static_001"));
 }
 
+/// Their rotors are off balance by little and turn freely, their blades are stiff: what swings the rotor down is a millionth of what a straight step of
+/// it would stretch a blade by.
+#[test]
+fn wind_turbines_whose_rotors_turn_freely_settle() {
+    let Some(files) = turbines() else { return };
+    for name in ["Test11_ADAMS.acf", "Test17_ADAMS.acf"] {
+        let file = files
+            .iter()
+            .find(|f| f.ends_with(name))
+            .expect("it is there");
+        let mut script = Script::read(file).unwrap_or_else(|e| panic!("{e}"));
+        // released as for its last simulation, but to come to rest; the simulations before are left out
+        let is_simulation = |c: &Command| matches!(c, Command::Simulate(_));
+        let last = script.steps.iter().rposition(|s| is_simulation(&s.command));
+        let mut place = 0..;
+        script.steps.retain_mut(|step| {
+            let here = place.next();
+            if let Command::Simulate(s) = &mut step.command {
+                s.kind = SimulationKind::Static;
+                return here == last;
+            }
+            true
+        });
+        let options = Options {
+            zero_user: true,
+            ..options(1e-4)
+        };
+        let session = obeyed(&script.model_file().unwrap(), &script, options);
+        let record = &session.run.record;
+        println!("{name}: {} {:?}", record.method, record.counts);
+        assert!(record.method.contains("stable"), "{}", record.method);
+        assert!(record.counts.steps < 300, "{name}: {:?}", record.counts);
+    }
+}
+
+/// A gear selector of 140 parts, without the contacts of CAD solids: Adams takes 63, 11 and 11 iterations for three equilibria, each with tolerances of its own
+/// that count: parts that rattle between kinks of their contacts never come to rest to the last digit.
+#[test]
+fn a_gear_selector_settles_as_well_as_it_is_asked_to() {
+    let Some(root) = corpus() else { return };
+    let folder = root.join("bthornton191__adamspy/test/files/real_analysis_with_spikes");
+    let mut script = Script::read(&folder.join("FRS5_doe_8_LAUL_analysis.acf")).unwrap();
+    let moves = |c: &Command| match c {
+        Command::Simulate(s) => s.kind != SimulationKind::Static,
+        _ => false,
+    };
+    let until = script.steps.iter().position(|s| moves(&s.command));
+    script
+        .steps
+        .truncate(until.expect("it moves after it has settled"));
+    let options = Options {
+        skip: ["CONTACT".to_string()].into(),
+        ..options(1e-4)
+    };
+    let session = obeyed(&script.model_file().unwrap(), &script, options);
+    let record = &session.run.record;
+    println!("{} {:?}", record.method, record.counts);
+    assert!(record.method.contains("stable"), "{}", record.method);
+    let statics = session.run.sequences.iter();
+    assert_eq!(statics.filter(|s| s.name.starts_with("static")).count(), 3);
+    assert!(record.counts.steps < 300, "{:?}", record.counts);
+}
+
 /// Without their locks turbines are some fifty free parts tied by fields. Their Jacobian is sparse, and the angles of the fields pass zero all the time:
 /// taking that for changes of branch once made 5700 steps of a tenth of a second, now 160.
 #[test]

@@ -137,6 +137,7 @@ fn along(
         &mut Work::default(),
         all.into_iter(),
         directions,
+        None,
         follow,
     )
 }

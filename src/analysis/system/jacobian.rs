@@ -133,10 +133,7 @@ impl System {
         for j in 0..n {
             along[1 + j].push(j as u32);
         }
-        self.outside.depend(&mut along);
-        if let Some(unknowns) = &self.unknowns {
-            unknowns.depend(&mut along);
-        }
+        self.depend_along(&mut along);
         let mut rows = self.rate.dependence(&along);
         rows.truncate(n);
         if let Some(held) = self.switching.as_ref().and_then(|s| s.held.as_ref()) {

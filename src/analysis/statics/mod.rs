@@ -1,0 +1,226 @@
+//! Equilibrium: where loads and reactions balance at rest.
+//!
+//! A damped fall from the present configuration, taken in ever longer implicit steps until it is Newton's iteration:
+//!
+//! ```text
+//! D q̇ = f(q, x) + Gᵀλ,   ẋ = e(q, x),   g(q) = 0                          D: mass matrix, a little added where there is none
+//! ⎡ D/h − K   −Gᵀ ⎤ ⎡Δ ⎤   ⎡ f + Gᵀλ ⎤
+//! ⎣    G       0  ⎦ ⎣Δλ⎦ = ⎣   −g    ⎦     K = ∂(f + Gᵀλ)/∂q,  λ balances f as well as rows can
+//! ```
+//!
+//! Short steps follow the fall, which loses energy and therefore ends at a stable place or nowhere; long ones converge
+//! quadratically. A step is kept when the loads found at its end are those that its linear model foretold, and when the matrix
+//! is positive on the motions that the rows leave: then it cannot jump to the top of a hill. A singular stiffness, as of a
+//! body that touches nothing yet, needs no special treatment.
+//!
+//! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the model stood there from the start.
+
+mod fall;
+mod metric;
+mod point;
+mod stability;
+mod step;
+mod told;
+
+pub use stability::Stability;
+
+use super::dynamics::Watch;
+use super::system::System;
+use super::unknowns::WIDTH;
+use crate::expr::program::{Program, Work};
+use crate::model;
+use crate::numeric::Stats;
+use crate::numeric::pattern::Pattern;
+use crate::scalar::Dual;
+use crate::scene::programs::record_more;
+use point::Point;
+
+/// Saddles that are left before one is accepted.
+const MAX_SADDLES: usize = 8;
+
+/// EQUILIBRIUM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// ERROR: largest change of a coordinate in the last iteration
+    pub error: f64,
+    /// TLIMIT: largest translation in one iteration
+    pub translation: f64,
+    /// ALIMIT: largest rotation in one iteration   (rad)
+    pub angle: f64,
+    /// MAXIT
+    pub iterations: usize,
+    /// IMBALANCE: largest force or torque that may remain
+    pub imbalance: f64,
+    /// whether ERROR and IMBALANCE were asked for, and not only taken for granted
+    pub asked: bool,
+    /// STABILITY: least part of the mass matrix that is added to the stiffness
+    pub stability: f64,
+}
+
+impl Settings {
+    /// Of a model, defaults where it says nothing.
+    pub fn of(settings: &model::Settings) -> Self {
+        let number = |name: &str, default: f64| {
+            let given = settings.numbers.get(name).copied();
+            given
+                .filter(|x| x.is_finite() && *x > 0.0)
+                .unwrap_or(default)
+        };
+        Self {
+            error: number("ERROR", 1e-4),
+            translation: number("TLIMIT", 20.0),
+            angle: number("ALIMIT", 10f64.to_radians()),
+            iterations: number("MAXIT", 25.0) as usize,
+            imbalance: number("IMBALANCE", 1e-4),
+            asked: ["ERROR", "IMBALANCE"]
+                .iter()
+                .all(|&name| settings.numbers.contains_key(name)),
+            stability: number("STABILITY", 1e-5),
+        }
+    }
+}
+/// An equilibrium, in the numbers of the system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// steps it took
+    pub iterations: usize,
+    /// largest force or torque that is left
+    pub imbalance: f64,
+    /// what a push does
+    pub stability: Stability,
+}
+
+/// Why there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoEquilibrium {
+    /// what is not balanced, in a sentence, and the name of the coordinate
+    Unbalanced(String, String),
+    /// the caller asked to stop
+    Interrupted,
+}
+
+struct Settler<'a> {
+    system: &'a mut System,
+    settings: &'a Settings,
+    /// loads with multipliers | row values | e
+    program: Program,
+    /// which of them change along which coordinates and states, once it has been asked for
+    pattern: Option<Pattern>,
+    work: Work,
+    dual_work: Work<Dual<WIDTH>>,
+    /// places in x of the states that are sought
+    states: Vec<usize>,
+    /// indices of the active rows
+    rows: Vec<usize>,
+    evaluations: usize,
+    factorizations: usize,
+}
+
+/// Brings a system to rest from where it is; its numbers end at the equilibrium, or where the search ended.
+///
+/// # Errors
+/// When there is none to be found: what is not balanced.
+pub fn settle(
+    system: &mut System,
+    settings: &Settings,
+    watch: &mut dyn Watch,
+    stats: &mut Stats,
+) -> Result<Equilibrium, NoEquilibrium> {
+    let mut settler = Settler::new(system, settings)?;
+    let found = settler.run(watch);
+    stats.evaluations += settler.evaluations;
+    stats.factorizations += settler.factorizations;
+    if let Ok(e) = &found {
+        stats.steps += e.iterations;
+    }
+    found
+}
+
+impl<'a> Settler<'a> {
+    fn new(system: &'a mut System, settings: &'a Settings) -> Result<Self, NoEquilibrium> {
+        let scene = &system.scene;
+        let rows: Vec<usize> = (0..scene.rows.len())
+            .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
+            .collect();
+        let states: Vec<usize> = (scene.differentials.iter())
+            .filter(|d| !d.static_hold)
+            .filter_map(|d| d.state)
+            .collect();
+        let (program, complaints) = record_more(scene, rows.len(), |at, multipliers| {
+            let mut out = at.balance(multipliers);
+            out.extend(rows.iter().map(|&r| at.row(r).value));
+            let rates = at.state_rates();
+            out.extend(states.iter().map(|&x| rates[x]));
+            out
+        });
+        if let Some(first) = complaints.first() {
+            return Err(NoEquilibrium::Unbalanced(first.clone(), String::new()));
+        }
+        Ok(Self {
+            program,
+            pattern: None,
+            work: Work::default(),
+            dual_work: Work::default(),
+            states,
+            rows,
+            evaluations: 0,
+            factorizations: 0,
+            system,
+            settings,
+        })
+    }
+
+    fn n_v(&self) -> usize {
+        self.system.scene.layout.n_v
+    }
+
+    fn run(&mut self, watch: &mut dyn Watch) -> Result<Equilibrium, NoEquilibrium> {
+        let l = self.system.scene.layout;
+        let mut start = self.system.numbers.clone();
+        start[l.v()].fill(0.0);
+        let nothing = || {
+            NoEquilibrium::Unbalanced(
+                "the loads have no finite value in the configuration to start from".into(),
+                String::new(),
+            )
+        };
+        let mut p = self.point(&start).ok_or_else(nothing)?;
+        let mut saddles = 0;
+        let mut iterations = 0;
+        loop {
+            let stood = iterations == 0;
+            let (outcome, jacobian) = self.fall(&mut p, &mut iterations, watch);
+            self.keep(&p);
+            outcome?;
+            let stood = stood && iterations == 0;
+            let (stability, descent) = self.stability(&p, &jacobian);
+            let leave = stability.unstable > 0 && !stood && saddles < MAX_SADDLES;
+            match descent {
+                Some(descent) if leave => {
+                    saddles += 1;
+                    let push = descent * (0.01 * self.settings.angle.min(1.0));
+                    match self.moved(&p, &push).and_then(|n| self.point(&n)) {
+                        Some(pushed) => p = pushed,
+                        None => return Ok(self.equilibrium(&p, iterations, stability)),
+                    }
+                }
+                _ => return Ok(self.equilibrium(&p, iterations, stability)),
+            }
+        }
+    }
+
+    fn equilibrium(&self, p: &Point, iterations: usize, stability: Stability) -> Equilibrium {
+        Equilibrium {
+            iterations,
+            imbalance: p.force.amax(),
+            stability,
+        }
+    }
+
+    /// Takes a configuration over into the system.
+    fn keep(&mut self, p: &Point) {
+        let y = p.numbers[self.system.scene.layout.y()].to_vec();
+        self.system.numbers.copy_from_slice(&p.numbers);
+        self.system.count_turns(p.numbers[0], &y);
+    }
+}

@@ -1,0 +1,97 @@
+//! A configuration with what acts in it, and how that changes.
+
+use super::Settler;
+use super::metric::{Metric, Rows};
+use crate::analysis::slopes::{Direction, along};
+use crate::numeric::pattern::Pattern;
+use crate::scene::equations::Equations;
+use nalgebra::{DMatrix, DVector};
+
+/// A configuration with what acts in it.
+pub(super) struct Point {
+    pub numbers: Vec<f64>,
+    /// f + Gᵀλ   (n_v)
+    pub force: DVector<f64>,
+    /// e of the differential equations that are not held   (n_d)
+    pub state: DVector<f64>,
+    /// balances f as well as may be   (m)
+    pub lambda: DVector<f64>,
+    pub rows: Rows,
+    pub metric: Metric,
+    /// size of what is left of forces (in the metric) and of states
+    pub left: [f64; 2],
+}
+
+impl Settler<'_> {
+    /// What acts in a configuration; `None` when it has no value there.
+    pub(super) fn point(&mut self, numbers: &[f64]) -> Option<Point> {
+        self.evaluations += 1;
+        let (n, m) = (self.n_v(), self.rows.len());
+        let mut input = numbers.to_vec();
+        input.resize(numbers.len() + m, 0.0);
+        let mut out = vec![0.0; self.program.n_outputs()];
+        self.program.run(&input, &mut self.work, &mut out);
+        if out.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let scene = &self.system.scene;
+        let at = Equations::new(scene, numbers);
+        let mut gradient = DMatrix::zeros(m, n);
+        for (k, &r) in self.rows.iter().enumerate() {
+            for (v, g) in at.row(r).gradient {
+                gradient[(k, v)] += g;
+            }
+        }
+        let metric = Metric::new(scene, at.mass_rows())?;
+        let rows = Rows::new(gradient, &metric);
+        let f = DVector::from_column_slice(&out[..n]);
+        let state = DVector::from_column_slice(&out[n + m..]);
+        let (lambda, force) = rows.balanced(&f);
+        let left = [metric.size(&force), state.norm()];
+        Some(Point {
+            numbers: numbers.to_vec(),
+            force,
+            state,
+            lambda,
+            rows,
+            metric,
+            left,
+        })
+    }
+
+    /// Derivatives of loads (n_v rows) and e (n_d rows) along coordinates and states, multipliers kept.
+    pub(super) fn jacobian(&mut self, p: &Point) -> DMatrix<f64> {
+        let (n, m, d) = (self.n_v(), self.rows.len(), self.states.len());
+        let l = self.system.scene.layout;
+        let mut directions = vec![Direction::new(); n];
+        for (v, place, slope) in self.system.mover().tangents(&p.numbers[l.q()]) {
+            directions[v].push((l.q().start + place, slope));
+        }
+        directions.extend(self.states.iter().map(|&x| vec![(l.x().start + x, 1.0)]));
+        let pattern = match self.pattern.take() {
+            Some(pattern) => pattern,
+            None => {
+                let mut changed = vec![Vec::new(); l.len()];
+                for (d, direction) in directions.iter().enumerate() {
+                    (direction.iter()).for_each(|&(place, _)| changed[place].push(d as u32));
+                }
+                self.system.depend_along(&mut changed);
+                Pattern::of_rows(n + d, &self.program.dependence(&changed))
+            }
+        };
+        let all = p.numbers.iter().chain(p.lambda.iter()).copied();
+        let follow = |numbers: &mut [_], first| self.system.follow_along(numbers, first);
+        let slopes = along(
+            &self.program,
+            &mut self.dual_work,
+            all,
+            &directions,
+            Some(&pattern),
+            follow,
+        )
+        // a loop that nothing determines stops the search elsewhere: here nothing is known
+        .unwrap_or_else(|_| DMatrix::zeros(n + m + d, n + d));
+        self.pattern = Some(pattern);
+        slopes.remove_rows(n, m)
+    }
+}

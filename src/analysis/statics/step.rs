@@ -1,0 +1,249 @@
+//! One step of the fall: what it should be, where it leads, and whether the loads found there are those that were foretold.
+
+use super::Settler;
+use super::point::Point;
+use super::stability::asymmetry;
+use crate::numeric::Ode;
+use crate::numeric::dense::Lu;
+use crate::numeric::envelope;
+use nalgebra::{DMatrix, DVector};
+
+/// Iterations of one implicit step.
+const CORRECTIONS: usize = 8;
+/// Part of its own rate by which a state that follows lags behind.
+const FOLLOW: f64 = 1e-6;
+
+/// How far a step goes.
+pub(super) struct Pace {
+    /// its length in the fall's own time
+    pub length: f64,
+    /// 1/length for each state: those that come to rest by themselves follow at once, as otherwise a force that they make would come too late
+    states: Vec<f64>,
+}
+
+impl Pace {
+    /// Of a length, where the derivatives are these   (n_v coordinates).
+    pub fn new(length: f64, jacobian: &DMatrix<f64>, n_v: usize) -> Self {
+        let own = (n_v..jacobian.nrows()).map(|k| jacobian[(k, k)]);
+        let follow = |e: f64| if e < 0.0 { FOLLOW * -e } else { f64::INFINITY };
+        Self {
+            length,
+            states: own.map(|e| follow(e).min(1.0 / length)).collect(),
+        }
+    }
+}
+
+impl Settler<'_> {
+    /// The step of length `h` in the fall's own time: changes of coordinates and states; `None` where it would not go down.
+    pub(super) fn step(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        pace: &Pace,
+    ) -> Option<DVector<f64>> {
+        let rhs = p.force.iter().chain(p.state.iter()).copied().collect();
+        self.solved(p, jacobian, pace, rhs, true)
+    }
+
+    /// Changes of coordinates and states that `rhs` asks for, with the matrix of a step of length `h`; `None` where that matrix is singular, or,
+    /// `downhill`, where it would lead up.
+    fn solved(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        pace: &Pace,
+        mut rhs: Vec<f64>,
+        downhill: bool,
+    ) -> Option<DVector<f64>> {
+        self.factorizations += 1;
+        let (n, m, d) = (self.n_v(), self.rows.len(), self.states.len());
+        let size = n + d + m;
+        let mut a = DMatrix::zeros(size, size);
+        a.view_mut((0, 0), (n + d, n + d)).copy_from(&(-jacobian));
+        p.metric.add_to(&mut a, 1.0 / pace.length);
+        for (k, rate) in pace.states.iter().enumerate() {
+            a[(n + k, n + k)] += rate;
+        }
+        a.view_mut((0, n + d), (n, m))
+            .copy_from(&(-p.rows.gradient.transpose()));
+        a.view_mut((n + d, 0), (m, n)).copy_from(&p.rows.gradient);
+        let stiffness = a.view((0, 0), (n, n)).into_owned();
+        rhs.resize(size, 0.0);
+        let mut lu = Lu::new(size);
+        lu.matrix_mut().copy_from_slice(a.as_slice());
+        let upright = !downhill || goes_down(&stiffness, &p.rows.gradient);
+        lu.factor(1e-15).ok()?;
+        if !upright && (d == 0 && asymmetry(&stiffness) < 1e-3 || !lu.positive()) {
+            return None;
+        }
+        lu.solve(&mut rhs);
+        rhs.truncate(n + d);
+        let step = DVector::from_vec(rhs);
+        step.iter().all(|x| x.is_finite()).then_some(step)
+    }
+
+    /// How far a step exceeds the limits of its length; at most 1 is permitted.
+    pub(super) fn excess(&self, step: &DVector<f64>) -> f64 {
+        let scene = &self.system.scene;
+        let translation = self.settings.translation.max(scene.length);
+        let mut most = 0.0_f64;
+        for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
+            if let Some(v) = f.v {
+                let limit = if c.angular {
+                    self.settings.angle
+                } else {
+                    translation
+                };
+                most = most.max(step[v].abs() / limit);
+            }
+        }
+        most
+    }
+
+    /// The configuration after a step, on the rows.
+    pub(super) fn moved(&mut self, p: &Point, step: &DVector<f64>) -> Option<Vec<f64>> {
+        let l = self.system.scene.layout;
+        let mut numbers = p.numbers.clone();
+        let dq: Vec<f64> = step.iter().take(l.n_v).copied().collect();
+        self.system.mover().displace(&mut numbers[l.q()], &dq);
+        for (k, &x) in self.states.iter().enumerate() {
+            numbers[l.x().start + x] += step[l.n_v + k];
+        }
+        let mut y = numbers[l.y()].to_vec();
+        self.system.project(numbers[0], &mut y).ok()?;
+        y[l.n_q..l.n_q + l.n_v].fill(0.0);
+        numbers[l.y()].copy_from_slice(&y);
+        self.system.numbers.copy_from_slice(&numbers);
+        self.system.resolve().ok()?;
+        numbers.copy_from_slice(&self.system.numbers);
+        Some(numbers)
+    }
+
+    /// Tries a step: the point at its end, how far that is from what was foretold (relative to the limit), and whether its
+    /// length had to be limited.
+    pub(super) fn attempt(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        mut step: DVector<f64>,
+    ) -> Option<(Point, f64, bool)> {
+        let n = self.n_v();
+        let excess = self.excess(&step);
+        let shortened = excess > 1.0;
+        if shortened {
+            step /= excess;
+        }
+        let numbers = self.moved(p, &step)?;
+        let next = self.point(&numbers)?;
+        let change = jacobian * &step;
+        let foretold = DVector::from_iterator(n, (0..n).map(|i| p.force[i] + change[i]));
+        let (_, foretold) = p.rows.balanced(&foretold);
+        let off = [
+            p.metric.size(&(&next.force - &foretold)),
+            (0..self.states.len())
+                .map(|k| (next.state[k] - p.state[k] - change[n + k]).powi(2))
+                .sum::<f64>()
+                .sqrt(),
+        ];
+        let expected = [
+            p.left[0] + p.metric.size(&(&foretold - &p.force)),
+            p.left[1] + change.rows(n, self.states.len()).norm(),
+        ];
+        let quality = (0..2)
+            .filter(|&k| off[k] > 0.0)
+            .map(|k| off[k] / (0.3 * expected[k]))
+            .fold(0.0, f64::max);
+        (quality <= 1.0).then_some((next, quality, shortened))
+    }
+
+    /// Tries a step again whose end is not what was foretold: as an implicit step in earnest, iterated until the loads at its end are
+    /// those that move it there.
+    ///
+    /// ```text
+    /// D Δ/h = f(q + Δ) + Gᵀλ
+    /// ```
+    ///
+    /// Where stiff parts turn with soft ones (blades with a rotor that swings down) their forces grow with the square of a step
+    /// that never leaves the valley; the iteration leads it back to the bottom.
+    pub(super) fn corrected(
+        &mut self,
+        p: &Point,
+        step: DVector<f64>,
+        pace: &Pace,
+    ) -> Option<(Point, f64, bool)> {
+        let (n, d) = (self.n_v(), self.states.len());
+        let mut step = step;
+        let h = pace.length;
+        let advance = |step: &DVector<f64>| {
+            DVector::from_iterator(d, (0..d).map(|k| step[n + k] * pace.states[k]))
+        };
+        let mut before = f64::INFINITY;
+        if self.excess(&step) > 1.0 {
+            return None;
+        }
+        let mut numbers = self.moved(p, &step)?;
+        for _ in 0..CORRECTIONS {
+            let next = self.point(&numbers)?;
+            let moving = p.metric.times(&step.as_slice()[..n]) / h;
+            let (_, foretold) = p.rows.balanced(&moving);
+            // the rows have turned as well: what they take is taken there
+            let (_, rest) = next.rows.balanced(&(&next.force - &moving));
+            let off = [
+                next.metric.size(&rest),
+                (&next.state - advance(&step)).norm(),
+            ];
+            let expected = [
+                p.left[0] + p.metric.size(&(foretold - &p.force)),
+                p.left[1] + (advance(&step) - &p.state).norm(),
+            ];
+            let quality = (0..2)
+                .filter(|&k| off[k] > 0.0)
+                .map(|k| off[k] / (0.3 * expected[k]))
+                .fold(0.0, f64::max);
+            // a corrected step is as good as a direct one when what is left to correct is a tenth
+            if quality <= 0.1 {
+                return Some((next, 0.5, false));
+            }
+            if quality > before || quality.is_nan() {
+                return None;
+            }
+            before = 0.5 * quality;
+            let mut rhs = rest.as_slice().to_vec();
+            rhs.extend((&next.state - advance(&step)).iter());
+            // stiff directions have turned on the way: the derivatives have to be those of the end
+            let jacobian = self.jacobian(&next);
+            let delta = self.solved(&next, &jacobian, pace, rhs, false)?;
+            // from there on, in the directions of there: in those of the beginning, what is soft for it would be stiff
+            step += &delta;
+            if self.excess(&step) > 1.0 {
+                return None;
+            }
+            numbers = self.moved(&next, &delta)?;
+        }
+        None
+    }
+}
+
+/// Whether the symmetric part of a matrix is positive on what the rows leave free.
+fn goes_down(a: &DMatrix<f64>, gradient: &DMatrix<f64>) -> bool {
+    let mut s = (a + a.transpose()) * 0.5;
+    if gradient.nrows() > 0 {
+        // a large stiffness against leaving the rows, in each row alike
+        let size = s.amax();
+        for row in gradient.row_iter() {
+            let n2 = row.norm_squared();
+            if n2 > 0.0 {
+                let entries: Vec<_> = (row.iter().copied().enumerate())
+                    .filter(|(_, g)| *g != 0.0)
+                    .collect();
+                for (&(i, a), &(j, b)) in entries
+                    .iter()
+                    .flat_map(|e| entries.iter().map(move |f| (e, f)))
+                {
+                    s[(i, j)] += a * b * (1e6 * size / n2);
+                }
+            }
+        }
+    }
+    envelope::is_positive(&s)
+}
