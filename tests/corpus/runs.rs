@@ -484,7 +484,7 @@ fn wind_turbines_whose_rotors_turn_freely_settle() {
 fn a_gear_selector_settles_as_well_as_it_is_asked_to() {
     let Some(root) = corpus() else { return };
     let folder = root.join("bthornton191__adamspy/test/files/real_analysis_with_spikes");
-    let mut script = Script::read(&folder.join("FRS5_doe_8_LAUL_analysis.acf")).unwrap();
+    let mut script = Script::read(folder.join("FRS5_doe_8_LAUL_analysis.acf")).unwrap();
     let moves = |c: &Command| match c {
         Command::Simulate(s) => s.kind != SimulationKind::Static,
         _ => false,
