@@ -426,7 +426,8 @@ mod tests {
         assert_eq!(program.n_operations(), 3);
         let mut out = [0.0; 2];
         program.run(&[3.0, 0.5], &mut Work::default(), &mut out);
-        assert_eq!(out, [3.0 + 0.5f64.sin(), 3.0 * 0.5f64.sin()]);
+        let s = crate::scalar::Scalar::sin(0.5f64);
+        assert_eq!(out, [3.0 + s, 3.0 * s]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Several samples of one number, evaluated side by side.
 
+use super::circle;
 use super::{Mask, Scalar, operators};
 
 /// `N` samples; every operation works on all of them.
@@ -108,7 +109,20 @@ impl<const N: usize> Scalar for Lanes<N> {
             if mask[k] { yes.0[k] } else { no.0[k] }
         }))
     }
-    lane_by_lane!(sqrt sin cos tan asin acos atan sinh cosh tanh exp ln log10 abs trunc round floor);
+    lane_by_lane!(sqrt tan asin acos atan sinh cosh tanh exp ln log10 abs trunc round floor);
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sines, cosines) = circle::of_several(self.0);
+        (Self(sines), Self(cosines))
+    }
     #[inline(always)]
     fn atan2(self, other: Self) -> Self {
         self.zip(other, f64::atan2)

@@ -7,6 +7,7 @@
 //! A formula that has cases asks for a [`Mask`] and selects; it never looks at the number. So the same lines run where
 //! a "number" is many samples at once, or a node of a program that is being recorded.
 
+mod circle;
 mod dual;
 mod germ;
 mod interval;
@@ -235,11 +236,15 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn sin(self) -> f64 {
-        f64::sin(self)
+        circle::sin_cos(self).0
     }
     #[inline(always)]
     fn cos(self) -> f64 {
-        f64::cos(self)
+        circle::sin_cos(self).1
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (f64, f64) {
+        circle::sin_cos(self)
     }
     #[inline(always)]
     fn tan(self) -> f64 {

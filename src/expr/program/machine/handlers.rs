@@ -8,7 +8,7 @@ use super::{Handler, Op, Stop, pointer};
 use crate::expr::functions::prepared;
 use crate::expr::program::Core;
 use crate::expr::program::operation::{Comparison, UnaryOp};
-use crate::scalar::{Dual, Exponent};
+use crate::scalar::{Dual, Exponent, Scalar};
 
 /// Arithmetic: code of an operation, so that handlers can be made for each.
 pub(super) const ADD: u8 = 0;
@@ -146,7 +146,7 @@ handlers! {
     /// sin(a) → to, cos(a) → to of the partner
     fn sine_and_cosine<const SOURCE: u8>(o, r, frame, inputs, acc) {
         let a = if SOURCE == FIRST { acc } else { r!(o[0]) };
-        let (sine, cosine) = a.sin_cos();
+        let (sine, cosine) = Scalar::sin_cos(a);
         r!(o[1]) = sine;
         (o[2], cosine)
     }
