@@ -3,7 +3,11 @@
 use super::Settler;
 use super::point::Point;
 use crate::numeric::rank::{Rank, TOLERANCE};
+use nalgebra::linalg::Schur;
 use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Sweeps per eigenvalue of a matrix that is not symmetric: two to four are usual, what takes many more may take for ever.
+const SWEEPS: usize = 30;
 
 /// How an equilibrium answers a small push.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,7 +77,11 @@ impl Settler<'_> {
         let values: Vec<f64> = if asymmetry(&reduced) < 1e-6 {
             eigen.eigenvalues.iter().copied().collect()
         } else {
-            reduced.complex_eigenvalues().iter().map(|c| c.re).collect()
+            // the iteration need not end: then the symmetric part says what the work of a push would
+            match Schur::try_new(reduced, f64::EPSILON, SWEEPS * f.max(10)) {
+                Some(schur) => schur.complex_eigenvalues().iter().map(|c| c.re).collect(),
+                None => eigen.eigenvalues.iter().copied().collect(),
+            }
         };
         let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let mut found = Stability::default();
