@@ -21,7 +21,7 @@ pub mod left_out;
 pub mod loops;
 pub mod outside;
 pub mod programs;
-mod reach;
+pub mod reach;
 mod reads;
 pub mod solve;
 pub mod sweep;

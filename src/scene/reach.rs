@@ -52,6 +52,22 @@ impl Reach {
         ]
     }
 
+    /// From the middle of the second body to that of the first.
+    pub fn apart(&self, at: &Equations<f64>) -> Vec3<f64> {
+        let middle = |k: usize| {
+            let m = at.marker(self.markers[k]);
+            m.p_GM + m.R_GM.apply(Vec3(self.extents[k].centre))
+        };
+        middle(0) - middle(1)
+    }
+
+    /// How much farther a step between two places goes than it may, lest one body comes through the other: at most 1 is permitted.
+    pub fn excess(&self, from: Vec3<f64>, to: Vec3<f64>) -> f64 {
+        let radii: f64 = self.extents.iter().map(|e| e.radius).sum();
+        let gap = from.norm() - radii;
+        (to - from).norm() / (gap.max(0.0) + 0.5 * self.overlap)
+    }
+
     /// How long a step from that motion may be so that neither is through the other unseen, when it is looked for them `looks` times on the way.
     ///
     /// ```text
@@ -83,6 +99,9 @@ mod tests {
         // 5·0.1 = 10 h²
         assert!((reach.time([0.1, 0.0, 10.0], 5.0) - 0.05f64.sqrt()).abs() < 1e-15);
         assert!((reach.time([-1.0, 2.0, 0.0], 5.0) - 0.25).abs() < 1e-15);
+        // the gap of 3 − 2 and 0.1 are permitted
+        let [from, to] = [3.0, 0.8].map(|z| Vec3([0.0, 0.0, z]));
+        assert!((reach.excess(from, to) - 2.0).abs() < 1e-12);
         assert_eq!(reach.time([1.0, 0.0, 0.0], 5.0), f64::INFINITY);
     }
 }

@@ -6,6 +6,8 @@ use super::stability::asymmetry;
 use crate::numeric::Ode;
 use crate::numeric::dense::Lu;
 use crate::numeric::envelope;
+use crate::scene::equations::Equations;
+use crate::scene::reach::Reach;
 use nalgebra::{DMatrix, DVector};
 
 /// Iterations of one implicit step.
@@ -100,6 +102,20 @@ impl Settler<'_> {
         most
     }
 
+    /// How far the way to other numbers exceeds what bodies of a contact may go at once without coming through each other; at most 1 is permitted.
+    fn through(&self, p: &Point, numbers: &[f64]) -> f64 {
+        let scene = &self.system.scene;
+        if scene.reaches.is_empty() {
+            return 0.0;
+        }
+        let (from, to) = (
+            Equations::new(scene, &p.numbers),
+            Equations::new(scene, numbers),
+        );
+        let excess = |r: &Reach| r.excess(r.apart(&from), r.apart(&to));
+        scene.reaches.iter().map(excess).fold(0.0, f64::max)
+    }
+
     /// The configuration after a step, on the rows.
     pub(super) fn moved(&mut self, p: &Point, step: &DVector<f64>) -> Option<Vec<f64>> {
         let l = self.system.scene.layout;
@@ -129,11 +145,17 @@ impl Settler<'_> {
     ) -> Option<(Point, f64, bool)> {
         let n = self.n_v();
         let excess = self.excess(&step);
-        let shortened = excess > 1.0;
+        let mut shortened = excess > 1.0;
         if shortened {
             step /= excess;
         }
-        let numbers = self.moved(p, &step)?;
+        let mut numbers = self.moved(p, &step)?;
+        let through = self.through(p, &numbers);
+        if through > 1.0 {
+            shortened = true;
+            step /= through;
+            numbers = self.moved(p, &step)?;
+        }
         let next = self.point(&numbers)?;
         let change = jacobian * &step;
         let foretold = DVector::from_iterator(n, (0..n).map(|i| p.force[i] + change[i]));
@@ -182,6 +204,9 @@ impl Settler<'_> {
             return None;
         }
         let mut numbers = self.moved(p, &step)?;
+        if self.through(p, &numbers) > 1.0 {
+            return None;
+        }
         for _ in 0..CORRECTIONS {
             let next = self.point(&numbers)?;
             let moving = p.metric.times(&step.as_slice()[..n]) / h;

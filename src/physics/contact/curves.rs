@@ -120,7 +120,11 @@ impl Curves {
         }
         let at = [pose[0], pose[1]];
         let pose = Pose { at, x, y };
-        let found = self.touches(&pose);
+        let mut found = self.touches(&pose);
+        found.truncate(TOUCHES);
+        // in an order that two equally deep touches do not exchange: what reads them is differentiated
+        let place = |f: &Found| f.on_j[0] + 0.618 * f.on_j[1];
+        found.sort_by(|a, b| place(a).total_cmp(&place(b)));
         for (touch, f) in out.chunks_mut(TOUCH_NUMBERS).zip(&found) {
             let p = pose.back(minus(f.on_i, pose.at));
             let all = [

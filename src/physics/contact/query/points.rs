@@ -82,17 +82,18 @@ impl Query {
             };
             found.iter().map(near).sum()
         };
-        let mut all: Vec<(f64, [Vector; 3])> = found
-            .iter()
-            .map(|&(at, weight, [on_i, on_j])| {
-                let base = e * at[0] + f * at[1];
-                let share = Vector::splat(weight / crowd(at).max(1.0));
-                (on_j - on_i, [base + n * on_i, base + n * on_j, share])
-            })
-            .collect();
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        all.truncate(TOUCHES);
-        all.into_iter().map(|(_, touch)| touch).collect()
+        let touch = |&(at, weight, [on_i, on_j]): &(Flat, f64, [f64; 2])| {
+            let base = e * at[0] + f * at[1];
+            let share = Vector::splat(weight / crowd(at).max(1.0));
+            [base + n * on_i, base + n * on_j, share]
+        };
+        // the deepest, in the order in which they were found, which two equally deep ones do not exchange: what reads them is differentiated
+        let mut deepest: Vec<usize> = (0..found.len()).collect();
+        let depth = |k: usize| found[k].2[1] - found[k].2[0];
+        deepest.sort_by(|&a, &b| depth(b).total_cmp(&depth(a)));
+        deepest.truncate(TOUCHES);
+        deepest.sort_unstable();
+        deepest.into_iter().map(|k| touch(&found[k])).collect()
     }
 }
 
