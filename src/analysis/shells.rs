@@ -46,7 +46,8 @@ fn shell(name: &str, folders: &[PathBuf]) -> Result<Shell, String> {
     }
     let bytes = std::fs::read(&path).map_err(|e| refuse(format!("it cannot be opened: {e}")))?;
     let points = mesh::points(name, &bytes).map_err(refuse)?;
-    let (n, corners, outside) = hull(points).map_err(refuse)?;
+    let n = points.len();
+    let (corners, outside) = hull(&points).map_err(refuse)?;
     Ok(Shell {
         file: name.to_owned(),
         points: n,
@@ -56,17 +57,15 @@ fn shell(name: &str, folders: &[PathBuf]) -> Result<Shell, String> {
 }
 
 #[cfg(feature = "geometry")]
-#[allow(clippy::type_complexity)]
-fn hull(points: Vec<[f64; 3]>) -> Result<(usize, Vec<[f64; 3]>, f64), String> {
-    match crate::physics::contact::query::hull::corners(&points) {
-        Some(found) => Ok((points.len(), found.corners, found.outside)),
+fn hull(points: &[[f64; 3]]) -> Result<(Vec<[f64; 3]>, f64), String> {
+    match crate::physics::contact::query::hull::corners(points) {
+        Some(found) => Ok((found.corners, found.outside)),
         None => Err("its points span no volume; what is flat is a GRAPHICS PLANE".into()),
     }
 }
 
 #[cfg(not(feature = "geometry"))]
-#[allow(clippy::type_complexity)]
-fn hull(_: Vec<[f64; 3]>) -> Result<(usize, Vec<[f64; 3]>, f64), String> {
+fn hull(_: &[[f64; 3]]) -> Result<(Vec<[f64; 3]>, f64), String> {
     Err("this program was built without the feature geometry".into())
 }
 

@@ -124,6 +124,23 @@ enum Shape {
     Dot,
 }
 
+/// What is translated. Where nothing is, nobody reads it.
+#[cfg_attr(
+    not(all(target_arch = "x86_64", target_os = "linux", not(miri))),
+    allow(dead_code)
+)]
+struct Threaded {
+    ops: Arc<[Op]>,
+    kinds: Vec<Kind>,
+    meanings: Vec<Meaning>,
+    core: Arc<Core>,
+    /// the last of the registers
+    parameters: Vec<f64>,
+    n_registers: usize,
+    /// registers of the outputs
+    outputs: Vec<u32>,
+}
+
 /// Threaded code, and its translation into code of the processor where there is one.
 pub(super) struct Machine {
     /// where a run begins: the first of `ops`, or the operation that is the translation of all of them

@@ -5,8 +5,8 @@ mod functions;
 mod sides;
 
 use super::handlers::{self, ABS, ADD, FIRST, MUL, REGISTERS, SQRT};
-use super::native::{Native, Threaded};
-use super::{Handler, Kind, LONGEST_CHAIN, Machine, Meaning, Op, Shape};
+use super::native::Native;
+use super::{Handler, Kind, LONGEST_CHAIN, Machine, Meaning, Op, Shape, Threaded};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::Prepared;
 use crate::expr::program::Core;

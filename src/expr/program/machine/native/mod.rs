@@ -16,26 +16,12 @@ mod pages;
 mod steps;
 mod translate;
 
-use super::{Handler, Kind, Meaning, Op, handlers};
-use crate::expr::program::Core;
+use super::{Handler, Op, Threaded, handlers};
 use pages::Pages;
 use std::collections::HashMap;
 use std::ffi::c_void;
 use std::sync::{Arc, OnceLock};
 use steps::{Step, Steps};
-
-/// What is translated.
-pub(super) struct Threaded {
-    pub(super) ops: Arc<[Op]>,
-    pub(super) kinds: Vec<Kind>,
-    pub(super) meanings: Vec<Meaning>,
-    pub(super) core: Arc<Core>,
-    /// the last of the registers
-    pub(super) parameters: Vec<f64>,
-    pub(super) n_registers: usize,
-    /// registers of the outputs
-    pub(super) outputs: Vec<u32>,
-}
 
 /// A program that is translated when it first runs.
 pub(super) struct Native {
