@@ -28,6 +28,28 @@ struct Block<'a> {
     lines: &'a [&'a str],
 }
 
+impl Block<'_> {
+    /// The `width` numbers on a line counted from the title.
+    fn record(&self, line: usize, width: usize) -> Result<Vec<f64>, Diagnostic> {
+        let text = (line.checked_sub(1))
+            .and_then(|l| self.lines.get(l))
+            .ok_or_else(|| {
+                malformed(
+                    self.line,
+                    format!("this block has no line {line}, where RIGID PARTS MAP places a record"),
+                )
+            })?;
+        columns(text)
+            .filter(|numbers| numbers.len() == width)
+            .ok_or_else(|| {
+                malformed(
+                    self.line + line,
+                    format!("{width} numbers should stand here"),
+                )
+            })
+    }
+}
+
 /// Reads the records of rigid parts.
 pub(super) fn read(text: &str) -> Result<Run, Diagnostic> {
     let lines: Vec<&str> = text.lines().collect();
@@ -56,19 +78,14 @@ pub(super) fn read(text: &str) -> Result<Run, Diagnostic> {
         }
         row.clear();
         let time = output.lines.get(1).and_then(|l| number(l.trim()));
-        row.push(time.ok_or_else(|| malformed(output.line + 2, "the time should stand here"))?);
+        row.push(time.ok_or_else(|| {
+            malformed(
+                output.line,
+                "the time should stand two lines below this title",
+            )
+        })?);
         for &(line, width) in &records {
-            let numbers = line
-                .checked_sub(1)
-                .and_then(|l| output.lines.get(l))
-                .and_then(|l| columns(l))
-                .filter(|n| n.len() == width);
-            row.extend(numbers.ok_or_else(|| {
-                malformed(
-                    output.line + line,
-                    format!("{width} numbers should stand here"),
-                )
-            })?);
+            row.extend(output.record(line, width)?);
         }
         run.push(&row);
     }
@@ -284,6 +301,15 @@ ANALYSIS OUTPUT BLOCK                          7
         );
         assert_eq!(run.columns[1].unit, "mm");
         assert!(run.column("arm_XFORM.ACCX").is_none());
+    }
+
+    #[test]
+    fn a_record_placed_beyond_its_block_is_told_at_the_block() {
+        for place in ["50", "18446744073709551615", "0"] {
+            let text = SAMPLE.replace("       2       5 ", &format!("       2       {place} "));
+            assert_ne!(text, SAMPLE);
+            assert_eq!(read(&text).unwrap_err().line, 24, "{place}");
+        }
     }
 
     #[test]
