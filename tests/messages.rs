@@ -129,3 +129,49 @@ fn what_is_wrong_with_a_command_has_its_line() {
         assert_eq!((d.code, d.line), (code, 3), "{wrong}: {d}");
     }
 }
+
+#[test]
+fn a_spring_between_markers_that_coincide_is_named() {
+    let spring = |rest: &str| {
+        format!(
+            "PART/2, MASS=2, CM=2, IP=0.3,0.3,0.5\nMARKER/2, PART=2\nMARKER/3, PART=1\nACCGRAV/KGRAV=-9.81\n{rest}"
+        )
+    };
+    // zero there whatever its direction: it hangs itself up
+    for soft in [
+        "SPRINGDAMPER/7, TRANSLATION, I=2, J=3, K=100, C=1\n",
+        "SFORCE/7, TRANSLATION, I=2, J=3, FUNCTION=-100*DM(2,3)\n",
+    ] {
+        let mut s = session(&spring(soft), &["DZ(2)"], 1e-6);
+        go(&mut s, Analysis::Dynamic, 0.1, 4);
+        let told = &s.run.record.warnings;
+        assert!(
+            told.iter()
+                .any(|w| w.contains("/7: its markers MARKER/2 and MARKER/3 coincide")),
+            "{told:?}"
+        );
+        assert!(*s.run.column("DZ(2)").unwrap().last().unwrap() < -0.02);
+    }
+    for pushing in [
+        "SPRINGDAMPER/7, TRANSLATION, I=2, J=3, K=100, LENGTH=0.5\n",
+        "SPRINGDAMPER/7, TRANSLATION, I=2, J=3, FORCE=3\n",
+        "SFORCE/7, TRANSLATION, I=2, J=3, FUNCTION=3\n",
+    ] {
+        for analysis in [Analysis::Dynamic, Analysis::Static] {
+            let said = refused(&spring(pushing), analysis);
+            assert_eq!(said.code, "coincident");
+            assert!(said.to_string().contains("/7"), "{said}");
+        }
+    }
+    // what turns, or acts along an axis, needs no line; what is apart has one
+    for fine in [
+        "SPRINGDAMPER/7, ROTATION, I=2, J=3, KT=100, ANGLE=0.5\n",
+        "SFORCE/7, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=3\n",
+        "MARKER/4, PART=1, QP=0,0,1E-3\nSPRINGDAMPER/7, TRANSLATION, I=2, J=4, K=1, LENGTH=0.5\n",
+    ] {
+        let mut s = session(&spring(fine), &[], 1e-6);
+        go(&mut s, Analysis::Dynamic, 0.01, 1);
+        let told = &s.run.record.warnings;
+        assert!(!told.iter().any(|w| w.contains("coincide")), "{told:?}");
+    }
+}

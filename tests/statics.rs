@@ -310,3 +310,48 @@ fn a_force_made_by_a_state_holds_a_load() {
     assert!((last(&s, "DIF(1)") - 9810.0).abs() < 1e-3);
     assert!(s.run.record.counts.steps < 60, "{:?}", s.run.record.counts);
 }
+
+/// Three arms of a rotor on stiff bushings: what lies 20 m from where it is held has its place rounded to 4e-15 m, which a stiffness of 1e9 makes a force
+/// of 4e-6 and its lever a moment of 7e-5. The heaviest arm swings down by a moment of 0.2 all the same.
+#[test]
+fn a_rotor_of_stiff_arms_swings_down() {
+    use std::fmt::Write;
+    // the bushings at the axis, and two metres away from it
+    for (radius, begin) in [(0.0, 37.0_f64), (2.0, 47.0)] {
+        let mut text = "ROTOR\nPART/1, GROUND\nMARKER/10, PART=1, REULER=90D,90D,0D\n\
+                        PART/2, MASS=50, CM=20, IP=10,10,10\nMARKER/20, PART=2\nMARKER/21, PART=2, REULER=90D,90D,0D\n\
+                        JOINT/1, REVOLUTE, I=21, J=10\nACCGRAV/KGRAV=-9.80665\n"
+            .to_string();
+        for (k, mass) in [100.0, 100.0, 100.001].into_iter().enumerate() {
+            let (s, c) = (120.0 * k as f64 + begin).to_radians().sin_cos();
+            let (p, inward) = (k + 3, radius - 20.0);
+            write!(
+                text,
+                "PART/{p}, MASS={mass}, CM={p}0, IP=1000,1000,10, QG=0,{},{}\nMARKER/{p}0, PART={p}\n\
+                 MARKER/{p}1, PART={p}, QP=0,{},{}\nMARKER/{p}2, PART=2, QP=0,{},{}\n\
+                 BUSHING/{p}, I={p}1, J={p}2, K=1E9,1E9,1E9, KT=1E8,1E8,1E8\n",
+                20.0 * c,
+                20.0 * s,
+                inward * c,
+                inward * s,
+                radius * c,
+                radius * s,
+            )
+            .unwrap();
+        }
+        let mut s = session(&(text + "END\n"), &["DZ(50)", "DY(50)"]);
+        assert_eq!(
+            rest(&mut s),
+            Status::Completed,
+            "{}",
+            s.run.record.stop_reason
+        );
+        let record = &s.run.record;
+        println!("{} {:?}", record.method, record.counts);
+        assert!(record.method.contains("stable"), "{}", record.method);
+        // the heaviest arm hangs down, as well as its moment of 0.2 per radian is told from the rounding of 7e-5
+        let (z, y) = (last(&s, "DZ(50)"), last(&s, "DY(50)"));
+        assert!(z < -19.9 && y.abs() < 20.0 * 2e-3, "{y} {z}");
+        assert!(record.counts.steps < 200, "{:?}", record.counts);
+    }
+}

@@ -2,6 +2,7 @@
 
 pub mod assemble;
 mod clock;
+mod coincident;
 pub mod columns;
 pub mod drives;
 pub mod dynamics;

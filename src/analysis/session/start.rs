@@ -2,7 +2,7 @@
 
 use super::super::assemble::{self, Assembly};
 use super::super::system::{System, complaints};
-use super::super::{misalignment, outside, placement, samples, shells, wishes};
+use super::super::{coincident, misalignment, outside, placement, samples, shells, wishes};
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
@@ -217,6 +217,7 @@ impl Session {
             let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
             let turned = misalignment::turned(&scene, &self.model, &numbers);
             assembly.warnings.extend(turned);
+            assembly.warnings.extend(coincident::lines(&scene, &numbers)?);
         }
         scene.begin_states(&mut x);
         let v = match v {

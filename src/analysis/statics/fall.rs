@@ -6,12 +6,16 @@ use super::step::Pace;
 use super::{NoEquilibrium, Settler};
 use crate::analysis::dynamics::Watch;
 use crate::scene::equations::Equations;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// Part of the loads below which what is left of them is rounding.
 const ROUNDING: f64 = 1e-13;
 /// Part of the loads below which an iteration that no longer improves has arrived.
 const STAGNANT: f64 = 1e-8;
+/// How much longer steps may become while something soft between what is stiff still goes: then the matrix keeps a digit.
+const SOFT: f64 = 1e3;
+/// Samples of what rounding could do.
+const SAMPLES: usize = 4;
 /// Steps of the fall at most, whatever MAXIT says of Newton.
 const MAX_STEPS: usize = 3000;
 /// Steps within the tolerances of EQUILIBRIUM that may still make it better: Newton's take a few, what rattles between kinks or rounding takes for ever.
@@ -31,6 +35,8 @@ impl Settler<'_> {
         let mut scales = [0.0_f64; 2];
         let mut h: Option<f64> = None;
         let (mut falling, mut polish) = (0, 0);
+        // how large the last step wanted to be
+        let mut before = f64::INFINITY;
         let mut jacobian = self.jacobian(p);
         let budget = MAX_STEPS.max(self.settings.iterations) + *iterations;
         loop {
@@ -39,7 +45,10 @@ impl Settler<'_> {
             if p.left[0] <= ROUNDING * scales[0] && p.left[1] <= ROUNDING * scales[1] {
                 return (Ok(()), jacobian);
             }
-            let small = p.left[0] <= STAGNANT * scales[0] && p.left[1] <= STAGNANT * scales[1];
+            let noise = self.noise(&jacobian);
+            let floor = p.metric.size(&noise);
+            let small = p.left[0] <= (STAGNANT * scales[0]).max(floor)
+                && p.left[1] <= STAGNANT * scales[1];
             if watch.interrupted() {
                 return (Err(NoEquilibrium::Interrupted), jacobian);
             }
@@ -50,24 +59,33 @@ impl Settler<'_> {
                 return (Ok(()), jacobian);
             }
             if *iterations >= budget || falling > FALLING {
-                if self.is_rounding(p, &jacobian) {
+                if self.is_rounding(p, &jacobian, &noise) {
                     return (Ok(()), jacobian);
                 }
                 return (Err(self.unbalanced(p)), jacobian);
             }
-            if small && p.left[1] <= ROUNDING * scales[1] && self.is_rounding(p, &jacobian) {
-                // stiff contacts make more of the last digits than any step could take away
-                return (Ok(()), jacobian);
+            let mut longest = self.longest(p, &jacobian);
+            if small {
+                if self.is_rounding(p, &jacobian, &noise) {
+                    // stiff contacts make more of the last digits than any step could take away
+                    if p.left[1] <= ROUNDING * scales[1] {
+                        return (Ok(()), jacobian);
+                    }
+                } else {
+                    // something soft between what is stiff still goes
+                    longest *= SOFT;
+                }
             }
-            let longest = self.longest(p, &jacobian);
             let mut length = h.unwrap_or_else(|| self.first(p)).min(longest);
+            let mut wanted = 0.0;
             // shorter and shorter until the end is what was foretold
             let accepted = loop {
                 let pace = Pace::new(length, &jacobian, n);
                 let trial = self.step(p, &jacobian, &pace);
                 let found = trial.and_then(|step| {
-                    (self.attempt(p, &jacobian, step.clone()))
-                        .or_else(|| self.corrected(p, step, &pace))
+                    wanted = self.excess(&step);
+                    (self.attempt(p, &jacobian, floor, step.clone()))
+                        .or_else(|| self.corrected(p, floor, step, &pace))
                 });
                 if found.is_some() {
                     break found;
@@ -82,14 +100,19 @@ impl Settler<'_> {
                 }
             };
             let Some((next, quality, shortened)) = accepted else {
-                if small || self.converged(p) || self.is_rounding(p, &jacobian) {
+                if small || self.converged(p) || self.is_rounding(p, &jacobian, &noise) {
                     return (Ok(()), jacobian);
                 }
                 return (Err(self.unbalanced(p)), jacobian);
             };
             let same = (next.left[0] - p.left[0]).abs() <= 1e-6 * p.left[0];
             falling = if shortened && same { falling + 1 } else { 0 };
-            let arrived = small && next.left[0] > 0.5 * p.left[0] && length >= longest;
+            // what is stiff may have arrived while what is soft still goes: neither gets better
+            let arrived = small
+                && length >= longest
+                && next.left[0] > 0.5 * p.left[0]
+                && wanted > 0.5 * before;
+            before = if length >= longest { wanted } else { f64::INFINITY };
             *p = next;
             *iterations += 1;
             jacobian = self.jacobian(p);
@@ -117,8 +140,21 @@ impl Settler<'_> {
         scale / total_mass(scene).sqrt()
     }
 
-    /// Whether what is left, in every coordinate, is what the last digits of the positions make of stiff forces.
-    fn is_rounding(&self, p: &Point, jacobian: &DMatrix<f64>) -> bool {
+    /// What the last digits of the positions make of stiff forces, in each coordinate, as it is met:
+    ///
+    /// ```text
+    /// n_i = ε √Σ (∂f_i/∂q_v u_v)²      u: a radian, or the size of the mechanism
+    /// ```
+    fn noise(&self, jacobian: &DMatrix<f64>) -> DVector<f64> {
+        let unit = self.units();
+        DVector::from_fn(self.n_v(), |i, _| {
+            let terms = (unit.iter().enumerate()).map(|(v, u)| (jacobian[(i, v)] * u).powi(2));
+            f64::EPSILON * terms.sum::<f64>().sqrt()
+        })
+    }
+
+    /// A radian, or the size of the mechanism, for each coordinate.
+    fn units(&self) -> Vec<f64> {
         let scene = &self.system.scene;
         let mut unit = vec![1.0; self.n_v()];
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
@@ -126,10 +162,36 @@ impl Settler<'_> {
                 unit[v] = scene.length;
             }
         }
-        (0..self.n_v()).all(|i| {
+        unit
+    }
+
+    /// Whether what is left is what the last digits of the positions make of stiff forces: in every coordinate by its size, and in soft directions, where
+    /// stiff forces cancel, by what Newton's step would still do about it.
+    fn is_rounding(&mut self, p: &Point, jacobian: &DMatrix<f64>, noise: &DVector<f64>) -> bool {
+        let unit = self.units();
+        let within = (0..self.n_v()).all(|i| {
             let stiffness = (0..self.n_v()).map(|v| jacobian[(i, v)].abs() * unit[v]);
             p.force[i].abs() <= 16.0 * f64::EPSILON * stiffness.sum::<f64>()
-        }) && p.state.amax() <= self.settings.error
+        }) && p.state.amax() <= self.settings.error;
+        if !within {
+            return false;
+        }
+        let pace = Pace::new(SOFT * self.longest(p, jacobian), jacobian, self.n_v());
+        let Some(step) = self.newton(p, jacobian, &pace, &p.force) else {
+            return true;
+        };
+        // noise of any sign; a few samples tell how far it goes
+        let mut signs = 0x9e37_79b9_7f4a_7c15_u64;
+        let reach = (0..SAMPLES).filter_map(|_| {
+            let any = noise.map(|n| {
+                signs = signs.rotate_left(7).wrapping_mul(0xd128_2a95_8b1c_9e6d);
+                if signs >> 63 == 0 { n } else { -n }
+            });
+            let step = self.newton(p, jacobian, &pace, &any)?;
+            Some(self.excess(&step))
+        });
+        let reach = reach.fold(0.0, f64::max);
+        self.excess(&step) <= reach
     }
 
     /// How large the terms of the differential equations are.

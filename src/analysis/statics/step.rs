@@ -47,6 +47,19 @@ impl Settler<'_> {
         self.solved(p, jacobian, pace, rhs, true)
     }
 
+    /// Newton's step against some loads, whichever way it leads.
+    pub(super) fn newton(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        pace: &Pace,
+        force: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        let mut rhs = force.as_slice().to_vec();
+        rhs.resize(jacobian.nrows(), 0.0);
+        self.solved(p, jacobian, pace, rhs, false)
+    }
+
     /// Changes of coordinates and states that `rhs` asks for, with the matrix of a step of length `h`; `None` where that matrix is singular, or,
     /// `downhill`, where it would lead up.
     fn solved(
@@ -135,12 +148,13 @@ impl Settler<'_> {
         Some(numbers)
     }
 
-    /// Tries a step: the point at its end, how far that is from what was foretold (relative to the limit), and whether its
-    /// length had to be limited.
+    /// Tries a step: the point at its end, how far that is from what was foretold (relative to the limit, beyond the `floor` that rounding makes), and
+    /// whether its length had to be limited.
     pub(super) fn attempt(
         &mut self,
         p: &Point,
         jacobian: &DMatrix<f64>,
+        floor: f64,
         mut step: DVector<f64>,
     ) -> Option<(Point, f64, bool)> {
         let n = self.n_v();
@@ -161,7 +175,7 @@ impl Settler<'_> {
         let foretold = DVector::from_iterator(n, (0..n).map(|i| p.force[i] + change[i]));
         let (_, foretold) = p.rows.balanced(&foretold);
         let off = [
-            p.metric.size(&(&next.force - &foretold)),
+            (p.metric.size(&(&next.force - &foretold)) - floor).max(0.0),
             (0..self.states.len())
                 .map(|k| (next.state[k] - p.state[k] - change[n + k]).powi(2))
                 .sum::<f64>()
@@ -190,6 +204,7 @@ impl Settler<'_> {
     pub(super) fn corrected(
         &mut self,
         p: &Point,
+        floor: f64,
         step: DVector<f64>,
         pace: &Pace,
     ) -> Option<(Point, f64, bool)> {
@@ -214,7 +229,7 @@ impl Settler<'_> {
             // the rows have turned as well: what they take is taken there
             let (_, rest) = next.rows.balanced(&(&next.force - &moving));
             let off = [
-                next.metric.size(&rest),
+                (next.metric.size(&rest) - floor).max(0.0),
                 (&next.state - advance(&step)).norm(),
             ];
             let expected = [
