@@ -69,9 +69,7 @@ fn along_a_line(force: &ForceElement, at: &Equations<'_, f64>) -> Option<(usize,
             action_only: false,
             formula,
         } => at.formula(*formula),
-        ForceLaw::SpringDamper(law) if !law.rotational => {
-            law.preload + law.stiffness * law.free
-        }
+        ForceLaw::SpringDamper(law) if !law.rotational => law.preload + law.stiffness * law.free,
         _ => return None,
     };
     Some((force.j?, magnitude))

@@ -217,7 +217,9 @@ impl Session {
             let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
             let turned = misalignment::turned(&scene, &self.model, &numbers);
             assembly.warnings.extend(turned);
-            assembly.warnings.extend(coincident::lines(&scene, &numbers)?);
+            assembly
+                .warnings
+                .extend(coincident::lines(&scene, &numbers)?);
         }
         scene.begin_states(&mut x);
         let v = match v {

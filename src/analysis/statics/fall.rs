@@ -47,8 +47,8 @@ impl Settler<'_> {
             }
             let noise = self.noise(&jacobian);
             let floor = p.metric.size(&noise);
-            let small = p.left[0] <= (STAGNANT * scales[0]).max(floor)
-                && p.left[1] <= STAGNANT * scales[1];
+            let small =
+                p.left[0] <= (STAGNANT * scales[0]).max(floor) && p.left[1] <= STAGNANT * scales[1];
             if watch.interrupted() {
                 return (Err(NoEquilibrium::Interrupted), jacobian);
             }
@@ -112,7 +112,11 @@ impl Settler<'_> {
                 && length >= longest
                 && next.left[0] > 0.5 * p.left[0]
                 && wanted > 0.5 * before;
-            before = if length >= longest { wanted } else { f64::INFINITY };
+            before = if length >= longest {
+                wanted
+            } else {
+                f64::INFINITY
+            };
             *p = next;
             *iterations += 1;
             jacobian = self.jacobian(p);
