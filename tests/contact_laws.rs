@@ -71,7 +71,64 @@ fn pairs() -> Vec<(String, String, f64, f64)> {
             0.3,
             4.0,
         ),
+        // flat along its whole ring, upright on one place of it
+        (
+            "TORUS, CM=2, MAJOR_RADIUS=0.8, MINOR_RADIUS=0.3",
+            "BOX, CORNER=9, X=2, Y=2, Z=1",
+            1.3,
+            4.0,
+        ),
+        (
+            "TORUS, CM=6, MAJOR_RADIUS=1, MINOR_RADIUS=0.3",
+            "BOX, CORNER=9, X=2, Y=2, Z=1",
+            2.3,
+            1.0,
+        ),
+        (
+            "TORUS, CM=6, MAJOR_RADIUS=1, MINOR_RADIUS=0.3",
+            "ELLIPSOID, CM=1, XSCALE=2, YSCALE=3, ZSCALE=4",
+            3.3,
+            1.0,
+        ),
+        (
+            "POINT, RM=2",
+            "ELLIPSOID, CM=1, XSCALE=2, YSCALE=3, ZSCALE=4",
+            2.0,
+            1.0,
+        ),
+        (
+            "POINT, RM=2",
+            "TORUS, CM=8, MAJOR_RADIUS=1, MINOR_RADIUS=0.3",
+            1.3,
+            1.0,
+        ),
+        ("CIRCLE, CM=2, RADIUS=0.7", "PLANE, RM=1", 0.0, 4.0),
+        (
+            "CIRCLE, CM=2, RADIUS=0.7",
+            "BOX, CORNER=9, X=2, Y=2, Z=1",
+            1.0,
+            4.0,
+        ),
+        // its lowest place is in the middle of the arc
+        (
+            "ARC, CM=7, RADIUS=0.7, RANGLE=180D",
+            "PLANE, RM=1",
+            0.7,
+            1.0,
+        ),
     ];
+    let solids = [
+        ("PLANE, RM=1", 0.0),
+        ("ELLIPSOID, CM=1, XSCALE=2, YSCALE=2, ZSCALE=2", 1.0),
+        ("ELLIPSOID, CM=1, XSCALE=2, YSCALE=3, ZSCALE=4", 2.0),
+        ("BOX, CORNER=9, X=2, Y=2, Z=1", 1.0),
+        ("CYLINDER, CM=1, LENGTH=1, RADIUS=1", 1.0),
+        ("FRUSTUM, CM=1, LENGTH=1, BOTTOM=1, TOP=0.5", 1.0),
+        ("TORUS, CM=3, MAJOR_RADIUS=1, MINOR_RADIUS=0.3", 1.3),
+    ];
+    all.extend(
+        solids.map(|(solid, height)| ("CIRCLE, CM=6, RADIUS=0.7", solid, height + 0.7, 1.0)),
+    );
     if cfg!(feature = "geometry") {
         all.extend([
             (
@@ -119,6 +176,7 @@ fn every_pair_begins_to_touch_at_its_instant() {
     for (i, j, height, springs) in pairs() {
         let text = format!(
             "PART/2, MASS=1, CM=2, IP=1,1,1, QG=0,0,{:?}, VZ=-{v:?}\nMARKER/2, PART=2\nMARKER/4, PART=2, QP=-0.5,-0.5,-0.5\n\
+             MARKER/6, PART=2, REULER=0,90D,0\nMARKER/7, PART=2, REULER=0,-90D,0\nMARKER/3, PART=1, REULER=0,90D,0\n\
              MARKER/9, PART=1, QP=-1,-1,0\nMARKER/8, PART=1, QP=-1,0,1\n{i}{j}\
              CONTACT/1, IGEOM=2, JGEOM=1, IMPACT, STIFFNESS={k:?}, EXPONENT=1, DAMPING=0, DMAX=1E-3\n",
             height + gap

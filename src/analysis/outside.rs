@@ -176,10 +176,10 @@ fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<S
                     move |call: &Call<'_>, out: &mut [f64]| curves.ask(call.values, out),
                 )))
             }
-            Question::Ring(ring) => {
-                let ring = ring.clone();
+            Question::Wire(wire) => {
+                let wire = wire.clone();
                 Ok(Callable(Arc::new(
-                    move |call: &Call<'_>, out: &mut [f64]| ring.ask(call.values, out),
+                    move |call: &Call<'_>, out: &mut [f64]| wire.ask(call.values, out),
                 )))
             }
             #[cfg(feature = "geometry")]
@@ -207,6 +207,8 @@ struct Bound {
     output_only: bool,
     /// what it is given is the pose of one solid in the frame of another
     is_pose: bool,
+    /// which of its values its results depend on
+    reads: Vec<bool>,
     values: Vec<f64>,
     results: Vec<f64>,
     /// ∂ result / ∂ value, result after result
@@ -243,6 +245,10 @@ impl Bound {
         let largest = |m: f64, x: &f64| m.max(x.abs());
         let distance = self.values.iter().take(3).fold(1e-3, largest);
         for k in 0..n {
+            if !self.reads[k] {
+                (0..m).for_each(|i| self.slopes[i * n + k] = 0.0);
+                continue;
+            }
             let x = self.values[k];
             // numbers of a pose are measured by its distance and by 1, whichever of them happen to be zero
             let unit = match (self.is_pose, k) {
@@ -311,6 +317,12 @@ impl Outside {
                             hook.element
                         )]);
                     }
+                    let reads = match &hook.kind {
+                        HookKind::User { .. } => vec![true; inputs.n_outputs()],
+                        HookKind::Touches { question, .. } => {
+                            (0..inputs.n_outputs()).map(|k| question.reads(k)).collect()
+                        }
+                    };
                     this.hooks.push(Bound {
                         law: law(&hook.kind, &hook.element, hooks)?,
                         element: hook.element.clone(),
@@ -322,6 +334,7 @@ impl Outside {
                         inputs,
                         output_only: hook.output_only,
                         is_pose: matches!(hook.kind, HookKind::Touches { .. }),
+                        reads,
                     });
                 }
                 _ => {}

@@ -10,8 +10,7 @@ use crate::model::{Contact, ContactLaw, CoulombFriction, Shape};
 use crate::physics::contact::extent::Extent;
 use crate::physics::contact::law::{Coulomb, Law, Normal};
 use crate::physics::contact::outline::{Outline, Rim};
-use crate::physics::contact::ring::Ring;
-use crate::physics::contact::{Pair, Question, Solid, TOUCH_NUMBERS, TOUCHES};
+use crate::physics::contact::{Pair, Question, Solid, TOUCH_NUMBERS};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -174,6 +173,9 @@ impl Body {
     }
 }
 
+/// Why no distance is known between two bodies that do have one.
+const UNASKED: &str = " in this program: it was built without the feature geometry";
+
 /// How the touches of two bodies are found.
 ///
 /// # Errors
@@ -182,29 +184,42 @@ fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
     let [a, b] = match (i, j) {
         (Body::Solid(a), Body::Solid(b)) => [&a.solid, &b.solid],
         _ => {
-            return match (i.as_outline(), j.as_outline()) {
-                (Some(i), Some(j)) => Ok(How::Question(Question::Outlines([i, j]))),
-                _ => Err(
-                    ": curves touch curves and points; draw the other one as a CURVE, CIRCLE or ARC in the same plane",
-                ),
+            if let (Some(i), Some(j)) = (i.as_outline(), j.as_outline()) {
+                return Ok(How::Question(Question::Outlines([i, j])));
+            }
+            let question = match (i, j) {
+                (Body::Outline(_, outline), Body::Solid(s)) => {
+                    Question::curve(outline, &s.solid, false)
+                }
+                (Body::Solid(s), Body::Outline(_, outline)) => {
+                    Question::curve(outline, &s.solid, true)
+                }
+                _ => None,
             };
+            return question.map(How::Question).ok_or(UNASKED);
         }
     };
+    match (a, b) {
+        (Solid::Plane { .. }, Solid::Plane { .. }) => {
+            return Err(
+                ": planes have no end, so that they meet everywhere or never; draw the side that moves as a BOX",
+            );
+        }
+        (Solid::Ball { radius: 0.0 }, Solid::Ball { radius: 0.0 }) => {
+            return Err(
+                ": points have no size and pass each other; draw one of them as a sphere, an ELLIPSOID with three equal scales",
+            );
+        }
+        _ => {}
+    }
     if let Some(pair) = Pair::of(a, b) {
         return Ok(How::Formula(pair));
     }
-    if let Some(ring) = Ring::new(a, b) {
-        return Ok(How::Question(Question::Ring(Box::new(ring))));
-    }
-    if !(a.can_be_queried() && b.can_be_queried()) {
-        return Err("");
-    }
-    if cfg!(feature = "geometry") {
+    if cfg!(feature = "geometry") && a.can_be_queried() && b.can_be_queried() {
         let solids = Box::new([a.clone(), b.clone()]);
-        Ok(How::Question(Question::Solids(solids)))
-    } else {
-        Err(" in this program: it was built without the feature geometry")
+        return Ok(How::Question(Question::Solids(solids)));
     }
+    Question::wire(a, b).map(How::Question).ok_or(UNASKED)
 }
 
 impl Builder<'_> {
@@ -296,7 +311,7 @@ impl Builder<'_> {
                 return None;
             }
         }
-        let (hook, n) = (self.scene.hooks.len(), TOUCHES * TOUCH_NUMBERS);
+        let (hook, n) = (self.scene.hooks.len(), question.touches() * TOUCH_NUMBERS);
         let places: Vec<usize> = (0..n)
             .map(|k| self.supply(Supplied::Hook(hook, k)))
             .collect();
@@ -308,7 +323,7 @@ impl Builder<'_> {
             place: places[0],
             output_only: false,
         });
-        Some(Touching::Query(places[0]))
+        Some(Touching::Query(places[0]..places[0] + n))
     }
 
     /// What of a shell is not as it is drawn.

@@ -12,6 +12,7 @@ use crate::physics::nodal_force::NodalForce;
 use crate::physics::spring_damper::SpringDamper;
 use crate::scalar::Scalar;
 use crate::space::Vec3;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A force between markers.
@@ -38,8 +39,8 @@ pub struct ForceElement {
 pub enum Touching {
     /// by a formula of the two frames
     Formula(contact::Pair),
-    /// by a query: place of the first of its numbers among those from outside
-    Query(usize),
+    /// by a query: places of its numbers among those from outside
+    Query(Range<usize>),
 }
 
 /// The laws.
@@ -131,9 +132,8 @@ impl ForceElement {
                 let (touching, law) = contact.as_ref();
                 let touches = match touching {
                     Touching::Formula(pair) => pair.touches(&i, &j),
-                    Touching::Query(first) => {
-                        let n = contact::TOUCHES * contact::TOUCH_NUMBERS;
-                        contact::found(at.supplied(*first..*first + n), &i, &j)
+                    Touching::Query(numbers) => {
+                        contact::found(at.supplied(numbers.clone()), &i, &j)
                     }
                 };
                 contact::action(&touches, law, &i, &j)

@@ -15,8 +15,9 @@
 //! farther, with a share that fades, so that a box stands on both its lower corners. Touches that are near each other share what one would do.
 //!
 //! A solid is no deeper than `DEPTH` of the smaller outline: what is deeper comes from the other side. The line between the two points must not
-//! cross either outline elsewhere: then it is another solid's turn. What is lost: where two places of touch melt into one, as a
-//! rounded edge does that comes to lie in a hollow of its own radius, the force of one of them ends at once.
+//! cross either outline elsewhere: then it is another solid's turn. Two touches of smooth sides that grow together, as those of a rounded edge do that
+//! comes to lie in a hollow of its own radius, end as one: they share by the wall between them, as the lows of a wire do (`wire.rs`), so that
+//! the force of one of them does not end at once.
 
 use super::outline::{Corner, Flat, Node, Outline, Spot};
 use super::outline::{along, cross, dot, length, minus, wrapped};
@@ -34,6 +35,8 @@ const FLAT: f64 = 1e-9;
 const NEIGHBOURS: f64 = 0.02;
 /// Touches nearer than this part of it are one.
 const SAME: f64 = 1e-9;
+/// Parts of the way between two touches at whose ends is looked for a wall.
+const WALL: u32 = 12;
 /// Outlines farther apart than this many times their size are left alone.
 const FAR: f64 = 1e6;
 /// Most pairs of pieces that are looked at in one question.
@@ -95,6 +98,8 @@ struct Found {
     normal: Flat,
     depth: f64,
     weight: f64,
+    /// parameter of I's outline, of a touch of smooth sides
+    smooth: Option<f64>,
 }
 
 impl Curves {
@@ -150,6 +155,8 @@ impl Curves {
         self.smooth(pose, &mut all);
         let limit = DEPTH * self.size;
         let near = NEIGHBOURS * self.size;
+        // what is nearest to one corner is near to the next one
+        let mut hint = None;
         for corner in self.i.corners.iter().filter(|c| c.convex) {
             let p = pose.point(corner.at);
             if !self.j.may_hold(p, near, limit) {
@@ -160,8 +167,9 @@ impl Curves {
                 normal,
                 depth,
                 straight,
-            }) = nearest(&self.j, p, limit)
+            }) = nearest(&self.j, p, limit, hint)
             {
+                hint = Some(on_j);
                 let inward = [-normal[0], -normal[1]];
                 let direction = inward[1].atan2(inward[0]);
                 let normals = corner.normals.map(|n| pose.direction(n));
@@ -172,9 +180,11 @@ impl Curves {
                     normal,
                     depth,
                     weight,
+                    smooth: None,
                 });
             }
         }
+        let mut hint = None;
         for corner in self.j.corners.iter().filter(|c| c.convex) {
             let p = pose.back(minus(corner.at, pose.at));
             if !self.i.may_hold(p, near, limit) {
@@ -185,8 +195,9 @@ impl Curves {
                 normal,
                 depth,
                 straight,
-            }) = nearest(&self.i, p, limit)
+            }) = nearest(&self.i, p, limit, hint)
             {
+                hint = Some(on_i);
                 let inward = pose.turned([-normal[0], -normal[1]]);
                 // from J's solid into I's
                 let direction = inward[1].atan2(inward[0]);
@@ -202,10 +213,11 @@ impl Curves {
                     normal: inward,
                     depth,
                     weight,
+                    smooth: None,
                 });
             }
         }
-        self.shared(all)
+        self.shared(pose, all)
     }
 
     /// Touches of smooth sides, where (1) and (2) hold.
@@ -333,11 +345,58 @@ impl Curves {
             normal: q.normal,
             depth: -gap,
             weight: 1.0,
+            smooth: Some(a),
         })
     }
 
+    /// Touches of smooth sides with a wall between them that is lower than they are deep share.
+    fn grow_together(&self, pose: &Pose, found: &mut [Found]) {
+        let mut along: Vec<(f64, usize)> = (0..found.len())
+            .filter(|&k| found[k].depth > 0.0)
+            .filter_map(|k| Some((found[k].smooth?, k)))
+            .collect();
+        along.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let n = along.len();
+        let pairs = match n {
+            0 | 1 => 0,
+            2 => 1,
+            _ if self.i.closed => n,
+            _ => n - 1,
+        };
+        for k in 0..pairs {
+            let ((a, i), (mut b, j)) = (along[k], along[(k + 1) % n]);
+            // once around is 2; of the two ways the shorter one
+            if self.i.closed && b - a > 1.0 {
+                b -= 2.0;
+            } else if self.i.closed && b < a - 1.0 {
+                b += 2.0;
+            }
+            let (high, low) = if found[i].depth < found[j].depth {
+                (i, j)
+            } else {
+                (j, i)
+            };
+            let (ground, base) = (-found[high].depth, -found[low].depth);
+            let mut wall = ground;
+            for step in 1..WALL {
+                let s = a + (b - a) * f64::from(step) / f64::from(WALL);
+                let p = pose.point(self.i.spot(s).at);
+                let foot = nearest(&self.j, p, DEPTH * self.size, None);
+                wall = wall.max(foot.map_or(0.0, |foot| -foot.depth));
+                if wall >= 0.0 {
+                    break;
+                }
+            }
+            let (height, step) = (wall - ground, ground - base);
+            let together = (1.0 - height / -ground).max(0.0);
+            let apart = step / (step + height).max(f64::MIN_POSITIVE);
+            found[high].weight *= 1.0 - 0.5 * together * (1.0 + apart);
+            found[low].weight *= 1.0 - 0.5 * together * (1.0 - apart);
+        }
+    }
+
     /// One of each, with shares; the deepest first, at most [`TOUCHES`].
-    fn shared(&self, mut all: Vec<Found>) -> Vec<Found> {
+    fn shared(&self, pose: &Pose, mut all: Vec<Found>) -> Vec<Found> {
         all.retain(|f| f.weight > 0.0 && f.depth.is_finite());
         all.sort_by(|a, b| b.depth.total_cmp(&a.depth));
         let near = SAME * self.size;
@@ -355,6 +414,7 @@ impl Curves {
                 break;
             }
         }
+        self.grow_together(pose, &mut found);
         let reach = NEIGHBOURS * self.size;
         let crowd = |f: &Found| -> f64 {
             let part = |other: &Found| {
@@ -412,14 +472,19 @@ struct Foot {
     straight: bool,
 }
 
-fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<Foot> {
-    let (cell, s, at) = outline.nearest(p, limit)?;
+fn nearest(outline: &Outline, p: Flat, limit: f64, hint: Option<Flat>) -> Option<Foot> {
+    let (cell, s, at) = outline.nearest(p, limit, hint)?;
     let c = &outline.cells[cell];
     let apart = minus(p, at);
     let distance = length(apart);
     // a little inside its cell, where the tangent is that of this side
     let width = c.s[1] - c.s[0];
-    let side = outline.spot(s.clamp(c.s[0] + 1e-9 * width, c.s[1] - 1e-9 * width));
+    let inside = s.clamp(c.s[0] + 1e-9 * width, c.s[1] - 1e-9 * width);
+    let side = if c.straight {
+        outline.normal(minus(c.ends[1], c.ends[0]))
+    } else {
+        outline.spot(inside).normal
+    };
     let end = if s <= c.s[0] {
         c.corner[0]
     } else if s >= c.s[1] {
@@ -427,7 +492,7 @@ fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<Foot> {
     } else {
         None
     };
-    let aside = cross(apart, side.normal).abs() > 1e-9 * distance;
+    let aside = cross(apart, side).abs() > 1e-9 * distance;
     match end {
         // the nearest point is a corner itself
         Some(corner) if distance > 1e-9 * outline.size && aside => {
@@ -445,8 +510,8 @@ fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<Foot> {
         }
         _ => Some(Foot {
             at,
-            normal: side.normal,
-            depth: -dot(apart, side.normal),
+            normal: side,
+            depth: -dot(apart, side),
             straight: c.straight,
         }),
     }
@@ -456,6 +521,8 @@ fn nearest(outline: &Outline, p: Flat, limit: f64) -> Option<Foot> {
 mod tests {
     use super::super::outline::Rim;
     use super::*;
+    use crate::expr::interpolation::{Curve, CurvePoints};
+    use crate::physics::cam::Path;
     use std::f64::consts::TAU;
 
     fn circle(radius: f64, flipped: bool) -> Arc<Outline> {
@@ -494,6 +561,53 @@ mod tests {
                 assert!((found[0] - depth).abs() < 1e-14, "{distance} {k} {found:?}");
             }
         }
+    }
+
+    /// Force and torque of linear springs of stiffness 1 on I, in J's plane about J's origin.
+    fn springs(c: &Curves, at: Flat, angle: f64) -> [f64; 3] {
+        let (sin, cos) = angle.sin_cos();
+        let pose = Pose {
+            at,
+            x: [cos, sin],
+            y: [-sin, cos],
+        };
+        let mut sum = [0.0; 3];
+        for f in c.touches(&pose) {
+            let n = f.depth.max(0.0) * f.weight;
+            sum[0] += n * f.normal[0];
+            sum[1] += n * f.normal[1];
+            sum[2] += n * cross(f.on_j, f.normal);
+        }
+        sum
+    }
+
+    #[test]
+    fn two_touches_that_grow_together_leave_no_jump() {
+        // an ellipse of half axes 1 and 0.5 in a round hole of radius 1.2: its blunt side, of radius 2, touches twice, its tip, of radius 0.25, once
+        let points: Vec<[f64; 3]> = (0..=200)
+            .map(|k| {
+                let (sin, cos) = (TAU * f64::from(k % 200) / 200.0).sin_cos();
+                [cos, 0.5 * sin, 0.0]
+            })
+            .collect();
+        let curve = Curve::new(&points, true, 4, CurvePoints::OnCurve).expect("a curve");
+        let path = Path::new(&curve);
+        let ellipse = Arc::new(Outline::new(Rim::Path(Box::new(path)), false).unwrap());
+        let c = Curves::new(ellipse, circle(1.2, true)).unwrap();
+        let jump = |parts: u32| {
+            let at = |k: u32| {
+                let u = f64::from(k) / f64::from(parts);
+                springs(&c, [0.02, -0.73], -0.2 + 1.3 * u)
+            };
+            (0..parts)
+                .flat_map(|k| {
+                    let (a, b) = (at(k), at(k + 1));
+                    (0..3).map(move |c| (a[c] - b[c]).abs())
+                })
+                .fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (jump(200), jump(2_000));
+        assert!(fine < 0.35 * coarse, "{coarse:e} {fine:e}");
     }
 
     #[test]

@@ -11,21 +11,25 @@
 //! | plane – box, hull | the corners (`plane.rs`) |
 //! | plane – cylinder, frustum | on each rim the deepest point and those a quarter and half a turn further |
 //! | plane – torus | the same four of its ring |
-//! | torus – box, cylinder, frustum, torus | where the ring is nearest, and the same four (`ring.rs`) |
 //! | plane – ellipsoid | 1, the deepest |
 //! | point | a ball without radius |
-//! | curve, circle, point with each other, in a plane | up to 8, where one reaches deepest into the other (`outline.rs`, `curves.rs`) |
+//! | torus – box, cylinder, frustum, ellipsoid, hull, torus | where the ring is nearest, and 12 places of it that are always looked at (`wire.rs`) |
+//! | curve, circle, arc – solid | the same of a wire without thickness |
+//! | point – ellipsoid, hull | 1, from its distance (`ellipsoid.rs`) |
+//! | curve, circle, arc, point with each other, in a plane | up to 8, where one reaches deepest into the other (`outline.rs`, `curves.rs`) |
 //! | box, cylinder, frustum, ellipsoid, hull with each other | up to 8, found by queries (`query/`, feature `geometry`) |
+//! | plane – plane, point – point | none: what has no end or no size meets nothing |
 
 pub mod ball;
 pub mod curves;
+mod ellipsoid;
 pub mod extent;
 pub mod law;
 pub mod outline;
 pub mod plane;
 #[cfg(feature = "geometry")]
 pub mod query;
-pub mod ring;
+pub mod wire;
 
 use super::action::Action;
 use crate::scalar::Scalar;
@@ -39,10 +43,27 @@ use std::sync::Arc;
 pub enum Question {
     /// two convex solids
     Solids(Box<[Solid; 2]>),
-    /// a torus and another solid
-    Ring(Box<ring::Ring>),
+    /// a torus, a plane curve or a point, and a solid
+    Wire(Box<wire::Wire>),
     /// two outlines, I's and J's
     Outlines([Arc<Outline>; 2]),
+}
+
+impl Question {
+    /// Whether it depends on one of the twelve numbers of a pose: what lies in a plane knows nothing of z.
+    pub fn reads(&self, number: usize) -> bool {
+        match self {
+            Question::Outlines(_) => number < 9 && number % 3 < 2,
+            Question::Solids(_) | Question::Wire(_) => true,
+        }
+    }
+    /// How many touches it finds at most.
+    pub fn touches(&self) -> usize {
+        match self {
+            Question::Solids(_) | Question::Outlines(_) => TOUCHES,
+            Question::Wire(wire) => wire.touches(),
+        }
+    }
 }
 
 /// A solid in the frame of its marker; lengths in model units.
@@ -131,7 +152,7 @@ pub struct Touch<S> {
     pub share: S,
 }
 
-/// Most touches that a query finds.
+/// Most touches that a query between two solids or two outlines finds.
 pub const TOUCHES: usize = 8;
 /// Numbers of one: its point on I's solid and on J's, each in the frame of its marker, the direction from J's solid to I's in
 /// the frame of J's marker, what is taken off the depth (of touches that are not there), its share.

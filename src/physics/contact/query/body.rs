@@ -2,6 +2,7 @@
 
 use super::super::Solid;
 use super::flat::Flat;
+use crate::space::Vec3;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{ConvexPolyhedron, SupportMap};
 
@@ -10,19 +11,23 @@ pub const RIM: usize = 24;
 
 /// A solid as it is asked.
 #[derive(Debug)]
-pub(super) struct Body {
-    pub solid: Solid,
+pub struct Body {
+    pub(super) solid: Solid,
     /// its smallest and largest extent, roughly
-    pub size: [f64; 2],
+    pub(super) size: [f64; 2],
     /// middle of its extents
-    pub middle: Vector,
+    pub(super) middle: Vector,
     /// of a hull: outward normals and corners
     faces: Vec<(Vector, Vec<Vector>)>,
+    /// of a hull: which corners these are
+    ids: Vec<Vec<usize>>,
 }
 
 /// The side of a solid that looks in some direction: a polygon, a line or a point.
 pub(super) struct Face {
     pub outline: Vec<Vector>,
+    /// which corners of its solid these are: the same whichever face they are seen in
+    pub ids: Vec<usize>,
     /// every how many-th point of the outline is a corner
     pub stride: usize,
     /// outwards; of polygons only
@@ -53,8 +58,9 @@ fn azimuth(dir: Vector) -> (f64, f64) {
 }
 
 impl Body {
+    /// `None`: it is no convex solid of finite size.
     pub fn new(solid: &Solid) -> Option<Self> {
-        let mut faces = Vec::new();
+        let (mut faces, mut ids) = (Vec::new(), Vec::new());
         let mut middle = Vector::ZERO;
         let size = match solid {
             Solid::Ball { radius } if *radius > 0.0 => [*radius; 2],
@@ -77,6 +83,7 @@ impl Body {
                         [..face.num_vertices_or_edges as usize];
                     let corners = around.iter().map(|&v| hull.points()[v as usize]).collect();
                     faces.push((face.normal, corners));
+                    ids.push(around.iter().map(|&v| v as usize).collect());
                 }
                 let (low, high) = points.iter().fold(
                     (
@@ -96,16 +103,62 @@ impl Body {
             size,
             middle,
             faces,
+            ids,
         })
     }
 
+    /// Signed distance of a point from a hull, negative inside, and the direction in which it grows; of other solids no number.
+    pub fn distance(&self, p: Vec3<f64>) -> (f64, Vec3<f64>) {
+        let p = vector(p.0);
+        let above = |f: &(Vector, Vec<Vector>)| (p - f.1[0]).dot(f.0);
+        let mut best = (f64::NEG_INFINITY, Vector::ZERO);
+        for face in &self.faces {
+            let d = above(face);
+            if d > best.0 {
+                best = (d, face.0);
+            }
+        }
+        if best.0 > 0.0 {
+            // the foot lies on a face that can be seen: above it, or on an edge
+            let feet = self.faces.iter().filter(|f| above(f) > 0.0).map(|f| {
+                let (normal, corners) = f;
+                let ends = corners.iter().zip(corners.iter().cycle().skip(1));
+                let within = p - *normal * above(f);
+                let inside =
+                    |(a, b): (&Vector, &Vector)| (b - a).cross(within - a).dot(*normal) >= 0.0;
+                if ends.clone().all(inside) {
+                    return within;
+                }
+                let on_edge = |(a, b): (&Vector, &Vector)| {
+                    let along = b - a;
+                    let u = (p - a).dot(along) / along.length_squared();
+                    if u > 0.0 { a + along * u.min(1.0) } else { *a }
+                };
+                let nearer = |a: &Vector, b: &Vector| {
+                    a.distance_squared(p).total_cmp(&b.distance_squared(p))
+                };
+                ends.map(on_edge).min_by(nearer).unwrap_or(within)
+            });
+            let nearest =
+                feet.min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)));
+            if let Some(foot) = nearest
+                && let Some(n) = (p - foot).try_normalize()
+                && foot.distance(p) > 1e-12 * self.size[1]
+            {
+                best = (foot.distance(p), n);
+            }
+        }
+        let n = best.1;
+        (best.0, Vec3([n.x, n.y, n.z]))
+    }
+
     /// Outward normals of its faces, where these are not along its axes.
-    pub fn normals(&self) -> impl Iterator<Item = Vector> + '_ {
+    pub(super) fn normals(&self) -> impl Iterator<Item = Vector> + '_ {
         self.faces.iter().map(|f| f.0)
     }
 
     /// The edge, or the line on a curved side, that comes nearest to being the farthest in a direction; none of what is round all about.
-    pub fn edge(&self, dir: Vector) -> Option<[Vector; 2]> {
+    pub(super) fn edge(&self, dir: Vector) -> Option<[Vector; 2]> {
         match &self.solid {
             Solid::Box { low, high } => {
                 let corner = self.local_support_point(dir);
@@ -139,9 +192,10 @@ impl Body {
     }
 
     /// The face that looks along a unit vector.
-    pub fn face(&self, dir: Vector) -> Face {
+    pub(super) fn face(&self, dir: Vector) -> Face {
         let one = |p: Vector| Face {
             outline: vec![p],
+            ids: vec![0],
             stride: 1,
             normal: None,
         };
@@ -173,6 +227,11 @@ impl Body {
                         corner(true, true),
                         corner(false, true),
                     ],
+                    ids: [(false, false), (true, false), (true, true), (false, true)]
+                        .map(|(ka, kb)| {
+                            usize::from(up) << axis | usize::from(ka) << a | usize::from(kb) << b
+                        })
+                        .to_vec(),
                     stride: 1,
                     normal: Some(normal),
                 }
@@ -186,6 +245,7 @@ impl Body {
                     let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
                     return Face {
                         outline: vec![at(0), at(1)],
+                        ids: vec![0, RIM],
                         stride: 1,
                         normal: None,
                     };
@@ -204,19 +264,19 @@ impl Body {
                 });
                 Face {
                     outline: rim.collect(),
+                    ids: (0..RIM).map(|k| k + RIM * end).collect(),
                     stride: RIM / 4,
                     normal: Some(Vector::new(0.0, 0.0, up.signum())),
                 }
             }
             Solid::Hull(_) => {
-                let along = |f: &&(Vector, Vec<Vector>)| f.0.dot(dir);
-                let best = self
-                    .faces
-                    .iter()
-                    .max_by(|a, b| along(a).total_cmp(&along(b)));
+                let along = |f: &(&(Vector, Vec<Vector>), &Vec<usize>)| f.0.0.dot(dir);
+                let faces = self.faces.iter().zip(&self.ids);
+                let best = faces.max_by(|a, b| along(a).total_cmp(&along(b)));
                 match best {
-                    Some((normal, corners)) => Face {
+                    Some(((normal, corners), ids)) => Face {
                         outline: corners.clone(),
+                        ids: ids.clone(),
                         stride: 1,
                         normal: Some(*normal),
                     },

@@ -20,7 +20,7 @@ pub mod hull;
 mod points;
 
 use super::{Solid, TOUCH_NUMBERS};
-use body::Body;
+pub(super) use body::Body;
 pub use body::RIM;
 use parry3d_f64::math::{Matrix, Pose, Rotation, Vector};
 

@@ -10,6 +10,10 @@ use parry3d_f64::math::{Pose, Vector};
 const NEIGHBOURS: f64 = 0.02;
 /// Points nearer than this part of it are one.
 const SAME: f64 = 1e-9;
+/// Points of faces that touch elsewhere count up to this part of the smaller solid above the other one.
+const ALOFT: f64 = 0.05;
+/// Where the numbers of J's features begin: a hull has fewer.
+const OTHER: usize = 1 << 20;
 /// Edges of faces at a smaller angle cross in what is no corner of the overlap.
 const BLUNT: f64 = 0.1;
 
@@ -26,13 +30,15 @@ impl Query {
         let (flat_i, flat_j) = (i.laid(e, f), j.laid(e, f));
         let size = self.i.size[0].min(self.j.size[0]);
         let near = SAME * size;
-        let mut places: Vec<(Flat, f64)> = Vec::new();
-        for (face, flat, other) in [(&i, &flat_i, &flat_j), (&j, &flat_j, &flat_i)] {
-            let corners = flat.iter().step_by(face.stride);
+        // where, how much, which
+        let mut places: Vec<(Flat, f64, usize)> = Vec::new();
+        let both = [(&i, &flat_i, &flat_j, 0), (&j, &flat_j, &flat_i, OTHER)];
+        for (face, flat, other, first) in both {
+            let corners = flat.iter().zip(&face.ids).step_by(face.stride);
             places.extend(
                 corners
-                    .filter(|p| is_within(**p, other, near))
-                    .map(|p| (*p, 1.0)),
+                    .filter(|(p, _)| is_within(**p, other, near))
+                    .map(|(p, id)| (*p, 1.0, first + id)),
             );
         }
         for (p, q) in edges(&flat_i) {
@@ -45,13 +51,13 @@ impl Query {
                         [2, _] | [_, 2] => 1.0,
                         _ => 1.0 - blunt,
                     };
-                    (at, weight)
+                    (at, weight, 2 * OTHER)
                 }));
             }
         }
-        let mut found: Vec<(Flat, f64, [f64; 2])> = Vec::new();
-        for (at, weight) in places {
-            let same = |other: &(Flat, f64, [f64; 2])| distance(other.0, at) <= near;
+        let mut found: Vec<(Flat, f64, [f64; 2], usize)> = Vec::new();
+        for (at, weight, id) in places {
+            let same = |other: &(Flat, f64, [f64; 2], usize)| distance(other.0, at) <= near;
             if found.iter().any(same) {
                 continue;
             }
@@ -60,7 +66,7 @@ impl Query {
                 height(&j, &flat_j, at, (n, e, f)),
             ];
             if heights.iter().all(|h| h.is_finite()) {
-                found.push((at, weight, heights));
+                found.push((at, weight, heights, id));
             }
         }
         if found.is_empty() {
@@ -76,23 +82,27 @@ impl Query {
         }
         let reach = NEIGHBOURS * size;
         let crowd = |at: Flat| -> f64 {
-            let near = |other: &(Flat, f64, [f64; 2])| {
+            let near = |other: &(Flat, f64, [f64; 2], usize)| {
                 let part = 1.0 - (distance(other.0, at) / reach).powi(2);
                 other.1 * part.max(0.0).powi(2)
             };
             found.iter().map(near).sum()
         };
-        let touch = |&(at, weight, [on_i, on_j]): &(Flat, f64, [f64; 2])| {
+        let touch = |&(at, weight, [on_i, on_j], _): &(Flat, f64, [f64; 2], usize)| {
             let base = e * at[0] + f * at[1];
             let share = Vector::splat(weight / crowd(at).max(1.0));
             [base + n * on_i, base + n * on_j, share]
         };
-        // the deepest, in the order in which they were found, which two equally deep ones do not exchange: what reads them is differentiated
+        // the deepest, in the order of their features, which two equally deep ones do not exchange, and which is the same whichever of two faces
+        // beside an edge looks at the other solid: what reads them is differentiated. For the same reason those of one face that are far off are left
+        // alone: those of the other face are elsewhere.
         let mut deepest: Vec<usize> = (0..found.len()).collect();
         let depth = |k: usize| found[k].2[1] - found[k].2[0];
         deepest.sort_by(|&a, &b| depth(b).total_cmp(&depth(a)));
         deepest.truncate(TOUCHES);
-        deepest.sort_unstable();
+        let first = deepest[0];
+        deepest.retain(|&k| k == first || depth(k) > -ALOFT * size);
+        deepest.sort_by_key(|&k| (found[k].3, k));
         deepest.into_iter().map(|k| touch(&found[k])).collect()
     }
 }

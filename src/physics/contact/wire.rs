@@ -1,0 +1,505 @@
+//! A wire against a solid: a ball whose centre may be anywhere on a plane curve. A torus is the wire of its ring, a circle, an arc or a curve
+//! a wire without thickness, a point one without length.
+//!
+//! With d(s) the distance of the curve from the solid and n its direction (`ball.rs`, `ellipsoid.rs`), t the tangent, r the radius of the wire:
+//!
+//! ```text
+//! d' = n · t = 0, rising: the wire is nearest here        depth = r − d                            (1)
+//! ```
+//!
+//! - **Lows**, where (1) holds, are found between stations by bisection and secants. Two of them that grow together end as one: they share by the
+//!   height B of the wall between them and the difference Δ of what they stand on,
+//!
+//!   ```text
+//!   u = Δ/(Δ + B),   c = 1 − B/depth ∈ [0, 1]       the higher one  1 − c (1 + u)/2,   the lower one  1 − c (1 − u)/2
+//!   ```
+//!
+//!   so that one vanishes without a force where the wall does, and two that meet halfway are half a touch each.
+//! - **Anchors** are fixed places of the wire that hold it where it lies along the solid, and (1) says nothing: the whole ring on a plane, half of it on
+//!   the end of a box. They weigh [`WHOLE`] touches together and are lifted where the wire is inclined to the solid on both their sides,
+//!
+//!   ```text
+//!   depth − LIFT · size · q        1/q = 1/q₋ + 1/q₊,   q the mean of d'² as far as the next anchor
+//!   ```
+//!
+//!   so that an inclined wire touches in its lows alone; half of the weight stands for either side, and goes where that leads away ([`ASIDE`]). A low takes what anchors as deep as it leave of a touch, and of that
+//!   q²/(q² + [`LEVEL`]²): the end of what lies along a solid is no place of its own.
+
+use super::ball::distance;
+use super::outline::{Outline, Rim};
+use super::{Question, Solid, TOUCH_NUMBERS, ellipsoid};
+use crate::space::{Mat3, Vec3};
+use std::f64::consts::TAU;
+
+/// Stations of the wire at which is looked, at least, and at most.
+const STATIONS: [usize; 2] = [48, 4096];
+/// Places that hold a wire that lies along a solid.
+const ANCHORS: usize = 12;
+/// Places of least distance.
+const LOWS: usize = 4;
+/// Touches of a wire that has a length.
+pub(super) const WIRE_TOUCHES: usize = ANCHORS + LOWS;
+/// Touches that a wire lying along a plane weighs: as many as the rim of a cylinder.
+const WHOLE: f64 = 4.0;
+/// How far anchors of an inclined wire are lifted.
+const LIFT: f64 = 100.0;
+/// Anchors within this part of the size count for a low.
+const NEIGHBOURS: f64 = 1.7;
+/// Depth below which a low and an anchor count as equally deep if they differ by less than it, as a part of the size.
+const SHALLOW: f64 = 1e-4;
+/// Differences of distance that count as none, as a part of the size: a low is the middle of what is as low.
+const FLAT: f64 = 1e-9;
+/// Mean square of d' on one side of an anchor at which that side counts no more than a quarter.
+const ASIDE: f64 = 0.01;
+/// Mean square of d' on one side of a low below which the wire lies along the solid there.
+const LEVEL: f64 = 1e-7;
+/// A wire farther off than this many times its size is left alone.
+const FAR: f64 = 1e6;
+
+/// A place of the wire.
+#[derive(Clone, Copy, Debug)]
+struct Station {
+    /// parameter of the curve
+    s: f64,
+    at: Vec3<f64>,
+    /// way to the next one
+    way: f64,
+}
+
+/// The solid, as it is asked for distances.
+#[derive(Clone, Debug)]
+enum Target {
+    Formula(Solid),
+    Ellipsoid([f64; 3]),
+    #[cfg(feature = "geometry")]
+    Hull(std::sync::Arc<super::query::Body>),
+}
+
+/// The question for a wire and a solid.
+#[derive(Clone, Debug)]
+pub struct Wire {
+    rim: Rim,
+    /// radius of the wire
+    tube: f64,
+    /// of the curve, about the middle of its marker
+    size: f64,
+    closed: bool,
+    /// none of a point
+    stations: Vec<Station>,
+    /// of them, in order
+    anchors: Vec<usize>,
+    target: Target,
+    /// the wire is J's
+    turned: bool,
+}
+
+/// A place of least distance.
+#[derive(Clone, Copy)]
+struct Low {
+    station: usize,
+    s: f64,
+    d: f64,
+    share: f64,
+}
+
+impl Target {
+    fn new(solid: &Solid) -> Option<Self> {
+        match solid {
+            Solid::Ellipsoid { semi } => Some(Self::Ellipsoid(*semi)),
+            #[cfg(feature = "geometry")]
+            Solid::Hull(_) => super::query::Body::new(solid).map(|b| Self::Hull(b.into())),
+            #[cfg(not(feature = "geometry"))]
+            Solid::Hull(_) => None,
+            // two points, or a curve and a point, are no solid
+            Solid::Ball { radius: 0.0 } => None,
+            _ => Some(Self::Formula(solid.clone())),
+        }
+    }
+    /// Signed distance of a point, and the direction in which it grows.
+    fn distance(&self, p: Vec3<f64>) -> (f64, Vec3<f64>) {
+        match self {
+            Self::Formula(solid) => distance(solid, p),
+            Self::Ellipsoid(semi) => ellipsoid::distance(*semi, p),
+            #[cfg(feature = "geometry")]
+            Self::Hull(body) => body.distance(p),
+        }
+    }
+}
+
+impl Question {
+    /// A torus or a point of I or J and the other's solid; `None`: neither is one, or the other cannot be asked for distances.
+    pub fn wire(i: &Solid, j: &Solid) -> Option<Self> {
+        let one = |wire: &Solid, solid: &Solid, turned: bool| match *wire {
+            Solid::Torus { ring, tube } => Wire::new(Rim::Circle(ring, TAU), tube, solid, turned),
+            Solid::Ball { radius } => Wire::new(Rim::Point, radius, solid, turned),
+            _ => None,
+        };
+        let wire = one(i, j, false).or_else(|| one(j, i, true))?;
+        Some(Question::Wire(Box::new(wire)))
+    }
+
+    /// A plane curve and a solid, the curve being I's or, `turned`, J's.
+    pub fn curve(outline: &Outline, solid: &Solid, turned: bool) -> Option<Self> {
+        let wire = Wire::new(outline.rim().clone(), 0.0, solid, turned)?;
+        Some(Question::Wire(Box::new(wire)))
+    }
+}
+
+impl Wire {
+    fn new(rim: Rim, tube: f64, solid: &Solid, turned: bool) -> Option<Self> {
+        let target = Target::new(solid)?;
+        let closed = rim.is_closed();
+        let mut this = Self {
+            rim,
+            tube,
+            size: tube,
+            closed,
+            stations: Vec::new(),
+            anchors: Vec::new(),
+            target,
+            turned,
+        };
+        if !matches!(this.rim, Rim::Point) {
+            this.divide();
+            if this.stations.len() < 3 {
+                return None;
+            }
+        }
+        Some(this)
+    }
+
+    /// Touches that it may have.
+    pub fn touches(&self) -> usize {
+        if self.stations.is_empty() {
+            1
+        } else {
+            WIRE_TOUCHES
+        }
+    }
+
+    /// A point of the curve.
+    fn at(&self, s: f64) -> Vec3<f64> {
+        let p = self.rim.at(s, 0);
+        Vec3([p[0], p[1], 0.0])
+    }
+
+    /// Stations and anchors.
+    fn divide(&mut self) {
+        let knots = self.rim.knots();
+        let pieces =
+            |a: f64, b: f64, n: usize| (0..n).map(move |k| a + (b - a) * k as f64 / n as f64);
+        let length = |a: f64, b: f64| -> f64 {
+            let ends = pieces(a, b, 8).chain([b]).map(|s| self.at(s));
+            let points: Vec<Vec3<f64>> = ends.collect();
+            points.windows(2).map(|p| (p[1] - p[0]).norm()).sum()
+        };
+        let lengths: Vec<f64> = knots.windows(2).map(|k| length(k[0], k[1])).collect();
+        let whole: f64 = lengths.iter().sum();
+        let mut places = Vec::new();
+        for (pair, length) in knots.windows(2).zip(&lengths) {
+            let n = (STATIONS[0] as f64 * length / whole).ceil();
+            if n >= 1.0 {
+                places.extend(pieces(pair[0], pair[1], (n as usize).min(STATIONS[0])));
+            }
+        }
+        if places.len() > STATIONS[1] {
+            let stride = places.len().div_ceil(STATIONS[1]);
+            places = places.into_iter().step_by(stride).collect();
+        }
+        if !self.closed {
+            places.extend(knots.last());
+        }
+        let points: Vec<Vec3<f64>> = places.iter().map(|&s| self.at(s)).collect();
+        let n = points.len();
+        let way = |k: usize| (points[(k + 1) % n] - points[k]).norm();
+        self.stations = (0..n)
+            .map(|k| Station {
+                s: places[k],
+                at: points[k],
+                way: way(k),
+            })
+            .collect();
+        self.size = points.iter().map(|p| p.norm()).fold(self.tube, f64::max);
+        let gaps = if self.closed { ANCHORS } else { ANCHORS - 1 } as f64;
+        let last = if self.closed { n } else { n.saturating_sub(1) };
+        let whole: f64 = self.stations[..last].iter().map(|s| s.way).sum();
+        let (mut k, mut gone) = (0, 0.0);
+        for anchor in 0..ANCHORS {
+            // half a part in 1e9 for rounding
+            let next = whole * (anchor as f64 / gaps - 1e-9);
+            while k + 1 < n && gone < next {
+                gone += self.stations[k].way;
+                k += 1;
+            }
+            self.anchors.push(k);
+        }
+    }
+
+    /// The touches for a pose of I's marker in J's, its position and the three columns of its axes, as [`super::found`] reads
+    /// them   ([`Wire::touches`] × TOUCH_NUMBERS).
+    pub fn ask(&self, pose: &[f64], out: &mut [f64]) {
+        super::nothing(out);
+        let far = FAR * self.size.max(1.0);
+        if pose.len() != 12 || !pose.iter().all(|x| x.abs() <= far) {
+            return;
+        }
+        let vector = |k: usize| Vec3([pose[3 * k], pose[3 * k + 1], pose[3 * k + 2]]);
+        let axes = Mat3::from_columns(vector(1), vector(2), vector(3));
+        // of the wire in the frame of the solid
+        let (place, axes) = if self.turned {
+            let back = Mat3::from_columns(axes.row(0), axes.row(1), axes.row(2));
+            (-back.apply(vector(0)), back)
+        } else {
+            (vector(0), axes)
+        };
+        let distance = |c: Vec3<f64>| self.target.distance(place + axes.apply(c));
+        let all = if self.stations.is_empty() {
+            vec![(Vec3::zero(), 0.0, 1.0)]
+        } else {
+            self.places(&|c| distance(c).0, &|s| {
+                let t = self.rim.at(s, 1);
+                let t = axes.apply(Vec3([t[0], t[1], 0.0]));
+                distance(self.at(s)).1.dot(t)
+            })
+        };
+        for (touch, (c, lift, share)) in out.chunks_mut(TOUCH_NUMBERS).zip(all) {
+            let (d, n) = distance(c);
+            let on_solid = place + axes.apply(c) - n.times(d);
+            // the normal in the wire's frame
+            let own = axes.apply_transposed(n);
+            let on_wire = c - own.times(self.tube);
+            // the direction from J's solid to I's, in J's frame
+            let (on_i, on_j, normal) = if self.turned {
+                (on_solid, on_wire, -own)
+            } else {
+                (on_wire, on_solid, n)
+            };
+            let all = [on_i.0, on_j.0, normal.0].concat();
+            touch[..9].copy_from_slice(&all);
+            touch[9] = lift;
+            touch[10] = share;
+        }
+    }
+
+    /// Centres of touches with how far they are lifted and their shares: the anchors, then the lows along the wire.
+    fn places(
+        &self,
+        distance: &dyn Fn(Vec3<f64>) -> f64,
+        slope: &dyn Fn(f64) -> f64,
+    ) -> Vec<(Vec3<f64>, f64, f64)> {
+        let d: Vec<f64> = self.stations.iter().map(|s| distance(s.at)).collect();
+        let held = self.held(&d);
+        let anchor =
+            |(&k, &(lift, share)): (&usize, &(f64, f64))| (self.stations[k].at, lift, share);
+        let mut all: Vec<_> = self.anchors.iter().zip(&held).map(anchor).collect();
+        for low in self.lows(&d, distance, slope) {
+            let c = self.at(low.s);
+            let depth = self.tube - low.d;
+            let scale = depth.max(SHALLOW * self.size);
+            let taken = self.anchors.iter().zip(&held).map(|(&k, (lift, share))| {
+                let as_deep = 1.0 - (d[k] + lift - low.d) / scale;
+                let apart = (self.stations[k].at - c).norm() / (NEIGHBOURS * self.size);
+                share * as_deep.clamp(0.0, 1.0) * (1.0 - apart * apart).max(0.0).powi(2)
+            });
+            let left = (1.0 - taken.sum::<f64>()).max(0.0);
+            all.push((c, 0.0, low.share * left * self.sharpness(&d, low.station)));
+        }
+        all
+    }
+
+    /// How far the anchors are lifted and their shares, from the distances of the stations.
+    fn held(&self, d: &[f64]) -> Vec<(f64, f64)> {
+        let n = d.len();
+        // none beyond the ends of an open wire
+        let after = |k: usize| match self.anchors.get(k + 1) {
+            Some(&to) => self.inclined(d, self.anchors[k], to - self.anchors[k]),
+            None if self.closed => {
+                self.inclined(d, self.anchors[k], self.anchors[0] + n - self.anchors[k])
+            }
+            None => f64::INFINITY,
+        };
+        let q: Vec<f64> = (0..ANCHORS).map(after).collect();
+        let lift = |k: usize| {
+            let before = match k {
+                0 if !self.closed => f64::INFINITY,
+                _ => q[(k + ANCHORS - 1) % ANCHORS],
+            };
+            let lift = (LIFT * self.size * both(before, q[k])).min(FAR * self.size);
+            // half of it stands for either side
+            let share = [before, q[k]].map(|q| 0.5 * (1.0 + q / ASIDE).powi(-2));
+            let gaps = ANCHORS - usize::from(!self.closed);
+            (lift, WHOLE / gaps as f64 * (share[0] + share[1]))
+        };
+        (0..ANCHORS).map(lift).collect()
+    }
+
+    /// Mean of d'² from a station over so many ways.
+    fn inclined(&self, d: &[f64], from: usize, ways: usize) -> f64 {
+        let n = d.len();
+        let (mut sum, mut way) = (0.0, 0.0);
+        for k in from..from + ways {
+            let w = self.stations[k % n].way;
+            if w > 0.0 {
+                sum += (d[(k + 1) % n] - d[k % n]).powi(2) / w;
+                way += w;
+            }
+        }
+        if way > 0.0 { sum / way } else { f64::INFINITY }
+    }
+
+    /// How much a low is one: less where the wire lies along the solid on one of its sides.
+    fn sharpness(&self, d: &[f64], station: usize) -> f64 {
+        let n = d.len();
+        let ways = n.div_ceil(ANCHORS);
+        let after = if self.closed {
+            ways
+        } else {
+            ways.min(n - 1 - station)
+        };
+        let before = if self.closed { ways } else { ways.min(station) };
+        let q = both(
+            self.inclined(d, station, after),
+            self.inclined(d, station + n - before, before),
+        );
+        1.0 / (1.0 + (LEVEL / q).powi(2))
+    }
+
+    /// Where the wire is nearest, the deepest [`LOWS`] in the order of the wire, with the shares of those that grow together.
+    fn lows(
+        &self,
+        d: &[f64],
+        distance: &dyn Fn(Vec3<f64>) -> f64,
+        slope: &dyn Fn(f64) -> f64,
+    ) -> Vec<Low> {
+        let n = d.len();
+        let flat = FLAT * self.size;
+        let mut lows = Vec::new();
+        for k in 0..n {
+            let before = (k > 0 || self.closed).then(|| d[(k + n - 1) % n]);
+            if before.is_some_and(|before| before <= d[k] + flat) {
+                continue;
+            }
+            // as far as it is level
+            let mut last = k;
+            let mut after = None;
+            while last + 1 < n || self.closed && last + 1 < k + n {
+                let next = d[(last + 1) % n];
+                if (next - d[k]).abs() > flat {
+                    after = Some(next);
+                    break;
+                }
+                last += 1;
+            }
+            let begins = self.parameter(k + n - usize::from(before.is_some())) - 2.0;
+            let ends = self.parameter(last + usize::from(after.is_some()));
+            if after.is_some_and(|after| after < d[k]) {
+                continue;
+            }
+            let middle = (k + last) / 2;
+            let mut low = (self.parameter(middle), d[middle % n]);
+            let way = self.stations[(k + n - 1) % n]
+                .way
+                .max(self.stations[last % n].way);
+            // one that is off wherever between the stations its place is is not looked at any closer: the way is hardly longer than a straight line
+            if d[k] - self.tube <= 1.5 * way {
+                let at = |s: f64| distance(self.at(s));
+                let s = root(slope, begins, ends);
+                let least = at(s);
+                if least <= low.1 {
+                    low = (s, least);
+                }
+                let level = low.1 + flat;
+                let to = root(|s| at(s) - level, low.0, ends);
+                let from = -root(|s| at(-s) - level, -low.0, -begins);
+                low.0 = 0.5 * (from + to);
+                low.1 = at(low.0);
+            }
+            lows.push(Low {
+                station: middle % n,
+                s: low.0,
+                d: low.1,
+                share: 1.0,
+            });
+        }
+        self.share(d, &mut lows);
+        lows.sort_by(|a, b| a.d.total_cmp(&b.d));
+        lows.truncate(LOWS);
+        lows.sort_by_key(|low| low.station);
+        lows
+    }
+
+    /// The parameter of a station, counted on around a closed wire.
+    fn parameter(&self, k: usize) -> f64 {
+        let n = self.stations.len();
+        // once around is 2
+        self.stations[k % n].s + 2.0 * (k / n) as f64
+    }
+
+    /// Lows with a wall between them that is lower than they are deep share.
+    fn share(&self, d: &[f64], lows: &mut [Low]) {
+        let (n, m) = (d.len(), lows.len());
+        let pairs = match (m, self.closed) {
+            (0 | 1, _) => 0,
+            // there and back are two walls, of which the lower one counts
+            (2, true) => 1,
+            (_, true) => m,
+            (_, false) => m - 1,
+        };
+        let wall = |a: usize, b: usize| {
+            let steps = (b + n - a) % n;
+            (0..=steps).map(|k| d[(a + k) % n]).fold(f64::MIN, f64::max)
+        };
+        for k in 0..pairs {
+            let (i, j) = (k, (k + 1) % m);
+            let (a, b) = (lows[i].station, lows[j].station);
+            let mut top = wall(a, b);
+            if m == 2 && self.closed {
+                top = top.min(wall(b, a));
+            }
+            let (high, low) = if d[a] > d[b] { (i, j) } else { (j, i) };
+            let ground = d[lows[high].station];
+            let (height, step) = (top - ground, ground - d[lows[low].station]);
+            let depth = self.tube - lows[high].d;
+            if depth > 0.0 && height < depth {
+                let together = 1.0 - height / depth;
+                let apart = step / (step + height).max(f64::MIN_POSITIVE);
+                lows[high].share *= 1.0 - 0.5 * together * (1.0 + apart);
+                lows[low].share *= 1.0 - 0.5 * together * (1.0 - apart);
+            }
+        }
+    }
+}
+
+/// Half the harmonic mean.
+fn both(a: f64, b: f64) -> f64 {
+    let least = |x: f64| 1.0 / x.max(f64::MIN_POSITIVE);
+    1.0 / (least(a) + least(b))
+}
+
+/// Where a function that is not positive at `a` and not negative at `b` vanishes: secants, halved where these stay on one side.
+fn root(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+    let (mut fa, mut fb) = (f(a), f(b));
+    for _ in 0..100 {
+        if b - a <= 1e-15 || fb <= 0.0 {
+            return b;
+        }
+        if fa >= 0.0 {
+            return a;
+        }
+        let x = (a * fb - b * fa) / (fb - fa);
+        let x = if x > a && x < b { x } else { 0.5 * (a + b) };
+        let y = f(x);
+        if y == 0.0 {
+            return x;
+        }
+        // the value at the end that stays counts half (Illinois)
+        if y > 0.0 {
+            (b, fb) = (x, y);
+            fa *= 0.5;
+        } else {
+            (a, fa) = (x, y);
+            fb *= 0.5;
+        }
+    }
+    0.5 * (a + b)
+}
