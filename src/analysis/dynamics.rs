@@ -204,7 +204,14 @@ pub fn integrate(
         } else {
             &y[..n]
         };
-        let finished = leg.run(method.as_mut(), t, state, auto && name == "DOP853");
+        let explicit = auto && name == "DOP853";
+        let finished = leg.run(
+            method.as_mut(),
+            t,
+            state,
+            explicit,
+            !numeric::is_implicit(&name),
+        );
         add(&mut out.stats, method.stats());
         system.release();
         match finished {
@@ -234,9 +241,10 @@ pub fn integrate(
                 y.resize(n, 0.0);
                 y.copy_from_slice(&state[..n]);
             }
-            Finished::Stiff => {
+            Finished::Stiff | Finished::Slides => {
                 t = method.t();
-                y.copy_from_slice(method.y());
+                y.resize(n, 0.0);
+                y.copy_from_slice(&method.y()[..n]);
                 name = "RADAU5".into();
             }
         }
@@ -275,6 +283,9 @@ const FOLLOWS: f64 = 1e-8;
 /// A step that violates one by more than this is shortened.
 const CLOSE: f64 = 1e-6;
 
+/// Steps tried that have to bring a run further than this part of its duration, or it would not end.
+const STALLED: (usize, f64) = (20_000, 1e-8);
+
 /// Steps of an explicit method that stability may force before an implicit one is taken from the start.
 const STABLE_STEPS: f64 = 2000.0;
 /// Largest system whose eigenvalues are looked at.
@@ -311,11 +322,19 @@ pub fn first_method(system: &mut System, duration: f64) -> &'static str {
     }
 }
 
+/// The unknown that changes fastest.
+fn fastest(ydot: &[f64]) -> usize {
+    let largest = (ydot.iter().enumerate()).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    largest.map_or(0, |(i, _)| i)
+}
+
 enum Finished {
     Done,
     Ended(Ended),
     /// another method would do better from here
     Stiff,
+    /// the motion stays where a branch changes, which the method does not know how to do
+    Slides,
     /// other rows are to be kept from here, or the state has been put onto all of them
     Rows(Vec<f64>),
 }
@@ -340,6 +359,7 @@ impl Leg<'_> {
         t: f64,
         y: &[f64],
         may_change: bool,
+        may_slide: bool,
     ) -> Finished {
         let mut switches = Switches::new(self.system, y.len(), self.end - t);
         switches.start(self.system, t, y);
@@ -355,7 +375,18 @@ impl Leg<'_> {
         let has_rows = !self.system.scene.rows.is_empty();
         let mut before = vec![0.0; if has_rows { y.len() } else { 0 }];
         self.system.take_weak();
+        let duration = self.end - t;
+        let tried = |method: &dyn Method<System>| method.stats().steps + method.stats().rejected;
+        let mut was_at = (tried(method), method.t());
         while method.t() < self.end {
+            if tried(method) > was_at.0 + STALLED.0 {
+                if method.t() - was_at.1 < STALLED.1 * duration {
+                    let (t, h) = (method.t(), 0.0);
+                    let reason = Reason::Stalled(fastest(method.ydot()));
+                    return Finished::Ended(Ended::Stop(Stop { reason, t, h }));
+                }
+                was_at = (tried(method), method.t());
+            }
             if self.watch.interrupted() {
                 return Finished::Ended(Ended::Interrupted);
             }
@@ -446,8 +477,12 @@ impl Leg<'_> {
             }
             if switched && step.t1 < self.end {
                 self.out.events += 1;
-                let state = method.y().to_vec();
-                switches.change(self.system, anew, &state);
+                let mut state = method.y().to_vec();
+                switches.change(self.system, anew, &mut state);
+                if let Some(worst) = switches.endless() {
+                    let (reason, t, h) = (Reason::Endless(worst), step.t1, step.h);
+                    return Finished::Ended(Ended::Stop(Stop { reason, t, h }));
+                }
                 if let Err(stop) = method
                     .reinitialize(self.system, anew, &state)
                     .and_then(|()| self.begin(method, &mut switches))
@@ -458,6 +493,9 @@ impl Leg<'_> {
                 if let Some(h) = stepsize {
                     method.propose(h);
                 }
+            }
+            if switches.slide() && !may_slide && method.t() < self.end {
+                return Finished::Slides;
             }
             if may_change && method.stiff() && method.t() < self.end {
                 return Finished::Stiff;

@@ -12,9 +12,11 @@
 //! |g| > h max |ġ|   at both ends        so that g cannot have come to zero
 //! ```
 //!
-//! A function whose branches push each other back (dry friction by SIGN) would switch for ever: after forty switches in
-//! hardly any time the branches are let go for twenty steps, and error control finds its way. The same is done where no step
-//! is possible while they are held.
+//! Where both branches of a function lead back to where it changes (dry friction by SIGN, at rest), the motion stays there: the switch *slides*, see
+//! `system/sliding.rs`. While it does, its value is how far the mean of the branches is from either of them; it goes on along one when that comes to zero.
+//!
+//! What switches for ever all the same (a relay that reads a position): after forty switches in hardly any time the branches are let go for twenty steps,
+//! and error control finds its way. The same is done where no step is possible while they are held. Where that leads nowhere, [`Switches::endless`].
 
 use super::system::System;
 use crate::numeric::event::{Locator, sign};
@@ -31,6 +33,10 @@ const LANDED: f64 = 0.1;
 const SHORTEST: f64 = 1e-13;
 /// Steps without watching after a burst.
 const REST: usize = 20;
+/// Bursts in a row, each beginning hardly any time after the one before, that lead nowhere.
+const ENDLESS: usize = 50;
+/// Part of the duration that is hardly any time for twenty steps.
+const HARDLY_FURTHER: f64 = 1e-3;
 
 /// What a step means for the switches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +56,8 @@ pub struct Switches {
     /// sides now held, or to be held from the switch on   (n)
     sides: Vec<i8>,
     next: Vec<i8>,
+    /// which of them slide; these are on the positive side of how far they do   (n)
+    slides: Vec<bool>,
     /// values and slopes at the beginning and at the end of a step   (n each)
     g0: Vec<f64>,
     slope0: Vec<f64>,
@@ -62,6 +70,10 @@ pub struct Switches {
     redone: usize,
     burst: usize,
     last: f64,
+    /// bursts in a row, and when the last one was
+    bursts: usize,
+    last_burst: f64,
+    worst: usize,
     rest: usize,
     duration: f64,
 }
@@ -74,6 +86,7 @@ impl Switches {
             locator: Locator::new(n),
             sides: vec![0; n],
             next: vec![0; n],
+            slides: vec![false; n],
             g0: vec![0.0; n],
             slope0: vec![0.0; n],
             g1: vec![0.0; n],
@@ -83,6 +96,9 @@ impl Switches {
             redone: 0,
             burst: 0,
             last: f64::NEG_INFINITY,
+            bursts: 0,
+            last_burst: f64::NEG_INFINITY,
+            worst: 0,
             rest: 0,
             duration,
         }
@@ -102,11 +118,22 @@ impl Switches {
         self.landing = None;
         system.hold(&self.sides);
         self.next.fill(0);
+        self.slides.fill(false);
         self.settle(system, t, y);
     }
 
-    /// Takes over the branches from a switch on; to be called before the method begins anew there.
-    pub fn change(&mut self, system: &mut System, t: f64, y: &[f64]) {
+    /// Whether something slides.
+    pub fn slide(&self) -> bool {
+        self.slides.contains(&true)
+    }
+
+    /// Where branches change without end and without getting any further, the unknown that they change most.
+    pub fn endless(&self) -> Option<usize> {
+        (self.bursts > ENDLESS).then_some(self.worst)
+    }
+
+    /// Takes over the branches from a switch on; to be called before the method begins anew there. Where the motion stays, the state is put there.
+    pub fn change(&mut self, system: &mut System, t: f64, y: &mut [f64]) {
         self.landing = None;
         self.redone = 0;
         if t - self.last < HARDLY * self.duration {
@@ -116,12 +143,40 @@ impl Switches {
         }
         self.last = t;
         if self.burst > BURST {
+            let further = t - self.last_burst > HARDLY_FURTHER * self.duration;
+            self.bursts = if further { 1 } else { self.bursts + 1 };
+            self.last_burst = t;
             self.burst = 0;
             self.rest = REST;
+            self.slides.fill(false);
+            if let Some(k) = self.next.iter().position(|&side| side != 0) {
+                self.worst = system.changed_most_by(t, y, k);
+            }
             system.release();
             return;
         }
+        for k in 0..self.sides.len() {
+            if self.next[k] == 0 {
+                continue;
+            }
+            if self.slides[k] {
+                self.next[k] = system.side_left_to(t, y, k);
+                self.slides[k] = false;
+            } else if system.attracts(t, y, k) {
+                self.slides[k] = true;
+            }
+            self.hold(system);
+            if self.slides[k] {
+                system.stay(t, y);
+            }
+        }
         self.settle(system, t, y);
+    }
+
+    /// Holds the branches on their sides, except where they slide.
+    fn hold(&self, system: &mut System) {
+        system.hold(&self.sides);
+        system.slide((0..self.slides.len()).filter(|&k| self.slides[k]));
     }
 
     /// Lets the branches go for a while where no step is possible while they are held: beyond its end a branch may grow without
@@ -133,6 +188,7 @@ impl Switches {
         self.landing = None;
         self.redone = 0;
         self.rest = REST;
+        self.slides.fill(false);
         system.release();
         true
     }
@@ -141,11 +197,13 @@ impl Switches {
     fn settle(&mut self, system: &mut System, t: f64, y: &[f64]) {
         self.sides.copy_from_slice(&self.next);
         for _ in 0..10 {
-            system.hold(&self.sides);
+            self.hold(system);
             system.switches(t, y, &mut self.g0);
             let mut changed = false;
             for k in 0..self.sides.len() {
-                let side = if self.next[k] == 0 {
+                let side = if self.slides[k] {
+                    1
+                } else if self.next[k] == 0 {
                     sign(self.g0[k])
                 } else {
                     self.next[k]
@@ -157,7 +215,7 @@ impl Switches {
                 break;
             }
         }
-        system.hold(&self.sides);
+        self.hold(system);
     }
 
     /// Values on no side take the one they leave to; slopes at the state. True: a side was taken, the rate is another.
@@ -171,13 +229,19 @@ impl Switches {
         system.switches(t, y, &mut self.g0);
         let mut changed = false;
         for k in 0..self.sides.len() {
-            if self.sides[k] == 0 {
-                self.sides[k] = sign(self.slope0[k]);
-                changed |= self.sides[k] != 0;
+            if self.sides[k] != 0 || self.slope0[k] == 0.0 {
+                continue;
             }
+            changed = true;
+            if system.attracts(t, y, k) {
+                self.slides[k] = true;
+                self.sides[k] = 1;
+            } else {
+                self.sides[k] = sign(self.slope0[k]);
+            }
+            self.hold(system);
         }
         if changed {
-            system.hold(&self.sides);
             system.switches(t, y, &mut self.g0);
         }
         self.locator.begin_on(&self.g0, &self.sides);

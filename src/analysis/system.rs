@@ -5,6 +5,7 @@
 //! them in position and velocity.
 
 mod jacobian;
+mod sliding;
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
@@ -30,6 +31,7 @@ use super::samples::Samples;
 use super::sensors::Sensors;
 use super::unknowns::{Unknowns, WIDTH};
 use jacobian::Gradient;
+use sliding::Slides;
 use std::sync::Arc;
 
 /// A scene with its programs, ready to be integrated.
@@ -60,6 +62,8 @@ pub struct System {
     holding: bool,
     /// sides of the switches, as the held rate reads them   (n_switches)
     sides: Vec<f64>,
+    /// switches at which the motion stays while branches are held
+    slides: Slides,
     /// unknowns of loops that are not linear
     unknowns: Option<Unknowns>,
     /// values of the past, results of closures
@@ -338,6 +342,7 @@ impl System {
             switch_numbers: Vec::new(),
             holding: false,
             sides: vec![0.0; n_switches],
+            slides: Slides::default(),
             unknowns,
             outside,
             sensors,
@@ -427,6 +432,9 @@ impl System {
             return;
         }
         switching.switches.run(all, &mut self.switch_work, values);
+        if self.is_sliding() {
+            self.sliding_values(values);
+        }
     }
 
     /// Whether branches can be held.
@@ -434,8 +442,9 @@ impl System {
         self.switching.as_ref().is_some_and(|s| s.held.is_some())
     }
 
-    /// From now on rates are those of the branches on these sides of the switches (−1, 0, 1), wherever the state goes.
+    /// From now on rates are those of the branches on these sides of the switches (−1, 0, 1), wherever the state goes; nothing slides.
     pub fn hold(&mut self, sides: &[i8]) {
+        self.slide([]);
         self.sides.clear();
         self.sides.extend(sides.iter().map(|&s| f64::from(s)));
         self.holding = self.can_hold();
@@ -448,6 +457,9 @@ impl System {
 
     /// The rates at the present numbers, and how strong the rows are.
     fn run_rate(&mut self) {
+        if self.is_sliding() && self.run_sliding() {
+            return;
+        }
         if let (
             true,
             Some(Switching {
@@ -546,6 +558,7 @@ impl System {
         self.switching = programs::switching(&scene).map_err(complaints)?;
         let n_switches = self.n_switches();
         self.sides.resize(n_switches, 0.0);
+        self.slide([]);
         (self.gradients, self.pattern) = ([None, None], None);
         self.renew_implicit(&scene)?;
         self.unknowns = Unknowns::new(&scene).map_err(complaints)?;

@@ -41,6 +41,11 @@ impl Lu {
         }
     }
 
+    /// Rows of the matrix.
+    pub fn size(&self) -> usize {
+        self.n
+    }
+
     /// Where to put the matrix before [`Lu::factor`]: `[i + n·j]`   (n × n)
     pub fn matrix_mut(&mut self) -> &mut [f64] {
         &mut self.a

@@ -282,6 +282,10 @@ pub enum Reason {
     Singular(usize),
     /// as many steps as permitted
     TooManySteps,
+    /// branches change without end in hardly any time; what they change most is this unknown
+    Endless(usize),
+    /// thousands of steps got hardly any further; this unknown changes fastest
+    Stalled(usize),
 }
 
 /// What an integration has cost so far.

@@ -299,6 +299,8 @@ impl Reading {
             }
             "Data" => {
                 self.map_ends()?;
+                // a block may begin inside another: steps so far belong to the one before
+                self.run.end();
                 let rows = self.run.rows()..self.run.rows();
                 let name = attribute("name")?.unwrap_or_default();
                 let kind = Kind::NAMES

@@ -19,6 +19,7 @@ use super::{drives, kinematics, outside, statics};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::Model;
+use crate::numeric;
 use crate::results::{self, Event, Kind, Run, Status};
 use crate::scene::Scene;
 use crate::scene::contacts::Shell;
@@ -426,19 +427,19 @@ impl Session {
         let last = trajectory.rows.last().cloned().unwrap_or(first);
         self.keep(system, last);
         let counts = counts(&trajectory.stats);
-        let method = trajectory
-            .methods
-            .iter()
-            .enumerate()
-            .map(|(k, (t, name))| {
-                if k == 0 {
-                    name.clone()
+        let mut method = String::new();
+        for (k, (t, name)) in trajectory.methods.iter().enumerate() {
+            if k > 0 {
+                let why = if numeric::is_implicit(&trajectory.methods[k - 1].1) {
+                    "the motion stays where a function changes its branch"
                 } else {
-                    format!("{name} from {t}, where steps were limited by stiffness")
-                }
-            })
-            .collect::<Vec<_>>()
-            .join(", then ");
+                    "steps were limited by stiffness"
+                };
+                method += &format!(", then {name} from {t}, where {why}");
+            } else {
+                method += name;
+            }
+        }
         self.run.record.error = Some(settings.error);
         self.close(results::Simulation {
             kind,

@@ -348,6 +348,16 @@ pub(super) fn explain(system: &System, stop: &Stop) -> (Status, String, String) 
             unknown(k),
         ),
         Reason::Singular(k) => (Status::Stopped, "nothing determines an unknown", unknown(k)),
+        Reason::Endless(k) => (
+            Status::Stopped,
+            "a function changes its branch without end",
+            unknown(k),
+        ),
+        Reason::Stalled(k) => (
+            Status::Stopped,
+            "thousands of steps got hardly any further",
+            unknown(k),
+        ),
         Reason::TooManySteps => (Status::Limit, "as many steps as permitted", String::new()),
     };
     let sentence = format!(

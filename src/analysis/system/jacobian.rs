@@ -73,9 +73,9 @@ impl System {
         dfdt: &mut [f64],
     ) -> Result<(), Failure> {
         self.gradient(n);
-        let holding = usize::from(self.holding);
+        let (holding, sliding) = (usize::from(self.holding), self.is_sliding());
         match &mut self.gradients[holding] {
-            Some(Gradient::Recorded(program, work, entries)) => {
+            Some(Gradient::Recorded(program, work, entries)) if !sliding => {
                 let numbers = if self.holding {
                     let all = &mut self.switch_numbers;
                     all.clear();
@@ -171,6 +171,9 @@ impl System {
         sums: &[Vec<usize>],
         mut take: impl FnMut(usize, &dyn Fn(usize) -> f64),
     ) -> Result<(), Failure> {
+        if self.is_sliding() {
+            return self.along_sums_sliding(sums, take);
+        }
         let n = self.scene.layout.y().len();
         let constant = Dual {
             re: 0.0,
