@@ -7,7 +7,7 @@ mod running;
 
 use running::{Analysis, Session, go, last, model, options};
 
-const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+const METHODS: [&str; 5] = ["AUTO", "DOP853", "RADAU5", "HHT", "NEWMARK"];
 
 /// Masses that slide along z of ground, `speeds` at first, with forces between markers 1 (ground), 2 and 3.
 fn blocks(masses: &[f64], speeds: &[f64], forces: &str, method: &str) -> Session {
@@ -38,10 +38,7 @@ fn near(s: &Session, column: &str, expected: f64, what: &str) {
 
 #[test]
 fn dry_friction_brings_to_rest_and_holds() {
-    for function in [
-        "-SIGN(3,VZ(2,1))+1",
-        "IF(VZ(2,1):4,1,-2)",
-    ] {
+    for function in ["-SIGN(3,VZ(2,1))+1", "IF(VZ(2,1):4,1,-2)"] {
         for method in METHODS {
             let what = format!("{function} by {method}");
             let force =
