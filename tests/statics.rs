@@ -355,3 +355,50 @@ fn a_rotor_of_stiff_arms_swings_down() {
         assert!(record.counts.steps < 200, "{:?}", record.counts);
     }
 }
+
+#[test]
+fn what_integrates_a_velocity_winds_up_until_it_holds_the_load() {
+    let text = format!(
+        "{GROUND}PART/2, MASS=2, CM=2, IP=1,1,1, QG=0,0,3\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\nACCGRAV/KGRAV=-9.81\n\
+         DIFF/1, IC=0.25, FUNCTION=VZ(2,1)\nSFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=-1E4*DIF(1)\nEND\n"
+    );
+    let mut s = session(&text, &["DZ(2,1)", "DIF(1)"]);
+    assert_eq!(
+        rest(&mut s),
+        Status::Completed,
+        "{}",
+        s.run.record.stop_reason
+    );
+    println!("{} {:?}", s.run.record.method, s.run.record.counts);
+    let wound = -2.0 * 9.81 / 1e4;
+    assert!((last(&s, "DIF(1)") - wound).abs() < 1e-12);
+    // it sinks by as much as it winds up
+    assert!((last(&s, "DZ(2,1)") - (3.0 + wound - 0.25)).abs() < 1e-9);
+    assert!(
+        s.run.record.method.ends_with("stable"),
+        "{}",
+        s.run.record.method
+    );
+}
+
+#[test]
+fn of_what_moves_the_load_that_nothing_carries_is_named() {
+    // the light part is pushed against a stop it can reach; the heavy one, tied to a third, has nothing below
+    let text = format!(
+        "{GROUND}PART/2, MASS=1E-3, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\n\
+         SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=5-1E-3*DZ(2,1)\n\
+         PART/3, MASS=10, CM=3, IP=1,1,1, QG=5,0,0\nMARKER/3, PART=3\nPART/4, MASS=1, CM=4, IP=1,1,1, QG=5,1,0\nMARKER/4, PART=4\n\
+         MARKER/5, PART=4, QP=0,-1,0\nBUSHING/1, I=5, J=3, K=1E5,1E5,1E5, KT=1E3,1E3,1E3\nACCGRAV/KGRAV=-9.81\nEND\n"
+    );
+    let mut s = session(&text, &[]);
+    assert_eq!(rest(&mut s), Status::NoEquilibrium);
+    let why = &s.run.record.stop_reason;
+    println!("{why}");
+    assert!(
+        why.contains("force of 9.81")
+            && why.contains("on PART/3")
+            && why.contains("(0.000000, 0.000000, -1.000000)")
+            && why.contains("nothing carries it"),
+        "{why}"
+    );
+}

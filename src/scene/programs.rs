@@ -39,16 +39,28 @@ pub fn record_more<F>(scene: &Scene, n_more: usize, f: F) -> (Program, Vec<Strin
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
 {
-    let (mut programs, complaints) = recorded(scene, n_more, false, f, |_, values| vec![values]);
+    let (mut programs, complaints) =
+        recorded(scene, n_more, false, false, f, |_, values| vec![values]);
     (programs.remove(0), complaints)
 }
 
+/// As [`record_with_complaints`], with velocities that are read at rest as well: what would change if it moved.
+pub fn record_moving<F>(scene: &Scene, f: F) -> Program
+where
+    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
+{
+    let (mut programs, _) =
+        recorded(scene, 0, false, true, |at, _| f(at), |_, values| vec![values]);
+    programs.remove(0)
+}
+
 /// Records what `f` computes, and what `end` makes of the values: a program for each of its lists. The unknowns of linear
-/// loops are eliminated, or, where `known`, read after the numbers of the layout.
+/// loops are eliminated, or, where `known`, read after the numbers of the layout. `moving`: velocities are not taken as zero at rest.
 fn recorded<F, E>(
     scene: &Scene,
     n_more: usize,
     known: bool,
+    moving: bool,
     f: F,
     end: E,
 ) -> (Vec<Program>, Vec<String>)
@@ -63,7 +75,7 @@ where
         .iter()
         .map(|&input| Sym::input(input, &builder))
         .collect();
-    if scene.mode == STATIC {
+    if scene.mode == STATIC && !moving {
         numbers[scene.layout.v()].fill(Sym::Constant(0.0));
     }
     let mut solved = numbers[scene.layout.loops()].to_vec();
@@ -139,6 +151,7 @@ pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<String>> {
         scene,
         n_more,
         linear,
+        false,
         |at, _| sources(at, scene),
         |builder, values| {
             let breaks = builder.timed_breaks(&values, time);
@@ -166,6 +179,7 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
         scene,
         n_more,
         linear,
+        false,
         |at, _| sources(at, scene),
         |builder, values| vec![builder.switching(&values)],
     );
@@ -193,6 +207,7 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
     let (mut both, _) = recorded(
         scene,
         switches.n_outputs(),
+        false,
         false,
         |at, _| {
             let mut out = rate(at);

@@ -220,7 +220,7 @@ impl Settler<'_> {
     }
 
     /// Length of a step that is Newton's but for the part of the mass that STABILITY asks for, small against all stiffness.
-    fn longest(&self, p: &Point, jacobian: &DMatrix<f64>) -> f64 {
+    pub(super) fn longest(&self, p: &Point, jacobian: &DMatrix<f64>) -> f64 {
         let n = self.n_v();
         let mut least = f64::INFINITY;
         for v in 0..n {

@@ -13,6 +13,9 @@
 //! is positive on the motions that the rows leave: then it cannot jump to the top of a hill. A singular stiffness, as of a
 //! body that touches nothing yet, needs no special treatment.
 //!
+//! A state may be the integral of a velocity (a spring that knows how far it was wound): at rest its rate is zero wherever it stands, and no equation of
+//! the end finds it. While the model falls there are velocities, Δ/h, and such states follow them: `Δx/h = e + … + ∂e/∂v Δ/h`.
+//!
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the model stood there from the start.
 
 mod fall;
@@ -32,7 +35,8 @@ use crate::model;
 use crate::numeric::Stats;
 use crate::numeric::pattern::Pattern;
 use crate::scalar::Dual;
-use crate::scene::programs::record_more;
+use crate::scene::programs::{record_more, record_moving};
+use nalgebra::DMatrix;
 use point::Point;
 
 /// Saddles that are left before one is accepted.
@@ -110,6 +114,10 @@ struct Settler<'a> {
     dual_work: Work<Dual<WIDTH>>,
     /// places in x of the states that are sought
     states: Vec<usize>,
+    /// e of the states that are sought, where some reads a velocity
+    moving: Option<Program>,
+    /// ∂e/∂v where the derivatives were taken last   (n_d × n_v)
+    drift: Option<DMatrix<f64>>,
     /// indices of the active rows
     rows: Vec<usize>,
     evaluations: usize,
@@ -156,11 +164,21 @@ impl<'a> Settler<'a> {
         if let Some(first) = complaints.first() {
             return Err(NoEquilibrium::Unbalanced(first.clone(), String::new()));
         }
+        let moving = record_moving(scene, |at| {
+            let rates = at.state_rates();
+            states.iter().map(|&x| rates[x]).collect()
+        });
+        let mut speeds = vec![Vec::new(); scene.layout.len()];
+        scene.layout.v().for_each(|place| speeds[place].push(0));
+        let follows = moving.dependence(&speeds);
+        let moving = (follows.iter().any(|along| !along.is_empty())).then_some(moving);
         Ok(Self {
             program,
             pattern: None,
             work: Work::default(),
             dual_work: Work::default(),
+            drift: None,
+            moving,
             states,
             rows,
             evaluations: 0,

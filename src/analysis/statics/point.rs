@@ -92,6 +92,17 @@ impl Settler<'_> {
         // a loop that nothing determines stops the search elsewhere: here nothing is known
         .unwrap_or_else(|_| DMatrix::zeros(n + m + d, n + d));
         self.pattern = Some(pattern);
+        self.drift = self.drift(p);
         slopes.remove_rows(n, m)
+    }
+
+    /// Derivatives of e along velocities   (n_d × n_v).
+    fn drift(&mut self, p: &Point) -> Option<DMatrix<f64>> {
+        let moving = self.moving.as_ref()?;
+        let places = self.system.scene.layout.v();
+        let speeds: Vec<Direction> = places.map(|place| vec![(place, 1.0)]).collect();
+        let all = p.numbers.iter().copied();
+        let follow = |numbers: &mut [_], first| self.system.follow_along(numbers, first);
+        along(moving, &mut self.dual_work, all, &speeds, None, follow).ok()
     }
 }

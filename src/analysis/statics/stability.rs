@@ -44,8 +44,15 @@ impl Settler<'_> {
         let mut k = jacobian.view((0, 0), (n, n)).into_owned();
         if d > 0 {
             let own = jacobian.view((n, n), (d, d)).into_owned();
-            if let Some(inverse) = own.try_inverse() {
-                let follow = inverse * jacobian.view((n, 0), (d, n));
+            let mut moved = jacobian.view((n, 0), (d, n)).into_owned();
+            let inverse = own.clone().try_inverse().or_else(|| {
+                // integrals of velocities follow what they integrate, in a motion as slow as may be: λ x = e_x x + (e_q + λ e_v) q
+                let slow = 1e-6 * own.amax().max(1.0);
+                moved += self.drift.as_ref()? * slow;
+                (own - DMatrix::identity(d, d) * slow).try_inverse()
+            });
+            if let Some(inverse) = inverse {
+                let follow = inverse * moved;
                 k -= jacobian.view((0, n), (n, d)) * follow;
             }
         }

@@ -79,6 +79,10 @@ impl Settler<'_> {
         for (k, rate) in pace.states.iter().enumerate() {
             a[(n + k, n + k)] += rate;
         }
+        if let Some(drift) = &self.drift {
+            let mut follow = a.view_mut((n, 0), (d, n));
+            follow -= drift / pace.length;
+        }
         a.view_mut((0, n + d), (n, m))
             .copy_from(&(-p.rows.gradient.transpose()));
         a.view_mut((n + d, 0), (m, n)).copy_from(&p.rows.gradient);
@@ -211,8 +215,13 @@ impl Settler<'_> {
         let (n, d) = (self.n_v(), self.states.len());
         let mut step = step;
         let h = pace.length;
+        let drift = self.drift.clone();
         let advance = |step: &DVector<f64>| {
-            DVector::from_iterator(d, (0..d).map(|k| step[n + k] * pace.states[k]))
+            let own = DVector::from_iterator(d, (0..d).map(|k| step[n + k] * pace.states[k]));
+            match &drift {
+                Some(drift) => own - drift * step.rows(0, n) / h,
+                None => own,
+            }
         };
         let mut before = f64::INFINITY;
         if self.excess(&step) > 1.0 {

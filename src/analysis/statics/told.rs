@@ -1,13 +1,40 @@
 //! What is said where no equilibrium is found.
 
 use super::point::Point;
+use super::step::Pace;
 use super::{NoEquilibrium, Settler};
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
+use nalgebra::DVector;
+
+/// How often a step is made shorter until its matrix is regular.
+const MAX_SHORTER: usize = 8;
 
 impl Settler<'_> {
-    /// Names what is not balanced: the coordinate that would be accelerated most.
-    pub(super) fn unbalanced(&self, p: &Point) -> NoEquilibrium {
+    /// The loads that keep accelerating the model when whatever gives way has given way as far as it can; `None` where that is not known.
+    ///
+    /// ```text
+    /// D Δ/h = f + K Δ + Gᵀλ,  h → ∞
+    /// ```
+    fn carried_by_nothing(&mut self, p: &Point) -> Option<DVector<f64>> {
+        let jacobian = self.jacobian(p);
+        let n = self.n_v();
+        // as long as the matrix bears it, with a few digits left
+        let mut length = 100.0 * self.longest(p, &jacobian);
+        let step = (0..MAX_SHORTER).find_map(|_| {
+            length *= 0.01;
+            let pace = Pace::new(length, &jacobian, n);
+            self.newton(p, &jacobian, &pace, &p.force)?;
+            let pace = Pace::new(0.01 * length, &jacobian, n);
+            self.newton(p, &jacobian, &pace, &p.force)
+        })?;
+        let load = p.metric.times(&step.as_slice()[..n]) / (0.01 * length);
+        (p.metric.size(&load) > 1e-3 * p.left[0]).then_some(load)
+    }
+
+    /// Names what is not balanced: the largest of the loads that nothing carries, else what would be accelerated most.
+    pub(super) fn unbalanced(&mut self, p: &Point) -> NoEquilibrium {
+        let uncarried = self.carried_by_nothing(p);
         let scene = &self.system.scene;
         let rate = p.metric.solve(&p.force);
         let unit = |angular: bool| if angular { 1.0 } else { scene.length };
@@ -17,7 +44,13 @@ impl Settler<'_> {
             .zip(&scene.freedoms)
             .filter_map(|(c, f)| {
                 let v = f.v?;
-                Some((rate[v].abs() / unit(c.angular), c, f, p.force[v]))
+                Some(match &uncarried {
+                    Some(load) => {
+                        let lever = if c.angular { scene.length } else { 1.0 };
+                        (load[v].abs() / lever, c, f, load[v])
+                    }
+                    None => (rate[v].abs() / unit(c.angular), c, f, p.force[v]),
+                })
             })
             .max_by(|a, b| a.0.total_cmp(&b.0));
         let state = (0..self.states.len()).max_by(|&a, &b| {
@@ -45,8 +78,13 @@ impl Settler<'_> {
         let what = if f.turn { "torque" } else { "force" };
         let round = |x: f64| if x.abs() < 5e-7 { 0.0 } else { x };
         let [x, y, z] = way.0.map(round);
+        let nothing = if uncarried.is_some() {
+            "; nothing carries it"
+        } else {
+            ""
+        };
         let sentence = format!(
-            "no equilibrium: a {what} of {:.6e} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {}",
+            "no equilibrium: a {what} of {:.6e} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {}{nothing}",
             force.abs(),
             c.name
         );
