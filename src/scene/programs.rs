@@ -49,8 +49,14 @@ pub fn record_moving<F>(scene: &Scene, f: F) -> Program
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
-    let (mut programs, _) =
-        recorded(scene, 0, false, true, |at, _| f(at), |_, values| vec![values]);
+    let (mut programs, _) = recorded(
+        scene,
+        0,
+        false,
+        true,
+        |at, _| f(at),
+        |_, values| vec![values],
+    );
     programs.remove(0)
 }
 
