@@ -350,12 +350,12 @@ pub(super) fn explain(system: &System, stop: &Stop) -> (Status, String, String) 
         Reason::Singular(k) => (Status::Stopped, "nothing determines an unknown", unknown(k)),
         Reason::Endless(k) => (
             Status::Stopped,
-            "a function changes its branch without end",
+            "a function changes its branch without end; let it change over a short way, as STEP does",
             unknown(k),
         ),
         Reason::Stalled(k) => (
             Status::Stopped,
-            "thousands of steps got hardly any further",
+            "thousands of steps got hardly any further; something is too stiff or changes too fast for this method",
             unknown(k),
         ),
         Reason::TooManySteps => (Status::Limit, "as many steps as permitted", String::new()),
