@@ -16,14 +16,14 @@
 //!
 //!   so that one vanishes without a force where the wall does, and two that meet halfway are half a touch each.
 //! - **Anchors** are fixed places of the wire that hold it where it lies along the solid, and (1) says nothing: the whole ring on a plane, half of it on
-//!   the end of a box. They weigh [`WHOLE`] touches together and are lifted where the wire is inclined to the solid on both their sides,
+//!   the end of a box. They weigh `WHOLE` touches together and are lifted where the wire is inclined to the solid on both their sides,
 //!
 //!   ```text
 //!   depth − LIFT · size · q        1/q = 1/q₋ + 1/q₊,   q the mean of d'² as far as the next anchor
 //!   ```
 //!
-//!   so that an inclined wire touches in its lows alone; half of the weight stands for either side, and goes where that leads away ([`ASIDE`]). A low takes what anchors as deep as it leave of a touch, and of that
-//!   q²/(q² + [`LEVEL`]²): the end of what lies along a solid is no place of its own.
+//!   so that an inclined wire touches in its lows alone; half of the weight stands for either side, and goes where that leads away (`ASIDE`). A low takes what anchors as deep as it leave of a touch, and of that
+//!   q²/(q² + `LEVEL`²): the end of what lies along a solid is no place of its own.
 
 use super::ball::distance;
 use super::outline::{Outline, Rim};
