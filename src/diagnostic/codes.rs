@@ -386,8 +386,9 @@ are refused.
         name: "coincident",
         summary: "a force acts along the line between two markers that coincide",
         explanation: "\
-SPRINGDAMPER and SFORCE with TRANSLATION act along the line from J to I. Where the markers coincide as the model begins there is no such line. A force that
-is zero there (a spring without free length and preload) is told and goes on; any other has no direction.
+SPRINGDAMPER and SFORCE with TRANSLATION act along the line from J to I. Where the markers coincide as the model begins
+there is no such line. A force that is zero there (a spring without free length and preload) is told and goes on; any other
+has no direction.
 
     SPRINGDAMPER/1, TRANSLATION, I=21, J=11, K=100, LENGTH=0.5     which way should it push?
     MARKER/21, PART=2, QP=0,0,0.5                                  up",
