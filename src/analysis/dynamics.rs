@@ -130,6 +130,7 @@ fn add(sum: &mut Stats, more: &Stats) {
     sum.jacobians += more.jacobians;
     sum.factorizations += more.factorizations;
     sum.newton_iterations += more.newton_iterations;
+    sum.below_rounding += more.below_rounding;
 }
 
 /// Integrates from the state in `system.numbers` through all `outputs` (ascending, after the state's time).

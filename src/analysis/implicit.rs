@@ -8,19 +8,22 @@
 //! Both are recorded from the same equations as the explicit rates. I3 controls the errors of positions only; the second multiplier of
 //! SI2, zero but for the error of the method, lets the rows hold in velocity too, and velocities are controlled.
 //!
+//! Where functions change branch the same is recorded with branches held, as the explicit rates are: a step sees smooth equations, also beyond the end of
+//! a branch.
+//!
 //! Source: Gear, Gupta & Leimkuhler 1985 for SI2.
+
+mod written;
 
 use super::outside::Outside;
 use super::system::System;
-use super::unknowns::WIDTH;
 use crate::diagnostic::Diagnostic;
-use crate::expr::program::{Builder, Folding, Input, Program, Work};
-use crate::numeric::pattern::Pattern;
 use crate::numeric::{Dae, Failure, Kind, Levels, Ode, Relation};
-use crate::scalar::{Dual, Scalar};
+use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
-use crate::scene::programs::{record, record_more};
+use crate::scene::programs::{Switching, held_with, record, record_more};
+use written::Written;
 
 /// Which levels of the rows an implicit method sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,36 +41,15 @@ pub struct Implicit {
     /// unknowns of the explicit system; rows that take part
     n: usize,
     m: usize,
-    residual: Program,
-    /// multipliers at a state
-    multipliers: Program,
-    jacobian: Jacobian,
-    work: Work,
-    /// what the residual reads: the numbers, then ẏ, λ, μ
+    /// with the branch that each state says
+    free: Written,
+    /// with branches held
+    held: Option<Written>,
+    /// of the Jacobian, whichever is asked for
+    pattern: Vec<(usize, usize)>,
+    /// what the residual reads: the numbers, then ẏ, λ, μ, then the sides of the switches
     numbers: Vec<f64>,
 }
-
-/// Derivatives of the residual.
-#[derive(Debug)]
-enum Jacobian {
-    /// recorded: entries (row, column), the output that is ∂F/∂y, the one that is ∂F/∂ẏ
-    Recorded {
-        program: Program,
-        work: Work,
-        entries: Vec<(usize, usize, Option<usize>, Option<usize>)>,
-        out: Vec<f64>,
-    },
-    /// by duals, columns that share no row together: where the program would be too long, and where numbers come from outside
-    Duals {
-        pattern: Pattern,
-        work: Work<Dual<WIDTH>>,
-        numbers: Vec<Dual<WIDTH>>,
-        out: Vec<Dual<WIDTH>>,
-    },
-}
-
-/// Most operations whose derivatives are recorded, in products with the unknowns.
-const LONGEST: usize = 400_000;
 
 fn residual<S: Scalar>(
     scene: &Scene,
@@ -113,7 +95,7 @@ impl Implicit {
     pub fn new(
         scene: &Scene,
         formulation: Formulation,
-        outside: &Outside,
+        (outside, switching): (&Outside, Option<&Switching>),
     ) -> Result<Self, Vec<Diagnostic>> {
         if !scene.loops.is_empty() {
             let loops = scene.loops.iter().map(|u| u.name.as_str());
@@ -141,22 +123,42 @@ impl Implicit {
         if !complaints.is_empty() {
             return Err(super::system::complaints(complaints));
         }
-        let multipliers = record(scene, |at| {
-            let solved = at.solved();
-            let active = (0..scene.rows.len()).filter(|&r| at.is_active(r));
-            active.map(|r| solved.lambda[r]).collect()
-        })
-        .map_err(super::system::complaints)?;
-        Ok(Self {
+        let multipliers =
+            record(scene, |at| multipliers_at(scene, at)).map_err(super::system::complaints)?;
+        let free = Written::new(scene, program, multipliers, (n, size), outside);
+        let held = switching.and_then(|switching| {
+            let more = n + levels * m;
+            let [residual, multipliers] = held_with(scene, switching, more, |at, more| {
+                [residual(scene, at, more, formulation), multipliers_at(scene, at)]
+            })?;
+            Some(Written::new(
+                scene,
+                residual,
+                multipliers,
+                (n, size),
+                outside,
+            ))
+        });
+        let mut pattern: Vec<_> = free.pattern().collect();
+        pattern.extend(held.iter().flat_map(Written::pattern));
+        pattern.sort_unstable_by_key(|&(i, j)| (j, i));
+        pattern.dedup();
+        let n_sides = switching.map_or(0, |s| s.switches.n_outputs());
+        let mut implicit = Self {
             formulation,
             n,
             m,
-            jacobian: Jacobian::new(scene, &program, n, size, outside),
-            residual: program,
-            multipliers,
-            work: Work::default(),
-            numbers: vec![0.0; scene.layout.len() + n + levels * m],
-        })
+            free,
+            held,
+            numbers: vec![0.0; scene.layout.len() + n + levels * m + n_sides],
+            pattern: Vec::new(),
+        };
+        implicit.free.place_in(&pattern);
+        if let Some(held) = &mut implicit.held {
+            held.place_in(&pattern);
+        }
+        implicit.pattern = pattern;
+        Ok(implicit)
     }
 
     /// How many unknowns there are.
@@ -167,83 +169,21 @@ impl Implicit {
         }
     }
 
-    fn set(&mut self, numbers: &[f64], y: &[f64], ydot: &[f64]) {
+    fn set(&mut self, numbers: &[f64], y: &[f64], ydot: &[f64], sides: &[f64]) {
         let (n, first) = (self.n, numbers.len());
         self.numbers[..first].copy_from_slice(numbers);
         self.numbers[first..first + n].copy_from_slice(&ydot[..n]);
-        self.numbers[first + n..].copy_from_slice(&y[n..]);
+        let sides_from = first + y.len();
+        self.numbers[first + n..sides_from].copy_from_slice(&y[n..]);
+        self.numbers[sides_from..].copy_from_slice(sides);
     }
 }
 
-/// Where the residual reads unknown `j`: numbers 1 … n, and of the multipliers those after ẏ, which begins at `first`.
-fn place(j: usize, n: usize, first: usize) -> usize {
-    if j < n { 1 + j } else { first + j }
-}
-
-impl Jacobian {
-    fn new(scene: &Scene, residual: &Program, n: usize, size: usize, outside: &Outside) -> Self {
-        let first = scene.layout.len();
-        let by_duals = || {
-            let mut along = vec![Vec::new(); first + size];
-            for j in 0..size {
-                along[place(j, n, first)].push(j as u32);
-                if j < n {
-                    along[first + j].push(j as u32);
-                }
-            }
-            outside.depend(&mut along);
-            let mut rows = residual.dependence(&along);
-            (rows.iter_mut().enumerate()).for_each(|(i, row)| row.push(i as u32));
-            Jacobian::Duals {
-                pattern: Pattern::of_rows(size, &rows),
-                work: Work::default(),
-                numbers: Vec::new(),
-                out: Vec::new(),
-            }
-        };
-        // what closures and queries yield is differentiated by differences, beside the programs
-        if size * residual.n_operations() > LONGEST || !scene.hooks.is_empty() {
-            return by_duals();
-        }
-        let mut builder = Builder::new(Folding::Structural);
-        let rows = residual.record(&mut builder);
-        let slot = |k: usize| Input::Slot(k as u32);
-        // y, then ẏ
-        let places = (0..size)
-            .map(|j| slot(place(j, n, first)))
-            .chain((0..n).map(|j| slot(first + j)));
-        let places: Vec<_> = places.map(|input| builder.input(input)).collect();
-        let mut wanted = Vec::new();
-        let mut entries = Vec::new();
-        for (i, &row) in rows.iter().enumerate() {
-            let gradient = builder.gradient(row, &places);
-            let mut output = |k: usize| {
-                let value = gradient[k];
-                if builder.constant_of(value) == Some(0.0) {
-                    return None;
-                }
-                wanted.push(value);
-                Some(wanted.len() - 1)
-            };
-            for j in 0..size {
-                let by_y = output(j);
-                let by_ydot = if j < n { output(size + j) } else { None };
-                if by_y.is_some() || by_ydot.is_some() || i == j {
-                    entries.push((i, j, by_y, by_ydot));
-                }
-            }
-        }
-        let program = builder.finish_with_inputs(&wanted, residual.inputs());
-        if program.n_operations() > LONGEST {
-            return by_duals();
-        }
-        Jacobian::Recorded {
-            out: vec![0.0; wanted.len()],
-            program,
-            work: Work::default(),
-            entries,
-        }
-    }
+/// The multipliers of the rows that take part, as the explicit equations have them.
+fn multipliers_at<S: Scalar>(scene: &Scene, at: &Equations<'_, S>) -> Vec<S> {
+    let solved = at.solved();
+    let active = (0..scene.rows.len()).filter(|&r| at.is_active(r));
+    active.map(|r| solved.lambda[r]).collect()
 }
 
 impl System {
@@ -257,11 +197,9 @@ impl System {
             .as_ref()
             .is_none_or(|i| i.formulation != formulation)
         {
-            self.implicit = Some(Box::new(Implicit::new(
-                &self.scene,
-                formulation,
-                &self.outside,
-            )?));
+            let more = (&self.outside, self.switching.as_ref());
+            let implicit = Implicit::new(&self.scene, formulation, more)?;
+            self.implicit = Some(Box::new(implicit));
         }
         Ok(())
     }
@@ -273,7 +211,8 @@ impl System {
     pub(super) fn renew_implicit(&mut self, scene: &Scene) -> Result<(), Vec<Diagnostic>> {
         if let Some(implicit) = &self.implicit {
             let formulation = implicit.formulation;
-            self.implicit = Some(Box::new(Implicit::new(scene, formulation, &self.outside)?));
+            let more = (&self.outside, self.switching.as_ref());
+            self.implicit = Some(Box::new(Implicit::new(scene, formulation, more)?));
         }
         Ok(())
     }
@@ -299,9 +238,17 @@ impl Dae for System {
     fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
         let n = self.implicit().n;
         self.set(t, &y[..n]);
+        let holding = self.holding;
         if let Some(i) = &mut self.implicit {
-            i.set(&self.numbers, y, ydot);
-            i.residual.run(&i.numbers, &mut i.work, r);
+            i.set(&self.numbers, y, ydot, &self.sides);
+            if let (true, Some(held)) = (holding, &mut i.held) {
+                held.residual(&i.numbers, r);
+                // beyond its end a branch may have no value
+                if r.iter().map(|x| x * 0.0).sum::<f64>() == 0.0 {
+                    return Ok(());
+                }
+            }
+            i.free.residual(&i.numbers, r);
         }
         match r.iter().position(|x| !x.is_finite()) {
             Some(what) => Err(Failure {
@@ -313,10 +260,7 @@ impl Dae for System {
     }
 
     fn pattern(&self) -> Vec<(usize, usize)> {
-        match &self.implicit().jacobian {
-            Jacobian::Recorded { entries, .. } => entries.iter().map(|e| (e.0, e.1)).collect(),
-            Jacobian::Duals { pattern, .. } => pattern.entries().collect(),
-        }
+        self.implicit().pattern.clone()
     }
 
     fn jacobian(
@@ -327,59 +271,15 @@ impl Dae for System {
         cj: f64,
         values: &mut [f64],
     ) -> Result<(), Failure> {
-        let (n, size) = (self.implicit().n, Dae::size(self));
-        self.set(t, &y[..n]);
-        let first = self.numbers.len();
+        self.set(t, &y[..self.implicit().n]);
+        let holding = self.holding;
         if let Some(i) = &mut self.implicit {
-            i.set(&self.numbers, y, ydot);
-            match &mut i.jacobian {
-                Jacobian::Recorded {
-                    program,
-                    work,
-                    entries,
-                    out,
-                } => {
-                    program.run(&i.numbers, work, out);
-                    for (value, (_, _, by_y, by_ydot)) in values.iter_mut().zip(entries) {
-                        *value =
-                            by_y.map_or(0.0, |k| out[k]) + by_ydot.map_or(0.0, |k| cj * out[k]);
-                    }
-                }
-                Jacobian::Duals {
-                    pattern,
-                    work,
-                    numbers,
-                    out,
-                } => {
-                    numbers.clear();
-                    numbers.extend(i.numbers.iter().map(|&x| Dual::<WIDTH>::constant(x)));
-                    out.resize(size, Dual::constant(0.0));
-                    for (chunk, groups) in pattern.groups().chunks(WIDTH).enumerate() {
-                        let mark = |numbers: &mut [Dual<WIDTH>], by_y: f64, by_ydot: f64| {
-                            for (k, group) in groups.iter().enumerate() {
-                                for &j in group {
-                                    numbers[place(j, n, first)].eps[k] = by_y;
-                                    if j < n {
-                                        numbers[first + j].eps[k] = by_ydot;
-                                    }
-                                }
-                            }
-                        };
-                        mark(numbers, 1.0, cj);
-                        self.outside.follow(numbers, chunk == 0);
-                        i.residual.eval(numbers, work, out);
-                        mark(numbers, 0.0, 0.0);
-                        self.outside.forget(numbers);
-                        for (k, group) in groups.iter().enumerate() {
-                            for &j in group {
-                                for (e, row) in pattern.column(j) {
-                                    values[e] = out[row].eps[k];
-                                }
-                            }
-                        }
-                    }
-                }
-            }
+            i.set(&self.numbers, y, ydot, &self.sides);
+            let written = match (holding, &mut i.held) {
+                (true, Some(held)) => held,
+                _ => &mut i.free,
+            };
+            written.derivatives(&i.numbers, cj, &mut self.outside, values);
         }
         Ok(())
     }
@@ -389,10 +289,17 @@ impl Dae for System {
         y[n..].fill(0.0);
         ydot.fill(0.0);
         Ode::rate(self, t, &y[..n], &mut ydot[..n])?;
+        let holding = self.holding;
         if let Some(i) = &mut self.implicit {
-            let m = i.m;
-            i.multipliers
-                .run(&self.numbers, &mut i.work, &mut y[n..n + m]);
+            i.set(&self.numbers, y, ydot, &self.sides);
+            let lambda = &mut y[n..n + i.m];
+            if let (true, Some(held)) = (holding, &mut i.held) {
+                held.multipliers(&i.numbers, lambda);
+                if lambda.iter().all(|x| x.is_finite()) {
+                    return Ok(());
+                }
+            }
+            i.free.multipliers(&self.numbers, lambda);
         }
         Ok(())
     }

@@ -51,7 +51,7 @@ pub struct System {
     /// the permitted local error: evaluations need not be much better
     pub precision: f64,
     /// values that change sign where a force or a differential equation changes branch
-    switching: Option<Switching>,
+    pub(super) switching: Option<Switching>,
     /// places in v of the angles that decide a branch
     watched_angles: Vec<usize>,
     /// what time alone does
@@ -59,9 +59,9 @@ pub struct System {
     /// the numbers, then what the switches read after them: unknowns of linear loops, or sides
     switch_numbers: Vec<f64>,
     /// whether branches are held
-    holding: bool,
+    pub(super) holding: bool,
     /// sides of the switches, as the held rate reads them   (n_switches)
-    sides: Vec<f64>,
+    pub(super) sides: Vec<f64>,
     /// switches at which the motion stays while branches are held
     slides: Slides,
     /// unknowns of loops that are not linear

@@ -1,10 +1,14 @@
-//! Which function of the model has no value where a simulation cannot go on: the operation, with its numbers.
+//! Which function of the model has no value where a simulation cannot go on, or grows without bound: the operation, with its numbers.
 //!
 //! A step that fails is shortened until it ends just before the place where the function loses its value. So all functions are asked
-//! there and a little later, along the rates that were found there.
+//! there and a little later, along the rates that were found there. Before a pole the function has values all the time; what it divides by has nearly gone
+//! to zero against what it is a little later.
 
 use crate::expr::Expr;
+use crate::expr::ast::{Ast, BinaryOp, Callee, Node, NodeIx};
+use crate::expr::functions::Function;
 use crate::expr::program::{Input, Work};
+use crate::expr::walk;
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
@@ -12,19 +16,76 @@ use crate::scene::layout::Layout;
 /// How much later, as parts of the time that the clock shows, or of a unit of it.
 const LATER: [f64; 6] = [0.0, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
 
-/// "SFORCE/1 FUNCTION: SQRT of -0.01 has no value", for the numbers of the last state; `None`: all functions have values.
+/// A divisor that is smaller than this part of what it is later is that of a pole.
+const VANISHED: f64 = 1e-8;
+
+/// "SFORCE/1 FUNCTION: SQRT of -0.01 has no value", for the numbers of the last state; `None`: all functions have values that stay bounded.
 pub fn named(scene: &Scene, numbers: &[f64]) -> Option<String> {
     let rates = Equations::new(scene, numbers).rates();
     let unit = numbers[Layout::TIME].abs().max(1.0);
-    LATER.iter().find_map(|later| {
+    let then = |later: f64| {
         let dt = later * unit;
         let mut then = numbers.to_vec();
         then[Layout::TIME] += dt;
         for (y, rate) in then[scene.layout.y()].iter_mut().zip(&rates) {
             *y += if rate.is_finite() { rate * dt } else { 0.0 };
         }
-        there(scene, &then)
+        then
+    };
+    let lost = LATER.iter().find_map(|&later| there(scene, &then(later)));
+    // where the rates grow as well, time alone tells more
+    lost.or_else(|| {
+        let mut passed = numbers.to_vec();
+        passed[Layout::TIME] += LATER[LATER.len() - 1] * unit;
+        let poles = [then(1e-6), passed];
+        poles.iter().find_map(|then| pole(scene, numbers, then))
     })
+}
+
+/// "SFORCE/3 FUNCTION: 1/(TIME-0.5) grows without bound at TIME = 0.5, for …": the first operation that divides by what is nearly zero now, but not then.
+fn pole(scene: &Scene, now: &[f64], then: &[f64]) -> Option<String> {
+    let [at_now, at_then] = [now, then].map(|numbers| Equations::new(scene, numbers));
+    scene.formulas.iter().find_map(|f| {
+        let expr = Expr::parse(&f.text).ok()?;
+        let values = [&at_now, &at_then].map(|at| {
+            let host = |input: Input| match input {
+                Input::Delayed(_) | Input::Slot(_) => None,
+                _ => Some(at.input(input, &f.name)),
+            };
+            walk::values(expr.ast(), &host).ok()
+        });
+        let [Some(here), Some(later)] = values else {
+            return None;
+        };
+        let ix = (0..here.len() as NodeIx).find(|&ix| {
+            let divisor = |values: &[Option<f64>]| divisor(expr.ast(), ix, values);
+            match (divisor(&here), divisor(&later)) {
+                (Some(here), Some(later)) => here.abs() < VANISHED * later.abs(),
+                _ => false,
+            }
+        })?;
+        let what = expr.ast().written(ix);
+        let value = here[ix as usize].unwrap_or(f64::NAN);
+        let time = now[Layout::TIME];
+        Some(format!(
+            "{}: {what} grows without bound, to {value:.3e} at TIME = {time}",
+            f.name
+        ))
+    })
+}
+
+/// What an operation divides by, or would if it were written as a quotient.
+fn divisor(ast: &Ast, ix: NodeIx, values: &[Option<f64>]) -> Option<f64> {
+    let value = |ix: NodeIx| values[ix as usize];
+    match *ast.node(ix) {
+        Node::Binary(BinaryOp::Div, _, b) => value(b),
+        Node::Binary(BinaryOp::Pow, a, b) => value(b).filter(|&b| b < 0.0).and(value(a)),
+        Node::Call {
+            callee: Callee::Function(Function::Tan),
+            ref args,
+        } => args.first().and_then(|&x| value(x)).map(f64::cos),
+        _ => None,
+    }
 }
 
 fn there(scene: &Scene, numbers: &[f64]) -> Option<String> {

@@ -468,7 +468,7 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
         let t0 = self.past.t;
         self.before.copy_from(&self.past);
         let shortest = control::shortest(t0, &self.options);
-        let mut cause = Reason::TooManySteps;
+        let mut cause = None;
         let (mut rejected, mut failed_tests) = (0, 0);
         loop {
             let proposed = self.past.h.min(self.options.h_max);
@@ -478,7 +478,7 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                 return stop(Reason::TooManySteps);
             }
             if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(cause);
+                return stop(cause.unwrap_or_else(|| control::too_fast(&self.past.ydot, &self.weights)));
             }
             if self.past.steps == 0 {
                 // the first step knows one rate only; its divided difference belongs to the step taken
@@ -508,9 +508,9 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                     });
                 }
                 Err(rejection) => {
-                    cause = rejection.reason;
+                    cause = Some(rejection.reason);
                     if !rejection.recoverable {
-                        return stop(cause);
+                        return stop(rejection.reason);
                     }
                     self.past.rising = false;
                     let mut factor = rejection.factor;

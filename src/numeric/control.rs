@@ -274,6 +274,12 @@ impl Starter<'_> {
     }
 }
 
+/// Why there is no step where one that is shorter than the shortest is proposed at once: the unknown that changes fastest grows without bound.
+pub fn too_fast(rate: &[f64], weights: &Weights) -> super::Reason {
+    let speeds = rate.iter().zip(weights.magnitude()).map(|(f, m)| f / m);
+    super::Reason::ErrorTest(worst_index(speeds))
+}
+
 /// The shortest sensible step at `t`: time must visibly pass.
 pub fn shortest(t: f64, options: &Options) -> f64 {
     options.h_min.max(16.0 * f64::EPSILON * t.abs()).max(1e-200)

@@ -291,7 +291,7 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
         let t0 = self.now.t;
         self.before.copy_from(&self.now);
         let shortest = control::shortest(t0, &self.options);
-        let mut cause = Reason::TooManySteps;
+        let mut cause = None;
         let mut rejected = 0;
         loop {
             let proposed = self.now.h.min(self.options.h_max);
@@ -301,7 +301,7 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                 return stop(Reason::TooManySteps);
             }
             if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(cause);
+                return stop(cause.unwrap_or_else(|| control::too_fast(&self.now.ydot, &self.weights)));
             }
             let t1 = if at_limit { t_limit } else { t0 + h };
             match self.attempt(problem, h, t1) {
@@ -331,7 +331,7 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                     });
                 }
                 Err((reason, recoverable, factor)) => {
-                    cause = reason;
+                    cause = Some(reason);
                     if !recoverable {
                         return stop(reason);
                     }

@@ -23,6 +23,7 @@ pub mod envelope;
 pub mod event;
 pub mod hht;
 pub mod newton;
+pub mod noise;
 pub mod pattern;
 pub mod radau;
 mod radau_systems;
@@ -303,6 +304,8 @@ pub struct Stats {
     pub factorizations: usize,
     /// Newton iterations
     pub newton_iterations: usize,
+    /// accepted steps whose error estimate was larger than permitted, and no more than rounding (see [`noise`])
+    pub below_rounding: usize,
 }
 
 /// What every method offers for a problem of type `P`.

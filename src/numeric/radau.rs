@@ -473,7 +473,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
         }
         let t0 = self.t0;
         let shortest = control::shortest(t0, &self.options);
-        let mut cause = Reason::TooManySteps;
+        let mut cause = None;
         let mut rejected = 0;
         self.calm = false;
         loop {
@@ -484,7 +484,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
                 return stop(Reason::TooManySteps);
             }
             if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(cause);
+                return stop(cause.unwrap_or_else(|| control::too_fast(&self.f0, &self.weights)));
             }
             let t1 = if at_limit { t_limit } else { t0 + h };
             self.h = h;
@@ -519,7 +519,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
                     });
                 }
                 Err((reason, recoverable, factor)) => {
-                    cause = reason;
+                    cause = Some(reason);
                     if !recoverable {
                         return stop(reason);
                     }

@@ -16,12 +16,14 @@
 //!
 //! *Stiffness*: `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` beyond 6.1, the edge of the stability region, in most steps of a run of steps means
 //! that stability holds the step down; [`Method::stiff`] then says so and the integration goes on.
+//! *Rounding*: an error that is too large but no more than rounding explains (`noise.rs`) is accepted: a shorter step would be no better.
 //! *Failures*: a stage where the problem fails, or a number that is not finite, shortens the step; no sensible step left is a [`Stop`].
 //!
 //! Source: Dormand & Prince 1980; coefficients, error and dense output of Hairer, Nørsett & Wanner, Solving ODEs I, II.5–II.10 (program DOP853).
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
 use super::control::{self, Pi, Weights, worst, worst_index};
+use super::noise::Noise;
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 
 /// Order of the method.
@@ -53,6 +55,9 @@ pub struct Dop853 {
     options: Options,
     weights: Weights,
     control: Pi,
+    noise: Noise,
+    /// whether the last attempt was as good as rounding permits, and no better
+    noisy: bool,
     stats: Stats,
     /// beginning and length of the last step
     t0: f64,
@@ -120,6 +125,8 @@ impl Dop853 {
             options: options.clone(),
             weights: Weights::new(n, options),
             control: Pi::new(8.0, 0.02, 0.85, 1.0 / 3.0, 6.0),
+            noise: Noise::default(),
+            noisy: false,
             stats: Stats::default(),
             t0: 0.0,
             h: 0.0,
@@ -148,6 +155,7 @@ impl Dop853 {
         self.y0.copy_from_slice(y);
         self.weights.see(y);
         self.control.reset();
+        self.noise.forget();
         (self.calm, self.first) = (false, true);
         (self.beyond_edge, self.within_edge) = (0, 0);
         self.stats.evaluations += 1;
@@ -258,12 +266,34 @@ impl Dop853 {
             return Ok(f64::NAN);
         }
         let scale = ERROR_SCALE / self.weights.tolerance();
-        let error = scale * blended(worst5, worst3);
+        let mut error = scale * blended(worst5, worst3);
+        self.noisy = false;
         if error > 1.0 {
             let scale = ERROR_SCALE / self.weights.tolerance().max(NOISE);
-            return Ok(error.min(scale * self.filtered(problem, t + h, h)));
+            error = error.min(scale * self.filtered(problem, t + h, h));
+        }
+        if error > 1.0 {
+            // measured against what rounding leaves, where that is more than what is asked for
+            let excess = (self.rounding(problem, h) * ERROR_SCALE / self.weights.tolerance()).max(1.0);
+            self.noisy = excess > 1.0;
+            error /= excess;
         }
         Ok(error)
+    }
+
+    /// The relative error estimate that rounding explains.
+    fn rounding<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> f64 {
+        // k₂ and k₃ have done their work
+        let [k2, k3, ..] = &mut self.k;
+        self.noise.of_step(
+            problem,
+            (self.t0, h),
+            &self.y0,
+            &self.f0,
+            &self.weights,
+            [k2, k3],
+            &mut self.stats,
+        )
     }
 
     /// The error (3) of the step just attempted without what the problem will project away; infinite where that changes nothing.
@@ -452,7 +482,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
         }
         self.dense_ready = false;
         let shortest = control::shortest(self.t0, &self.options);
-        let mut cause = Reason::TooManySteps;
+        let mut cause = None;
         let mut rejected = 0;
         loop {
             let (h, at_limit) = control::fit(self.t0, self.h_next.min(self.options.h_max), t_limit);
@@ -467,7 +497,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
                 return stop(Reason::TooManySteps);
             }
             if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(cause);
+                return stop(cause.unwrap_or_else(|| control::too_fast(&self.f0, &self.weights)));
             }
             let t1 = if at_limit { t_limit } else { self.t0 + h };
             self.h = h;
@@ -489,6 +519,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
                     self.weights.see(&self.y1);
                     self.watch_stiffness();
                     self.stats.steps += 1;
+                    self.stats.below_rounding += usize::from(self.noisy);
                     return Ok(Step {
                         t0: self.t0,
                         t1,
@@ -499,7 +530,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
                 }
                 Err(Trouble::Error(error)) => {
                     self.h_next = h * self.control.rejected(error);
-                    cause = Reason::ErrorTest(self.worst_unknown());
+                    cause = Some(Reason::ErrorTest(self.worst_unknown()));
                 }
                 Err(Trouble::Place(better)) => {
                     self.h_next = better;
@@ -509,7 +540,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
                     continue;
                 }
                 Err(Trouble::Reason(reason, recoverable)) => {
-                    cause = reason;
+                    cause = Some(reason);
                     if !recoverable {
                         return Err(Stop {
                             reason,

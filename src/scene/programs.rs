@@ -7,7 +7,7 @@ use super::loops;
 use super::solve::{gram, solve_symmetric};
 use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value};
 use crate::scalar::Scalar;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// Records what `f` computes from the instant it is given. The program reads the row of numbers that
 /// [`Layout`] describes.
@@ -233,6 +233,48 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
         unknowns: None,
         held: Some(both.remove(0)),
     }))
+}
+
+/// What `f` computes from the instant and `n_more` further numbers with every branch as the sign of its switch says: reads these numbers, then one sign per
+/// switch, after the layout's; `f` gives two lists, each makes a program. `None`: branches cannot be held. The switches are those of [`switching`], in
+/// their order, because the rates are recorded before anything else.
+pub fn held_with<F>(scene: &Scene, switching: &Switching, n_more: usize, f: F) -> Option<[Program; 2]>
+where
+    F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> [Vec<Sym<'b>>; 2],
+{
+    switching.held.as_ref()?;
+    let n_switches = switching.switches.n_outputs();
+    let first = scene.layout.len() + n_more;
+    let (n_first, n_all, same) = (Cell::new(0), Cell::new(0), Cell::new(false));
+    let (mut programs, complaints) = recorded(
+        scene,
+        n_more + n_switches,
+        false,
+        |at, more| {
+            let mut out = rate(at);
+            out.extend(sources(at, scene));
+            let [first, second] = f(at, &more[..n_more]);
+            n_first.set(first.len());
+            n_all.set(first.len() + second.len());
+            out.extend(first);
+            out.extend(second);
+            out
+        },
+        |builder, values| {
+            let (known, wanted) = values.split_at(values.len() - n_all.get());
+            let side = |k: usize| Input::Slot((first + k) as u32);
+            let sources = &known[scene.layout.y().len() + 1..];
+            let (held, switches) = builder.held(wanted, sources, side);
+            same.set(switches.len() == n_switches);
+            let (one, other) = held.split_at(n_first.get());
+            vec![one.to_vec(), other.to_vec()]
+        },
+    );
+    if !same.get() || !complaints.is_empty() {
+        return None;
+    }
+    let second = programs.pop()?;
+    Some([programs.pop()?, second])
 }
 
 /// The rates, and how strong the weakest pivot of the rows is.

@@ -426,6 +426,13 @@ impl Session {
         self.drift(system, &first, &trajectory.rows);
         let last = trajectory.rows.last().cloned().unwrap_or(first);
         self.keep(system, last);
+        let (below, steps) = (trajectory.stats.below_rounding, trajectory.stats.steps);
+        if below > 0 {
+            self.warn(&format!(
+                "an error of {} is below rounding: it was asked for in vain in {below} of {steps} steps, which are as exact as rounding permits",
+                settings.error
+            ));
+        }
         let counts = counts(&trajectory.stats);
         let mut method = String::new();
         for (k, (t, name)) in trajectory.methods.iter().enumerate() {
