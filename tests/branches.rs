@@ -40,8 +40,8 @@ fn all_follow(text: &str, column: &str, end: f64, exact: impl Fn(usize, f64) -> 
                 "{method} {error:e}: {off:.1e}, {} steps, {} rejected",
                 counts.steps, counts.rejected_steps
             );
-            // the request is of the error per step; a run has some tens of smooth pieces
-            assert!(off < 100.0 * error, "{method} {error:e}: {off:e}");
+            // the request is of the error per step; a run has up to ten smooth pieces
+            assert!(off < 10.0 * error, "{method} {error:e}: {off:e}");
         }
     }
 }
@@ -87,10 +87,7 @@ fn friction_by_a_sign_shortens_every_swing_by_the_same_amount() {
 
 #[test]
 fn a_ball_bounces_on_a_stiff_floor_alike_by_every_method() {
-    let text = slider(
-        0.5,
-        "-9.81+IMPACT(DZ(2),VZ(2),0.1,1E6,1.5,100,1E-4)",
-    );
+    let text = slider(0.5, "-9.81+IMPACT(DZ(2),VZ(2),0.1,1E6,1.5,100,1E-4)");
     let reference = run(&text, "DZ(2)", "DOP853", 1e-11, 1.0);
     let exact = values(&reference, "DZ(2)");
     all_follow(&text, "DZ(2)", 1.0, |k, _| exact[k]);

@@ -705,3 +705,61 @@ fn stiffness_is_noticed_by_the_explicit_method() {
         assert!(!method.stiff());
     }
 }
+
+/// An oscillator x, v told in x and v + K x: its rate is a small difference of large numbers, rounded in proportion to K.
+struct Skewed(f64);
+
+impl Ode for Skewed {
+    fn size(&self) -> usize {
+        2
+    }
+    fn rate(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let v = y[1] - self.0 * y[0];
+        ydot[0] = v;
+        ydot[1] = -y[0] + self.0 * v;
+        Ok(())
+    }
+    fn jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _jacobian: &mut [f64],
+        _dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
+        unreachable!("explicit methods never ask for it")
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.copy_from_slice(&[1.0, self.0]);
+    }
+}
+
+#[test]
+fn a_request_below_rounding_takes_the_steps_of_one_that_is_not() {
+    let run = |tolerance: f64| {
+        let mut problem = Skewed(1e6);
+        let mut method = ode_method::<Skewed>("DOP853", 2, &options(tolerance)).expect("there");
+        method
+            .start(&mut problem, 0.0, &[1.0, 1e6])
+            .expect("it can start");
+        while method.t() < 10.0 {
+            method.step(&mut problem, 10.0).expect("it can go on");
+        }
+        let off = (method.y()[0] - 10f64.cos()).abs();
+        (off, *method.stats())
+    };
+    // a rate of size one is off by 1e-10, K times the last place
+    let (off, within) = run(1e-8);
+    assert!(
+        off < 1e-6 && within.below_rounding == 0,
+        "{off:e} {within:?}"
+    );
+    for tolerance in [1e-11, 1e-12, 1e-13] {
+        let (off, below) = run(tolerance);
+        println!("{tolerance:e}: {off:e} {below:?}");
+        // steps shorter in proportion to the request would be a thousand times more
+        assert!(below.steps < 8 * within.steps, "{below:?} {within:?}");
+        assert!(below.below_rounding > below.steps / 4, "{below:?}");
+        // roundings of some hundred evaluations
+        assert!(off < 3e-9, "{off:e}");
+    }
+}

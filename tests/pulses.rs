@@ -4,6 +4,8 @@
 #[path = "common/running.rs"]
 mod running;
 
+use cognate::analysis::dynamics::Unwatched;
+use cognate::results::Status;
 use running::{Analysis, Options, Session, go, last, model, options};
 
 /// A unit mass that slides along z, pushed by a function of time.
@@ -153,6 +155,34 @@ fn a_branch_that_comes_and_goes_in_every_turn_of_a_free_wheel_is_seen_in_each() 
             go(&mut s, Analysis::Dynamic, 10.0, 2);
             let v = last(&s, "VZ(3,1)");
             assert!((v - 1000.0 * part).abs() < 1e-3, "{method} {wheel}: {v}");
+        }
+    }
+}
+
+#[test]
+fn a_pole_that_stops_a_run_is_named_with_its_place() {
+    for (function, pole) in [
+        ("2+1/(TIME-0.5)", "1/(TIME - 0.5)"),
+        ("TAN(PI*TIME)", "TAN(PI*TIME)"),
+        ("SIN(TIME)+(TIME-0.5)**(-2)", "(TIME - 0.5)**-2"),
+    ] {
+        for method in ["AUTO", "RADAU5", "BDF", "HHT"] {
+            let text = format!(
+                "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=1\nJOINT/1, TRANSLATIONAL, I=2, J=3\n\
+                 SFORCE/3, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION={function}\n"
+            );
+            let mut options = options(&["VZ(2)"], 1e-4);
+            options.method = Some(method.into());
+            let mut s = Session::new(model(&text), "test", options);
+            let status = s.simulate(Analysis::Dynamic, 1.0, 5, &mut Unwatched);
+            assert_eq!(
+                status.expect("a run"),
+                Status::Stopped,
+                "{function} {method}"
+            );
+            let reason = &s.run.record.stop_reason;
+            let said = format!("SFORCE/3 FUNCTION: {pole} grows without bound");
+            assert!(reason.contains(&said), "{function} {method}: {reason}");
         }
     }
 }

@@ -129,7 +129,10 @@ impl Implicit {
         let held = switching.and_then(|switching| {
             let more = n + levels * m;
             let [residual, multipliers] = held_with(scene, switching, more, |at, more| {
-                [residual(scene, at, more, formulation), multipliers_at(scene, at)]
+                [
+                    residual(scene, at, more, formulation),
+                    multipliers_at(scene, at),
+                ]
             })?;
             Some(Written::new(
                 scene,

@@ -478,7 +478,9 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                 return stop(Reason::TooManySteps);
             }
             if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(cause.unwrap_or_else(|| control::too_fast(&self.past.ydot, &self.weights)));
+                return stop(
+                    cause.unwrap_or_else(|| control::too_fast(&self.past.ydot, &self.weights)),
+                );
             }
             if self.past.steps == 0 {
                 // the first step knows one rate only; its divided difference belongs to the step taken

@@ -301,7 +301,9 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                 return stop(Reason::TooManySteps);
             }
             if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(cause.unwrap_or_else(|| control::too_fast(&self.now.ydot, &self.weights)));
+                return stop(
+                    cause.unwrap_or_else(|| control::too_fast(&self.now.ydot, &self.weights)),
+                );
             }
             let t1 = if at_limit { t_limit } else { t0 + h };
             match self.attempt(problem, h, t1) {

@@ -1,13 +1,15 @@
 //! How much of a rate is rounding: below that no shorter step makes an error estimate smaller than in proportion to its length.
 //!
 //! ```text
-//! δ = min over probes of ‖f(t, y + ε y ⊙ s) − f(t, y)‖          ε: the last place, s: signs by chance, ‖·‖: relative to magnitudes    (1)
-//! error estimate ≥ C h δ                                         whatever the method                                              (2)
+//! δ = min over probes of ‖f(t, y + ε r ⊙ s) − f(t, y)‖          ε: the last place, s: signs by chance, ‖·‖: relative to magnitudes    (1)
+//! error estimate ≈ C h δ                                         whatever the method                                              (2)
 //! ```
 //!
-//! The arguments of stages are rounded as y is in (1), and a rate that is computed stably is off by about what such a rounding makes of it; so (1) measures both.
+//! r is |y|, and of an angle no less than a part of a turn: its sine and cosine are rounded as parts of one. The arguments of stages are rounded as y is in (1), and a rate that is computed stably is off by about what such a rounding makes of it; so (1) measures both.
 //! In long chains of links accelerations magnify roundings a hundred thousand times. An estimate of a size that (2) explains says nothing of the step: a
 //! shorter one would be no better, only more expensive.
+//!
+//! What a rate loses by itself, between large numbers that are not unknowns, is not seen.
 //!
 //! The least of three probes counts: where a state lies on a jump of the rates, to the last place, a probe across it measures the jump; that all three of them
 //! do is unlikely, and [`MOST`] bounds what may come of it.
@@ -17,10 +19,12 @@
 use super::control::{Weights, worst};
 use super::{Ode, Stats};
 
-/// C of (2): the error weights of a method are about 2 in their root of squares, and the largest of a sample is exceeded.
-const SPREAD: f64 = 6.0;
+/// C of (2): the root of the squares of the weights in an error estimate is about 2, and three chances are few to meet the largest of a sample.
+const SPREAD: f64 = 3.0;
+/// Part of the most that an unknown is measured against (half a turn) that it is rounded as.
+const OF_A_TURN: f64 = 0.25;
 /// Relative error that is never taken for rounding.
-const MOST: f64 = 1e-8;
+pub const MOST: f64 = 5e-9;
 /// Probes of (1).
 const PROBES: u64 = 3;
 
@@ -55,8 +59,15 @@ impl Noise {
             _ => {
                 let mut least = f64::INFINITY;
                 for k in 0..PROBES {
-                    for (i, (p, &y)) in probe.iter_mut().zip(y).enumerate() {
-                        *p = y * (1.0 + f64::EPSILON * sign(i as u64, k));
+                    for (i, ((p, &y), most)) in
+                        probe.iter_mut().zip(y).zip(weights.most()).enumerate()
+                    {
+                        let part = if most.is_finite() {
+                            OF_A_TURN * most
+                        } else {
+                            0.0
+                        };
+                        *p = y + f64::EPSILON * sign(i as u64, k) * y.abs().max(part);
                     }
                     stats.evaluations += 1;
                     let changed = match problem.rate(t, probe, rate) {

@@ -16,14 +16,15 @@
 //!
 //! *Stiffness*: `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` beyond 6.1, the edge of the stability region, in most steps of a run of steps means
 //! that stability holds the step down; [`Method::stiff`] then says so and the integration goes on.
-//! *Rounding*: an error that is too large but no more than rounding explains (`noise.rs`) is accepted: a shorter step would be no better.
+//! *Rounding*: what rounding explains of an error (`noise.rs`) shortens no step: a shorter one would be no better. It is looked for where an error is too
+//! large, and where the two estimates, which are of different order, come out alike.
 //! *Failures*: a stage where the problem fails, or a number that is not finite, shortens the step; no sensible step left is a [`Stop`].
 //!
 //! Source: Dormand & Prince 1980; coefficients, error and dense output of Hairer, Nørsett & Wanner, Solving ODEs I, II.5–II.10 (program DOP853).
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
 use super::control::{self, Pi, Weights, worst, worst_index};
-use super::noise::Noise;
+use super::noise::{self, Noise};
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 
 /// Order of the method.
@@ -106,6 +107,13 @@ const PLACINGS: usize = 4;
 
 /// Errors smaller than this are rounding where invariants are nearly dependent; a request below it is not pressed there.
 const NOISE: f64 = 3e-10;
+
+/// The two estimates of (3) are of different order: where they come out less apart than this, they may be rounding.
+const ALIKE: f64 = 10.0;
+/// An error that holds the next step back, as a part of that permitted.
+const WORTH_A_LOOK: f64 = 0.1;
+/// Part of an error that is rounding which counts all the same, lest the next step is much too long.
+const EXPLAINED: f64 = 0.02;
 
 /// `‖e₅‖² / √(‖e₅‖² + ‖e₃‖²/100)`
 fn blended(e5: f64, e3: f64) -> f64 {
@@ -272,11 +280,12 @@ impl Dop853 {
             let scale = ERROR_SCALE / self.weights.tolerance().max(NOISE);
             error = error.min(scale * self.filtered(problem, t + h, h));
         }
-        if error > 1.0 {
-            // measured against what rounding leaves, where that is more than what is asked for
-            let excess = (self.rounding(problem, h) * ERROR_SCALE / self.weights.tolerance()).max(1.0);
-            self.noisy = excess > 1.0;
-            error /= excess;
+        let suspect = error > 1.0 || error > WORTH_A_LOOK && worst3 < ALIKE * worst5;
+        if suspect && error < scale * noise::MOST {
+            // what rounding explains is no error of the step; the rest is measured against it, where that is more than what is asked for
+            let explained = self.rounding(problem, h) * ERROR_SCALE / self.weights.tolerance();
+            self.noisy = error > 1.0 && explained > 1.0;
+            error = (error - explained).max(EXPLAINED * error) / explained.max(1.0);
         }
         Ok(error)
     }

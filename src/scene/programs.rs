@@ -238,7 +238,12 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
 /// What `f` computes from the instant and `n_more` further numbers with every branch as the sign of its switch says: reads these numbers, then one sign per
 /// switch, after the layout's; `f` gives two lists, each makes a program. `None`: branches cannot be held. The switches are those of [`switching`], in
 /// their order, because the rates are recorded before anything else.
-pub fn held_with<F>(scene: &Scene, switching: &Switching, n_more: usize, f: F) -> Option<[Program; 2]>
+pub fn held_with<F>(
+    scene: &Scene,
+    switching: &Switching,
+    n_more: usize,
+    f: F,
+) -> Option<[Program; 2]>
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> [Vec<Sym<'b>>; 2],
 {
