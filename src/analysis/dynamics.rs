@@ -391,6 +391,10 @@ impl Leg<'_> {
             if self.watch.interrupted() {
                 return Finished::Ended(Ended::Interrupted);
             }
+            // also where it begins
+            if switches.slide() && !may_slide {
+                return Finished::Slides;
+            }
             let horizon = self.horizon(method);
             let limit = std::mem::replace(&mut landing, self.end).min(horizon);
             let passed = self.landings.partition_point(|&l| l <= method.t());
@@ -494,9 +498,6 @@ impl Leg<'_> {
                 if let Some(h) = stepsize {
                     method.propose(h);
                 }
-            }
-            if switches.slide() && !may_slide && method.t() < self.end {
-                return Finished::Slides;
             }
             if may_change && method.stiff() && method.t() < self.end {
                 return Finished::Stiff;
