@@ -255,6 +255,7 @@ where
         scene,
         n_more + n_switches,
         false,
+        false,
         |at, more| {
             let mut out = rate(at);
             out.extend(sources(at, scene));
