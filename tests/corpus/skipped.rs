@@ -132,6 +132,57 @@ fn the_legs_of_an_exoskeleton_without_torque_keep_their_energy() {
     assert!(moved > 0.01 * begin[1].abs(), "{moved} of {begin:?}");
 }
 
+/// Its replay leaves Adams from the first interval of 5 ms on, and this is why: the solids of its thigh and hip, shin and thigh lie in each other where they
+/// are hinged, and their contacts rub. Friction of a CONTACT grows with the sliding speed up to STICTION_TRANSITION_VELOCITY, here 100 mm/s: what
+/// Adams' motion lacks of our accelerations grows as the speed of each leg.
+#[test]
+fn the_legs_of_an_exoskeleton_are_held_back_in_adams_by_contacts_in_proportion_to_their_speeds() {
+    let Some(root) = corpus() else { return };
+    let log = root.join("aniket0112__exoskeleton/load-analysis/pd-control/Controls_Plant_1.msg");
+    let mut script = Script::from_message_log(&log).unwrap_or_else(|e| panic!("{e}"));
+    let mut seen = 0;
+    script.steps.retain(|s| {
+        seen += usize::from(matches!(s.command, Command::Simulate(_)));
+        seen <= 9
+    });
+    let columns = ["THETA(22)", "THETA(25)"];
+    let asked = options(1e-8, columns.map(String::from).to_vec());
+    let ours = obeyed(&log.with_extension("adm"), &script, asked).run;
+    let theirs = results::read(&log.with_extension("gra")).unwrap_or_else(|e| panic!("{e}"));
+    const H: f64 = 5e-3;
+    let angle = |run: &results::Run, name: &str, k: usize| {
+        let time = &run.columns[0].values;
+        let near = |x: &f64| (x - H * k as f64).abs() < 1e-6;
+        run.column(name).unwrap()[time.iter().rposition(near).unwrap()]
+    };
+    // thigh, shin: the resolution of six digits in an angle; rate of the resistance
+    for (own, name, digit, resistance) in [
+        (columns[0], "PART_5_XFORM.THETA", 1e-5, 9.9),
+        (columns[1], "PART_8_XFORM.THETA", 1e-6, 12.9),
+    ] {
+        let a = |k| angle(&ours, own, k);
+        let b = |k| angle(&theirs, name, k);
+        // from rest, before anything rubs: fifty steps of backward Euler arrive at a n (n + 1) h²/2 where we arrive at a (n h)²/2
+        let (one, other) = (1.02 * (a(1) - a(0)), b(1) - b(0));
+        assert!(
+            (one - other).abs() < 0.01 * other.abs() + digit,
+            "{name}: {one} {other}"
+        );
+        for k in 2..5 {
+            let second = |f: &dyn Fn(usize) -> f64| (f(k + 1) - 2.0 * f(k) + f(k - 1)) / (H * H);
+            let lacks = second(&b) - second(&a);
+            let speed = (b(k + 1) - b(k - 1)) / (2.0 * H);
+            println!("{name}: lacks {lacks:.1} at {speed:.3} rad/s: {:.1}", -lacks / speed);
+            // second differences of rounded angles are off by up to two digits / h²
+            let off = 2.0 * digit / (H * H) / speed.abs();
+            assert!(
+                (-lacks / speed - resistance).abs() < 0.06 * resistance + off,
+                "{name}: {lacks} at {speed}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_vehicle_without_floor_falls_with_its_centre_of_mass() {
     let Some(root) = corpus() else { return };
