@@ -52,6 +52,29 @@ fn an_initial_condition_that_fits_with_its_numbers_exchanged_is_told() {
     }
 }
 
+#[test]
+fn an_initial_condition_that_view_wrote_is_read_in_its_order_where_the_parts_stand_so() {
+    let slide = |name: &str, ic: &str| {
+        let text = format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1, QG=0,0,1.5\nMARKER/2, PART=2\n{name}JOINT/7, TRANSLATIONAL, I=2, J=1, IC={ic}\n"
+        );
+        start(&text, &["DZ(2,1)", "VZ(2,1)"], Analysis::Dynamic)
+    };
+    let named = "!                adams_view_name='slide'\n";
+    let (found, warnings) = slide(named, "-0.2, 1.4");
+    near(&found, &[1.4, -0.2]);
+    assert!(
+        warnings
+            .iter()
+            .any(|w| w.contains("as Adams View writes it")),
+        "{warnings:?}"
+    );
+    // the place alone, or the name alone, is not enough
+    near(&slide("", "-0.2, 1.4").0, &[-0.2, 1.4]);
+    near(&slide(named, "1.4, -0.2").0, &[1.4, -0.2]);
+    near(&slide(named, "0.7, 0.1").0, &[0.7, 0.1]);
+}
+
 /// A four-bar of links 1, 2, 2 on a base of 2, drawn as a square with the crank up; JOINT/4 closes the loop.
 fn four_bar(ic: &str) -> String {
     format!(

@@ -104,36 +104,65 @@ pub fn misaligned(scene: &Scene, model: &Model) -> Vec<String> {
     told
 }
 
+/// A joint whose initial condition fits the dataset better with its numbers exchanged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exchanged {
+    /// its number
+    pub joint: u32,
+    /// whether it is the condition of its rotation
+    pub turns: bool,
+    /// whether it is read so
+    pub believed: bool,
+    /// what is told
+    pub told: String,
+}
+
 /// Joints whose initial condition fits the dataset better with its numbers exchanged.
 ///
-/// `IC = displacement, velocity` is how the statement is documented; a dataset whose results Adams has left beside it was solved there with
-/// velocity, displacement. Nobody can tell by the numbers alone, but by where the parts stand.
-pub fn exchanged(scene: &Scene, model: &Model) -> Vec<String> {
-    let mut told = Vec::new();
-    for (id, joint) in &model.joints {
+/// `IC = displacement, velocity` is how the statement is documented, and how it is read. Adams View writes, and Adams Solver (C++) reads, velocity and
+/// displacement: the one model that we have in all three forms has `translational_ic = -146.99, velocity_ic = -0.1815` in its View commands,
+/// `IC = -0.1815, -146.99` in the dataset that View wrote of them, and stands at -146.992, moving by -0.2, in the results. Nobody can tell by the numbers
+/// alone. But a statement that View wrote carries the name it has there, and its parts stand where View has drawn them: where both speak for
+/// it, the numbers are exchanged and that is told; where only the parts do, it is told.
+pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
+    let mut found = Vec::new();
+    for (&id, joint) in &model.joints {
         let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
         let (Some(I), Some(J)) = (frame(joint.i), frame(joint.j)) else {
             continue;
         };
         let kinds = [
-            (Law::Along(2), joint.ic_translation, scene.length),
-            (Law::Angle, joint.ic_rotation, 1.0),
+            (Law::Along(2), joint.ic_translation, scene.length, false),
+            (Law::Angle, joint.ic_rotation, 1.0, true),
         ];
-        for (law, given, size) in kinds {
+        for (law, given, size, turns) in kinds {
             let [Some(first), Some(second)] = given else {
                 continue;
             };
             let stands = law.value(&I, &J, None);
             let off = |x: f64| (x - stands).abs();
             if second != 0.0 && off(first) > 0.01 * size && off(second) < 0.2 * off(first) {
+                let believed = joint.place.name.is_some();
                 let [first, second, stands] = [first, second, stands].map(short);
-                told.push(format!(
-                    "JOINT/{id}: its initial condition {first}, {second} is read as displacement {first} and velocity {second}, but the parts stand at {stands}; Adams has been seen to read velocity, displacement: exchange the two if that is meant"
-                ));
+                let told = if believed {
+                    format!(
+                        "JOINT/{id}: its initial condition {first}, {second} is read as velocity {first} and displacement {second}, as Adams View writes it: the parts stand at {stands}"
+                    )
+                } else {
+                    format!(
+                        "JOINT/{id}: its initial condition {first}, {second} is read as displacement {first} and velocity {second}, but the parts stand at {stands}; Adams View writes velocity, displacement: exchange the two if that is meant"
+                    )
+                };
+                found.push(Exchanged {
+                    joint: id,
+                    turns,
+                    believed,
+                    told,
+                });
             }
         }
     }
-    told
+    found
 }
 
 /// Whether the z axes of a tie must point the same way.

@@ -172,7 +172,10 @@ fn the_legs_of_an_exoskeleton_are_held_back_in_adams_by_contacts_in_proportion_t
             let second = |f: &dyn Fn(usize) -> f64| (f(k + 1) - 2.0 * f(k) + f(k - 1)) / (H * H);
             let lacks = second(&b) - second(&a);
             let speed = (b(k + 1) - b(k - 1)) / (2.0 * H);
-            println!("{name}: lacks {lacks:.1} at {speed:.3} rad/s: {:.1}", -lacks / speed);
+            println!(
+                "{name}: lacks {lacks:.1} at {speed:.3} rad/s: {:.1}",
+                -lacks / speed
+            );
             // second differences of rounded angles are off by up to two digits / h²
             let off = 2.0 * digit / (H * H) / speed.abs();
             assert!(

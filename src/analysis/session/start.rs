@@ -136,6 +136,13 @@ impl Session {
         if let Some(moved) = &moved {
             scene = Scene::compile(moved, &options)?;
         }
+        let first = self.carried.is_none();
+        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
+        let exchanged = if first && joints {
+            self.exchange(&scene)
+        } else {
+            Vec::new()
+        };
         let l = scene.layout;
         let t = self.time();
         let names = unknown_names(&scene);
@@ -185,13 +192,11 @@ impl Session {
         }
         scene.turns.clone_from(&turns);
         scene.supplied_values = self.supplied(&scene, t, &q, &x)?;
-        let first = self.carried.is_none();
         let misaligned = if first {
             misalignment::misaligned(&scene, &self.model)
         } else {
             Vec::new()
         };
-        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
         let placed = first && placement::settle(&scene, &self.model, t, &mut q, &x, joints);
         // only what moves by itself has initial conditions
         let wishes = if first && mode != KINEMATIC && mode != STATIC {
@@ -209,10 +214,7 @@ impl Session {
         let unmet = wishes::unmet(&scene, &wishes, &starts, t, &q, &x);
         assembly.warnings.extend(unmet);
         assembly.warnings.splice(0..0, misaligned);
-        if first && joints {
-            let exchanged = misalignment::exchanged(&scene, &self.model);
-            assembly.warnings.extend(exchanged);
-        }
+        assembly.warnings.extend(exchanged);
         if first {
             let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
             let turned = misalignment::turned(&scene, &self.model, &numbers);
@@ -259,6 +261,22 @@ impl Session {
             system.begin_sensing();
         }
         Ok((system, assembly))
+    }
+
+    /// Exchanges the numbers of initial conditions that are to be read the other way round; what is told of these and of doubtful ones.
+    fn exchange(&mut self, scene: &Scene) -> Vec<String> {
+        let found = misalignment::exchanged(scene, &self.model);
+        for e in found.iter().filter(|e| e.believed) {
+            if let Some(joint) = self.model.joints.get_mut(&e.joint) {
+                let given = if e.turns {
+                    &mut joint.ic_rotation
+                } else {
+                    &mut joint.ic_translation
+                };
+                given.reverse();
+            }
+        }
+        found.into_iter().map(|e| e.told).collect()
     }
 
     /// The shells of contacts, read when they are first asked for.
