@@ -7,14 +7,7 @@
 //! d' = n · t = 0, rising: the wire is nearest here        depth = r − d                            (1)
 //! ```
 //!
-//! - **Lows**, where (1) holds, are found between stations by bisection and secants. Two of them that grow together end as one: they share by the
-//!   height B of the wall between them and the difference Δ of what they stand on,
-//!
-//!   ```text
-//!   u = Δ/(Δ + B),   c = 1 − B/depth ∈ [0, 1]       the higher one  1 − c (1 + u)/2,   the lower one  1 − c (1 − u)/2
-//!   ```
-//!
-//!   so that one vanishes without a force where the wall does, and two that meet halfway are half a touch each.
+//! - **Lows**, where (1) holds (`lows.rs`).
 //! - **Anchors** are fixed places of the wire that hold it where it lies along the solid, and (1) says nothing: the whole ring on a plane, half of it on
 //!   the end of a box. They weigh `WHOLE` touches together and are lifted where the wire is inclined to the solid on both their sides,
 //!
@@ -22,21 +15,21 @@
 //!   depth − LIFT · size · q        1/q = 1/q₋ + 1/q₊,   q the mean of d'² as far as the next anchor
 //!   ```
 //!
-//!   so that an inclined wire touches in its lows alone; half of the weight stands for either side, and goes where that leads away (`ASIDE`). A low takes what anchors as deep as it leave of a touch, and of that
-//!   q²/(q² + `LEVEL`²): the end of what lies along a solid is no place of its own.
+//!   so that an inclined wire touches in its lows alone; half of the weight stands for either side, and goes where that leads away (`ASIDE`). A low takes what anchors as deep as it leave of a touch.
+
+mod lows;
 
 use super::ball::distance;
 use super::outline::{Outline, Rim};
 use super::{Question, Solid, TOUCH_NUMBERS, ellipsoid};
 use crate::space::{Mat3, Vec3};
+use lows::LOWS;
 use std::f64::consts::TAU;
 
 /// Stations of the wire at which is looked, at least, and at most.
 const STATIONS: [usize; 2] = [48, 4096];
 /// Places that hold a wire that lies along a solid.
 const ANCHORS: usize = 12;
-/// Places of least distance.
-const LOWS: usize = 4;
 /// Touches of a wire that has a length.
 pub(super) const WIRE_TOUCHES: usize = ANCHORS + LOWS;
 /// Touches that a wire lying along a plane weighs: as many as the rim of a cylinder.
@@ -47,12 +40,8 @@ const LIFT: f64 = 100.0;
 const NEIGHBOURS: f64 = 1.7;
 /// Depth below which a low and an anchor count as equally deep if they differ by less than it, as a part of the size.
 const SHALLOW: f64 = 1e-4;
-/// Differences of distance that count as none, as a part of the size: a low is the middle of what is as low.
-const FLAT: f64 = 1e-9;
 /// Mean square of d' on one side of an anchor at which that side counts no more than a quarter.
 const ASIDE: f64 = 0.01;
-/// Mean square of d' on one side of a low below which the wire lies along the solid there.
-const LEVEL: f64 = 1e-7;
 /// A wire farther off than this many times its size is left alone.
 const FAR: f64 = 1e6;
 
@@ -91,15 +80,6 @@ pub struct Wire {
     target: Target,
     /// the wire is J's
     turned: bool,
-}
-
-/// A place of least distance.
-#[derive(Clone, Copy)]
-struct Low {
-    station: usize,
-    s: f64,
-    d: f64,
-    share: f64,
 }
 
 impl Target {
@@ -346,160 +326,10 @@ impl Wire {
         }
         if way > 0.0 { sum / way } else { f64::INFINITY }
     }
-
-    /// How much a low is one: less where the wire lies along the solid on one of its sides.
-    fn sharpness(&self, d: &[f64], station: usize) -> f64 {
-        let n = d.len();
-        let ways = n.div_ceil(ANCHORS);
-        let after = if self.closed {
-            ways
-        } else {
-            ways.min(n - 1 - station)
-        };
-        let before = if self.closed { ways } else { ways.min(station) };
-        let q = both(
-            self.inclined(d, station, after),
-            self.inclined(d, station + n - before, before),
-        );
-        1.0 / (1.0 + (LEVEL / q).powi(2))
-    }
-
-    /// Where the wire is nearest, the deepest [`LOWS`] in the order of the wire, with the shares of those that grow together.
-    fn lows(
-        &self,
-        d: &[f64],
-        distance: &dyn Fn(Vec3<f64>) -> f64,
-        slope: &dyn Fn(f64) -> f64,
-    ) -> Vec<Low> {
-        let n = d.len();
-        let flat = FLAT * self.size;
-        let mut lows = Vec::new();
-        for k in 0..n {
-            let before = (k > 0 || self.closed).then(|| d[(k + n - 1) % n]);
-            if before.is_some_and(|before| before <= d[k] + flat) {
-                continue;
-            }
-            // as far as it is level
-            let mut last = k;
-            let mut after = None;
-            while last + 1 < n || self.closed && last + 1 < k + n {
-                let next = d[(last + 1) % n];
-                if (next - d[k]).abs() > flat {
-                    after = Some(next);
-                    break;
-                }
-                last += 1;
-            }
-            let begins = self.parameter(k + n - usize::from(before.is_some())) - 2.0;
-            let ends = self.parameter(last + usize::from(after.is_some()));
-            if after.is_some_and(|after| after < d[k]) {
-                continue;
-            }
-            let middle = (k + last) / 2;
-            let mut low = (self.parameter(middle), d[middle % n]);
-            let way = self.stations[(k + n - 1) % n]
-                .way
-                .max(self.stations[last % n].way);
-            // one that is off wherever between the stations its place is is not looked at any closer: the way is hardly longer than a straight line
-            if d[k] - self.tube <= 1.5 * way {
-                let at = |s: f64| distance(self.at(s));
-                let s = root(slope, begins, ends);
-                let least = at(s);
-                if least <= low.1 {
-                    low = (s, least);
-                }
-                let level = low.1 + flat;
-                let to = root(|s| at(s) - level, low.0, ends);
-                let from = -root(|s| at(-s) - level, -low.0, -begins);
-                low.0 = 0.5 * (from + to);
-                low.1 = at(low.0);
-            }
-            lows.push(Low {
-                station: middle % n,
-                s: low.0,
-                d: low.1,
-                share: 1.0,
-            });
-        }
-        self.share(d, &mut lows);
-        lows.sort_by(|a, b| a.d.total_cmp(&b.d));
-        lows.truncate(LOWS);
-        lows.sort_by_key(|low| low.station);
-        lows
-    }
-
-    /// The parameter of a station, counted on around a closed wire.
-    fn parameter(&self, k: usize) -> f64 {
-        let n = self.stations.len();
-        // once around is 2
-        self.stations[k % n].s + 2.0 * (k / n) as f64
-    }
-
-    /// Lows with a wall between them that is lower than they are deep share.
-    fn share(&self, d: &[f64], lows: &mut [Low]) {
-        let (n, m) = (d.len(), lows.len());
-        let pairs = match (m, self.closed) {
-            (0 | 1, _) => 0,
-            // there and back are two walls, of which the lower one counts
-            (2, true) => 1,
-            (_, true) => m,
-            (_, false) => m - 1,
-        };
-        let wall = |a: usize, b: usize| {
-            let steps = (b + n - a) % n;
-            (0..=steps).map(|k| d[(a + k) % n]).fold(f64::MIN, f64::max)
-        };
-        for k in 0..pairs {
-            let (i, j) = (k, (k + 1) % m);
-            let (a, b) = (lows[i].station, lows[j].station);
-            let mut top = wall(a, b);
-            if m == 2 && self.closed {
-                top = top.min(wall(b, a));
-            }
-            let (high, low) = if d[a] > d[b] { (i, j) } else { (j, i) };
-            let ground = d[lows[high].station];
-            let (height, step) = (top - ground, ground - d[lows[low].station]);
-            let depth = self.tube - lows[high].d;
-            if depth > 0.0 && height < depth {
-                let together = 1.0 - height / depth;
-                let apart = step / (step + height).max(f64::MIN_POSITIVE);
-                lows[high].share *= 1.0 - 0.5 * together * (1.0 + apart);
-                lows[low].share *= 1.0 - 0.5 * together * (1.0 - apart);
-            }
-        }
-    }
 }
 
 /// Half the harmonic mean.
 fn both(a: f64, b: f64) -> f64 {
     let least = |x: f64| 1.0 / x.max(f64::MIN_POSITIVE);
     1.0 / (least(a) + least(b))
-}
-
-/// Where a function that is not positive at `a` and not negative at `b` vanishes: secants, halved where these stay on one side.
-fn root(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    let (mut fa, mut fb) = (f(a), f(b));
-    for _ in 0..100 {
-        if b - a <= 1e-15 || fb <= 0.0 {
-            return b;
-        }
-        if fa >= 0.0 {
-            return a;
-        }
-        let x = (a * fb - b * fa) / (fb - fa);
-        let x = if x > a && x < b { x } else { 0.5 * (a + b) };
-        let y = f(x);
-        if y == 0.0 {
-            return x;
-        }
-        // the value at the end that stays counts half (Illinois)
-        if y > 0.0 {
-            (b, fb) = (x, y);
-            fa *= 0.5;
-        } else {
-            (a, fa) = (x, y);
-            fb *= 0.5;
-        }
-    }
-    0.5 * (a + b)
 }
