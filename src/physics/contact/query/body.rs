@@ -2,9 +2,10 @@
 
 use super::super::Solid;
 use super::flat::Flat;
+use super::polytope::Polytope;
 use crate::space::Vec3;
 use parry3d_f64::math::Vector;
-use parry3d_f64::shape::{ConvexPolyhedron, SupportMap};
+use parry3d_f64::shape::SupportMap;
 
 /// Points of a rim; every sixth is a corner.
 pub const RIM: usize = 24;
@@ -17,10 +18,8 @@ pub struct Body {
     pub(super) size: [f64; 2],
     /// middle of its extents
     pub(super) middle: Vector,
-    /// of a hull: outward normals and corners
-    faces: Vec<(Vector, Vec<Vector>)>,
-    /// of a hull: which corners these are
-    ids: Vec<Vec<usize>>,
+    /// of a hull
+    hull: Option<Polytope>,
 }
 
 /// The side of a solid that looks in some direction: a polygon, a line or a point.
@@ -60,7 +59,7 @@ fn azimuth(dir: Vector) -> (f64, f64) {
 impl Body {
     /// `None`: it is no convex solid of finite size.
     pub fn new(solid: &Solid) -> Option<Self> {
-        let (mut faces, mut ids) = (Vec::new(), Vec::new());
+        let mut hull = None;
         let mut middle = Vector::ZERO;
         let size = match solid {
             Solid::Ball { radius } if *radius > 0.0 => [*radius; 2],
@@ -76,15 +75,7 @@ impl Body {
             }
             Solid::Hull(points) => {
                 let points: Vec<Vector> = points.iter().map(|&p| vector(p)).collect();
-                let hull = ConvexPolyhedron::from_convex_hull(&points)?;
-                for face in hull.faces() {
-                    let first = face.first_vertex_or_edge as usize;
-                    let around = &hull.vertices_adj_to_face()[first..]
-                        [..face.num_vertices_or_edges as usize];
-                    let corners = around.iter().map(|&v| hull.points()[v as usize]).collect();
-                    faces.push((face.normal, corners));
-                    ids.push(around.iter().map(|&v| v as usize).collect());
-                }
+                hull = Some(Polytope::new(&points)?);
                 let (low, high) = points.iter().fold(
                     (
                         Vector::splat(f64::INFINITY),
@@ -102,59 +93,23 @@ impl Body {
             solid,
             size,
             middle,
-            faces,
-            ids,
+            hull,
         })
     }
 
     /// Signed distance of a point from a hull, negative inside, and the direction in which it grows; of other solids no number.
     pub fn distance(&self, p: Vec3<f64>) -> (f64, Vec3<f64>) {
-        let p = vector(p.0);
-        let above = |f: &(Vector, Vec<Vector>)| (p - f.1[0]).dot(f.0);
-        let mut best = (f64::NEG_INFINITY, Vector::ZERO);
-        for face in &self.faces {
-            let d = above(face);
-            if d > best.0 {
-                best = (d, face.0);
-            }
-        }
-        if best.0 > 0.0 {
-            // the foot lies on a face that can be seen: above it, or on an edge
-            let feet = self.faces.iter().filter(|f| above(f) > 0.0).map(|f| {
-                let (normal, corners) = f;
-                let ends = corners.iter().zip(corners.iter().cycle().skip(1));
-                let within = p - *normal * above(f);
-                let inside =
-                    |(a, b): (&Vector, &Vector)| (b - a).cross(within - a).dot(*normal) >= 0.0;
-                if ends.clone().all(inside) {
-                    return within;
-                }
-                let on_edge = |(a, b): (&Vector, &Vector)| {
-                    let along = b - a;
-                    let u = (p - a).dot(along) / along.length_squared();
-                    if u > 0.0 { a + along * u.min(1.0) } else { *a }
-                };
-                let nearer = |a: &Vector, b: &Vector| {
-                    a.distance_squared(p).total_cmp(&b.distance_squared(p))
-                };
-                ends.map(on_edge).min_by(nearer).unwrap_or(within)
-            });
-            let nearest =
-                feet.min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)));
-            if let Some(foot) = nearest
-                && let Some(n) = (p - foot).try_normalize()
-                && foot.distance(p) > 1e-12 * self.size[1]
-            {
-                best = (foot.distance(p), n);
-            }
-        }
-        let n = best.1;
-        (best.0, Vec3([n.x, n.y, n.z]))
+        let (d, n) = match &self.hull {
+            Some(hull) => hull.distance(vector(p.0), self.size[1]),
+            None => (f64::NAN, Vector::ZERO),
+        };
+        (d, Vec3([n.x, n.y, n.z]))
     }
 
     /// Outward normals of its faces, where these are not along its axes.
     pub(super) fn normals(&self) -> impl Iterator<Item = Vector> + '_ {
-        self.faces.iter().map(|f| f.0)
+        let sides = self.hull.iter().flat_map(|hull| &hull.sides);
+        sides.map(|side| side.normal)
     }
 
     /// The edge, or the line on a curved side, that comes nearest to being the farthest in a direction; none of what is round all about.
@@ -173,17 +128,7 @@ impl Body {
                 let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
                 Some([at(0), at(1)])
             }
-            Solid::Hull(_) => {
-                let corner = self.local_support_point(dir);
-                let around = self.faces.iter().filter_map(|(_, corners)| {
-                    let n = corners.len();
-                    let k = corners.iter().position(|c| *c == corner)?;
-                    Some([corners[(k + 1) % n], corners[(k + n - 1) % n]])
-                });
-                let highest = |a: &Vector, b: &Vector| a.dot(dir).total_cmp(&b.dot(dir));
-                let other = around.flatten().max_by(highest)?;
-                Some([corner, other])
-            }
+            Solid::Hull(_) => self.hull.as_ref()?.edge(dir),
             Solid::Ball { .. }
             | Solid::Ellipsoid { .. }
             | Solid::Plane { .. }
@@ -269,20 +214,15 @@ impl Body {
                     normal: Some(Vector::new(0.0, 0.0, up.signum())),
                 }
             }
-            Solid::Hull(_) => {
-                let along = |f: &(&(Vector, Vec<Vector>), &Vec<usize>)| f.0.0.dot(dir);
-                let faces = self.faces.iter().zip(&self.ids);
-                let best = faces.max_by(|a, b| along(a).total_cmp(&along(b)));
-                match best {
-                    Some(((normal, corners), ids)) => Face {
-                        outline: corners.clone(),
-                        ids: ids.clone(),
-                        stride: 1,
-                        normal: Some(*normal),
-                    },
-                    None => one(Vector::ZERO),
-                }
-            }
+            Solid::Hull(_) => match self.hull.as_ref().and_then(|h| Some((h, h.side(dir)?))) {
+                Some((hull, side)) => Face {
+                    outline: side.ids.iter().map(|&k| hull.corners[k]).collect(),
+                    ids: side.ids.clone(),
+                    stride: 1,
+                    normal: Some(side.normal),
+                },
+                None => one(Vector::ZERO),
+            },
             _ => one(self.local_support_point(dir)),
         }
     }
@@ -316,10 +256,8 @@ impl SupportMap for Body {
                     at(0)
                 }
             }
-            Solid::Hull(points) => {
-                let along = |p: &&[f64; 3]| vector(**p).dot(dir);
-                let best = points.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
-                best.map_or(Vector::ZERO, |p| vector(*p))
+            Solid::Hull(_) => {
+                (self.hull.as_ref()).map_or(Vector::ZERO, |hull| hull.corners[hull.support(dir)])
             }
             Solid::Plane { .. } | Solid::Torus { .. } => Vector::ZERO,
         }

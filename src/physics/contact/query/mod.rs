@@ -18,6 +18,7 @@ mod direction;
 mod flat;
 pub mod hull;
 mod points;
+mod polytope;
 
 use super::{Solid, TOUCH_NUMBERS};
 pub(super) use body::Body;
