@@ -4,8 +4,8 @@
 mod problems;
 
 use cognate::numeric::{
-    Dae, Dop853, Failure, Form, Kind, METHODS, Method, MethodRow, Ode, Options, Reason, dae_method,
-    ode_method,
+    Dae, Dop853, Failure, Form, Kind, METHODS, Method, MethodRow, Ode, Options, Reason, Relation,
+    dae_method, ode_method,
 };
 use problems::*;
 
@@ -762,4 +762,74 @@ fn a_request_below_rounding_takes_the_steps_of_one_that_is_not() {
         // roundings of some hundred evaluations
         assert!(off < 3e-9, "{off:e}");
     }
+}
+
+/// A slow oscillator beside a fast one that hardly moves: q, Q, v, V.
+struct Humming {
+    told: bool,
+}
+
+const FAST: f64 = 1e6;
+
+impl Ode for Humming {
+    fn size(&self) -> usize {
+        4
+    }
+    fn rate(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        ydot.copy_from_slice(&[y[2], y[3], -y[0], -FAST * FAST * y[1]]);
+        Ok(())
+    }
+    fn jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        jacobian: &mut [f64],
+        dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
+        dfdt.fill(0.0);
+        jacobian.fill(0.0);
+        for (i, j, x) in [(0, 2, 1.0), (1, 3, 1.0), (2, 0, -1.0), (3, 1, -FAST * FAST)] {
+            jacobian[i + 4 * j] = x;
+        }
+        Ok(())
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1.0);
+    }
+    fn relations(&self, relations: &mut [Relation]) {
+        for (k, relation) in relations.iter_mut().enumerate() {
+            (relation.group, relation.share) = (Some(u16::from(k > 1)), 0.1);
+            relation.rate_of = k.checked_sub(2).filter(|_| self.told);
+        }
+    }
+}
+
+#[test]
+fn a_vibration_that_no_position_shows_is_not_followed() {
+    let run = |told: bool, most: usize| {
+        let mut problem = Humming { told };
+        let allowed = Options {
+            max_steps: most,
+            ..options(1e-4)
+        };
+        let mut method = ode_method::<Humming>("RADAU5", 4, &allowed).expect("there");
+        // a tenth of the slow speed, and an amplitude of 1e-7
+        let start = [1.0, 0.0, 0.0, 0.1];
+        method
+            .start(&mut problem, 0.0, &start)
+            .expect("it can start");
+        while method.t() < 10.0 {
+            if method.step(&mut problem, 10.0).is_err() {
+                return (method.t(), f64::NAN, *method.stats());
+            }
+        }
+        (10.0, (method.y()[0] - 10f64.cos()).abs(), *method.stats())
+    };
+    let (_, off, stats) = run(true, 20_000);
+    println!("{off:e} {stats:?}");
+    assert!(off < 1e-4, "{off:e} {stats:?}");
+    assert!(stats.steps < 3000, "{stats:?}");
+    // it would take a million periods
+    let (reached, _, _) = run(false, 20_000);
+    assert!(reached < 0.1, "{reached}");
 }

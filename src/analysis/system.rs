@@ -880,11 +880,15 @@ impl Ode for System {
                     },
                     group: Some(kind),
                     share: SHARE,
+                    rate_of: None,
                 };
             }
+            // what is short because of a contact has to be seen in velocity
+            let smooth = self.switching.is_none() && !f.in_ball;
             relations[l.n_q + v] = Relation {
                 group: Some(2 + kind),
                 share: SHARE_OF_SPEED,
+                rate_of: smooth.then_some(q),
                 ..Relation::default()
             };
         }

@@ -98,6 +98,12 @@ impl Weights {
         &self.typical
     }
 
+    /// Unknowns that are rates of others, with these.
+    pub fn rates(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let all = self.relations.iter().enumerate();
+        all.filter_map(|(i, r)| Some((i, r.rate_of?)))
+    }
+
     /// `Mᵢ`   (n)
     pub fn magnitude(&self) -> &[f64] {
         &self.magnitude

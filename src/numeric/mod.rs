@@ -162,6 +162,8 @@ pub struct Relation {
     pub group: Option<u16>,
     /// it is at least this part of the largest in its group: where one angle of many hardly moves, it is the others that are seen
     pub share: f64,
+    /// the unknown that it is the rate of, where the error of a rate may be judged by what it does to that within a step
+    pub rate_of: Option<usize>,
 }
 
 impl Default for Relation {
@@ -170,6 +172,7 @@ impl Default for Relation {
             most: f64::INFINITY,
             group: None,
             share: 0.0,
+            rate_of: None,
         }
     }
 }
