@@ -20,6 +20,8 @@ const SAMPLES: usize = 4;
 const MAX_STEPS: usize = 3000;
 /// Steps within the tolerances of EQUILIBRIUM that may still make it better: Newton's take a few, what rattles between kinks or rounding takes for ever.
 const POLISH: usize = 25;
+/// Of these, steps in a row that need not make it half as bad, where the tolerances were asked for.
+const IDLE: usize = 5;
 /// Steps at the limit of their length without any change of the loads, after which it falls forever.
 const FALLING: usize = 300;
 
@@ -35,6 +37,8 @@ impl Settler<'_> {
         let mut scales = [0.0_f64; 2];
         let mut h: Option<f64> = None;
         let (mut falling, mut polish) = (0, 0);
+        // the least that was left within the tolerances, and for how many steps it has not been halved
+        let (mut best, mut idle) = (f64::INFINITY, 0);
         // how large the last step wanted to be
         let mut before = f64::INFINITY;
         let mut jacobian = self.jacobian(p);
@@ -55,7 +59,15 @@ impl Settler<'_> {
             // as good as was asked for: go on only as long as that soon ends
             let enough = self.converged(p) && (small || self.settings.asked);
             polish = if enough { polish + 1 } else { 0 };
-            if polish > POLISH {
+            idle = if enough && p.left[0] > 0.5 * best {
+                idle + 1
+            } else {
+                0
+            };
+            if enough && idle == 0 {
+                best = p.left[0];
+            }
+            if polish > POLISH || self.settings.asked && idle > IDLE {
                 return (Ok(()), jacobian);
             }
             if *iterations >= budget || falling > FALLING {

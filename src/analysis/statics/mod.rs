@@ -14,7 +14,7 @@
 //! body that touches nothing yet, needs no special treatment.
 //!
 //! A state may be the integral of a velocity (a spring that knows how far it was wound): at rest its rate is zero wherever it stands, and no equation of
-//! the end finds it. While the model falls there are velocities, Δ/h, and such states follow them: `Δx/h = e + … + ∂e/∂v Δ/h`.
+//! the end finds it. Where no equilibrium is found otherwise, such states follow the velocities of the fall, Δ/h:   Δx/h = e + … + ∂e/∂v Δ/h.
 //!
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the model stood there from the start.
 
@@ -135,7 +135,18 @@ pub fn settle(
     stats: &mut Stats,
 ) -> Result<Equilibrium, NoEquilibrium> {
     let mut settler = Settler::new(system, settings)?;
-    let found = settler.run(watch);
+    let moving = settler.moving.take();
+    let begin = settler.system.numbers.clone();
+    let mut found = settler.run(watch);
+    // most states that integrate velocities only count: they are wound up where nothing else holds the load
+    if moving.is_some() && matches!(found, Err(NoEquilibrium::Unbalanced(..))) {
+        let end = std::mem::replace(&mut settler.system.numbers, begin);
+        settler.moving = moving;
+        match settler.run(watch) {
+            Err(NoEquilibrium::Unbalanced(..)) => settler.system.numbers = end,
+            other => found = other,
+        }
+    }
     stats.evaluations += settler.evaluations;
     stats.factorizations += settler.factorizations;
     if let Ok(e) = &found {
