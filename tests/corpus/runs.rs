@@ -314,7 +314,6 @@ fn a_parallel_robot_with_friction_accelerates_as_in_adams_where_its_log_has_led_
 }
 
 #[test]
-#[ignore = "takes minutes where nothing is optimized: CARGO_PROFILE_DEV_OPT_LEVEL=2 cargo test --test corpus -- --ignored"]
 fn a_parallel_robot_obeys_its_log() {
     let Some((ours, theirs)) = replay(ROBOT, 1e-5, 3) else {
         return;
