@@ -96,3 +96,27 @@ fn an_oscillation_loses_four_friction_lengths_a_cycle_and_ends_within_one() {
         near(&s, "DZ(2,1)", 1.02, method);
     }
 }
+
+#[test]
+fn a_wheel_has_turned_as_far_as_it_did_before_it_came_to_rest_within_a_step() {
+    let wheel =
+        "PART/2, MASS=1, CM=2, IP=1,1,1, WZ=1000\nMARKER/2, PART=2\nJOINT/1, REVOLUTE, I=2, J=1\n";
+    for (function, angle) in [
+        ("-SIGN(100,WZ(2,1))", 5000.0),
+        // swings about 0 with an amplitude of 1000 rad
+        ("-AZ(2,1)", 1000.0 * 20f64.sin()),
+    ] {
+        for method in METHODS {
+            let text = format!("{wheel}SFORCE/1, ROTATION, I=2, J=1, FUNCTION={function}\n");
+            let mut options = options(&["AZ(2,1)"], 1e-7);
+            options.method = Some(method.into());
+            let mut s = Session::new(model(&text), "test", options);
+            go(&mut s, Analysis::Dynamic, 20.0, 2);
+            let got = last(&s, "AZ(2,1)");
+            assert!(
+                (got - angle).abs() < 1e-4 * 1000.0,
+                "{function} by {method}: {got}, not {angle}"
+            );
+        }
+    }
+}

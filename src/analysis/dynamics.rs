@@ -275,6 +275,8 @@ fn timeless(system: &mut System, outputs: &[f64], most: usize, out: &mut Traject
 
 /// Restarts with other rows before something is wrong.
 const RESTARTS: usize = 10_000;
+/// Looks at angles within a step, at most.
+const MOST_LOOKS: f64 = 1e6;
 /// States kept to find positions where rows become dependent.
 const MOST_KEPT: f64 = 2000.0;
 /// Most velocities of a mechanism all of whose states are kept for that.
@@ -662,13 +664,38 @@ impl Leg<'_> {
         Ok(())
     }
 
+    /// A bound of how fast any angle turns within a step, rad per time: at its ends it may stand still.
+    fn spin_within(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
+        let (mut speed, mut acceleration) = (
+            self.system.spin(method.y()),
+            self.system.spin(method.ydot()),
+        );
+        let mut before = method.y().to_vec();
+        if method
+            .interpolate(self.system, step.t0, &mut before)
+            .is_ok()
+        {
+            speed = speed.max(self.system.spin(&before));
+        }
+        if method
+            .interpolate_rate(self.system, step.t0, &mut before)
+            .is_ok()
+        {
+            acceleration = acceleration.max(self.system.spin(&before));
+        }
+        // what grows and falls again within the step is at its largest near the middle
+        speed + 0.25 * step.h * acceleration
+    }
+
     /// Output times inside an accepted step, and up to `until` just behind it; the turns at its end.
     fn emit(&mut self, method: &mut dyn Method<System>, step: &numeric::Step, until: f64) {
         let counts = self.system.counts_turns();
         let mut state = method.y().to_vec();
         // while an angle is followed it must not turn by more than half a turn between looks
         let mut looks = if counts {
-            (self.system.spin(&state) * step.h / 1.5).ceil().min(1e4) as usize
+            (self.spin_within(method, step) * step.h / 1.5)
+                .ceil()
+                .min(MOST_LOOKS) as usize
         } else {
             0
         };

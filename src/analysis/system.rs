@@ -587,7 +587,7 @@ impl System {
         }
     }
 
-    /// A bound of how fast any angle turns, rad per time.
+    /// A bound of how fast any angle turns at a state, rad per time; at a rate, of how fast that changes.
     pub fn spin(&self, y: &[f64]) -> f64 {
         let l = self.scene.layout;
         let speeds = self
