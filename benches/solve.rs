@@ -6,9 +6,9 @@
 //!
 //! `cargo bench --bench solve`, or `cargo bench --bench solve -- four table`: only problems whose names contain a word; `table` shows every request.
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::numeric::{self, Dop853, Failure, Method, Ode};

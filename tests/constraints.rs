@@ -1,7 +1,7 @@
 //! Constraints: motions against rows, rows against their gradients, one formulation against the other.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::assemble;
+use cognate::analysis::start::assemble;
 use cognate::model::Model;
 use cognate::scene::cams;
 use cognate::scene::equations::Equations;

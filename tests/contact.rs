@@ -1,8 +1,8 @@
 //! CONTACT statements: which solids touch where, with which force; balance of what acts on both; what cannot be solved.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 

@@ -5,8 +5,8 @@
 #[path = "common/curves.rs"]
 mod curves;
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use curves::{circle, curve, line};

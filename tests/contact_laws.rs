@@ -6,8 +6,8 @@ mod curves;
 #[path = "common/running.rs"]
 mod running;
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use curves::{circle, curve, line};
 use running::{Analysis, Options, Session, go, last, model, options, session, values};

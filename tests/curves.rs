@@ -1,8 +1,8 @@
 //! Where contacts of curves begin, and the floating markers that go with them.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use curves::{circle, curve, line};

@@ -1,8 +1,8 @@
 //! Constraints as elements: general constraints, motions between markers, joints against closed forms, cams.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use curves::{circle, curve};

@@ -2,8 +2,8 @@
 #![cfg(feature = "solver")]
 #![allow(non_snake_case)]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::expr::measures::Measure;
 use cognate::model::Model;
 use cognate::physics::beam::Section;

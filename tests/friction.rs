@@ -1,8 +1,8 @@
 //! FRICTION in joints: Coulomb's closed forms for each joint, what is read of the reaction, and where it is approximate.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 

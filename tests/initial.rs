@@ -1,8 +1,8 @@
 //! Initial conditions of joints and parts: where and how fast a dynamic simulation begins; kinematics and statics do not ask for them.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 

@@ -1,8 +1,8 @@
 //! Joints, couplers and gears against closed forms; what does not depend on place, orientation and units; motions that are not smooth.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 

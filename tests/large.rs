@@ -2,9 +2,9 @@
 
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::outline::outline;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::verify::outline::outline;
 use cognate::model::Model;
 use cognate::results::Status;
 use std::fmt::Write;

@@ -3,10 +3,10 @@
 #![cfg(feature = "solver")]
 #![allow(non_snake_case)]
 
-use cognate::analysis::dynamics::{self, Unwatched};
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::system::System;
-use cognate::analysis::{assemble, columns};
+use cognate::analysis::time::dynamics::{self, Unwatched};
+use cognate::analysis::{session::columns, start::assemble};
 use cognate::model::{Driven, MarkerOwner, Model, Orientation, Units};
 use cognate::results::{Run, Status};
 use cognate::scene::{Scene, build};

@@ -3,9 +3,9 @@
 //! markers.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::results::Status;

@@ -2,10 +2,10 @@
 //! matrices between plant inputs and outputs.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::linear::{Linearization, Wanted};
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::results::Status;

@@ -1,8 +1,8 @@
 //! Parts without mass or inertia: where they are told, and where they do no harm.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::analysis::verify::verify;
 use cognate::diagnostic::Diagnostic;
 use cognate::model::Model;

@@ -8,9 +8,9 @@
 //! ```
 #![cfg(feature = "solver")]
 
-use cognate::analysis::assemble;
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::start::assemble;
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::analysis::verify::{Verification, verify};
 use cognate::model::Model;
 use cognate::results::Status;

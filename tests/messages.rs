@@ -4,8 +4,8 @@
 #[path = "common/running.rs"]
 mod running;
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::diagnostic::Diagnostic;
 use cognate::results::Status;

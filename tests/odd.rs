@@ -2,9 +2,9 @@
 //! reads without a mistake, is written as it was read, keeps its meaning when it is formatted, and moves as the plain one does.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::dataset::syntax::Source;
 use cognate::dataset::{Reading, read_source, read_text};

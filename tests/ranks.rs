@@ -1,8 +1,8 @@
 //! Rank that changes while a mechanism moves, and mechanisms that can be driven no further.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use std::f64::consts::PI;
@@ -226,7 +226,7 @@ fn an_unequal_four_bar_is_driven_through_its_dead_point() {
 
 /// A problem of the references as its command file runs it.
 fn reference(problem: &str) -> Session {
-    use cognate::analysis::script::obey;
+    use cognate::analysis::session::script::obey;
     use cognate::dataset::command::Script;
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
     let script = Script::read(folder.join(format!("{problem}.acf"))).unwrap();

@@ -23,7 +23,7 @@ let y = f.eval(&[("TIME", 0.25)])?;
 
 #[rustfmt::skip]
 fn a_model() -> Result<Vec<f64>, Wrong> {
-use cognate::analysis::{dynamics::Unwatched, session::{Analysis, Options, Session}};
+use cognate::analysis::{session::{Analysis, Options, Session}, time::dynamics::Unwatched};
 
 let model = cognate::model::Model::read("examples/slider_crank.adm")?;
 let mut session = Session::new(model, "crank", Options { columns: vec!["DX(41,22)".into()], ..Options::default() });

@@ -4,9 +4,9 @@
 //! The true error is the largest difference over samples and columns, each column relative to its largest magnitude.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::results::Status;

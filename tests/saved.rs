@@ -1,10 +1,10 @@
 //! SAVE and RELOAD: a run goes on from a saved state as if nothing had happened, to the last bit; what is no such state is refused.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::{Saved, file_name};
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::results::Status;

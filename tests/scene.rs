@@ -1,7 +1,7 @@
 //! Scenes: the equations of small mechanisms against closed forms, and every formulation against the other.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::{assemble, system::System};
+use cognate::analysis::{start::assemble, system::System};
 use cognate::model::*;
 use cognate::numeric::{self, Method, Ode};
 use cognate::scene::{Scene, build::Options};

@@ -1,8 +1,8 @@
 //! Equilibria against closed forms: rest by contact, chains, arches, springs; what is said when there is none.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 

@@ -1,8 +1,8 @@
 //! What is said about freedoms: in which words, about which elements, and where a position is special.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::analysis::verify::{Verification, verify};
 use cognate::model::Model;
 

@@ -1,34 +1,20 @@
-//! What to do with a scene: assemble, move, balance, integrate, linearize, verify.
+//! Analyses of a scene: assemble, move, balance, integrate, linearize, verify.
+//!
+//! Each folder is a room that knows only the rooms below it:
+//!
+//! ```text
+//! session      one simulation after another; commands; columns of results
+//! verify       freedoms, redundancy; what becomes of a model
+//! time         the loop over time: kinematics and dynamics
+//! statics      rest       linear      eigenvalues, state matrices
+//! system       a scene as ẏ = f(t, y) and as F(t, y, ẏ) = 0; everything its programs read
+//! start        assembly, placement, initial conditions
+//! ```
 
-pub mod assemble;
-mod clock;
-mod coincident;
-pub mod columns;
-pub mod drives;
-pub mod dynamics;
-pub mod implicit;
-pub mod kinematics;
 pub mod linear;
-pub mod misalignment;
-mod moments;
-pub mod nearby;
-pub mod outline;
-pub mod output;
-pub mod outside;
-mod passage;
-pub mod placement;
-pub mod ranks;
-mod reach;
-pub mod samples;
-pub mod script;
-pub mod sensors;
 pub mod session;
-mod shells;
-mod slopes;
+pub mod start;
 pub mod statics;
-pub mod switches;
 pub mod system;
-mod unknowns;
-mod valueless;
+pub mod time;
 pub mod verify;
-mod wishes;

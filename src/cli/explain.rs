@@ -3,7 +3,7 @@
 use super::functions;
 use super::verify::model_of;
 use super::{Exit, Failure, Outcome, say};
-use crate::analysis::outline::{Outline, outline};
+use crate::analysis::verify::outline::{Outline, outline};
 use crate::diagnostic::codes::{all, code};
 use crate::diagnostic::{Diagnostic, near_names};
 use serde_json::{Value, json};

@@ -1,10 +1,10 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
 use super::{Exit, Failure, Outcome, interrupt, remark, run, say};
-use crate::analysis::dynamics::Watch;
 use crate::analysis::linear::Wanted;
-use crate::analysis::script::obey;
+use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
+use crate::analysis::time::dynamics::Watch;
 use crate::diagnostic::Diagnostic;
 use crate::results::{self, Status, json};
 use std::path::PathBuf;

@@ -3,15 +3,15 @@
 use super::progress::Progress;
 
 use super::{Exit, Failure, Outcome, interrupt, linear, remark, say, summary};
-use crate::analysis::dynamics::Watch;
-use crate::analysis::script::obey;
+use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Options, Session};
+use crate::analysis::time::dynamics::Watch;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::numeric::Stats;
-use crate::results::shelf::Shelf;
+use crate::results::output_folder::OutputFolder;
 use crate::results::{Event, Status, csv, json, msg, res};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -360,34 +360,34 @@ fn write(
     let clock = Instant::now();
     let run = &session.run;
     let own = |ending: &str| format!("{}.{ending}", run.name);
-    let mut shelf = Shelf::new(dir, &run.name);
-    shelf.put(&own("csv"), &csv::write(run, true))?;
+    let mut folder = OutputFolder::new(dir, &run.name);
+    folder.put(&own("csv"), &csv::write(run, true))?;
     if full {
-        shelf.put(&own("res"), &res::write(run))?;
+        folder.put(&own("res"), &res::write(run))?;
     }
-    shelf.put(&own("msg"), &msg::write(run))?;
+    folder.put(&own("msg"), &msg::write(run))?;
     for (name, text) in linear::files(session) {
-        shelf.put(&name, &text)?;
+        folder.put(&name, &text)?;
     }
     for (name, text) in &session.saved {
-        shelf.put(name, text)?;
+        folder.put(name, text)?;
     }
     if let Some(text) = summary::picture(run).filter(|_| picture) {
-        shelf.put(&own("svg"), &text)?;
+        folder.put(&own("svg"), &text)?;
     }
     let name = own("json");
     session.run.record.write_seconds = clock.elapsed().as_secs_f64();
-    let record = json::with_files(json::record(&session.run), shelf.written());
+    let record = json::with_files(json::record(&session.run), folder.written());
     let record = json::text(&record);
-    shelf.put(&name, &record)?;
-    for (was, is) in shelf.kept() {
+    folder.put(&name, &record)?;
+    for (was, is) in folder.kept() {
         remark(format!(
             "{} was not written by this program or has been changed: kept as {}",
             was.display(),
             is.display()
         ));
     }
-    Ok((shelf.files().to_vec(), record))
+    Ok((folder.files().to_vec(), record))
 }
 
 /// Time that this process has computed, where the system tells.

@@ -8,8 +8,8 @@ pub mod csv;
 pub mod gra;
 pub mod json;
 pub mod msg;
+pub mod output_folder;
 pub mod res;
-pub mod shelf;
 mod text_res;
 
 use crate::diagnostic::Diagnostic;

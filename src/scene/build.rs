@@ -2,11 +2,11 @@
 
 use super::compile::{Compiler, NamedTie, part_name};
 use super::contacts::Shell;
+use super::external_inputs::{ExternalInput, HookKind, HookName, SceneDelay, SceneHook};
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
 use super::left_out::LeftOut;
 use super::loops::{self, Key};
-use super::outside::{HookKind, HookName, SceneDelay, SceneHook, Supplied};
 use super::reads::{Allowed, offence};
 use super::sweep::Freedom;
 use super::{
@@ -268,7 +268,7 @@ impl<'m> Builder<'m> {
         let first = self.scene.delays.len();
         let n = compiled.delays.len();
         let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(Supplied::Delay(first + k)))
+            .map(|k| self.supply(ExternalInput::Delay(first + k)))
             .collect();
         for programs in compiled.delays {
             let [expression, delay, history] =
@@ -283,10 +283,10 @@ impl<'m> Builder<'m> {
     }
 
     /// A place for a number from outside.
-    pub(super) fn supply(&mut self, what: Supplied) -> usize {
-        self.scene.supplied.push(what);
-        self.scene.layout.n_supplied = self.scene.supplied.len();
-        self.scene.supplied.len() - 1
+    pub(super) fn supply(&mut self, what: ExternalInput) -> usize {
+        self.scene.external_inputs.push(what);
+        self.scene.layout.n_external = self.scene.external_inputs.len();
+        self.scene.external_inputs.len() - 1
     }
 
     /// `n` numbers that a closure of the user's computes for an element, as formulas; `reads`: what it is given beside its own
@@ -332,7 +332,7 @@ impl<'m> Builder<'m> {
         inputs.extend(further);
         let hook = self.scene.hooks.len();
         let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(Supplied::Hook(hook, k)))
+            .map(|k| self.supply(ExternalInput::Hook(hook, k)))
             .collect();
         self.scene.hooks.push(SceneHook {
             kind: HookKind::User { closure, inputs },

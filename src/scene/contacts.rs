@@ -2,9 +2,9 @@
 
 use super::build::{Builder, active};
 use super::compile::Compiler;
+use super::external_inputs::{ExternalInput, HookKind, SceneHook};
 use super::forces::{ForceLaw, Touching};
-use super::outside::{HookKind, SceneHook, Supplied};
-use super::reach::Reach;
+use super::tunnelling::ThicknessBound;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Contact, ContactLaw, CoulombFriction, Shape};
 use crate::physics::contact::extent::Extent;
@@ -258,8 +258,9 @@ impl Builder<'_> {
                         let [i, j] = markers.map(|m| c.marker(m, &name));
                         if let ([Some(a), Some(b)], Some(i), Some(j)) = (extents, i, j) {
                             let outlines = matches!(how, How::Question(Question::Outlines(_)));
-                            let reach = Reach::new([i, j], [a, b], a.overlap(&b, outlines));
-                            self.scene.reaches.push(reach);
+                            let reach =
+                                ThicknessBound::new([i, j], [a, b], a.overlap(&b, outlines));
+                            self.scene.thickness_bounds.push(reach);
                         }
                         let touching = match how {
                             How::Formula(pair) => Touching::Formula(pair),
@@ -313,7 +314,7 @@ impl Builder<'_> {
         }
         let (hook, n) = (self.scene.hooks.len(), question.touches() * TOUCH_NUMBERS);
         let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(Supplied::Hook(hook, k)))
+            .map(|k| self.supply(ExternalInput::Hook(hook, k)))
             .collect();
         self.scene.hooks.push(SceneHook {
             kind: HookKind::Touches { question, markers },

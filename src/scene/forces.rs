@@ -133,7 +133,7 @@ impl ForceElement {
                 let touches = match touching {
                     Touching::Formula(pair) => pair.touches(&i, &j),
                     Touching::Query(numbers) => {
-                        contact::found(at.supplied(numbers.clone()), &i, &j)
+                        contact::found(at.external(numbers.clone()), &i, &j)
                     }
                 };
                 contact::action(&touches, law, &i, &j)

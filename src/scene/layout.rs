@@ -20,7 +20,7 @@ pub struct Layout {
     /// unknowns of algebraic loops that are solved beside the programs
     pub n_loops: usize,
     /// values that come from outside: hooks, delayed values, sensors
-    pub n_supplied: usize,
+    pub n_external: usize,
 }
 
 impl Layout {
@@ -51,12 +51,12 @@ impl Layout {
         self.turns().end..self.turns().end + self.n_loops
     }
     /// Places of what comes from outside.
-    pub fn supplied(&self) -> Range<usize> {
-        self.loops().end..self.loops().end + self.n_supplied
+    pub fn external(&self) -> Range<usize> {
+        self.loops().end..self.loops().end + self.n_external
     }
     /// How many numbers a program reads.
     pub fn len(&self) -> usize {
-        self.supplied().end
+        self.external().end
     }
     /// Never: there is always time.
     pub fn is_empty(&self) -> bool {

@@ -11,6 +11,7 @@ mod compliance;
 pub mod contacts;
 mod couplers;
 pub mod equations;
+pub mod external_inputs;
 pub mod forces;
 pub mod forest;
 mod formula;
@@ -19,13 +20,12 @@ mod general;
 pub mod layout;
 pub mod left_out;
 pub mod loops;
-pub mod outside;
 pub mod programs;
-pub mod reach;
 mod reads;
 pub mod solve;
 pub mod sweep;
 mod systems;
+pub mod tunnelling;
 
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
@@ -381,21 +381,21 @@ pub struct Scene {
     /// (POUTPUT rather than PINPUT, user's number) → formulas
     pub plants: BTreeMap<(bool, u32), Vec<usize>>,
     /// sensors
-    pub sensors: Vec<outside::SceneSensor>,
+    pub sensors: Vec<external_inputs::SceneSensor>,
     /// bodies that could pass through each other within a step
-    pub reaches: Vec<reach::Reach>,
+    pub thickness_bounds: Vec<tunnelling::ThicknessBound>,
     /// discrete states
-    pub samplers: Vec<outside::SceneSampler>,
+    pub samplers: Vec<external_inputs::SceneSampler>,
     /// values of the past
-    pub delays: Vec<outside::SceneDelay>,
+    pub delays: Vec<external_inputs::SceneDelay>,
     /// calls of the user's closures
-    pub hooks: Vec<outside::SceneHook>,
+    pub hooks: Vec<external_inputs::SceneHook>,
     /// user's REQUEST number → formulas, of those that a closure computes
     pub requests: BTreeMap<u32, Vec<usize>>,
     /// numbers from outside, in the order of their places
-    pub supplied: Vec<outside::Supplied>,
-    /// what these are before the first step; empty: zeros   (n_supplied)
-    pub supplied_values: Vec<f64>,
+    pub external_inputs: Vec<external_inputs::ExternalInput>,
+    /// what these are before the first step; empty: zeros   (n_external)
+    pub external_values: Vec<f64>,
     /// all expressions
     pub formulas: Vec<Formula>,
     /// of these, the ones asked for beside those of the model
@@ -508,21 +508,25 @@ impl Scene {
     /// the value and its two derivatives in time.
     pub fn computed(&self, formula: usize) -> Option<usize> {
         let place = *self.formulas.get(formula)?.delayed.first()?;
-        matches!(self.supplied.get(place), Some(outside::Supplied::Hook(..))).then_some(place)
+        matches!(
+            self.external_inputs.get(place),
+            Some(external_inputs::ExternalInput::Hook(..))
+        )
+        .then_some(place)
     }
 
     /// Where SENVAL of a sensor stands among the numbers from outside.
     pub fn sensor_place(&self, id: u32) -> Option<usize> {
-        self.supplied
+        self.external_inputs
             .iter()
             .position(|s| self.sensor_of(*s) == Some(id))
     }
 
     /// The user's number of the sensor that a number from outside belongs to.
-    pub fn sensor_of(&self, supplied: outside::Supplied) -> Option<u32> {
+    pub fn sensor_of(&self, supplied: external_inputs::ExternalInput) -> Option<u32> {
         match supplied {
-            outside::Supplied::Sensor(k) => Some(self.sensors[k].id),
-            outside::Supplied::Kept(id) => Some(id),
+            external_inputs::ExternalInput::Sensor(k) => Some(self.sensors[k].id),
+            external_inputs::ExternalInput::Kept(id) => Some(id),
             _ => None,
         }
     }

@@ -12,7 +12,7 @@
 
 use super::build::{Builder, active};
 use super::compile::Compiler;
-use super::outside::{SceneSampler, SceneSensor, Supplied};
+use super::external_inputs::{ExternalInput, SceneSampler, SceneSensor};
 use super::{Entry, Formula, SceneDifferential};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program, Sym};
@@ -44,7 +44,7 @@ impl Builder<'_> {
             let name = format!("VARIABLE/{id} FUNCTION");
             let f = match variable.function.constant() {
                 Some(_) if changing.contains(&id) => {
-                    let place = self.supply(Supplied::Constant(id));
+                    let place = self.supply(ExternalInput::Constant(id));
                     self.supplied_formula(&name, "a number that commands change", place)
                 }
                 _ => self.formula(c, &name, &variable.function),
@@ -140,8 +140,12 @@ impl Builder<'_> {
         match self.values_of(variables) {
             Ok(formulas) => {
                 for f in formulas {
-                    if !self.scene.supplied.contains(&Supplied::Input(f)) {
-                        self.supply(Supplied::Input(f));
+                    if !self
+                        .scene
+                        .external_inputs
+                        .contains(&ExternalInput::Input(f))
+                    {
+                        self.supply(ExternalInput::Input(f));
                     }
                 }
             }
@@ -154,7 +158,7 @@ impl Builder<'_> {
         for (&id, s) in &model.sensors {
             if model.inactive.contains(&("SENSOR".to_string(), id)) {
                 // it watches nothing, but keeps what it has seen
-                self.supply(Supplied::Kept(id));
+                self.supply(ExternalInput::Kept(id));
                 continue;
             }
             let name = format!("SENSOR/{id}");
@@ -162,7 +166,7 @@ impl Builder<'_> {
             let evaluate =
                 (s.evaluate.as_ref()).map(|e| self.formula(c, &format!("{name} EVALUATE"), e));
             let index = self.scene.sensors.len();
-            self.supply(Supplied::Sensor(index));
+            self.supply(ExternalInput::Sensor(index));
             self.scene.sensors.push(SceneSensor {
                 id,
                 formula,
@@ -498,7 +502,7 @@ impl Builder<'_> {
         let sampler = self.scene.samplers.len();
         let name = |k: usize| format!("GSE/{id} discrete state {}", k + 1);
         let places: Vec<usize> = (0..s.nd)
-            .map(|k| self.supply(Supplied::Sample(sampler, k)))
+            .map(|k| self.supply(ExternalInput::Sample(sampler, k)))
             .collect();
         let states = places.into_iter().enumerate();
         let held: Vec<usize> = states

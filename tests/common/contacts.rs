@@ -1,8 +1,8 @@
 //! Models of spheres and boxes in contact, for us and for rapier, with their closed forms.
 #![allow(dead_code)] // each program uses its own part
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use rapier3d_f64::prelude::*;

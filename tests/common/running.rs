@@ -1,8 +1,8 @@
 //! Models of a few lines of text, with MARKER/1 on ground: run, and their columns.
 #![allow(dead_code)] // each test binary uses its own part
 
-use cognate::analysis::dynamics::Unwatched;
 pub use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 

@@ -3,8 +3,8 @@
 //! A table says 6 or 7 digits at 501 times. The bound of a quantity is relative to the largest magnitude in its table: 5e-6 where the
 //! table is that good; the Adams runs with looser control have what an independent integration found between it and them.
 
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::model::{Formula, Model};
 use cognate::results::Status;
 use std::path::{Path, PathBuf};

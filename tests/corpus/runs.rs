@@ -1,9 +1,9 @@
 //! Whole models of other people, run and compared with what Adams computed for them: rest and motion, free runs, replays of recorded inputs;
 //! and models that need programs which are not there, with what these would compute taken as zero.
 
-use cognate::analysis::dynamics::Unwatched;
-use cognate::analysis::script::obey;
+use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::{Command, Script, SimulationKind};
 use cognate::model::{Model, Orientation};
 use cognate::results::{self, Run, Status};

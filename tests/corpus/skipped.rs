@@ -1,8 +1,8 @@
 //! Models whose contacts are between solids of a CAD kernel: without these contacts they run, and do what mechanics says of the first instants.
 
 use super::runs::{apart, corpus, obeyed};
-use cognate::analysis::dynamics::Unwatched;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::time::dynamics::Unwatched;
 use cognate::dataset::command::{Command, Script};
 use cognate::model::Model;
 use cognate::results::{self, Status};

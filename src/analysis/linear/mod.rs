@@ -13,14 +13,14 @@
 mod modes;
 mod write;
 
-use super::assemble;
-use super::slopes::{self, Direction};
-use super::system::{System, complaints};
+use crate::analysis::start::assemble;
+use crate::analysis::system::slopes::{self, Direction};
+use crate::analysis::system::{System, complaints};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::model::Model;
 use crate::scene::equations::Equations;
-use crate::scene::outside::Supplied;
+use crate::scene::external_inputs::ExternalInput;
 use crate::scene::programs::record;
 use crate::scene::{Scene, build};
 use nalgebra::{DMatrix, DVector};
@@ -283,9 +283,9 @@ pub fn linearize(
     }
     directions.extend((0..n_x).map(|k| vec![(l.x().start + k, 1.0)]));
     for id in &input_ids {
-        let own = |s: &Supplied| matches!(s, Supplied::Input(f) if system.scene.variables.get(id) == Some(f));
-        let place = system.scene.supplied.iter().position(own);
-        directions.push(place.map_or_else(Vec::new, |p| vec![(l.supplied().start + p, 1.0)]));
+        let own = |s: &ExternalInput| matches!(s, ExternalInput::Input(f) if system.scene.variables.get(id) == Some(f));
+        let place = system.scene.external_inputs.iter().position(own);
+        directions.push(place.map_or_else(Vec::new, |p| vec![(l.external().start + p, 1.0)]));
     }
     let slopes = along(system, &program, &directions).map_err(|k| undetermined(system, k))?;
     if slopes.iter().any(|x| !x.is_finite()) {

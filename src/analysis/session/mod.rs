@@ -4,18 +4,23 @@
 //! rows to the run. What goes wrong in numbers is an outcome in the record, with the results so far; what is wrong in the
 //! model is an error.
 
+pub mod columns;
+mod outcome;
+pub mod script;
+mod shells;
 mod start;
 pub mod state;
-mod told;
 
-use super::columns::Columns;
-use super::dynamics::{self, Ended, Trajectory, Watch};
-use super::implicit::Formulation;
-use super::linear::{self, Linearization};
-use super::output::{self, Output};
-use super::system::System;
-use super::verify::massless::massless;
-use super::{drives, kinematics, outside, statics};
+use super::statics;
+use super::system::external_inputs;
+use super::time::{drives, kinematics};
+use crate::analysis::linear::{self, Linearization};
+use crate::analysis::session::columns::Columns;
+use crate::analysis::system::System;
+use crate::analysis::system::implicit::Formulation;
+use crate::analysis::time::dynamics::{self, Ended, Trajectory, Watch};
+use crate::analysis::time::output::{self, Output};
+use crate::analysis::verify::massless::massless;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::Model;
@@ -23,11 +28,11 @@ use crate::numeric;
 use crate::results::{self, Event, Kind, Run, Status};
 use crate::scene::Scene;
 use crate::scene::contacts::Shell;
+use outcome::{counts, units};
 use start::{Carried, Kept};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Instant;
-use told::{counts, units};
 
 /// What SIMULATE asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +86,7 @@ pub struct Session {
     /// programs of the present scene: of the columns; of energies and rows
     columns_program: Option<Program>,
     account: Option<Program>,
-    hooks: Vec<outside::Hook>,
+    hooks: Vec<external_inputs::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether matrices are wanted
     pub linear: Vec<(Option<String>, bool, Linearization)>,
     /// states that commands saved, by the names of their files
@@ -134,15 +139,15 @@ impl Session {
     /// Computes what `USER(…)` stands for by a closure.
     ///
     /// `name` is an element ("SFORCE/3"), the text of its ROUTINE, or the first number of `USER(…)`; `inputs` are expressions of the
-    /// function language whose values the closure is given, in this order. They may not depend on what it computes. See [`outside::Law`]
+    /// function language whose values the closure is given, in this order. They may not depend on what it computes. See [`external_inputs::Law`]
     /// for what it has to fill in.
     pub fn register(
         &mut self,
         name: &str,
         inputs: &[&str],
-        law: impl Fn(&outside::Call<'_>, &mut [f64]) + Send + Sync + 'static,
+        law: impl Fn(&external_inputs::Call<'_>, &mut [f64]) + Send + Sync + 'static,
     ) {
-        self.hooks.push(outside::Hook {
+        self.hooks.push(external_inputs::Hook {
             name: name.to_string(),
             inputs: inputs.iter().map(ToString::to_string).collect(),
             law: std::sync::Arc::new(law),
@@ -154,7 +159,11 @@ impl Session {
 
     /// The columns of the results, before there are any.
     fn choose_columns(&mut self) {
-        let names: Vec<_> = self.hooks.iter().map(outside::Hook::as_name).collect();
+        let names: Vec<_> = self
+            .hooks
+            .iter()
+            .map(external_inputs::Hook::as_name)
+            .collect();
         let known = |id: u32, user: &crate::model::Formula| {
             let element = format!("REQUEST/{id}");
             names.iter().any(|n| n.stands_for(&element, user))
@@ -400,7 +409,7 @@ impl Session {
             // states go on by integration, which keeps positions on the rows as well
             let l = system.scene.layout;
             let moved =
-                l.n_x > 0 || l.n_q > 0 && system.outside.remembers() || !system.samples.is_empty();
+                l.n_x > 0 || l.n_q > 0 && system.external.remembers() || !system.samples.is_empty();
             trajectory = if kind == Kind::Kinematic && !moved {
                 kinematics::trace(system, &outputs, settings.h_max, watch)
             } else {

@@ -1,9 +1,11 @@
 //! What a simulation starts from: the model compiled as it is now, and the state that the last one left or that is assembled.
 
-use super::super::assemble::{self, Assembly};
-use super::super::system::{System, complaints};
-use super::super::{coincident, misalignment, outside, placement, samples, shells, wishes};
+use super::shells;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
+use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::{coincident, initial_conditions, misalignment, placement};
+use crate::analysis::system::{System, complaints};
+use crate::analysis::system::{external_inputs, samples};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::model::{Formula, Model, Orientation, Place};
@@ -12,7 +14,7 @@ use crate::scene::build::{self, unknown_names};
 use crate::scene::compile::orientation;
 use crate::scene::contacts::Shell;
 use crate::scene::equations::Equations;
-use crate::scene::outside::Supplied;
+use crate::scene::external_inputs::ExternalInput;
 use crate::space::kinematic::kinematic;
 use crate::space::{MarkerState, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,7 +38,7 @@ pub(super) struct Carried {
     /// where sampled systems stand, by the numbers of their GSE
     pub(super) samples: BTreeMap<u32, samples::Held>,
     /// what was before
-    pub(super) past: Vec<outside::Past>,
+    pub(super) past: Vec<external_inputs::Past>,
 }
 
 /// A system that has done its simulation, and the model it was made of.
@@ -63,8 +65,8 @@ impl Kept {
 /// A model without the numbers that its scene is supplied with.
 fn without_constants(model: &Model, scene: &Scene) -> Model {
     let mut model = model.clone();
-    for what in &scene.supplied {
-        if let Supplied::Constant(id) = what
+    for what in &scene.external_inputs {
+        if let ExternalInput::Constant(id) = what
             && let Some(variable) = model.variables.get_mut(id)
             && variable.function.constant().is_some()
         {
@@ -93,7 +95,7 @@ impl Session {
         }
         system.numbers.copy_from_slice(&carried.numbers);
         self.set_constants(&system.scene, &mut system.numbers);
-        system.outside.begin(carried.t, &carried.past);
+        system.external.begin(carried.t, &carried.past);
         system.resolve().ok()?;
         system.begin_sensing();
         Some((system, kept.assembly))
@@ -114,7 +116,11 @@ impl Session {
             extra: self.columns.extra.clone(),
             variables: self.options.full,
             skip: self.options.skip.clone(),
-            hooks: self.hooks.iter().map(outside::Hook::as_name).collect(),
+            hooks: self
+                .hooks
+                .iter()
+                .map(external_inputs::Hook::as_name)
+                .collect(),
             zero_user: self.options.zero_user,
             plant_inputs: inputs.to_vec(),
             changing: self.changing.clone(),
@@ -191,7 +197,7 @@ impl Session {
             }
         }
         scene.turns.clone_from(&turns);
-        scene.supplied_values = self.supplied(&scene, t, &q, &x)?;
+        scene.external_values = self.external(&scene, t, &q, &x)?;
         let misaligned = if first {
             misalignment::misaligned(&scene, &self.model)
         } else {
@@ -200,18 +206,18 @@ impl Session {
         let placed = first && placement::settle(&scene, &self.model, t, &mut q, &x, joints);
         // only what moves by itself has initial conditions
         let wishes = if first && mode != KINEMATIC && mode != STATIC {
-            wishes::collect(&scene, &self.model)
+            initial_conditions::collect(&scene, &self.model)
         } else {
             Vec::new()
         };
         // where parts are too many to be weighed, or on curves, coordinates move as little as may be
         let starts = if first && !(placed && joints) {
-            wishes::approach(&mut scene, &wishes, t, &mut q, &x)
+            initial_conditions::approach(&mut scene, &wishes, t, &mut q, &x)
         } else {
             Vec::new()
         };
         let mut assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
-        let unmet = wishes::unmet(&scene, &wishes, &starts, t, &q, &x);
+        let unmet = initial_conditions::unmet(&scene, &wishes, &starts, t, &q, &x);
         assembly.warnings.extend(unmet);
         assembly.warnings.splice(0..0, misaligned);
         assembly.warnings.extend(exchanged);
@@ -235,7 +241,7 @@ impl Session {
         };
         let mut system = System::with_hooks(scene, &self.hooks)?;
         let past = self.carried.as_ref().map_or(&[][..], |c| &c.past);
-        system.outside.begin(t, past);
+        system.external.begin(t, past);
         let mut y = q;
         y.extend(v);
         y.extend(x);
@@ -286,7 +292,7 @@ impl Session {
     }
 
     /// Numbers from outside where assembly begins: what sensors evaluated before, and what closures say of the configuration.
-    pub(super) fn supplied(
+    pub(super) fn external(
         &self,
         scene: &Scene,
         t: f64,
@@ -298,11 +304,11 @@ impl Session {
         let carried = self.carried.as_ref();
         let none = BTreeMap::new();
         let held = carried.map_or(&none, |c| &c.samples);
-        let first = l.supplied().start;
-        for (place, supplied) in scene.supplied.iter().enumerate() {
-            let sensor = scene.sensor_of(*supplied);
+        let first = l.external().start;
+        for (place, input) in scene.external_inputs.iter().enumerate() {
+            let sensor = scene.sensor_of(*input);
             let seen = sensor.and_then(|id| carried?.sensors.get(&id).copied());
-            let value = seen.or_else(|| samples::before(scene, *supplied, held));
+            let value = seen.or_else(|| samples::before(scene, *input, held));
             numbers[first + place] = value.unwrap_or(0.0);
         }
         self.set_constants(scene, &mut numbers);
@@ -311,16 +317,17 @@ impl Session {
             numbers[l.q()].copy_from_slice(q);
             numbers[l.x()].copy_from_slice(x);
             numbers[l.turns()].copy_from_slice(&scene.turns);
-            let mut outside = outside::Outside::new(scene, &self.hooks).map_err(complaints)?;
+            let mut outside =
+                external_inputs::ExternalInputs::new(scene, &self.hooks).map_err(complaints)?;
             outside.evaluate(&mut numbers, true);
         }
-        Ok(numbers[l.supplied()].to_vec())
+        Ok(numbers[l.external()].to_vec())
     }
 
     /// Puts the constants that commands change into their places.
     fn set_constants(&self, scene: &Scene, numbers: &mut [f64]) {
-        for (place, what) in scene.layout.supplied().zip(&scene.supplied) {
-            if let Supplied::Constant(id) = what {
+        for (place, what) in scene.layout.external().zip(&scene.external_inputs) {
+            if let ExternalInput::Constant(id) = what {
                 let variable = self.model.variables.get(id);
                 let value = variable.and_then(|v| v.function.constant());
                 numbers[place] = value.unwrap_or(f64::NAN);
@@ -374,7 +381,7 @@ impl Session {
             turns: numbers[system.scene.layout.turns()].to_vec(),
             sensors: sensed(&system.scene, &numbers),
             samples: system.samples.held(&numbers),
-            past: system.outside.past(),
+            past: system.external.past(),
             names: unknown_names(&system.scene),
             at_rest: false,
             parts,
@@ -385,8 +392,8 @@ impl Session {
 
 /// What SENVAL yields of each sensor.
 fn sensed(scene: &Scene, numbers: &[f64]) -> BTreeMap<u32, f64> {
-    let first = scene.layout.supplied().start;
-    let all = scene.supplied.iter().enumerate();
+    let first = scene.layout.external().start;
+    let all = scene.external_inputs.iter().enumerate();
     all.filter_map(|(place, s)| Some((scene.sensor_of(*s)?, numbers[first + place])))
         .collect()
 }

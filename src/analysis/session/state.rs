@@ -3,10 +3,10 @@
 //! The text is JSON: the model as the commands have left it (a dataset), what is switched off, and the state of the last simulation. Numbers stand in
 //! quotes, as the shortest decimals that name them, so that each comes back with every bit whatever program has passed the file on.
 
-use super::super::outside::Past;
-use super::super::samples::Held;
 use super::Session;
 use super::start::Carried;
+use crate::analysis::system::external_inputs::Past;
+use crate::analysis::system::samples::Held;
 use crate::dataset;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::Model;

@@ -18,18 +18,18 @@
 //!
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the model stood there from the start.
 
-mod fall;
+mod descent;
 mod metric;
+mod outcome;
 mod point;
 mod stability;
 mod step;
-mod told;
 
 pub use stability::Stability;
 
-use super::dynamics::Watch;
-use super::system::System;
-use super::unknowns::WIDTH;
+use crate::analysis::system::System;
+use crate::analysis::system::algebraic_loops::WIDTH;
+use crate::analysis::time::dynamics::Watch;
 use crate::expr::program::{Program, Work};
 use crate::model;
 use crate::numeric::Stats;

@@ -2,7 +2,7 @@
 
 use super::Settler;
 use super::metric::{Metric, Rows};
-use crate::analysis::slopes::{Direction, along};
+use crate::analysis::system::slopes::{Direction, along};
 use crate::numeric::pattern::Pattern;
 use crate::scene::equations::Equations;
 use nalgebra::{DMatrix, DVector};

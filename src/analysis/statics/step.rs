@@ -7,7 +7,7 @@ use crate::numeric::Ode;
 use crate::numeric::dense::Lu;
 use crate::numeric::envelope;
 use crate::scene::equations::Equations;
-use crate::scene::reach::Reach;
+use crate::scene::tunnelling::ThicknessBound;
 use nalgebra::{DMatrix, DVector};
 
 /// Iterations of one implicit step.
@@ -122,15 +122,19 @@ impl Settler<'_> {
     /// How far the way to other numbers exceeds what bodies of a contact may go at once without coming through each other; at most 1 is permitted.
     fn through(&self, p: &Point, numbers: &[f64]) -> f64 {
         let scene = &self.system.scene;
-        if scene.reaches.is_empty() {
+        if scene.thickness_bounds.is_empty() {
             return 0.0;
         }
         let (from, to) = (
             Equations::new(scene, &p.numbers),
             Equations::new(scene, numbers),
         );
-        let excess = |r: &Reach| r.excess(r.apart(&from), r.apart(&to));
-        scene.reaches.iter().map(excess).fold(0.0, f64::max)
+        let excess = |r: &ThicknessBound| r.excess(r.apart(&from), r.apart(&to));
+        scene
+            .thickness_bounds
+            .iter()
+            .map(excess)
+            .fold(0.0, f64::max)
     }
 
     /// The configuration after a step, on the rows.

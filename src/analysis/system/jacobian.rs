@@ -4,8 +4,8 @@
 //! share no row are found along one direction together, eight directions at a time, and methods factor a sparse matrix.
 
 use super::System;
-use crate::analysis::slopes;
-use crate::analysis::unknowns::WIDTH;
+use crate::analysis::system::algebraic_loops::WIDTH;
+use crate::analysis::system::slopes;
 use crate::expr::program::{Program, Work};
 use crate::numeric::Failure;
 use crate::numeric::pattern::Pattern;
@@ -54,7 +54,7 @@ impl System {
     fn gradient(&mut self, n: usize) -> &mut Gradient {
         let holding = usize::from(self.holding);
         if self.gradients[holding].is_none() {
-            let outside = self.unknowns.is_some() || !self.outside.is_empty();
+            let outside = self.unknowns.is_some() || !self.external.is_empty();
             let gradient = if outside {
                 Gradient::Duals
             } else {
@@ -205,7 +205,7 @@ impl System {
             for k in 0..some.len() {
                 take(chunk * WIDTH + k, &|i| out[i].eps[k]);
             }
-            self.outside.forget(&mut self.dual_numbers);
+            self.external.forget(&mut self.dual_numbers);
             if let Some(unknowns) = &self.unknowns {
                 unknowns.forget(&mut self.dual_numbers);
             }

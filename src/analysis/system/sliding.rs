@@ -14,7 +14,7 @@
 //! Source: Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), §4; Piiroinen & Kuznetsov, ACM TOMS 34 (2008).
 
 use super::System;
-use crate::analysis::unknowns::WIDTH;
+use crate::analysis::system::algebraic_loops::WIDTH;
 use crate::expr::program::Work;
 use crate::numeric::dense::Lu;
 use crate::numeric::{Failure, Ode};
@@ -54,7 +54,7 @@ impl System {
 
     /// Whether the motion would stay where switch `k` changes, while those slide that do: both of its branches lead back there.
     pub fn attracts(&mut self, t: f64, y: &[f64], k: usize) -> bool {
-        if !self.can_hold() || !self.outside.is_empty() {
+        if !self.can_hold() || !self.external.is_empty() {
             return false;
         }
         self.set(t, y);

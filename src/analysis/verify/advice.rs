@@ -4,7 +4,7 @@
 //! rest, and it must hold here and at a position nearby.
 
 use super::numbers_at;
-use crate::analysis::assemble::{self, Assembly};
+use crate::analysis::start::assemble::{self, Assembly};
 use crate::model::{JointKind, PrimitiveKind};
 use crate::physics::joint::Tie;
 use crate::scene::equations::Equations;

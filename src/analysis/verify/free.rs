@@ -3,7 +3,7 @@
 //! Directions that satisfy all rows to first order, combined so that each has an unknown of its own: as few parts as can be had cheaply move in each.
 
 use super::words::{axis, point};
-use crate::analysis::assemble;
+use crate::analysis::start::assemble;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
 use crate::scene::compile::part_name;

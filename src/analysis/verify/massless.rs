@@ -10,7 +10,7 @@
 //! singular: two arms without mass stretched out towards the same ball.
 
 use super::free::{self, Free, Moving};
-use crate::analysis::assemble;
+use crate::analysis::start::assemble;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Model, Part};
 use crate::scene::Scene;

@@ -11,15 +11,16 @@
 mod advice;
 mod free;
 pub(crate) mod massless;
+pub mod outline;
 mod words;
 
 pub use free::{Free, Moving};
 pub use words::axis;
 pub(super) use words::direction;
 
-use super::assemble::{self, Assembly};
-use super::nearby::Place;
-use super::{misalignment, outline, placement, wishes};
+use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::nearby::Place;
+use crate::analysis::start::{initial_conditions, misalignment, placement};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Level, Model};
 use crate::physics::joint::Tie;
@@ -264,7 +265,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     let starts = if placement::settle(&scene, &model, 0.0, &mut q, &x, true) {
         Vec::new()
     } else {
-        wishes::approach(&mut scene, &[], 0.0, &mut q, &x)
+        initial_conditions::approach(&mut scene, &[], 0.0, &mut q, &x)
     };
     let assembly = match assemble::positions(&mut scene, 0.0, &mut q, &x) {
         Ok(assembly) => assembly,
@@ -280,7 +281,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     found.freedom = Some(assembly.freedom_here);
     found.freedom_nearby = Some(assembly.freedom);
     found.warnings.extend(assembly.warnings.iter().cloned());
-    let unmet = wishes::unmet(&scene, &[], &starts, 0.0, &q, &x);
+    let unmet = initial_conditions::unmet(&scene, &[], &starts, 0.0, &q, &x);
     found.warnings.extend(unmet);
     let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
     let turned = misalignment::turned(&scene, &model, &numbers);

@@ -121,7 +121,7 @@ impl<S: Scalar> Equations<'_, S> {
                 }
             }
             Measure::Senval => match scene.sensor_place(id) {
-                Some(place) => self.supplied[place],
+                Some(place) => self.external[place],
                 None => self.complain(format!("{asked_by}: SENSOR/{id} does not exist")),
             },
             Measure::Dif | Measure::Dif1 => {

@@ -15,16 +15,16 @@ mod loops;
 mod measures;
 mod reactions;
 mod rows;
-mod stress;
+mod undetermined_reactions;
 
 pub use dynamics::Solved;
 pub(in crate::scene) use reactions::keyword_of;
 pub use rows::{RowValue, row_name};
-pub use stress::Share;
+pub use undetermined_reactions::Share;
 
+use super::external_inputs::ExternalInput;
 use super::layout::Layout;
 use super::loops::Key;
-use super::outside::Supplied;
 use super::sweep::{self, Coordinates, LinkState};
 use super::{Entry, Scene};
 use crate::expr::measures::Measure;
@@ -49,8 +49,8 @@ pub struct Equations<'s, S: Scalar> {
     v: Vec<S>,
     x: Vec<S>,
     turns: Vec<S>,
-    /// numbers from outside   (n_supplied)
-    supplied: Vec<S>,
+    /// numbers from outside   (n_external)
+    external: Vec<S>,
     driven: Vec<Jet<S>>,
     /// with the accelerations of driven coordinates only
     links: Vec<LinkState<S>>,
@@ -95,7 +95,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             v: numbers[l.v()].to_vec(),
             x: numbers[l.x()].to_vec(),
             turns: numbers[l.turns()].to_vec(),
-            supplied: numbers[l.supplied()].to_vec(),
+            external: numbers[l.external()].to_vec(),
             driven: Vec::new(),
             links: Vec::new(),
             markers: RefCell::new(vec![None; scene.markers.len()]),
@@ -166,7 +166,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let motion = &self.scene.motions[m];
         let f = match self.scene.computed(motion.formula) {
             // a closure of the user's tells its derivatives
-            Some(p) => Jet::new(self.supplied[p], self.supplied[p + 1], self.supplied[p + 2]),
+            Some(p) => Jet::new(self.external[p], self.external[p + 1], self.external[p + 2]),
             None => self.in_time(motion.formula, 2, &mut Vec::new()),
         };
         let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
@@ -347,16 +347,16 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// What is added to a formula from outside, where it is a plant input.
     fn added(&self, f: usize) -> S {
-        let mut supplied = self.scene.supplied.iter();
-        match supplied.position(|s| *s == Supplied::Input(f)) {
-            Some(place) => self.supplied[place],
+        let mut inputs = self.scene.external_inputs.iter();
+        match inputs.position(|s| *s == ExternalInput::Input(f)) {
+            Some(place) => self.external[place],
             None => S::zero(),
         }
     }
 
     /// Numbers from outside: places among these.
-    pub fn supplied(&self, places: Range<usize>) -> &[S] {
-        &self.supplied[places]
+    pub fn external(&self, places: Range<usize>) -> &[S] {
+        &self.external[places]
     }
 
     /// A number from outside; at rest the past is like the present.
@@ -364,11 +364,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let Some(place) = place else {
             return S::constant(f64::NAN);
         };
-        match self.scene.supplied[place] {
-            Supplied::Delay(k) if self.scene.mode == STATIC => {
+        match self.scene.external_inputs[place] {
+            ExternalInput::Delay(k) if self.scene.mode == STATIC => {
                 self.formula(self.scene.delays[k].expression)
             }
-            _ => self.supplied[place],
+            _ => self.external[place],
         }
     }
 

@@ -1,0 +1,170 @@
+//! Commands one after another: what a command file does to a session.
+
+use crate::analysis::linear::Wanted;
+use crate::analysis::session::state::{self, Saved};
+use crate::analysis::session::{Analysis, Session};
+use crate::analysis::time::dynamics::Watch;
+use crate::analysis::time::output::Output;
+use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
+use crate::diagnostic::Diagnostic;
+use crate::results::{Event, Status};
+
+/// Output steps where a command gives neither STEPS nor DTOUT.
+pub const DEFAULT_STEPS: usize = 50;
+
+impl Simulate {
+    /// Whether its END is the time that the clock shows: a command after one that was to end there at the latest.
+    fn is_over(&self, now: f64) -> bool {
+        let over_time = !matches!(
+            self.kind,
+            SimulationKind::Static | SimulationKind::InitialConditions
+        );
+        over_time && self.end == Some(now)
+    }
+
+    /// Kind, end and output steps, when the clock shows `now`.
+    ///
+    /// # Errors
+    /// When a simulation over time has no end, or no time to go.
+    pub fn resolved(&self, now: f64) -> Result<(Analysis, f64, Output), Diagnostic> {
+        let analysis = match self.kind {
+            SimulationKind::Kinematic => Analysis::Kinematic,
+            SimulationKind::Dynamic => Analysis::Dynamic,
+            SimulationKind::Static => Analysis::Static,
+            SimulationKind::Transient => Analysis::Transient,
+            SimulationKind::InitialConditions => Analysis::InitialConditions,
+        };
+        let end = self.end.or(self.duration.map(|d| now + d));
+        let over_time = !matches!(analysis, Analysis::Static | Analysis::InitialConditions);
+        let Some(end) = end else {
+            if over_time {
+                let d = Diagnostic::error("no_end", "the simulation has no end");
+                return Err(d.help("give END, the time at which it ends, or DURATION"));
+            }
+            return Ok((analysis, now, Output::Steps(1)));
+        };
+        if over_time && (end <= now || !end.is_finite()) {
+            let message = format!("the simulation should end at {end}, but the clock shows {now}");
+            return Err(Diagnostic::error("no_end", message)
+                .help("END is absolute time; DURATION counts from here"));
+        }
+        let output = match (self.steps, self.dtout) {
+            (Some(steps), _) => Output::Steps(steps.max(1) as usize),
+            (None, Some(dt)) if dt > 0.0 => Output::Every(dt),
+            _ => Output::Steps(DEFAULT_STEPS),
+        };
+        Ok((analysis, end, output))
+    }
+}
+
+/// The bytes of a state: of one saved in this run, else of the first file of that name.
+fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
+    let file = state::file_name(name);
+    if let Some(text) = session.saved.get(&file) {
+        return Ok(text.clone().into_bytes());
+    }
+    let given = std::path::PathBuf::from(name.trim().trim_matches('"'));
+    let here = std::path::PathBuf::from(".");
+    let folders = session.folders.iter().chain(std::iter::once(&here));
+    let mut files = folders.flat_map(|folder| [folder.join(&file), folder.join(&given)]);
+    let bytes = files.find_map(|f| std::fs::read(f).ok());
+    bytes.ok_or_else(|| {
+        Diagnostic::error("cannot_open", format!("there is no file {file}"))
+            .help("SAVE/SYSTEM=file writes one, beside the results")
+    })
+}
+
+/// Obeys commands until one of them ends the run; how the last simulation ended.
+///
+/// `before` is told of each simulation: its start and end.
+///
+/// # Errors
+/// What is wrong in a command or in the model as the commands have left it.
+pub fn obey(
+    session: &mut Session,
+    steps: &[Step],
+    mut before: impl FnMut(f64, f64),
+    watch: &mut dyn Watch,
+) -> Result<Status, Vec<Diagnostic>> {
+    let mut status = Status::Completed;
+    let changed = steps.iter().filter_map(|s| match &s.command {
+        Command::Change(record) if record.row.keyword() == "VARIABLE" => record.id,
+        _ => None,
+    });
+    session.will_change(changed);
+    for step in steps {
+        session.run.log.push(Event::Command(step.text.clone()));
+        let located = |mut d: Diagnostic| {
+            d.element.get_or_insert_with(|| step.text.clone());
+            if d.file.is_none() && d.line == 0 {
+                (d.line, d.column) = (step.line, usize::from(step.line > 0));
+            }
+            d
+        };
+        match &step.command {
+            Command::Simulate(simulate) if simulate.is_over(session.time()) => {
+                let now = session.time();
+                session.warn(&format!(
+                    "{}: the clock shows {now} already, there is nothing to simulate",
+                    step.text
+                ));
+            }
+            Command::Simulate(simulate) => {
+                let (analysis, end, output) = simulate
+                    .resolved(session.time())
+                    .map_err(|d| vec![located(d)])?;
+                before(session.time(), end);
+                status = session.simulate_with(analysis, end, output, watch)?;
+                if status != Status::Completed || session.halted() {
+                    return Ok(status);
+                }
+            }
+            Command::Change(_) | Command::Activate { .. } => {
+                let applied = session.model.apply(&step.command);
+                applied.map_err(|e| e.0.into_iter().map(located).collect::<Vec<_>>())?;
+            }
+            Command::Stop => break,
+            Command::Show(_) => {}
+            Command::Linear(command) => {
+                let shapes = match command.coords[..] {
+                    [] => None,
+                    [only] => Some([only as usize; 2]),
+                    [first, last, ..] => Some([first as usize, last as usize]),
+                };
+                let wanted = Wanted {
+                    inputs: command.pinput,
+                    outputs: command.poutput,
+                    no_damping: command.no_damping,
+                    shapes,
+                };
+                let found = session.linearize(&wanted)?;
+                let matrices = command.state_matrices || !command.eigensolution;
+                session.linear.push((command.file.clone(), matrices, found));
+            }
+            Command::Save(Some(name)) => {
+                let file = state::file_name(name);
+                session.saved.insert(file, session.save());
+            }
+            Command::Reload(Some(name)) => {
+                let saved = found(session, name)
+                    .and_then(|bytes| Saved::read(&bytes))
+                    .and_then(|saved| session.reload(saved));
+                saved.map_err(|d| vec![located(d)])?;
+            }
+            Command::Save(None) | Command::Reload(None) => {
+                let d = Diagnostic::error("missing_argument", "SYSTEM = file is needed");
+                return Err(vec![located(d)]);
+            }
+            Command::File { .. } => {
+                let d = Diagnostic::error(
+                    "unsupported",
+                    "a run has one dataset and one table of results",
+                );
+                return Err(vec![located(d.help(
+                    "FILE belongs at the beginning; another dataset needs a command file of its own, a saved state RELOAD/SYSTEM=file",
+                ))]);
+            }
+        }
+    }
+    Ok(status)
+}

@@ -1,0 +1,779 @@
+//! Putting the mechanism together: positions that satisfy all rows, which rows depend on others, velocities that fit.
+//!
+//! Positions move from those of the dataset by the least change that closes the loops. Rank is found there by
+//! reflections (`numeric/rank.rs`), translations first; a row that depends on earlier ones is left out, and is no
+//! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
+
+use crate::analysis::start::misalignment::{length, short};
+use crate::analysis::start::nearby;
+use crate::analysis::verify::direction;
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use crate::numeric::rank::Rank;
+use crate::scene::cams;
+use crate::scene::equations::{Equations, row_name};
+use crate::scene::programs::weights;
+use crate::scene::{RowKind, Scene, Source};
+use crate::space::Frame;
+use nalgebra::{DMatrix, DVector};
+
+/// Rows whose part orthogonal to earlier rows is smaller than this, relative to themselves, depend on them.
+pub const DEPENDENT: f64 = 1e-8;
+/// Rows shorter than this, compared with what they are where they move something, move nothing.
+const EMPTY: f64 = 1e-9;
+/// A row holds when it is smaller than this (lengths relative to the size of the mechanism).
+pub const CLOSED: f64 = 1e-10;
+
+/// A dependent row and what it depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Redundant {
+    /// index of the row
+    pub row: usize,
+    /// its name: "JOINT/7 Zi.Xj"
+    pub name: String,
+    /// rows it is a combination of, with factors, largest first
+    pub combination: Vec<(usize, f64)>,
+}
+
+/// What assembly found.
+#[derive(Clone, Debug, Default)]
+pub struct Assembly {
+    /// rows that depend on others wherever the mechanism can go near here
+    pub redundant: Vec<Redundant>,
+    /// freedoms of the assembled mechanism, from the rank near here
+    pub freedom: usize,
+    /// rows that depend on others at the assembled position, be it only there
+    pub dependent: Vec<Redundant>,
+    /// freedoms to first order, from the rank at the assembled position
+    pub freedom_here: usize,
+    /// another position near here, when one was looked for and found
+    pub place: Option<nearby::Place>,
+    /// iterations it took
+    pub iterations: usize,
+    /// largest change of a coordinate
+    pub moved: f64,
+    /// what the user should know
+    pub warnings: Vec<String>,
+}
+
+/// What programs read, with these positions, velocities and states.
+pub(in crate::analysis) fn numbers(
+    scene: &Scene,
+    t: f64,
+    q: &[f64],
+    v: &[f64],
+    x: &[f64],
+) -> Vec<f64> {
+    let mut n = Vec::with_capacity(scene.layout.len());
+    n.push(t);
+    n.extend_from_slice(q);
+    n.extend_from_slice(v);
+    n.extend_from_slice(x);
+    n.extend_from_slice(&scene.turns);
+    n.resize(scene.layout.external().start, 0.0);
+    n.extend_from_slice(&scene.external_values);
+    n.resize(scene.layout.len(), 0.0);
+    n
+}
+
+/// Constants of sums of displacements that hold what the configuration shows; what is worth telling about them.
+fn hold(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) -> Vec<String> {
+    let (shown, _, _) = rows_at(scene, t, q, x);
+    let mut told = Vec::new();
+    begin_motions(scene, t, q, x);
+    for (row, &shown) in scene.rows.iter_mut().zip(&shown) {
+        let RowKind::Displacements(sum) = &mut row.kind else {
+            continue;
+        };
+        if !sum.held {
+            continue;
+        }
+        sum.constant += shown;
+        // rounding of what should be zero
+        if sum.constant.abs() < 1e-13 * sum.scale(scene.length) {
+            sum.constant = 0.0;
+        }
+        if sum.constant != 0.0 && sum.contact.is_none() {
+            told.push(format!(
+                "{}: its displacements sum up to {:.6e} where they are assembled; that sum is held, not zero",
+                row.element, sum.constant
+            ));
+        }
+    }
+    told
+}
+
+/// Motions given by their rate, without ICDISP, begin where they are.
+fn begin_motions(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) {
+    let at = Equations::new(
+        scene,
+        &numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x),
+    );
+    let frame = |m: usize| {
+        let state = at.marker(m);
+        Frame {
+            rotation: state.R_GM,
+            position: state.p_GM,
+        }
+    };
+    let mut found = Vec::new();
+    for row in &scene.rows {
+        if let RowKind::Markers {
+            law,
+            i,
+            j,
+            motion: Some(m),
+        } = row.kind
+            && scene.motions[m].held
+        {
+            let begun = scene.motions[m].state.map_or(0.0, |s| x[s]);
+            found.push((m, law.shown(&frame(i), &frame(j)) - begun));
+        }
+    }
+    for (m, offset) in found {
+        scene.motions[m].offset = offset;
+    }
+}
+
+/// Whether a row takes what the configuration shows rather than asking anything of it.
+pub(in crate::analysis) fn is_held(scene: &Scene, r: usize) -> bool {
+    match &scene.rows[r].kind {
+        RowKind::Displacements(sum) => sum.held,
+        RowKind::Markers {
+            motion: Some(m), ..
+        } => scene.motions[*m].held,
+        _ => false,
+    }
+}
+
+/// Values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
+pub fn rows_at(
+    scene: &Scene,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
+    let l = scene.layout;
+    let at = Equations::new(scene, &numbers(scene, t, q, &vec![0.0; l.n_v], x));
+    let m = scene.rows.len();
+    let (mut g, mut gradient, mut drift) = (
+        DVector::zeros(m),
+        DMatrix::zeros(m, l.n_v),
+        DVector::zeros(m),
+    );
+    for r in 0..m {
+        let row = at.row(r);
+        g[r] = row.value;
+        drift[r] = row.drift;
+        for (v, x) in row.gradient {
+            gradient[(r, v)] += x;
+        }
+    }
+    (g, gradient, drift)
+}
+
+/// Size of a row's residual as compared with [`CLOSED`].
+fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
+    (value / natural(scene, r)).abs()
+}
+
+/// What counts as one for a row.
+pub(in crate::analysis) fn natural(scene: &Scene, r: usize) -> f64 {
+    match &scene.rows[r].kind {
+        RowKind::Markers { law, .. } if law.is_length() => scene.length,
+        RowKind::Markers { .. } => 1.0,
+        RowKind::Displacements(sum) => sum.scale(scene.length),
+        RowKind::Formula { scale, .. } => *scale,
+        RowKind::Cam { .. } => scene.length,
+    }
+}
+
+/// The rows of a matrix, columns scaled by √w.
+pub(in crate::analysis) fn scaled_rows(a: &DMatrix<f64>, w: &[f64]) -> Vec<Vec<f64>> {
+    let row = |r: usize| (0..w.len()).map(|v| a[(r, v)] * w[v].sqrt()).collect();
+    (0..a.nrows()).map(row).collect()
+}
+
+/// The decision which rows depend on others, columns scaled by √w.
+fn rank_of(a: &DMatrix<f64>, w: &[f64]) -> Rank {
+    let rows = scaled_rows(a, w);
+    Rank::of(rows.iter().map(Vec::as_slice), w.len(), 1e-9)
+}
+
+/// Shortest solution of `A x = b` in the metric W, rows counting by their direction; where they contradict, the best.
+pub(in crate::analysis) fn least_change(
+    a: &DMatrix<f64>,
+    w: &[f64],
+    b: &DVector<f64>,
+) -> DVector<f64> {
+    let mut x = vec![0.0; w.len()];
+    rank_of(a, w).least_norm(b.as_slice(), &mut x);
+    DVector::from_iterator(w.len(), x.iter().zip(w).map(|(x, w)| x * w.sqrt()))
+}
+
+/// How far [`close`] came.
+pub(in crate::analysis) struct Closed {
+    /// iterations it took
+    pub iterations: usize,
+    /// largest residual, relative to what counts as one for its row
+    pub size: f64,
+    /// residuals   (n_rows)
+    pub g: DVector<f64>,
+}
+
+/// Moves `q` by the least changes that satisfy the rows, but for those that `ignored` names.
+pub(in crate::analysis) fn close(
+    scene: &mut Scene,
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+    ignored: impl Fn(&Scene, usize) -> bool,
+) -> Closed {
+    let w = weights(scene);
+    let mover = Mover::new(scene);
+    let worst = |scene: &Scene, g: &DVector<f64>| {
+        (0..g.len())
+            .map(|r| relative(scene, r, g[r]))
+            .fold(0.0, f64::max)
+    };
+    // contacts on curves go along
+    let rows_at = |scene: &mut Scene, q: &[f64]| {
+        let still = vec![0.0; scene.layout.n_v];
+        let here = numbers(scene, t, q, &still, x);
+        cams::track(scene, &here);
+        let (mut g, mut gradient, drift) = rows_at(scene, t, q, x);
+        for r in (0..g.len()).filter(|&r| ignored(scene, r)) {
+            g[r] = 0.0;
+            gradient.row_mut(r).fill(0.0);
+        }
+        (g, gradient, drift)
+    };
+    let (mut g, mut gradient, _) = rows_at(scene, q);
+    let mut size = worst(scene, &g);
+    let mut iterations = 0;
+    while size > 1e-13 && iterations < 100 {
+        let step = least_change(&gradient, &w, &(-&g));
+        let longest = step
+            .iter()
+            .enumerate()
+            .map(|(v, s)| s.abs() / w[v].sqrt())
+            .fold(0.0, f64::max);
+        let mut damping = (0.5 / longest).min(1.0);
+        let mut better = false;
+        while damping > 1e-6 {
+            let mut trial = q.to_vec();
+            mover.displace(&mut trial, (&step * damping).as_slice());
+            let contacts = scene.cams.clone();
+            let (g1, gradient1, _) = rows_at(scene, &trial);
+            if g1.norm() < g.norm() {
+                q.copy_from_slice(&trial);
+                (g, gradient, better) = (g1, gradient1, true);
+                break;
+            }
+            scene.cams = contacts;
+            damping *= 0.5;
+        }
+        iterations += 1;
+        size = worst(scene, &g);
+        if !better {
+            break;
+        }
+    }
+    Closed {
+        iterations,
+        size,
+        g,
+    }
+}
+
+/// Positions that satisfy all rows at time `t`, starting from `q`; finds which rows depend on others.
+///
+/// # Errors
+/// When the rows contradict each other: which, and by how much.
+pub fn positions(
+    scene: &mut Scene,
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+) -> Result<Assembly, Vec<Diagnostic>> {
+    let mut found = Assembly::default();
+    let start = q.to_vec();
+    // all but the rows that will hold what the others leave
+    let closed = close(scene, t, q, x, is_held);
+    found.iterations = closed.iterations;
+    let reached = numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
+    if let Some(broken) = cams::broken(scene, &reached, None) {
+        return Err(vec![
+            Diagnostic::error(broken.code, broken.sentence)
+                .element(broken.element)
+                .help(broken.advice),
+        ]);
+    }
+    if !closed.size.is_finite() || closed.size > CLOSED {
+        return Err(contradictions(scene, &closed.g, &reached));
+    }
+    found.moved = q
+        .iter()
+        .zip(&start)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
+    found.warnings = hold(scene, t, q, x);
+    let (_, gradient, _) = rows_at(scene, t, q, x);
+    let n = scene.layout.n_v;
+    let (independent, dependent) = rank(scene, &gradient, &[]);
+    found.freedom_here = n - independent.len();
+    (found.freedom, found.redundant) = (found.freedom_here, dependent.clone());
+    let mut active = independent;
+    if !dependent.is_empty()
+        && let Some(around) = nearby::look(scene, t, q, x, &active)
+    {
+        // rows that depend on others here and nowhere else take part
+        found.freedom = n - around.independent.len();
+        found.redundant = around.redundant;
+        active = around.independent;
+        found.place = Some(around.q);
+    }
+    found.dependent = dependent;
+    scene.active = (0..scene.rows.len()).map(|r| active.contains(&r)).collect();
+    Ok(found)
+}
+
+/// The rows that do not hold, worst first: by how much, and in which direction.
+fn contradictions(scene: &Scene, g: &DVector<f64>, numbers: &[f64]) -> Vec<Diagnostic> {
+    let mut bad: Vec<usize> = (0..g.len())
+        .filter(|&r| relative(scene, r, g[r]) > CLOSED || !g[r].is_finite())
+        .collect();
+    bad.sort_by(|&a, &b| relative(scene, b, g[b]).total_cmp(&relative(scene, a, g[a])));
+    let at = Equations::new(scene, numbers);
+    bad.into_iter()
+        .take(20)
+        .map(|r| {
+            let row = &scene.rows[r];
+            let by = match &row.kind {
+                RowKind::Markers { law, .. } if law.is_length() => {
+                    let way = direction(scene, &at, r).replace("translation ", "");
+                    format!("{} {way}", length(g[r], &scene.length_unit))
+                }
+                RowKind::Markers { .. } => {
+                    let way = direction(scene, &at, r).replace("rotation ", "");
+                    let angle = g[r].clamp(-1.0, 1.0).asin().to_degrees();
+                    format!("{} deg {way}", short(angle.abs()))
+                }
+                RowKind::Cam { .. } => {
+                    let way = direction(scene, &at, r).replace("translation ", "");
+                    format!("{} {way}", length(g[r], &scene.length_unit))
+                }
+                _ => short(g[r].abs()),
+            };
+            Diagnostic::error("assembly", format!("cannot be satisfied: {} is off by {by}", row.equation))
+                .element(row.element.clone())
+                .help("move the parts nearer to where the joints want them, or remove a constraint that contradicts")
+        })
+        .collect()
+}
+
+/// Independent rows, and for each other row what it is a combination of: translations before rotations before sums.
+/// Rows in `first` come before all others.
+pub fn rank(
+    scene: &Scene,
+    gradient: &DMatrix<f64>,
+    first: &[usize],
+) -> (Vec<usize>, Vec<Redundant>) {
+    let w = &weights(scene)[..];
+    let mut order: Vec<usize> = (0..scene.rows.len()).collect();
+    let kind = |r: usize| match &scene.rows[r].kind {
+        RowKind::Markers { law, .. } => u8::from(!law.is_length()),
+        RowKind::Displacements(_) | RowKind::Formula { .. } | RowKind::Cam { .. } => 2,
+    };
+    order.sort_by_key(|&r| (!first.contains(&r), kind(r), r));
+    let all = scaled_rows(gradient, w);
+    let longest = w.iter().map(|w| w.sqrt()).fold(0.0, f64::max);
+    let rows: Vec<Vec<f64>> = order
+        .iter()
+        .map(|&r| {
+            // a row that moves nothing there says nothing about what its direction is
+            let size = all[r].iter().map(|x| x * x).sum::<f64>().sqrt();
+            let empty = size <= EMPTY * natural(scene, r).min(longest);
+            if empty {
+                vec![0.0; w.len()]
+            } else {
+                all[r].clone()
+            }
+        })
+        .collect();
+    let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), DEPENDENT);
+    let mut independent: Vec<usize> = rank.independent().into_iter().map(|k| order[k]).collect();
+    independent.sort_unstable();
+    let redundant = rank
+        .dependent()
+        .into_iter()
+        .map(|d| {
+            let mut combination: Vec<(usize, f64)> = d
+                .combination
+                .into_iter()
+                .map(|(k, f)| (order[k], f))
+                .filter(|c| c.1.abs() > 1e-6)
+                .collect();
+            combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
+            let row = order[d.row];
+            let name = row_name(&scene.rows[row]);
+            Redundant {
+                row,
+                name,
+                combination,
+            }
+        })
+        .collect();
+    (independent, redundant)
+}
+
+/// Motions ask for a rate that a row forbids: what it would have to give way by, and which motions there are.
+fn prescribed_too_much(scene: &Scene, numbers: &[f64], r: usize, rate: f64) -> Diagnostic {
+    let at = Equations::new(scene, numbers);
+    let row = &scene.rows[r];
+    let way = direction(scene, &at, r);
+    let (way, rate) = match way.strip_prefix("rotation ") {
+        Some(way) => (
+            way.to_string(),
+            format!("{} deg", short(rate.abs().to_degrees())),
+        ),
+        None => (
+            way.replace("translation ", ""),
+            length(rate, &scene.length_unit),
+        ),
+    };
+    let motions: Vec<String> = (scene.motions.iter())
+        .map(|m| format!("MOTION/{}", m.id))
+        .collect();
+    Diagnostic::error(
+        "assembly",
+        format!(
+            "the prescribed velocities contradict it: {} would have to give way by {rate} per unit of time {way}",
+            row.equation
+        ),
+    )
+    .element(row.element.clone())
+    .help(format!(
+        "prescribe less, or rates that go together: there are {}",
+        motions.join(", ")
+    ))
+}
+
+/// Velocities nearest to those the dataset gives that satisfy the rows: given ones first, then the rest as small as may be.
+///
+/// # Errors
+/// When the motions ask for velocities that the rows forbid.
+pub fn velocities(
+    scene: &Scene,
+    model: &Model,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> Result<Vec<f64>, Vec<Diagnostic>> {
+    let n = scene.layout.n_v;
+    let (_, gradient, drift) = rows_at(scene, t, q, x);
+    let wishes = Wishes::collect(scene, model, t, q, x);
+    // v = v₀ + N z, with N the null space of the rows
+    let w = vec![1.0; n];
+    let v0 = least_change(&gradient, &w, &(-&drift));
+    let left = &gradient * &v0 + &drift;
+    let scale = 1.0 + drift.amax().max(gradient.amax());
+    if let Some(r) = (0..left.len()).find(|&r| left[r].abs() > 1e-8 * scale) {
+        return Err(vec![prescribed_too_much(
+            scene,
+            &numbers(scene, t, q, &vec![0.0; n], x),
+            r,
+            left[r],
+        )]);
+    }
+    let mut v = v0;
+    let wishes = [&wishes.firm, &wishes.given, &wishes.rest];
+    if wishes.iter().all(|(a, b)| (b - a * &v).amax() == 0.0) {
+        return Ok(v.iter().copied().collect());
+    }
+    let mut space = null_space(&gradient, n);
+    // each level of wishes as well as may be within what the levels before leave free
+    for (a, b) in wishes {
+        if space.ncols() == 0 || a.nrows() == 0 {
+            continue;
+        }
+        let mut reduced = a * &space;
+        // a wish square to all that is free is not to be had: what rounding leaves of it says nothing
+        for r in 0..reduced.nrows() {
+            if reduced.row(r).norm() <= EMPTY * a.row(r).norm() {
+                reduced.row_mut(r).fill(0.0);
+            }
+        }
+        let rank = rank_of(&reduced, &vec![1.0; space.ncols()]);
+        let mut z = vec![0.0; space.ncols()];
+        rank.least_squares((b - a * &v).as_slice(), &mut z);
+        v += &space * DVector::from_vec(z);
+        space = &space * directions(&rank, space.ncols());
+    }
+    // without rounding dust where the dataset says zero
+    let size = v.amax();
+    Ok(v.iter()
+        .map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x })
+        .collect())
+}
+
+/// The velocities nearest to the given ones that all rows permit   (n_v)
+pub(in crate::analysis) fn nearest_velocities(
+    scene: &Scene,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+    v: &[f64],
+) -> Vec<f64> {
+    let (_, gradient, drift) = rows_at(scene, t, q, x);
+    let given = DVector::from_column_slice(v);
+    let missing = -(&gradient * &given + drift);
+    let change = least_change(&gradient, &weights(scene), &missing);
+    (given + change).iter().copied().collect()
+}
+
+/// An orthonormal basis of what a matrix maps to zero, by columns.
+pub fn null_space(a: &DMatrix<f64>, n: usize) -> DMatrix<f64> {
+    directions(&rank_of(a, &vec![1.0; n]), n)
+}
+
+fn directions(rank: &Rank, n: usize) -> DMatrix<f64> {
+    let free = rank.free_directions();
+    DMatrix::from_fn(n, free.len(), |i, j| free[j][i])
+}
+
+/// Linear equations that velocities should satisfy: (matrix, right side).
+type Equation = (DMatrix<f64>, DVector<f64>);
+
+/// Wishes of the dataset: those of constraints (IC of joints, VEL of contacts), which go before those of parts, and zero for all that is
+/// not given.
+struct Wishes {
+    firm: Equation,
+    given: Equation,
+    rest: Equation,
+}
+
+/// Who wishes for a velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Level {
+    Constraint,
+    Part,
+    Rest,
+}
+
+impl Level {
+    fn of(given: Option<f64>) -> (Self, f64) {
+        given.map_or((Self::Rest, 0.0), |x| (Self::Part, x))
+    }
+}
+
+impl Wishes {
+    fn collect(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Self {
+        let n = scene.layout.n_v;
+        // velocities are linear in v: one evaluation per coordinate, and one for what motions prescribe
+        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(n + 1);
+        let mut targets: Vec<(Level, f64)> = Vec::new();
+        for k in 0..=n {
+            let mut v = vec![0.0; n];
+            if k > 0 {
+                v[k - 1] = 1.0;
+            }
+            let at = Equations::new(scene, &numbers(scene, t, q, &v, x));
+            let (values, wanted) = part_velocities(scene, model, &at);
+            let origin = columns.first();
+            let column = match origin {
+                Some(zero) => values.iter().zip(zero).map(|(a, b)| a - b).collect(),
+                None => values,
+            };
+            columns.push(column);
+            targets = wanted;
+        }
+        let level = |level: Level| {
+            let rows: Vec<usize> = (0..targets.len())
+                .filter(|&r| targets[r].0 == level)
+                .collect();
+            let a = DMatrix::from_fn(rows.len(), n, |i, j| columns[j + 1][rows[i]]);
+            let b = DVector::from_iterator(
+                rows.len(),
+                rows.iter().map(|&r| targets[r].1 - columns[0][r]),
+            );
+            (a, b)
+        };
+        Self {
+            firm: level(Level::Constraint),
+            given: level(Level::Part),
+            rest: level(Level::Rest),
+        }
+    }
+}
+
+/// Velocity components of all parts as the dataset would give them, and (by whom, value) of what it gives; then joint rates.
+fn part_velocities(
+    scene: &Scene,
+    model: &Model,
+    at: &Equations<'_, f64>,
+) -> (Vec<f64>, Vec<(Level, f64)>) {
+    let mut values = Vec::new();
+    let mut wanted = Vec::new();
+    for part in &scene.parts {
+        let data = if part.point_mass {
+            model.point_masses.get(&part.id)
+        } else {
+            model.parts.get(&part.id)
+        };
+        let Some(data) = data else { continue };
+        let frame = |m: Option<u32>| {
+            m.and_then(|m| scene.marker_of.get(&m))
+                .map(|&m| at.marker(m))
+        };
+        let Some(cm) = frame(data.cm) else { continue };
+        let axes_v = frame(data.vm).map_or_else(crate::space::Mat3::identity, |m| m.R_GM);
+        let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
+        for k in 0..3 {
+            values.push(axes_v.column(k).dot(cm.v_GM));
+            wanted.push(Level::of(data.velocity[k]));
+        }
+        for k in 0..3 {
+            values.push(axes_w.column(k).dot(cm.w_GM));
+            wanted.push(Level::of(data.angular_velocity[k]));
+        }
+    }
+    for (c, cam) in scene.cams.iter().enumerate() {
+        for (k, along) in at.cam_speeds(c).into_iter().enumerate() {
+            if let Some(given) = cam.velocity[k] {
+                values.push(along);
+                wanted.push((Level::Constraint, given));
+            }
+        }
+    }
+    for (id, gauge, [_, rate]) in crate::analysis::start::initial_conditions::of_joints(model) {
+        let joint = &model.joints[&id];
+        let markers = [joint.i, joint.j].map(|m| scene.marker_of.get(&m));
+        let ([Some(&i), Some(&j)], Some(rate)) = (markers, rate) else {
+            continue;
+        };
+        let (i, j) = (at.marker(i), at.marker(j));
+        let z = j.R_GM.column(2);
+        values.push(if gauge.is_angle() {
+            (i.w_GM - j.w_GM).dot(z)
+        } else {
+            (i.v_GM - j.v_GM).dot(z) + (i.p_GM - j.p_GM).dot(j.w_GM.cross(z))
+        });
+        wanted.push((Level::Constraint, rate));
+    }
+    (values, wanted)
+}
+
+/// Moves positions along tangents.
+#[derive(Debug)]
+pub struct Mover {
+    simple: Vec<(usize, usize)>,
+    balls: Vec<(usize, usize)>,
+}
+
+impl Mover {
+    /// For the coordinates of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut this = Self {
+            simple: Vec::new(),
+            balls: Vec::new(),
+        };
+        for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
+            if let (Source::Free { q, v }, false) = (c.source, f.in_ball) {
+                this.simple.push((q, v));
+            }
+        }
+        for link in &scene.links {
+            if let crate::scene::LinkMotion::Ball {
+                coordinate,
+                quaternion,
+            } = link.motion
+                && let Some(v) = scene.freedoms[coordinate].v
+            {
+                this.balls.push((quaternion, v));
+            }
+        }
+        this
+    }
+
+    /// `q ← q ⊕ Δ`; Δ as velocities over a unit of time   (n_v)
+    pub fn displace(&self, q: &mut [f64], change: &[f64]) {
+        for &(k, v) in &self.simple {
+            q[k] += change[v];
+        }
+        for &(k, v) in &self.balls {
+            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
+            let (a, b, c) = (0.5 * change[v], 0.5 * change[v + 1], 0.5 * change[v + 2]);
+            q[k] = w - x * a - y * b - z * c;
+            q[k + 1] = x + w * a + y * c - z * b;
+            q[k + 2] = y + w * b + z * a - x * c;
+            q[k + 3] = z + w * c + x * b - y * a;
+        }
+        self.normalize(q);
+    }
+
+    /// How positions change along each velocity: (velocity, position, slope), by velocities.
+    pub fn tangents(&self, q: &[f64]) -> Vec<(usize, usize, f64)> {
+        let mut all: Vec<(usize, usize, f64)> =
+            self.simple.iter().map(|&(k, v)| (v, k, 1.0)).collect();
+        for &(k, v) in &self.balls {
+            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
+            let columns = [[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]];
+            for (c, column) in columns.iter().enumerate() {
+                all.extend(
+                    column
+                        .iter()
+                        .enumerate()
+                        .map(|(i, slope)| (v + c, k + i, 0.5 * slope)),
+                );
+            }
+        }
+        all.sort_by_key(|t| t.0);
+        all
+    }
+
+    /// The tangent of a small change of positions   (n_v)
+    pub fn tangent(&self, q: &[f64], change: &[f64], n_v: usize) -> Vec<f64> {
+        let mut out = vec![0.0; n_v];
+        for &(k, v) in &self.simple {
+            out[v] = change[k];
+        }
+        for &(k, v) in &self.balls {
+            // 2 q* ∘ δq
+            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
+            let (a, b, c, d) = (change[k], change[k + 1], change[k + 2], change[k + 3]);
+            out[v] = 2.0 * (w * b - x * a - y * d + z * c);
+            out[v + 1] = 2.0 * (w * c + x * d - y * a - z * b);
+            out[v + 2] = 2.0 * (w * d - x * c + y * b - z * a);
+        }
+        out
+    }
+
+    /// The small change of positions that a tangent stands for   (n_q)
+    pub fn untangent(&self, q: &[f64], tangent: &[f64], change: &mut [f64]) {
+        for &(k, v) in &self.simple {
+            change[k] = tangent[v];
+        }
+        for &(k, v) in &self.balls {
+            let rate = crate::space::rotation::quaternion_rate(
+                [q[k], q[k + 1], q[k + 2], q[k + 3]],
+                crate::space::Vec3([tangent[v], tangent[v + 1], tangent[v + 2]]),
+            );
+            change[k..k + 4].copy_from_slice(&rate);
+        }
+    }
+
+    /// Scales quaternions to unit length; tells whether that changed any.
+    pub fn normalize(&self, q: &mut [f64]) -> bool {
+        let mut changed = false;
+        for &(k, _) in &self.balls {
+            let n2: f64 = q[k..k + 4].iter().map(|x| x * x).sum();
+            if (n2 - 1.0).abs() > 4.0 * f64::EPSILON {
+                let f = 1.0 / n2.sqrt();
+                q[k..k + 4].iter_mut().for_each(|x| *x *= f);
+                changed = true;
+            }
+        }
+        changed
+    }
+}

@@ -1,0 +1,358 @@
+//! What a dataset wishes of the initial configuration: IC of joints, EXACT coordinates of parts.
+//!
+//! A wish is an equation that assembly satisfies together with the rows where it can, and that is forgotten once the mechanism moves:
+//!
+//! ```text
+//! d.z_J = ICTRAN,  angle of x_I about z_J = ICROT      part frame: X, Y, Z, ψ, θ, φ as in the dataset
+//! PTCV: I at the point of the curve next to DISP        CVCV: the curves touch next to IDISP and JDISP
+//! ```
+//!
+//! First rows and wishes together, by least changes; then the rows alone, exactly. So rows win where they contradict wishes, and
+//! that is told. Only dynamic simulations ask for wishes of joints and parts: kinematics and statics find their own configuration.
+//! Where contacts begin is asked for always: that chooses among the ways in which the parts can be put together.
+
+use crate::analysis::start::assemble::{self, Mover, least_change, rows_at};
+use crate::analysis::system::slopes::{Direction, along};
+use crate::expr::measures::Measure;
+use crate::expr::program::{Program, Work};
+use crate::model::{JointKind, Model};
+use crate::physics::cam::Contact;
+use crate::physics::coupler::Gauge;
+use crate::scalar::Scalar;
+use crate::scene::build::is_active;
+use crate::scene::cams::{self, Start};
+use crate::scene::equations::Equations;
+use crate::scene::programs::{record_with_complaints, weights};
+use crate::scene::{RowKind, Scene};
+use crate::space::kinematic::kinematic;
+use crate::space::{Frame, MarkerState};
+use nalgebra::{DMatrix, DVector};
+use std::convert::Infallible;
+use std::f64::consts::{PI, TAU};
+
+/// Iterations towards rows and wishes together.
+const ITERATIONS: usize = 30;
+/// How far off a wish may be left without a word (lengths relative to the size of the mechanism).
+const MET: f64 = 1e-7;
+
+/// What is wished for.
+#[derive(Clone, Debug, PartialEq)]
+enum Wanted {
+    /// of marker `i` against marker `j`
+    Joint { gauge: Gauge, i: usize, j: usize },
+    /// of a part's frame: 0 x, 1 y, 2 z, 3 ψ, 4 θ, 5 φ
+    Part { part: usize, component: usize },
+    /// small turn of a part's frame from where the dataset has it, about its axis
+    Turn { part: usize, axis: usize },
+}
+
+/// A wish: a quantity and the value it should have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wish {
+    /// "JOINT/3 IC", "PART/2 EXACT X"
+    name: String,
+    wanted: Wanted,
+    value: f64,
+    angle: bool,
+}
+
+/// The joints of a model that have an initial displacement or rate, with what it is of: (number, gauge, displacement, rate).
+pub(in crate::analysis) fn of_joints(model: &Model) -> Vec<(u32, Gauge, [Option<f64>; 2])> {
+    let mut found = Vec::new();
+    for (&id, joint) in &model.joints {
+        if !is_active(model, "JOINT", id) {
+            continue;
+        }
+        let slides = matches!(
+            joint.kind,
+            JointKind::Translational | JointKind::Cylindrical
+        );
+        let turns = matches!(joint.kind, JointKind::Revolute | JointKind::Cylindrical);
+        for (allowed, gauge, given) in [
+            (slides, Gauge::Distance, joint.ic_translation),
+            (turns, Gauge::Angle(2), joint.ic_rotation),
+        ] {
+            if allowed && given != [None; 2] {
+                found.push((id, gauge, given));
+            }
+        }
+    }
+    found
+}
+
+/// What a model wishes.
+pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
+    let mut wishes = Vec::new();
+    for (id, gauge, given) in of_joints(model) {
+        let joint = &model.joints[&id];
+        let markers = [joint.i, joint.j].map(|m| scene.marker_of.get(&m).copied());
+        let driven = scene.coordinates.iter().any(|c| {
+            c.joint == Some(id)
+                && c.angular == gauge.is_angle()
+                && matches!(c.source, crate::scene::Source::Driven(_))
+        });
+        if let ([Some(i), Some(j)], Some(value), false) = (markers, given[0], driven) {
+            wishes.push(Wish {
+                name: format!("JOINT/{id} IC"),
+                wanted: Wanted::Joint { gauge, i, j },
+                value,
+                angle: gauge.is_angle(),
+            });
+        }
+    }
+    for (k, part) in scene.parts.iter().enumerate() {
+        let parts = if part.point_mass {
+            &model.point_masses
+        } else {
+            &model.parts
+        };
+        let Some(exact) = parts.get(&part.id).map(|p| p.exact) else {
+            continue;
+        };
+        let name = crate::scene::compile::part_name(part.point_mass, part.id);
+        let mut wish = |component: usize, what: &str, wanted: Wanted, value: f64| {
+            wishes.push(Wish {
+                name: format!("{name} EXACT {what}"),
+                wanted,
+                value,
+                angle: component > 2,
+            });
+        };
+        for component in 0..3 {
+            if exact[component] {
+                let value = part.initial.position.0[component];
+                let wanted = Wanted::Part { part: k, component };
+                wish(component, ["X", "Y", "Z"][component], wanted, value);
+            }
+        }
+        if exact[3..] == [true; 3] {
+            for axis in 0..3 {
+                wish(3, "PSI:THETA:PHI", Wanted::Turn { part: k, axis }, 0.0);
+            }
+            continue;
+        }
+        let state = MarkerState {
+            R_GM: part.initial.rotation,
+            p_GM: part.initial.position,
+            ..MarkerState::ground()
+        };
+        for component in 3..6 {
+            if exact[component] {
+                let wanted = Wanted::Part { part: k, component };
+                let what = ["PSI", "THETA", "PHI"][component - 3];
+                wish(component, what, wanted, angle(&state, component));
+            }
+        }
+    }
+    wishes
+}
+
+fn angle<S: Scalar>(state: &MarkerState<S>, component: usize) -> S {
+    let ground = MarkerState::ground();
+    let measure = [Measure::Psi, Measure::Theta, Measure::Phi][component - 3];
+    kinematic(measure, state, &ground, &ground, &ground).unwrap_or_else(S::zero)
+}
+
+impl Wish {
+    fn quantity<S: Scalar>(&self, scene: &Scene, at: &Equations<'_, S>) -> S {
+        match self.wanted {
+            Wanted::Joint { gauge, i, j } => {
+                let frame = |m: usize| {
+                    let state = at.marker(m);
+                    Frame {
+                        rotation: state.R_GM,
+                        position: state.p_GM,
+                    }
+                };
+                gauge.value(&frame(i), &frame(j))
+            }
+            Wanted::Part { part, component } => {
+                let state = at.part(part, false);
+                match component {
+                    0..=2 => state.p_GM.0[component],
+                    _ => angle(&state, component),
+                }
+            }
+            Wanted::Turn { part, axis } => {
+                // half the skew part of R₀ᵀ R: the sine of the angle times its axis
+                let state = at.part(part, false);
+                let first = scene.parts[part].initial.rotation;
+                let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+                let entry = |i: usize, j: usize| {
+                    let mut sum = S::zero();
+                    for k in 0..3 {
+                        sum += state.R_GM.0[k][j].scale(first.0[k][i]);
+                    }
+                    sum
+                };
+                (entry(b, a) - entry(a, b)).scale(0.5)
+            }
+        }
+    }
+
+    /// How far off it is; angles the short way.
+    fn residual(&self, quantity: f64) -> f64 {
+        let off = quantity - self.value;
+        if self.angle {
+            (off + PI).rem_euclid(TAU) - PI
+        } else {
+            off
+        }
+    }
+}
+
+/// Residuals of wishes and their derivatives along the velocities, from the program of their quantities; wishes without finite
+/// ones are left out (zero).
+fn equations(
+    scene: &Scene,
+    wishes: &[Wish],
+    quantities: &Program,
+    numbers: &[f64],
+    mover: &Mover,
+) -> (DVector<f64>, DMatrix<f64>) {
+    let l = scene.layout;
+    let mut found = vec![0.0; wishes.len()];
+    quantities.run(numbers, &mut Work::default(), &mut found);
+    let residual = wishes.iter().zip(&found).map(|(w, &x)| w.residual(x));
+    let mut residual = DVector::from_iterator(wishes.len(), residual);
+    let mut directions = vec![Direction::new(); l.n_v];
+    for (v, place, slope) in mover.tangents(&numbers[l.q()]) {
+        directions[v].push((l.q().start + place, slope));
+    }
+    let all = numbers.iter().copied();
+    let nothing = |_: &mut [_], _| Ok(());
+    let Ok::<_, Infallible>(mut gradient) = along(
+        quantities,
+        &mut Work::default(),
+        all,
+        &directions,
+        None,
+        nothing,
+    );
+    for w in 0..wishes.len() {
+        let bad = !residual[w].is_finite() || gradient.row(w).iter().any(|x| !x.is_finite());
+        if bad {
+            residual[w] = 0.0;
+            gradient.row_mut(w).fill(0.0);
+        }
+    }
+    (residual, gradient)
+}
+
+/// Moves positions towards rows and wishes together; contacts that are asked to begin somewhere are taken to be there, and
+/// returned.
+pub fn approach(
+    scene: &mut Scene,
+    wishes: &[Wish],
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+) -> Vec<Start> {
+    let starts = cams::starts(
+        scene,
+        &assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x),
+    );
+    if wishes.is_empty() && starts.is_empty() || scene.layout.n_v == 0 {
+        return starts;
+    }
+    let w = weights(scene);
+    let mover = Mover::new(scene);
+    let still = vec![0.0; scene.layout.n_v];
+    let (quantities, _) = record_with_complaints(scene, |at| {
+        wishes.iter().map(|w| w.quantity(scene, at)).collect()
+    });
+    // contacts that are asked to be somewhere are equations of their own
+    let asked = |scene: &Scene, r: usize| match scene.rows[r].kind {
+        RowKind::Cam { cam, .. } => starts.iter().any(|s| s.cam == cam),
+        _ => assemble::is_held(scene, r),
+    };
+    for _ in 0..ITERATIONS {
+        let here = assemble::numbers(scene, t, q, &still, x);
+        cams::track(scene, &here);
+        cams::place(scene, &starts, &here);
+        let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
+        for r in (0..g.len()).filter(|&r| asked(scene, r)) {
+            g[r] = 0.0;
+            gradient.row_mut(r).fill(0.0);
+        }
+        let at = Equations::<f64>::new(scene, &here);
+        let places: Vec<(f64, Vec<(usize, f64)>)> = (starts.iter())
+            .flat_map(|s| at.cam_start(s.cam, s.given))
+            .filter(|(value, _)| value.is_finite())
+            .collect();
+        let (off, slopes) = equations(scene, wishes, &quantities, &here, &mover);
+        let (m, n) = (g.len(), wishes.len());
+        let mut a = DMatrix::zeros(m + n + places.len(), w.len());
+        a.rows_mut(0, m).copy_from(&gradient);
+        a.rows_mut(m, n).copy_from(&slopes);
+        for (k, (_, slopes)) in places.iter().enumerate() {
+            for &(v, slope) in slopes {
+                a[(m + n + k, v)] += slope;
+            }
+        }
+        let all = g
+            .iter()
+            .chain(off.iter())
+            .chain(places.iter().map(|p| &p.0));
+        let b = DVector::from_iterator(m + n + places.len(), all.map(|x| -x));
+        let step = least_change(&a, &w, &b);
+        let size = |v: usize| step[v].abs() / w[v].sqrt();
+        let longest = (0..w.len()).map(size).fold(0.0, f64::max);
+        if !longest.is_finite() || longest < 1e-14 {
+            break;
+        }
+        mover.displace(q, (&step * (0.5 / longest).min(1.0)).as_slice());
+    }
+    let reached = assemble::numbers(scene, t, q, &still, x);
+    cams::place(scene, &starts, &reached);
+    starts
+}
+
+/// Wishes that an assembled configuration does not meet, in words.
+pub fn unmet(
+    scene: &Scene,
+    wishes: &[Wish],
+    starts: &[Start],
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> Vec<String> {
+    let numbers = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
+    let at = Equations::new(scene, &numbers);
+    let told = wishes.iter().filter_map(|wish| {
+        let found = wish.quantity(scene, &at);
+        let unit = if wish.angle { 1.0 } else { scene.length };
+        let off = wish.residual(found);
+        (off.abs() > MET * unit).then(|| {
+            format!(
+                "{} cannot be met: the constraints leave {found:.6e} instead of {:.6e}",
+                wish.name, wish.value
+            )
+        })
+    });
+    let mut told: Vec<String> = told.collect();
+    for start in starts {
+        let cam = &scene.cams[start.cam];
+        let names: &[&str] = match cam.contact {
+            Contact::Point(_) => &["DISP"],
+            Contact::Curves(..) => &["IDISP", "JDISP"],
+        };
+        let reached = at.cam_parameters(start.cam);
+        for (k, path) in cam.contact.paths().iter().enumerate() {
+            let Some(given) = start.given[k] else {
+                continue;
+            };
+            let off = (path.at::<f64>(reached[k], 0) - path.at(given, 0)).norm();
+            if off > MET * scene.length {
+                let off = crate::analysis::start::misalignment::length(off, &scene.length_unit);
+                told.push(format!(
+                    "{} {} cannot be met: the constraints put the contact {off} away from the point of CURVE/{} next to it",
+                    cam.name(),
+                    names[k],
+                    cam.curves[k]
+                ));
+            }
+        }
+    }
+    told
+}

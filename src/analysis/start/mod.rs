@@ -1,0 +1,8 @@
+//! The start of every analysis: positions that satisfy all rows, velocities that fit, initial conditions.
+
+pub mod assemble;
+pub(super) mod coincident;
+pub(super) mod initial_conditions;
+pub mod misalignment;
+pub mod nearby;
+pub mod placement;

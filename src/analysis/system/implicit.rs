@@ -1,0 +1,351 @@
+//! A scene as an implicit system: what the methods for differential-algebraic equations see.
+//!
+//! ```text
+//! I3    q̇ = N(q) v                  M v̇ + h = f + Gᵀλ      ẋ = s      g(t, q) = 0                     y = q | v | x | λ
+//! SI2   q̇ = N(q) (v + Gᵀμ)          M v̇ + h = f + Gᵀλ      ẋ = s      g = 0,  G v + ġ₀ = 0            y = q | v | x | λ | μ
+//! ```
+//!
+//! Both are recorded from the same equations as the explicit rates. I3 controls the errors of positions only; the second multiplier of
+//! SI2, zero but for the error of the method, lets the rows hold in velocity too, and velocities are controlled.
+//!
+//! Where functions change branch the same is recorded with branches held, as the explicit rates are: a step sees smooth equations, also beyond the end of
+//! a branch.
+//!
+//! Source: Gear, Gupta & Leimkuhler 1985 for SI2.
+
+mod written;
+
+use crate::analysis::system::System;
+use crate::analysis::system::external_inputs::ExternalInputs;
+use crate::diagnostic::Diagnostic;
+use crate::numeric::{Dae, Failure, Kind, Levels, Ode, Relation};
+use crate::scalar::Scalar;
+use crate::scene::Scene;
+use crate::scene::equations::Equations;
+use crate::scene::programs::{Switching, held_with, record, record_more};
+use written::Written;
+
+/// Which levels of the rows an implicit method sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Formulation {
+    /// positions alone
+    Index3,
+    /// positions, and velocities with a second multiplier
+    Stabilized,
+}
+
+/// The implicit equations of a scene.
+#[derive(Debug)]
+pub struct Implicit {
+    formulation: Formulation,
+    /// unknowns of the explicit system; rows that take part
+    n: usize,
+    m: usize,
+    /// with the branch that each state says
+    free: Written,
+    /// with branches held
+    held: Option<Written>,
+    /// of the Jacobian, whichever is asked for
+    pattern: Vec<(usize, usize)>,
+    /// what the residual reads: the numbers, then ẏ, λ, μ, then the sides of the switches
+    numbers: Vec<f64>,
+}
+
+fn residual<S: Scalar>(
+    scene: &Scene,
+    at: &Equations<'_, S>,
+    more: &[S],
+    formulation: Formulation,
+) -> Vec<S> {
+    let l = scene.layout;
+    let n = l.y().len();
+    let (ydot, multipliers) = more.split_at(n);
+    let rows: Vec<_> = (0..scene.rows.len())
+        .filter(|&r| at.is_active(r))
+        .map(|r| at.row(r))
+        .collect();
+    let (lambda, mu) = multipliers.split_at(rows.len());
+    let mut v = at.velocities().to_vec();
+    for (row, &mu) in rows.iter().zip(mu) {
+        for &(k, g) in &row.gradient {
+            v[k] += g * mu;
+        }
+    }
+    let minus = |rates: &[S], values: Vec<S>| -> Vec<S> {
+        rates.iter().zip(values).map(|(&a, b)| a - b).collect()
+    };
+    let mut out = minus(&ydot[..l.n_q], at.position_rates_at(&v));
+    out.extend(at.imbalance(&ydot[l.n_q..l.n_q + l.n_v], lambda));
+    out.extend(minus(&ydot[l.n_q + l.n_v..], at.state_rates()));
+    out.extend(rows.iter().map(|row| row.value));
+    if formulation == Formulation::Stabilized {
+        out.extend(rows.iter().map(|row| {
+            let along = row.gradient.iter();
+            along.fold(row.drift, |s, &(k, g)| s + g * at.velocities()[k])
+        }));
+    }
+    out
+}
+
+impl Implicit {
+    /// Records the equations of a scene.
+    ///
+    /// # Errors
+    /// Functions that read what is solved for: their loops are solved beside explicit rates only.
+    pub fn new(
+        scene: &Scene,
+        formulation: Formulation,
+        (outside, switching): (&ExternalInputs, Option<&Switching>),
+    ) -> Result<Self, Vec<Diagnostic>> {
+        if !scene.loops.is_empty() {
+            let loops = scene.loops.iter().map(|u| u.name.as_str());
+            return Err(vec![Diagnostic::error(
+                "implicit_loop",
+                format!(
+                    "{} reads accelerations or forces that depend on it: methods for implicit equations do not solve that",
+                    loops.collect::<Vec<_>>().join(", ")
+                ),
+            )
+            .help("leave the method to the program, or ask for RADAU5")]);
+        }
+        let n = scene.layout.y().len();
+        let m = (0..scene.rows.len())
+            .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
+            .count();
+        let levels = match formulation {
+            Formulation::Index3 => 1,
+            Formulation::Stabilized => 2,
+        };
+        let size = n + levels * m;
+        let (program, complaints) = record_more(scene, n + levels * m, |at, more| {
+            residual(scene, at, more, formulation)
+        });
+        if !complaints.is_empty() {
+            return Err(crate::analysis::system::complaints(complaints));
+        }
+        let multipliers = record(scene, |at| multipliers_at(scene, at))
+            .map_err(crate::analysis::system::complaints)?;
+        let free = Written::new(scene, program, multipliers, (n, size), outside);
+        let held = switching.and_then(|switching| {
+            let more = n + levels * m;
+            let [residual, multipliers] = held_with(scene, switching, more, |at, more| {
+                [
+                    residual(scene, at, more, formulation),
+                    multipliers_at(scene, at),
+                ]
+            })?;
+            Some(Written::new(
+                scene,
+                residual,
+                multipliers,
+                (n, size),
+                outside,
+            ))
+        });
+        let mut pattern: Vec<_> = free.pattern().collect();
+        pattern.extend(held.iter().flat_map(Written::pattern));
+        pattern.sort_unstable_by_key(|&(i, j)| (j, i));
+        pattern.dedup();
+        let n_sides = switching.map_or(0, |s| s.switches.n_outputs());
+        let mut implicit = Self {
+            formulation,
+            n,
+            m,
+            free,
+            held,
+            numbers: vec![0.0; scene.layout.len() + n + levels * m + n_sides],
+            pattern: Vec::new(),
+        };
+        implicit.free.place_in(&pattern);
+        if let Some(held) = &mut implicit.held {
+            held.place_in(&pattern);
+        }
+        implicit.pattern = pattern;
+        Ok(implicit)
+    }
+
+    /// How many unknowns there are.
+    pub fn size(&self) -> usize {
+        match self.formulation {
+            Formulation::Index3 => self.n + self.m,
+            Formulation::Stabilized => self.n + 2 * self.m,
+        }
+    }
+
+    fn set(&mut self, numbers: &[f64], y: &[f64], ydot: &[f64], sides: &[f64]) {
+        let (n, first) = (self.n, numbers.len());
+        self.numbers[..first].copy_from_slice(numbers);
+        self.numbers[first..first + n].copy_from_slice(&ydot[..n]);
+        let sides_from = first + y.len();
+        self.numbers[first + n..sides_from].copy_from_slice(&y[n..]);
+        self.numbers[sides_from..].copy_from_slice(sides);
+    }
+}
+
+/// The multipliers of the rows that take part, as the explicit equations have them.
+fn multipliers_at<S: Scalar>(scene: &Scene, at: &Equations<'_, S>) -> Vec<S> {
+    let solved = at.solved();
+    let active = (0..scene.rows.len()).filter(|&r| at.is_active(r));
+    active.map(|r| solved.lambda[r]).collect()
+}
+
+impl System {
+    /// From now on the system is also an implicit one.
+    ///
+    /// # Errors
+    /// Functions that read what is solved for.
+    pub fn make_implicit(&mut self, formulation: Formulation) -> Result<(), Vec<Diagnostic>> {
+        if self
+            .implicit
+            .as_ref()
+            .is_none_or(|i| i.formulation != formulation)
+        {
+            let more = (&self.external, self.switching.as_ref());
+            let implicit = Implicit::new(&self.scene, formulation, more)?;
+            self.implicit = Some(Box::new(implicit));
+        }
+        Ok(())
+    }
+
+    /// Writes the implicit equations of another scene, if there were any.
+    ///
+    /// # Errors
+    /// Functions that read what is solved for.
+    pub(in crate::analysis) fn renew_implicit(
+        &mut self,
+        scene: &Scene,
+    ) -> Result<(), Vec<Diagnostic>> {
+        if let Some(implicit) = &self.implicit {
+            let formulation = implicit.formulation;
+            let more = (&self.external, self.switching.as_ref());
+            self.implicit = Some(Box::new(Implicit::new(scene, formulation, more)?));
+        }
+        Ok(())
+    }
+
+    /// A state of the explicit system with multipliers; the size of the implicit one.
+    pub fn implicit_size(&self) -> usize {
+        self.implicit.as_ref().map_or(0, |i| i.size())
+    }
+
+    fn implicit(&self) -> &Implicit {
+        match &self.implicit {
+            Some(implicit) => implicit,
+            None => unreachable!("make_implicit comes before a method for implicit equations"),
+        }
+    }
+}
+
+impl Dae for System {
+    fn size(&self) -> usize {
+        self.implicit().size()
+    }
+
+    fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        let n = self.implicit().n;
+        self.set(t, &y[..n]);
+        let holding = self.holding;
+        if let Some(i) = &mut self.implicit {
+            i.set(&self.numbers, y, ydot, &self.sides);
+            if let (true, Some(held)) = (holding, &mut i.held) {
+                held.residual(&i.numbers, r);
+                // beyond its end a branch may have no value
+                if r.iter().map(|x| x * 0.0).sum::<f64>() == 0.0 {
+                    return Ok(());
+                }
+            }
+            i.free.residual(&i.numbers, r);
+        }
+        match r.iter().position(|x| !x.is_finite()) {
+            Some(what) => Err(Failure {
+                what,
+                recoverable: true,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn pattern(&self) -> Vec<(usize, usize)> {
+        self.implicit().pattern.clone()
+    }
+
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        cj: f64,
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.set(t, &y[..self.implicit().n]);
+        let holding = self.holding;
+        if let Some(i) = &mut self.implicit {
+            i.set(&self.numbers, y, ydot, &self.sides);
+            let written = match (holding, &mut i.held) {
+                (true, Some(held)) => held,
+                _ => &mut i.free,
+            };
+            written.derivatives(&i.numbers, cj, &mut self.external, values);
+        }
+        Ok(())
+    }
+
+    fn consistent(&mut self, t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let n = self.implicit().n;
+        y[n..].fill(0.0);
+        ydot.fill(0.0);
+        Ode::rate(self, t, &y[..n], &mut ydot[..n])?;
+        let holding = self.holding;
+        if let Some(i) = &mut self.implicit {
+            i.set(&self.numbers, y, ydot, &self.sides);
+            let lambda = &mut y[n..n + i.m];
+            if let (true, Some(held)) = (holding, &mut i.held) {
+                held.multipliers(&i.numbers, lambda);
+                if lambda.iter().all(|x| x.is_finite()) {
+                    return Ok(());
+                }
+            }
+            i.free.multipliers(&self.numbers, lambda);
+        }
+        Ok(())
+    }
+
+    fn kinds(&self) -> Vec<Kind> {
+        let l = self.scene.layout;
+        let mut kinds = vec![Kind::Differential; l.y().len()];
+        if self.implicit().formulation == Formulation::Index3 && self.implicit().m > 0 {
+            kinds[l.n_q..l.n_q + l.n_v].fill(Kind::DifferentialUncontrolled);
+        }
+        kinds.resize(Dae::size(self), Kind::Algebraic);
+        kinds
+    }
+
+    fn levels(&self) -> Levels {
+        let l = self.scene.layout;
+        let m = self.implicit().m;
+        let mut rows = vec![1; l.n_q];
+        rows.resize(l.n_q + l.n_v, 2);
+        rows.resize(l.y().len(), 1);
+        let mut unknowns = vec![0; l.n_q];
+        unknowns.resize(l.n_q + l.n_v, 1);
+        unknowns.resize(l.y().len(), 0);
+        rows.resize(rows.len() + m, 0);
+        unknowns.resize(unknowns.len() + m, 2);
+        if self.implicit().formulation == Formulation::Stabilized {
+            rows.resize(rows.len() + m, 1);
+            unknowns.resize(unknowns.len() + m, 1);
+        }
+        Levels { rows, unknowns }
+    }
+
+    fn typical(&self, typical: &mut [f64]) {
+        let n = self.implicit().n;
+        typical.fill(1.0);
+        Ode::typical(self, &mut typical[..n]);
+    }
+
+    fn relations(&self, relations: &mut [Relation]) {
+        let n = self.implicit().n;
+        Ode::relations(self, &mut relations[..n]);
+    }
+}

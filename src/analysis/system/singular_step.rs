@@ -1,0 +1,167 @@
+//! Passing an instant where rows are dependent: when it is, and steps whose evaluations keep away from it.
+//!
+//! There the rates are a quotient of two numbers that vanish together. With σ the square root of the weakest pivot, which grows in
+//! proportion to the time from that instant, rounding and whatever violates the rows is magnified by 1/σ. The solution itself
+//! passes smoothly, so a step may well span the instant: if the instant falls into the widest gap between the evaluations of
+//! the method, none of them is near.
+
+/// How far from dependence rows were at the evaluations of a step.
+#[derive(Debug, Default)]
+pub struct SingularSteps {
+    /// time, σ
+    seen: Vec<(f64, f64)>,
+}
+
+/// Evaluations remembered at most.
+const MOST: usize = 64;
+/// Parts of the gap within which the instant is well placed, from its middle to either side.
+const WELL: f64 = 0.4;
+/// The instant is far enough after the end of a step at this part of its length.
+const AFTER: f64 = 1.2;
+
+impl SingularSteps {
+    /// An evaluation with weak rows. `strength`: the weakest pivot as a part of what is usual.
+    pub fn see(&mut self, t: f64, strength: f64) {
+        if self.seen.len() >= MOST {
+            self.seen.clear();
+        }
+        self.seen.push((t, strength.max(0.0).sqrt()));
+    }
+
+    /// A better length of the step from `t` that was attempted with `h`; `None`: none is. `gap`: the part of a step without
+    /// evaluations; `harmful`: the strength below which an evaluation is too near. Forgets what was seen after `t`.
+    pub fn place(&mut self, t: f64, h: f64, gap: [f64; 2], harmful: f64) -> Option<f64> {
+        if self.seen.is_empty() {
+            return None;
+        }
+        let mut seen = self.seen.clone();
+        self.seen.retain(|s| s.0 == t);
+        seen.retain(|s| s.0 >= t && s.0 <= t + h * (1.0 + 1e-9) && s.1.is_finite());
+        // where the step begins is no longer a choice
+        if !seen.iter().any(|s| s.0 > t && s.1 * s.1 < harmful) {
+            return None;
+        }
+        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        seen.dedup_by(|a, b| a.0 - b.0 < 1e-9 * h);
+        let (middle, half) = (0.5 * (gap[0] + gap[1]), 0.5 * (gap[1] - gap[0]));
+        let part = (instant(&seen)? - t) / h;
+        if !(part > 0.0 && part < AFTER) || (part - middle).abs() <= WELL * half {
+            return None;
+        }
+        // a shorter step with the instant in its gap; or one that ends so far before it that the next, as long, has it there
+        let shorter = part / middle;
+        let before = part - middle;
+        Some(
+            h * if part < middle {
+                shorter
+            } else {
+                before.max(0.02)
+            },
+        )
+    }
+}
+
+/// When σ vanishes, from values around or before.
+fn instant(seen: &[(f64, f64)]) -> Option<f64> {
+    if seen.len() < 3 {
+        return None;
+    }
+    let least = (0..seen.len()).min_by(|&a, &b| seen[a].1.total_cmp(&seen[b].1))?;
+    // as if it were between two neighbours: the instant and the slope of σ on both sides
+    let between = |a: usize| {
+        let ((t0, s0), (t1, s1)) = (seen[a], seen[a + 1]);
+        ((t0 * s1 + t1 * s0) / (s0 + s1), (s0 + s1) / (t1 - t0))
+    };
+    let falling = |a: usize| (seen[a].1 - seen[a + 1].1) / (seen[a + 1].0 - seen[a].0);
+    let last = seen.len() - 1;
+    if least == last {
+        // between the last two, or after all of them
+        let (time, slope) = between(last - 1);
+        let (usual, outside) = (falling(last - 2), falling(last - 1));
+        if (slope - usual).abs() < (outside - usual).abs() {
+            return Some(time);
+        }
+        return (outside > 0.0).then(|| seen[last].0 + seen[last].1 / outside);
+    }
+    if least == 0 {
+        // before all of them, or between the first two
+        let (time, slope) = between(0);
+        let rising = -falling(1);
+        let inside = (slope - rising).abs() < (-falling(0) - rising).abs();
+        return inside.then_some(time);
+    }
+    let (earlier, later) = (between(least - 1), between(least));
+    let off_earlier = (earlier.1 + falling(least)).abs();
+    let off_later = (later.1 - falling(least - 1)).abs();
+    Some(if off_earlier < off_later {
+        earlier.0
+    } else {
+        later.0
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes of DOP853 and the gap between them.
+    const NODES: [f64; 11] = [
+        0.053, 0.079, 0.118, 0.25, 0.282, 0.308, 0.333, 0.6, 0.651, 0.857, 1.0,
+    ];
+    const GAP: [f64; 2] = [1.0 / 3.0, 0.6];
+
+    fn attempt(singular_steps: &mut SingularSteps, t: f64, h: f64, at: f64) -> Option<f64> {
+        for c in NODES {
+            let s = t + c * h - at;
+            singular_steps.see(t + c * h, (2.0 * s + 0.3 * s * s).powi(2));
+        }
+        singular_steps.place(t, h, GAP, f64::INFINITY)
+    }
+
+    #[test]
+    fn wherever_the_instant_lies_it_comes_to_lie_in_the_gap_after_a_few_trials() {
+        for k in 1..120 {
+            let at = 3.0 + 0.01 * f64::from(k) * 0.1;
+            let (mut t, mut h, mut trials) = (3.0, 0.1, 0);
+            let mut singular_steps = SingularSteps::default();
+            singular_steps.see(t, (2.0 * (t - at)).powi(2));
+            while t < at + 1e-12 {
+                if let Some(better) = attempt(&mut singular_steps, t, h, at) {
+                    h = better;
+                    trials += 1;
+                    assert!(trials < 8, "{k}");
+                    continue;
+                }
+                let part = (at - t) / h;
+                let well = (0.36..0.58).contains(&part);
+                assert!(well || part > 1.1, "{k}: {part}");
+                t += h;
+                h = 0.1;
+                singular_steps.see(t, (2.0 * (t - at)).powi(2));
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_whose_evaluations_do_no_harm_stays_as_it_is() {
+        let mut singular_steps = SingularSteps::default();
+        for c in NODES {
+            singular_steps.see(c, (c - 0.64_f64).powi(2));
+        }
+        // the nearest is 0.011 away
+        assert_eq!(singular_steps.place(0.0, 1.0, GAP, 1e-4), None);
+        for c in NODES {
+            singular_steps.see(c, (c - 0.64_f64).powi(2));
+        }
+        assert!(singular_steps.place(0.0, 1.0, GAP, 1e-3).is_some());
+    }
+
+    #[test]
+    fn rows_that_stay_away_from_dependence_leave_steps_alone() {
+        let mut singular_steps = SingularSteps::default();
+        for c in NODES {
+            singular_steps.see(c, 0.01 + 1e-5 * c);
+        }
+        assert_eq!(singular_steps.place(0.0, 1.0, GAP, f64::INFINITY), None);
+    }
+}

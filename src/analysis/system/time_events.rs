@@ -1,0 +1,187 @@
+//! TimeEvents known beforehand: the next time at which something that depends on time alone breaks.
+//!
+//! A pulse of a force over time is invisible to a step whose evaluations all fall beside it, however small an error is asked for. What depends on
+//! time alone can be looked at without the system, and over a whole stretch of time at once: bounds of its values there ([`Interval`]) prove that
+//! it stays between two of its levels.
+//!
+//! ```text
+//! [t, t + h]   bounds between levels     →  nothing breaks there; go on behind it with 2h
+//!              else                      →  h/2, down to a part of the run that no pulse is shorter than; then the ends are compared, and
+//!                                           a break between them is closed in to the last place
+//! ```
+//!
+//! A step ends just before something breaks, and integration begins anew at the first number behind it: no evaluation of the one
+//! step is on the other's side, and no switch is looked for.
+
+use crate::expr::program::{Levels, Program, Work};
+use crate::scalar::Interval;
+use crate::scene::Scene;
+use crate::scene::layout::Layout;
+use crate::scene::programs;
+
+/// Evaluations for one search.
+const BUDGET: usize = 400;
+/// What is left of a search that came to its end may be gone over in so many steps.
+const BLIND: f64 = 100.0;
+/// Distance kept from what breaks, as a part of the time.
+const ROOM: f64 = 4.0 * f64::EPSILON;
+/// Shortest stretch that is looked at, as a part of the run.
+const SHORTEST: f64 = 1e-10;
+
+/// The values that depend on time alone, with the next time that matters.
+#[derive(Debug, Default)]
+pub struct TimeEvents {
+    /// none: nothing depends on time alone, or nothing of that breaks
+    program: Option<Program>,
+    levels: Vec<Levels>,
+    work: Work<Interval>,
+    /// the row of numbers, of which the time is read
+    inputs: Vec<Interval>,
+    values: Vec<Interval>,
+    point: Point,
+    /// the last answer, and from where it was asked for
+    known: Option<(f64, Moment)>,
+}
+
+/// How far nothing breaks, and the first time behind what breaks there.
+#[derive(Clone, Copy, Debug)]
+struct Moment {
+    before: f64,
+    behind: Option<f64>,
+}
+
+/// The values at one time.
+#[derive(Debug, Default)]
+struct Point {
+    work: Work,
+    numbers: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl TimeEvents {
+    /// Of a scene.
+    ///
+    /// # Errors
+    /// What the equations complained about.
+    pub fn new(scene: &Scene) -> Result<Self, Vec<String>> {
+        let programs::Timed { values, levels } = programs::timed(scene)?;
+        if levels.is_empty() {
+            return Ok(Self::default());
+        }
+        let n = scene.layout.len() + scene.loops.len();
+        Ok(Self {
+            inputs: vec![Interval { lo: 0.0, hi: 0.0 }; n],
+            values: vec![Interval { lo: 0.0, hi: 0.0 }; levels.len()],
+            point: Point {
+                work: Work::default(),
+                numbers: vec![0.0; n],
+                values: vec![0.0; levels.len()],
+            },
+            program: Some(values),
+            levels,
+            work: Work::default(),
+            known: None,
+        })
+    }
+
+    /// A time after `t` just before something breaks, or up to which nothing does; no later than `end`.
+    pub fn next(&mut self, t: f64, end: f64) -> f64 {
+        if self.program.is_none() || t >= end {
+            return end;
+        }
+        let known = self.known.filter(|(from, m)| *from <= t && t < m.before);
+        let (from, moment) = known.unwrap_or_else(|| (t, self.search(t, end)));
+        self.known = Some((from, moment));
+        moment.before.min(end)
+    }
+
+    /// The first time behind what breaks just after `t`, when that has been found.
+    pub fn behind(&self, t: f64) -> Option<f64> {
+        let (_, moment) = self.known.filter(|(_, m)| m.before == t)?;
+        moment.behind
+    }
+
+    fn search(&mut self, t: f64, end: f64) -> Moment {
+        let clear = |before: f64| Moment {
+            before,
+            behind: None,
+        };
+        let room = ROOM * t.abs().max(end.abs());
+        let shortest = (SHORTEST * (end - t)).max(4.0 * room);
+        // what breaks just here has been seen
+        let mut from = t + (0.01 * shortest).max(2.0 * room);
+        let mut h = end - from;
+        for _ in 0..BUDGET {
+            if from >= end {
+                return clear(end);
+            }
+            let to = (from + h).min(end);
+            if self.is_clear(from, to) {
+                from = to;
+                h *= 2.0;
+            } else if h > shortest {
+                h *= 0.5;
+            } else {
+                if let Some((before, behind)) = self.crossing(from, to, to >= end) {
+                    let behind = Some(behind);
+                    // what evaluates at the end of a step may miss it by a rounding
+                    let before = before - room;
+                    return Moment { before, behind };
+                }
+                from = to;
+            }
+        }
+        clear(from.max(t + (end - t) / BLIND))
+    }
+
+    /// Whether all values surely stay where they are between two times.
+    fn is_clear(&mut self, from: f64, to: f64) -> bool {
+        let Some(program) = &self.program else {
+            return true;
+        };
+        self.inputs[Layout::TIME] = Interval { lo: from, hi: to };
+        program.eval(&self.inputs, &mut self.work, &mut self.values);
+        let mut all = self.values.iter().zip(&self.levels);
+        all.all(|(v, levels)| {
+            let (lo, hi) = (levels.place(v.lo), levels.place(v.hi));
+            lo == hi || lo.is_nan() && hi.is_nan()
+        })
+    }
+
+    /// The last time before the first break between two times and the first one behind it, if their ends lie on different sides of one;
+    /// what is on a level counts where nothing comes after it.
+    fn crossing(&mut self, from: f64, to: f64, last: bool) -> Option<(f64, f64)> {
+        let places =
+            |point: &mut Point, program: &Program, levels: &[Levels], t: f64| -> Vec<f64> {
+                point.numbers[Layout::TIME] = t;
+                program.run(&point.numbers, &mut point.work, &mut point.values);
+                let values = point.values.iter().zip(levels);
+                values.map(|(&v, levels)| levels.place(v)).collect()
+            };
+        let program = self.program.as_ref()?;
+        let before = places(&mut self.point, program, &self.levels, from);
+        // not just on a level, that is with an odd number, and between others than before
+        let mut crossed = |t: f64| {
+            let here = places(&mut self.point, program, &self.levels, t);
+            let mut both = here.iter().zip(&before);
+            both.any(|(here, before)| {
+                (last || here % 2.0 != 0.0) && here != before && !here.is_nan()
+            })
+        };
+        if !crossed(to) {
+            return None;
+        }
+        let (mut a, mut b) = (from, to);
+        loop {
+            let middle = a + 0.5 * (b - a);
+            if middle <= a || middle >= b {
+                return Some((a, b));
+            }
+            if crossed(middle) {
+                b = middle;
+            } else {
+                a = middle;
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! How smooth the motions are over a run.
+//!
+//! A displacement that jumps asks for an infinite velocity, a slope that jumps for an infinite force; neither is a simulation.
+//! A curvature that jumps is one, with accelerations and forces that jump. A function given as a velocity is one
+//! derivative smoother as a displacement, one given as an acceleration two.
+
+use crate::analysis::system::complaints;
+use crate::diagnostic::Diagnostic;
+use crate::expr::program::Input;
+use crate::expr::smoothness::{Breakpoint, smoothness};
+use crate::model::Level;
+use crate::results::Jump;
+use crate::scene::Scene;
+use crate::scene::layout::Layout;
+use crate::scene::programs::record;
+
+/// A time at which a motion is not smooth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Break {
+    /// user's number of the MOTION
+    pub motion: u32,
+    /// when
+    pub at: f64,
+    /// the lowest derivative of its displacement that jumps there: 0 the displacement, 1 the velocity, 2 the acceleration
+    pub order: usize,
+    /// by how much; infinite or NaN where there is no limit on a side
+    pub by: f64,
+}
+
+impl From<Break> for Jump {
+    fn from(b: Break) -> Self {
+        Jump {
+            motion: b.motion,
+            at: b.at,
+            of: QUANTITIES[b.order.min(2)],
+            by: b.by,
+        }
+    }
+}
+
+/// What jumps, by order.
+const QUANTITIES: [&str; 3] = ["displacement", "velocity", "acceleration"];
+/// Most breakpoints that a sentence names.
+const TOLD: usize = 5;
+
+/// Where displacements, velocities or accelerations that motions prescribe jump between two times.
+///
+/// # Errors
+/// Functions that cannot be evaluated.
+pub fn breaks(scene: &Scene, start: f64, end: f64) -> Result<Vec<Break>, Vec<Diagnostic>> {
+    let mut found = Vec::new();
+    if scene.motions.is_empty() || end.partial_cmp(&start) != Some(std::cmp::Ordering::Greater) {
+        return Ok(found);
+    }
+    let count = scene.motions.len();
+    let program = record(scene, |at| {
+        (0..count).map(|m| at.motion_function(m)).collect()
+    })
+    .map_err(complaints)?;
+    let time = Input::Slot(Layout::TIME as u32);
+    for (m, motion) in scene.motions.iter().enumerate() {
+        let higher = match motion.level {
+            Level::Displacement => 0,
+            Level::Velocity => 1,
+            Level::Acceleration => 2,
+        };
+        let all = smoothness(&program, m, time, start..=end).breakpoints;
+        let shown = |b: Breakpoint| Break {
+            motion: motion.id,
+            at: b.at,
+            order: b.order + higher,
+            by: b.jump(b.order),
+        };
+        found.extend(all.into_iter().map(shown).filter(|b| b.order <= 2));
+    }
+    Ok(found)
+}
+
+/// The motions that cannot be run because what they prescribe, or its rate, jumps.
+pub fn refused(breaks: &[Break]) -> Vec<Diagnostic> {
+    told(breaks, |b| b.order < 2)
+        .into_iter()
+        .map(|(motion, what)| {
+            Diagnostic::error("motion_jumps", what)
+                .element(format!("MOTION/{motion}"))
+                .help("join its pieces by STEP5, or insist on it with --piecewise")
+        })
+        .collect()
+}
+
+/// Sentences about motions whose acceleration jumps, or about all when somebody insists.
+pub fn warnings(breaks: &[Break], piecewise: bool) -> Vec<String> {
+    let mild = told(breaks, |b| b.order == 2);
+    let all = if piecewise {
+        told(breaks, |b| b.order < 2)
+    } else {
+        Vec::new()
+    };
+    let piece = |(m, what): (u32, String)| format!("MOTION/{m}: {what}; it runs piecewise");
+    let bend = |(m, what): (u32, String)| format!("MOTION/{m}: {what}; forces jump there");
+    all.into_iter()
+        .map(piece)
+        .chain(mild.into_iter().map(bend))
+        .collect()
+}
+
+/// Per motion: what jumps, and when.
+fn told(breaks: &[Break], which: impl Fn(&Break) -> bool) -> Vec<(u32, String)> {
+    let mut motions: Vec<u32> = breaks.iter().map(|b| b.motion).collect();
+    motions.dedup();
+    motions
+        .into_iter()
+        .filter_map(|m| {
+            let own: Vec<&Break> = (breaks.iter())
+                .filter(|b| b.motion == m && which(b))
+                .collect();
+            let worst = own.iter().map(|b| b.order).min()?;
+            let what = QUANTITIES[worst];
+            let mut times: Vec<String> = (own.iter().take(TOLD))
+                .map(|b| format!("{} (by {:.6})", b.at, b.by))
+                .collect();
+            if own.len() > TOLD {
+                times.push(format!("{} more times", own.len() - TOLD));
+            }
+            let times = times.join(", ");
+            Some((m, format!("the {what} it prescribes jumps at time {times}")))
+        })
+        .collect()
+}

@@ -1,0 +1,184 @@
+//! What becomes of a model when it is compiled: what carries what, the unknowns, the rows, what is left out, and how much there is to compute.
+
+use crate::analysis::start::assemble;
+use crate::analysis::system::System;
+use crate::analysis::verify::start;
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use crate::scene::build::{Options, unknown_names};
+use crate::scene::compile::part_name;
+use crate::scene::equations::row_name;
+use crate::scene::{Scene, Source};
+
+/// How a part is carried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Carried {
+    /// "PART/3"
+    pub part: String,
+    /// "JOINT/2"; `None`: it is free
+    pub by: Option<String>,
+    /// "PART/2" or "ground"
+    pub carrier: String,
+    /// coordinates between the two
+    pub coordinates: Vec<String>,
+}
+
+/// The outline of a model.
+#[derive(Clone, Debug, Default)]
+pub struct Outline {
+    /// parts, carriers first
+    pub forest: Vec<Carried>,
+    /// parts that a FIXED joint makes one with their carrier
+    pub welded: Vec<String>,
+    /// unknowns of the integrator with their values at the start
+    pub unknowns: Vec<(String, f64)>,
+    /// coordinates that motions prescribe
+    pub prescribed: Vec<String>,
+    /// rows that close loops
+    pub rows: Vec<String>,
+    /// rows that depend on others, elements that are switched off or not solved
+    pub left_out: Vec<String>,
+    /// operations of one evaluation of the rates, and of one projection onto the rows
+    pub operations: (usize, usize),
+    /// values watched for a change of sign
+    pub switches: usize,
+    /// "mass matrix" or "articulated bodies"
+    pub elimination: &'static str,
+    /// what else the user should know
+    pub warnings: Vec<String>,
+}
+
+/// Statements of forces and systems that may be read without being solved.
+pub(in crate::analysis) const FORCES: [&str; 15] = [
+    "FIELD",
+    "BEAM",
+    "NFORCE",
+    "CONTACT",
+    "FRICTION",
+    "LSE",
+    "GSE",
+    "TFSISO",
+    "SENSOR",
+    "FLEX_BODY",
+    "FE_PART",
+    "FE_LOAD",
+    "MFORCE",
+    "TIRE",
+    "WHEEL",
+];
+
+/// Compiles and assembles a model, and tells what came out.
+///
+/// # Errors
+/// What keeps it from being solved.
+pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
+    let options = Options {
+        mode: 4,
+        skip: FORCES.map(str::to_string).into_iter().collect(),
+        ..Options::default()
+    };
+    let mut scene = Scene::compile(model, &options)?;
+    let mut out = Outline {
+        warnings: crate::analysis::start::misalignment::misaligned(&scene, model),
+        ..Outline::default()
+    };
+    for d in &scene.warnings {
+        let element = d.element.clone().unwrap_or_default();
+        out.left_out.push(format!("{element} {}", d.message));
+    }
+    for (keyword, id) in &model.inactive {
+        out.left_out.push(format!("{keyword}/{id} is switched off"));
+    }
+    let mut q = scene.initial_q.clone();
+    let x = start(&scene, model, &mut q);
+    if !crate::analysis::start::placement::settle(&scene, model, 0.0, &mut q, &x, true) {
+        crate::analysis::start::initial_conditions::approach(&mut scene, &[], 0.0, &mut q, &x);
+    }
+    let assembly = assemble::positions(&mut scene, 0.0, &mut q, &x)?;
+    out.warnings.extend(assembly.warnings.iter().cloned());
+    let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
+    let turned = crate::analysis::start::misalignment::turned(&scene, model, &numbers);
+    out.warnings.extend(turned);
+    for r in &assembly.redundant {
+        let on: Vec<String> = (r.combination.iter().take(4))
+            .map(|c| row_name(&scene.rows[c.0]))
+            .collect();
+        let words = if on.is_empty() {
+            "says nothing in this mechanism".to_string()
+        } else {
+            format!("follows from {}", on.join(", "))
+        };
+        out.left_out.push(format!("{} {words}", r.name));
+    }
+    out.rows = (0..scene.rows.len())
+        .filter(|&r| scene.active[r])
+        .map(|r| row_name(&scene.rows[r]))
+        .collect();
+    forest(&scene, &mut out);
+    let v = assemble::velocities(&scene, model, 0.0, &q, &x)?;
+    let names = unknown_names(&scene);
+    out.unknowns = names
+        .into_iter()
+        .zip(q.into_iter().chain(v).chain(x))
+        .collect();
+    out.prescribed = (scene.coordinates.iter())
+        .filter_map(|c| match c.source {
+            Source::Driven(m) => Some(format!("{} by MOTION/{}", c.name, scene.motions[m].id)),
+            Source::Free { .. } => None,
+        })
+        .collect();
+    let system = System::new(scene)?;
+    out.operations = (
+        system.operations(),
+        system.projection_operations().unwrap_or(0),
+    );
+    out.switches = system.n_switches();
+    out.elimination = if system.scene.articulated {
+        "articulated bodies"
+    } else {
+        "mass matrix"
+    };
+    Ok(out)
+}
+
+/// What carries each part, in the order of the links.
+fn forest(scene: &Scene, out: &mut Outline) {
+    let mut order: Vec<usize> = (0..scene.parts.len()).collect();
+    order.sort_by_key(|&k| scene.parts[k].link);
+    for k in order {
+        let part = &scene.parts[k];
+        let name = part_name(part.point_mass, part.id);
+        let carrying = scene
+            .constraints
+            .iter()
+            .find(|c| c.carries.is_some_and(|(link, _)| Some(link) == part.link));
+        let carrier = carrying.and_then(|c| {
+            let (i, j) = c.markers?;
+            let backward = c.carries.is_some_and(|x| x.1);
+            scene.markers[if backward { i } else { j }].part
+        });
+        let end = carrier.and_then(|p| scene.parts[p].link);
+        let mut coordinates = Vec::new();
+        let mut at = part.link;
+        while at != end {
+            let Some(l) = at else { break };
+            let own = scene.coordinates.iter().filter(|c| c.link == l);
+            coordinates.splice(0..0, own.map(|c| c.name.clone()));
+            at = scene.links[l].parent;
+        }
+        let carrier = carrier.map_or_else(
+            || "ground".to_string(),
+            |p| part_name(scene.parts[p].point_mass, scene.parts[p].id),
+        );
+        let by = carrying.map(|c| format!("{}/{}", c.keyword, c.id));
+        if let (Some(by), true) = (&by, coordinates.is_empty()) {
+            out.welded.push(format!("{name} to {carrier} by {by}"));
+        }
+        out.forest.push(Carried {
+            part: name,
+            by,
+            carrier,
+            coordinates,
+        });
+    }
+}

@@ -1,0 +1,148 @@
+//! Numbers that come from outside the equations: last values of sensors, values of the past, results of the user's closures,
+//! constants that commands change from one simulation to the next.
+//!
+//! They have places of their own at the end of the row that programs read. Whoever fills the row computes them from what stands
+//! before them, so that the programs need not know where they come from.
+
+use crate::model::{Comparison, Formula};
+use crate::physics::contact::Question;
+
+/// One number from outside, in the order of the places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExternalInput {
+    /// what a sensor evaluated last: index in [`Scene::sensors`](super::Scene::sensors)
+    Sensor(usize),
+    /// what a sensor that is switched off evaluated last: the user's number
+    Kept(u32),
+    /// a value of the past: index in [`Scene::delays`](super::Scene::delays)
+    Delay(usize),
+    /// what is added to a VARIABLE that is a plant input: index in the formulas
+    Input(usize),
+    /// a discrete state, as it is until the next sample: index in [`Scene::samplers`](super::Scene::samplers), and which
+    Sample(usize, usize),
+    /// the value of a VARIABLE whose function is a number that commands will change: its number
+    Constant(u32),
+    /// a result of a closure: index in [`Scene::hooks`](super::Scene::hooks), and which
+    Hook(usize, usize),
+}
+
+/// A SENSOR.
+#[derive(Clone, Debug)]
+pub struct SceneSensor {
+    /// user's number
+    pub id: u32,
+    /// what is watched: index in the formulas
+    pub formula: usize,
+    /// how it is compared
+    pub comparison: Comparison,
+    /// with what
+    pub value: f64,
+    /// how near counts as equal
+    pub error: f64,
+    /// modulo 2π
+    pub angular: bool,
+    /// what SENVAL yields after it was triggered: index in the formulas
+    pub evaluate: Option<usize>,
+    /// ends the run
+    pub halt: bool,
+    /// ends the simulation
+    pub end_simulation: bool,
+    /// shows the state
+    pub print: bool,
+    /// distance of outputs afterwards
+    pub dt: Option<f64>,
+    /// length of the next integration step
+    pub stepsize: Option<f64>,
+    /// the integration begins anew
+    pub restart: bool,
+}
+
+/// The discrete states of a GSE.
+#[derive(Clone, Debug)]
+pub struct SceneSampler {
+    /// user's number
+    pub id: u32,
+    /// "GSE/3"
+    pub name: String,
+    /// time between samples: index in the formulas
+    pub period: usize,
+    /// how many states
+    pub n: usize,
+    /// place of the first among the numbers from outside
+    pub states: usize,
+    /// place of what computes the first
+    pub results: usize,
+    /// what they are at the start
+    pub initial: Vec<f64>,
+}
+
+/// A value of the past: `DELAY(expression, delay, history)`; indices in the formulas.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneDelay {
+    /// what is remembered
+    pub expression: usize,
+    /// how long ago
+    pub delay: usize,
+    /// what it was before the start
+    pub history: usize,
+}
+
+/// A closure of the user's that the library was given: what it is called for, and which expressions it reads.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HookName {
+    /// an element ("SFORCE/3"), the text of ROUTINE, or the first number of USER
+    pub name: String,
+    /// expressions whose values it is given
+    pub inputs: Vec<String>,
+}
+
+impl HookName {
+    /// Whether it computes this USER of this element.
+    pub fn stands_for(&self, element: &str, user: &Formula) -> bool {
+        let Formula::User { constants, routine } = user else {
+            return false;
+        };
+        self.name.eq_ignore_ascii_case(element)
+            || (routine.as_ref()).is_some_and(|r| r.trim().eq_ignore_ascii_case(&self.name))
+            || constants
+                .first()
+                .is_some_and(|c| c.to_string() == self.name)
+    }
+}
+
+/// What computes numbers from outside, and what it is given.
+#[derive(Clone, Debug)]
+pub enum HookKind {
+    /// a closure of the user's
+    User {
+        /// which: index in [`Options::hooks`](super::build::Options::hooks)
+        closure: usize,
+        /// what it reads: indices in the formulas
+        inputs: Vec<usize>,
+    },
+    /// where two solids touch: [`TOUCHES`](crate::physics::contact::TOUCHES) times
+    /// [`TOUCH_NUMBERS`](crate::physics::contact::TOUCH_NUMBERS)
+    Touches {
+        /// of I and J
+        question: Question,
+        /// in whose frames they stand: indices in [`Scene::markers`](super::Scene::markers)
+        markers: [usize; 2],
+    },
+}
+
+/// A call of a closure, for one element.
+#[derive(Clone, Debug)]
+pub struct SceneHook {
+    /// what is called
+    pub kind: HookKind,
+    /// the element: "SFORCE/3"
+    pub element: String,
+    /// the numbers of USER
+    pub constants: Vec<f64>,
+    /// how many numbers it yields
+    pub n: usize,
+    /// place of the first
+    pub place: usize,
+    /// nothing that moves depends on it
+    pub output_only: bool,
+}
