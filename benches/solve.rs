@@ -8,7 +8,7 @@
 
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::numeric::{self, Dop853, Failure, Method, Ode};

@@ -2,7 +2,7 @@
 #![cfg(feature = "geometry")]
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 use cognate::physics::contact::query::Query;
 use cognate::physics::contact::{Solid, TOUCH_NUMBERS, TOUCHES};
@@ -472,7 +472,7 @@ fn a_torus_that_begins_within_a_cylinder_is_pushed_out_of_it() {
         ..Default::default()
     };
     let mut s = cognate::analysis::session::Session::new(model, "ring", options);
-    let watch = &mut cognate::analysis::time::dynamics::Unwatched;
+    let watch = &mut cognate::analysis::watch::Unwatched;
     let analysis = cognate::analysis::session::Analysis::Dynamic;
     let status = s.simulate(analysis, 1.0, 10, watch).unwrap();
     assert_eq!(status, cognate::results::Status::Completed);

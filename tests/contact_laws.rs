@@ -7,7 +7,7 @@ mod curves;
 mod running;
 
 use cognate::analysis::session::script::obey;
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use curves::{circle, curve, line};
 use running::{Analysis, Options, Session, go, last, model, options, session, values};

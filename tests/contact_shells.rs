@@ -143,7 +143,7 @@ fn a_shell_that_cannot_be_used_says_why_and_what_to_do() {
         let text = falling(&format!("EXTERNAL, FILE={file}"));
         let mut s = Session::new(model(&text), "test", options(&[], 1e-6));
         s.folders = vec![folder.clone()];
-        let watch = &mut cognate::analysis::time::dynamics::Unwatched;
+        let watch = &mut cognate::analysis::watch::Unwatched;
         let errors = s.simulate(Analysis::Dynamic, 0.1, 1, watch).unwrap_err();
         let d = &errors[0];
         assert_eq!(

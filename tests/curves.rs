@@ -2,7 +2,7 @@
 #![cfg(feature = "solver")]
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use curves::{circle, curve, line};

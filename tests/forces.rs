@@ -3,7 +3,7 @@
 #![allow(non_snake_case)]
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::expr::measures::Measure;
 use cognate::model::Model;
 use cognate::physics::beam::Section;

@@ -3,8 +3,8 @@
 #![cfg(feature = "solver")]
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
 use cognate::analysis::verify::outline::outline;
+use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use std::fmt::Write;

@@ -5,7 +5,8 @@
 
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::system::System;
-use cognate::analysis::time::dynamics::{self, Unwatched};
+use cognate::analysis::time::{dynamics, options};
+use cognate::analysis::watch::Unwatched;
 use cognate::analysis::{session::columns, start::assemble};
 use cognate::model::{Driven, MarkerOwner, Model, Orientation, Units};
 use cognate::results::{Run, Status};
@@ -293,9 +294,9 @@ fn without_forest(model: &Model, names: &[String]) -> Run {
     let (program, complaints) = wanted.program(&system.scene);
     assert!(complaints.is_empty(), "{complaints:?}");
     let mut rows = vec![system.numbers.clone()];
-    let how = dynamics::Options {
+    let how = options::Options {
         error: ERROR,
-        ..dynamics::Options::default()
+        ..options::Options::default()
     };
     let out = dynamics::integrate(&mut system, &outputs, &how, &mut Unwatched);
     assert!(out.ended.is_none(), "{:?}", out.ended);

@@ -5,7 +5,7 @@
 
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::results::Status;

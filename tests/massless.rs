@@ -2,8 +2,8 @@
 #![cfg(feature = "solver")]
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
 use cognate::analysis::verify::verify;
+use cognate::analysis::watch::Unwatched;
 use cognate::diagnostic::Diagnostic;
 use cognate::model::Model;
 use cognate::results::Status;

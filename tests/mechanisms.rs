@@ -10,8 +10,8 @@
 
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::start::assemble;
-use cognate::analysis::time::dynamics::Unwatched;
 use cognate::analysis::verify::{Verification, verify};
+use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use cognate::scene::{Scene, build};

@@ -5,7 +5,7 @@
 mod running;
 
 use cognate::analysis::session::script::obey;
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::diagnostic::Diagnostic;
 use cognate::results::Status;

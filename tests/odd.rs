@@ -4,7 +4,7 @@
 
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::dataset::syntax::Source;
 use cognate::dataset::{Reading, read_source, read_text};

@@ -4,7 +4,7 @@
 #[path = "common/running.rs"]
 mod running;
 
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::results::Status;
 use running::{Analysis, Options, Session, go, last, model, options};
 

@@ -23,7 +23,7 @@ let y = f.eval(&[("TIME", 0.25)])?;
 
 #[rustfmt::skip]
 fn a_model() -> Result<Vec<f64>, Wrong> {
-use cognate::analysis::{session::{Analysis, Options, Session}, time::dynamics::Unwatched};
+use cognate::analysis::{session::{Analysis, Options, Session}, watch::Unwatched};
 
 let model = cognate::model::Model::read("examples/slider_crank.adm")?;
 let mut session = Session::new(model, "crank", Options { columns: vec!["DX(41,22)".into()], ..Options::default() });

@@ -2,8 +2,8 @@
 #![cfg(feature = "solver")]
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
 use cognate::analysis::verify::{Verification, verify};
+use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 
 fn model(text: &str) -> Model {

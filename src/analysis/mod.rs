@@ -18,3 +18,4 @@ pub mod statics;
 pub mod system;
 pub mod time;
 pub mod verify;
+pub mod watch;

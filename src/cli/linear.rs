@@ -4,7 +4,7 @@ use super::{Exit, Failure, Outcome, interrupt, remark, run, say};
 use crate::analysis::linear::Wanted;
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
-use crate::analysis::time::dynamics::Watch;
+use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
 use crate::results::{self, Status, json};
 use std::path::PathBuf;

@@ -6,7 +6,7 @@ use super::{Exit, Failure, Outcome, interrupt, linear, remark, say, summary};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Options, Session};
-use crate::analysis::time::dynamics::Watch;
+use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Diagnostic, Severity};

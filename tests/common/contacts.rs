@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each program uses its own part
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 use rapier3d_f64::prelude::*;

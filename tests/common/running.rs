@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test binary uses its own part
 
 pub use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
 

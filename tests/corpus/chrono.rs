@@ -4,7 +4,7 @@
 //! table is that good; the Adams runs with looser control have what an independent integration found between it and them.
 
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::model::{Formula, Model};
 use cognate::results::Status;
 use std::path::{Path, PathBuf};

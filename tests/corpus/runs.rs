@@ -3,7 +3,7 @@
 
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::{Command, Script, SimulationKind};
 use cognate::model::{Model, Orientation};
 use cognate::results::{self, Run, Status};

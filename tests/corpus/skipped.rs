@@ -2,7 +2,7 @@
 
 use super::runs::{apart, corpus, obeyed};
 use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Unwatched;
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::{Command, Script};
 use cognate::model::Model;
 use cognate::results::{self, Status};

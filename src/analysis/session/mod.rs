@@ -18,9 +18,12 @@ use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
 use crate::analysis::system::System;
 use crate::analysis::system::implicit::Formulation;
-use crate::analysis::time::dynamics::{self, Ended, Trajectory, Watch};
+use crate::analysis::time::dynamics;
+use crate::analysis::time::options;
 use crate::analysis::time::output::{self, Output};
+use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::verify::massless::massless;
+use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::Model;
@@ -375,7 +378,7 @@ impl Session {
         let outputs = output.times(start, end);
         let mut settings = self.integration();
         if settings.method == "AUTO" && kind == Kind::Dynamic {
-            settings.first = dynamics::first_method(system, end - start).into();
+            settings.first = options::first_method(system, end - start).into();
         }
         self.prepare_implicit(system, &mut settings);
         let name = self
@@ -557,7 +560,7 @@ impl Session {
     }
 
     /// Writes the equations as methods for implicit equations want them, if one is asked for.
-    fn prepare_implicit(&mut self, system: &mut System, settings: &mut dynamics::Options) {
+    fn prepare_implicit(&mut self, system: &mut System, settings: &mut options::Options) {
         if !crate::numeric::is_implicit(&settings.method) {
             return;
         }
@@ -626,7 +629,7 @@ impl Session {
     }
 
     /// INTEGRATOR, overruled by the options.
-    fn integration(&self) -> dynamics::Options {
+    fn integration(&self) -> options::Options {
         let i = &self.model.integrator;
         let asked = self
             .options
@@ -634,15 +637,15 @@ impl Session {
             .as_deref()
             .or(i.method.as_deref())
             .unwrap_or("AUTO");
-        dynamics::Options {
+        options::Options {
             error: self.options.error.or(i.error).unwrap_or(DEFAULT_ERROR),
-            method: dynamics::method_named(asked),
+            method: options::method_named(asked),
             h_initial: i.hinit,
             h_max: i.hmax.unwrap_or(f64::INFINITY),
             h_min: i.hmin.unwrap_or(0.0),
             max_order: i.kmax.map(|k| k as usize),
             max_newton: i.maxit.map(|k| k as usize),
-            ..dynamics::Options::default()
+            ..options::Options::default()
         }
     }
 }

@@ -4,7 +4,7 @@ use super::Session;
 use crate::analysis::session::columns;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
-use crate::analysis::time::dynamics::{Ended, Trajectory};
+use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::time::{ranks, valueless};
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};

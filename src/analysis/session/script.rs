@@ -3,8 +3,8 @@
 use crate::analysis::linear::Wanted;
 use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Analysis, Session};
-use crate::analysis::time::dynamics::Watch;
 use crate::analysis::time::output::Output;
+use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::Diagnostic;
 use crate::results::{Event, Status};

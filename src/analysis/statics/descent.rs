@@ -4,7 +4,7 @@ use super::metric::total_mass;
 use super::point::Point;
 use super::step::Pace;
 use super::{NoEquilibrium, Settler};
-use crate::analysis::time::dynamics::Watch;
+use crate::analysis::watch::Watch;
 use crate::scene::equations::Equations;
 use nalgebra::{DMatrix, DVector};
 

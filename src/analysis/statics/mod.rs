@@ -29,7 +29,7 @@ pub use stability::Stability;
 
 use crate::analysis::system::System;
 use crate::analysis::system::algebraic_loops::WIDTH;
-use crate::analysis::time::dynamics::Watch;
+use crate::analysis::watch::Watch;
 use crate::expr::program::{Program, Work};
 use crate::model;
 use crate::numeric::Stats;

@@ -645,6 +645,16 @@ impl System {
         self.numbers.clone()
     }
 
+    /// All numbers at a state; multipliers after it are of no concern.
+    pub(super) fn numbers_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
+        let mut numbers = self.numbers.clone();
+        let places = self.scene.layout.y();
+        numbers[Layout::TIME] = t;
+        let n = places.len();
+        numbers[places].copy_from_slice(&y[..n]);
+        numbers
+    }
+
     /// Takes over time and state; multipliers after the state are of no concern.
     pub(super) fn set(&mut self, t: f64, y: &[f64]) {
         self.numbers[Layout::TIME] = t;

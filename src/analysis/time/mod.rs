@@ -1,9 +1,24 @@
-//! The course of time: the loop of kinematics and dynamics, branches, ranks, output times.
+//! Analyses over time, with and without freedom.
+//!
+//! ```text
+//! dynamics     one method after another       options, trajectory: the question and the answer
+//! leg          the loop over the steps of one method; leg_rows, leg_output: its rows, its results
+//! switches     branches: held within a step, changed where they end
+//! ranks        positions where rows become dependent; better rows; why a mechanism is locked
+//! kinematics   mechanisms without freedom, from output time to output time
+//! drives       motions that jump              valueless   functions that lose their value
+//! output       output times
+//! ```
 
 pub mod drives;
 pub mod dynamics;
 pub mod kinematics;
+mod leg;
+mod leg_output;
+mod leg_rows;
+pub mod options;
 pub mod output;
 pub mod ranks;
 pub mod switches;
+pub mod trajectory;
 pub(super) mod valueless;

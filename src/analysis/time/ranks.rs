@@ -34,6 +34,17 @@ const NEARLY: f64 = 0.02;
 const ROUGH: f64 = 0.01;
 /// Angles may change by this much, in rad, from one state that is looked at to the next.
 const TURN: f64 = 0.3;
+/// States kept to find such positions, at most, in any mechanism.
+const MOST_STATES: f64 = 2000.0;
+/// States kept, at least.
+const LEAST_STATES: f64 = 60.0;
+
+/// Returns how many states are kept to find positions at which rows become dependent: looking at one
+/// costs the cube of the number of velocities.
+pub fn states_kept(n_v: usize) -> f64 {
+    (1e8 / (n_v as f64).powi(3)).clamp(LEAST_STATES, MOST_STATES)
+}
+
 /// Rows that take part.
 fn active(scene: &Scene) -> Vec<usize> {
     (0..scene.rows.len())

@@ -1,0 +1,390 @@
+//! The loop over the steps of one method.
+//!
+//! ```text
+//! step → rows that were left out still hold? → switched? → outputs on the interpolant
+//!      → samples, memory, sensors → other rows? → begin anew where something changed
+//! ```
+//!
+//! A step over a switch is never kept: it is undone and repeated so that it ends where the branch
+//! changes, from where the method begins anew. Accuracy therefore does not fall when a kink lies
+//! inside a step. [`switches`](crate::analysis::time::switches) locates it.
+
+use crate::analysis::system::System;
+use crate::analysis::system::external_inputs;
+use crate::analysis::time::output::Output;
+use crate::analysis::time::switches::{Switches, Verdict};
+use crate::analysis::time::trajectory::{Ended, Trajectory};
+use crate::analysis::watch::Watch;
+use crate::numeric::{Method, Reason, Step, Stop};
+use crate::scene::cams::Broken;
+
+/// Attempted steps after which a run must have come further by [`STALLED_PART`].
+const STALLED_STEPS: usize = 20_000;
+/// Part of the duration, see [`STALLED_STEPS`]: a run that does not come further would not end.
+const STALLED_PART: f64 = 1e-8;
+/// Shortest way that is looked ahead for pulses, bodies and the past, as a part of the time left.
+const LEAST_HORIZON: f64 = 1e-6;
+/// The same for delays that shrink to nothing.
+const LEAST_DELAY: f64 = 1e-9;
+
+/// The reason why a method does not go on to the end.
+pub(super) enum Finished {
+    /// the analysis ends
+    Ended(Ended),
+    /// another method would do better from here
+    Stiff,
+    /// the motion stays where a branch changes, which the method does not know how to do
+    Slides,
+    /// other rows are to be kept from here, or the state has been put onto all of them
+    Rows(Vec<f64>),
+}
+
+impl From<Stop> for Finished {
+    fn from(stop: Stop) -> Self {
+        Finished::Ended(Ended::Stop(stop))
+    }
+}
+
+/// Limits of a leg: they do not change while it lasts.
+pub(super) struct Limits<'a> {
+    /// where the method begins
+    pub start: f64,
+    /// where the analysis is to end
+    pub end: f64,
+    /// times at which steps have to end
+    pub landings: &'a [f64],
+    /// attempted steps permitted
+    pub max_steps: usize,
+    /// whether another method may take over where stability limits the steps
+    pub may_change: bool,
+    /// whether the method can follow a motion that stays where a branch changes
+    pub may_slide: bool,
+}
+
+/// The part of an integration that one method does.
+pub(super) struct Leg<'a> {
+    pub(super) system: &'a mut System,
+    watch: &'a mut dyn Watch,
+    pub(super) limits: Limits<'a>,
+    /// results, and the output times: those that are still to come may change
+    pub(super) out: &'a mut Trajectory,
+    pub(super) outputs: &'a mut Vec<f64>,
+    switches: Switches,
+    /// end of the next step, when something has been located inside the one before
+    pub(super) landing: f64,
+    /// how often in a row the step was halved because of rows that are left out
+    pub(super) halved: usize,
+    /// the state before the step, where there are rows   (n)
+    pub(super) before: Vec<f64>,
+    /// attempted steps, and the time, when the run last came further
+    progressed: (usize, f64),
+}
+
+/// The decision about a step that was taken.
+enum Judged {
+    /// it was undone; the next one ends at [`Leg::landing`]
+    Undone,
+    /// it stays
+    Kept {
+        /// a branch ends at its end
+        switched: bool,
+        /// the row among those left out that is violated, and by how much
+        violated: Option<(usize, f64)>,
+    },
+}
+
+fn attempted(method: &dyn Method<System>) -> usize {
+    method.stats().steps + method.stats().rejected
+}
+
+/// Returns the unknown that changes fastest.
+fn fastest(ydot: &[f64]) -> usize {
+    let largest = (ydot.iter().enumerate()).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    largest.map_or(0, |(i, _)| i)
+}
+
+impl<'a> Leg<'a> {
+    /// Prepares a leg of a method whose state has `size` numbers.
+    pub fn new(
+        system: &'a mut System,
+        watch: &'a mut dyn Watch,
+        limits: Limits<'a>,
+        (out, outputs): (&'a mut Trajectory, &'a mut Vec<f64>),
+        size: usize,
+    ) -> Self {
+        let has_rows = !system.scene.rows.is_empty();
+        Self {
+            switches: Switches::new(system, size, limits.end - limits.start),
+            landing: limits.end,
+            halved: 0,
+            before: vec![0.0; if has_rows { size } else { 0 }],
+            progressed: (0, limits.start),
+            system,
+            watch,
+            limits,
+            out,
+            outputs,
+        }
+    }
+
+    /// Integrates from `y` to the end, or until something else has to be done first.
+    pub fn run(&mut self, method: &mut dyn Method<System>, y: &[f64]) -> Result<(), Finished> {
+        self.start(method, y)?;
+        while method.t() < self.limits.end {
+            self.check(method)?;
+            let Some(step) = self.step(method)? else {
+                continue;
+            };
+            let Judged::Kept { switched, violated } = self.judge(method, &step)? else {
+                continue;
+            };
+            let anew = self.accept(method, &step);
+            let mut switched = switched || anew > step.t1;
+            switched |= self.sample(method, &step);
+            switched |= self.remember(method, &step);
+            let (reacted, stepsize) = self.sense(method, &step, switched)?;
+            switched |= reacted;
+            self.keep_rows(method, &step, violated)?;
+            if switched && step.t1 < self.limits.end {
+                self.begin_anew(method, &step, anew, stepsize)?;
+            }
+            if self.limits.may_change && method.stiff() && method.t() < self.limits.end {
+                return Err(Finished::Stiff);
+            }
+        }
+        Ok(())
+    }
+
+    /// Starts the method on the branches that hold at the state.
+    fn start(&mut self, method: &mut dyn Method<System>, y: &[f64]) -> Result<(), Finished> {
+        let t = self.limits.start;
+        self.switches.start(self.system, t, y);
+        method.start(self.system, t, y)?;
+        self.look_ahead(method)?;
+        self.system.take_weak();
+        self.progressed = (attempted(method), method.t());
+        Ok(())
+    }
+
+    /// Ends a run that comes no further, that the caller ends, or that slides where it must not.
+    fn check(&mut self, method: &dyn Method<System>) -> Result<(), Finished> {
+        if attempted(method) > self.progressed.0 + STALLED_STEPS {
+            let duration = self.limits.end - self.limits.start;
+            if method.t() - self.progressed.1 < STALLED_PART * duration {
+                let (t, h) = (method.t(), 0.0);
+                let reason = Reason::Stalled(fastest(method.ydot()));
+                return Err(Stop { reason, t, h }.into());
+            }
+            self.progressed = (attempted(method), method.t());
+        }
+        if self.watch.interrupted() {
+            return Err(Finished::Ended(Ended::Interrupted));
+        }
+        if self.switches.slide() && !self.limits.may_slide {
+            return Err(Finished::Slides);
+        }
+        Ok(())
+    }
+
+    /// Takes one step, no further than anything asks; `None`: none was possible while branches were
+    /// held, and they were let go.
+    fn step(&mut self, method: &mut dyn Method<System>) -> Result<Option<Step>, Finished> {
+        let horizon = self.horizon(method);
+        let limit = std::mem::replace(&mut self.landing, self.limits.end).min(horizon);
+        let landings = self.limits.landings;
+        let passed = landings.partition_point(|&l| l <= method.t());
+        let limit = landings.get(passed).map_or(limit, |&l| limit.min(l));
+        if !self.before.is_empty() {
+            self.before.copy_from_slice(method.y());
+        }
+        match method.step(self.system, limit) {
+            Ok(step) => Ok(Some(step)),
+            Err(stop) => {
+                let may_try = attempted(method) < self.limits.max_steps;
+                if may_try && self.switches.let_go(self.system) {
+                    let state = method.y().to_vec();
+                    if (method.reinitialize(self.system, stop.t, &state)).is_ok() {
+                        return Ok(None);
+                    }
+                }
+                Err(stop.into())
+            }
+        }
+    }
+
+    /// Returns how far a step may go: no further than values of the past are known, not over a
+    /// sample, not over a time event, and not through a body.
+    fn horizon(&mut self, method: &dyn Method<System>) -> f64 {
+        let (t, y, end) = (method.t(), method.y(), self.limits.end);
+        let turn = self.system.longest_turn(y, method.ydot());
+        let unseen = self.system.longest_unseen(t, y).min(turn);
+        let unseen = unseen.max(LEAST_HORIZON * (end - t));
+        // however near, it must be further on
+        let event = (self.system.time_events.next(t, end)).max(t + 4.0 * f64::EPSILON * t.abs());
+        let due = self.system.samples.due().min(t + unseen).min(event);
+        if !self.system.external.remembers() {
+            return due;
+        }
+        self.system.set(t, y);
+        let delay = self.system.external.shortest_delay(&self.system.numbers);
+        due.min(t + delay.max(LEAST_DELAY * (end - t)))
+    }
+
+    /// Keeps a step, or undoes it so that the next one ends where something changes within it.
+    fn judge(&mut self, method: &mut dyn Method<System>, step: &Step) -> Result<Judged, Finished> {
+        // rows that are left out
+        let violated = self.violated(method, step);
+        if self.shortens(violated, step) {
+            method.undo();
+            self.halve(step)?;
+            return Ok(Judged::Undone);
+        }
+        self.halved = 0;
+        // switches
+        let verdict = self.switches.judge(self.system, method, step);
+        if let Verdict::Redo(at) = verdict {
+            method.undo();
+            self.landing = at;
+            return Ok(Judged::Undone);
+        }
+        // output times at which the method cannot say what the state was
+        if let Some(t) = self.unreadable(method, step) {
+            method.undo();
+            self.landing = t;
+            return Ok(Judged::Undone);
+        }
+        // contacts of curves that end
+        if let Some((t, broken)) = self.broken(method, step) {
+            self.emit(method, &Step { t1: t, ..*step }, t);
+            return Err(Finished::Ended(Ended::Broken { t, broken }));
+        }
+        let switched = verdict == Verdict::Switched;
+        Ok(Judged::Kept { switched, violated })
+    }
+
+    /// Returns when in an accepted step a contact of curves ends, and which.
+    fn broken(&mut self, method: &mut dyn Method<System>, step: &Step) -> Option<(f64, Broken)> {
+        let end = self.limits.end;
+        let mut found = self.system.broken(step.t1, method.y(), end)?;
+        let (mut whole, mut ended) = (step.t0, step.t1);
+        let mut state = method.y().to_vec();
+        // to rounding
+        while ended - whole > 4.0 * f64::EPSILON * ended.abs().max(step.h) {
+            let middle = 0.5 * (whole + ended);
+            if middle <= whole || middle >= ended {
+                break;
+            }
+            if method.interpolate(self.system, middle, &mut state).is_err() {
+                break;
+            }
+            match self.system.broken(middle, &state, end) {
+                Some(broken) => (ended, found) = (middle, broken),
+                None => whole = middle,
+            }
+        }
+        Some((whole, found))
+    }
+
+    /// Puts out what lies within a step; the time from which it goes on: the first one behind a time
+    /// event at its end.
+    fn accept(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
+        let behind = self.system.time_events.behind(step.t1);
+        let anew = behind.unwrap_or(step.t1).min(self.limits.end);
+        self.emit(method, step, anew);
+        self.watch.progress(step.t1, step.h, method.stats());
+        anew
+    }
+
+    /// Takes the samples that are due; whether a discrete state has changed.
+    fn sample(&mut self, method: &dyn Method<System>, step: &Step) -> bool {
+        if !(self.system.is_sampled(step.t1) && self.system.sample(step.t1, method.y())) {
+            return false;
+        }
+        // discrete states are new from the sample on, the sample itself included
+        if let (Some(&t), Some(row)) = (self.out.t.last(), self.out.rows.last_mut())
+            && self.system.is_together(t, step.t1)
+        {
+            *row = self.system.row(t, method.y());
+        }
+        true
+    }
+
+    /// Keeps what is asked of the past; whether the interpolant had no value.
+    fn remember(&mut self, method: &mut dyn Method<System>, step: &Step) -> bool {
+        self.system.external.remembers()
+            && external_inputs::remember(self.system, method, step).is_err()
+    }
+
+    /// Does what triggered sensors ask for; whether the method is to begin anew, and with which step.
+    fn sense(
+        &mut self,
+        method: &dyn Method<System>,
+        step: &Step,
+        switched: bool,
+    ) -> Result<(bool, Option<f64>), Finished> {
+        let (mut reacted, mut stepsize) = (false, None);
+        for k in self.system.sense(step.t1, method.y(), switched) {
+            if let Some(h) = self.system.scene.sensors[k].stepsize {
+                stepsize = Some(stepsize.map_or(h, |other: f64| other.min(h)));
+            }
+            reacted |= self.react(k, method, step.t1)?;
+        }
+        Ok((reacted, stepsize))
+    }
+
+    /// Does what a triggered sensor asks for; whether the integration is to begin anew.
+    fn react(&mut self, k: usize, method: &dyn Method<System>, t: f64) -> Result<bool, Finished> {
+        let sensor = self.system.scene.sensors[k].clone();
+        let ends = sensor.halt || sensor.end_simulation;
+        if (ends || sensor.print) && self.out.t.last() != Some(&t) {
+            let row = self.system.row(t, method.y());
+            self.out.push(t, row);
+            // outputs are counted: one that was not foreseen takes a place
+            self.outputs.insert(self.out.t.len() - 1, t);
+        }
+        self.out.triggered.push((t, k));
+        if let Some(dt) = sensor.dt {
+            self.outputs.truncate(self.out.t.len());
+            let times = Output::Every(dt).times(t, self.limits.end);
+            self.outputs.extend(times);
+        }
+        if ends {
+            return Err(Finished::Ended(Ended::Sensor(k)));
+        }
+        Ok(sensor.restart || sensor.stepsize.is_some() || sensor.evaluate.is_some())
+    }
+
+    /// Begins anew at the end of a step, on the branches that hold from there on.
+    fn begin_anew(
+        &mut self,
+        method: &mut dyn Method<System>,
+        step: &Step,
+        anew: f64,
+        stepsize: Option<f64>,
+    ) -> Result<(), Finished> {
+        self.out.events += 1;
+        let mut state = method.y().to_vec();
+        self.switches.change(self.system, anew, &mut state);
+        if let Some(worst) = self.switches.endless() {
+            let (reason, t, h) = (Reason::Endless(worst), step.t1, step.h);
+            return Err(Stop { reason, t, h }.into());
+        }
+        method.reinitialize(self.system, anew, &state)?;
+        self.look_ahead(method)?;
+        // after the method has begun anew, which chooses a step of its own
+        if let Some(h) = stepsize {
+            method.propose(h);
+        }
+        Ok(())
+    }
+
+    /// Looks ahead where a method begins, and lets it begin again when the branches turn out to be
+    /// others.
+    fn look_ahead(&mut self, method: &mut dyn Method<System>) -> Result<(), Stop> {
+        let (t, y) = (method.t(), method.y().to_vec());
+        if (self.switches).look_ahead(self.system, t, &y, method.ydot()) {
+            method.reinitialize(self.system, t, &y)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,123 @@
+//! Rows during a leg: those that are left out are watched, and others are chosen where that is
+//! better.
+
+use crate::analysis::system::System;
+use crate::analysis::time::leg::{Finished, Leg};
+use crate::analysis::time::ranks;
+use crate::numeric::{Failure, Method, Reason, Step, Stop};
+
+/// Violation of a row that is left out, relative to what counts as one, up to which it follows from
+/// the others.
+const FOLLOWS_TOLERANCE: f64 = 1e-8;
+/// The same, beyond which a step is shortened.
+const STEP_TOLERANCE: f64 = 1e-6;
+/// Halvings of a step because of rows that are left out, in a row.
+const MAX_HALVINGS: usize = 40;
+/// Velocities of the largest mechanism all of whose states are kept to find positions where rows
+/// become dependent.
+const SMALL_MECHANISM: usize = 30;
+
+impl Leg<'_> {
+    /// Returns the row among those left out that no longer follows from the others, and its value.
+    pub(super) fn violated(
+        &mut self,
+        method: &dyn Method<System>,
+        step: &Step,
+    ) -> Option<(usize, f64)> {
+        let worst = self.system.worst_left_out(step.t1, method.y());
+        worst.filter(|w| w.1.is_nan() || w.1 > FOLLOWS_TOLERANCE)
+    }
+
+    /// Returns whether a step leads beyond a position where the others leave two ways and this row
+    /// one, and can be shortened.
+    pub(super) fn shortens(&self, violated: Option<(usize, f64)>, step: &Step) -> bool {
+        violated.is_some_and(|(_, size)| size > STEP_TOLERANCE)
+            && step.t1 - step.t0 > 1e-12 * self.limits.end.abs().max(step.t1.abs())
+            && self.halved < MAX_HALVINGS
+    }
+
+    /// Makes the next step half as long as the one that was undone, or begins with better rows.
+    pub(super) fn halve(&mut self, step: &Step) -> Result<(), Finished> {
+        self.halved += 1;
+        let before = std::mem::take(&mut self.before);
+        if self.choose(step.t0, &before) {
+            return Err(Finished::Rows(before));
+        }
+        self.before = before;
+        self.landing = step.t0 + 0.5 * (step.t1 - step.t0);
+        Ok(())
+    }
+
+    /// Looks after the rows at the end of an accepted step: notes where they are nearly dependent,
+    /// chooses others, restores one that no longer follows.
+    pub(super) fn keep_rows(
+        &mut self,
+        method: &dyn Method<System>,
+        step: &Step,
+        violated: Option<(usize, f64)>,
+    ) -> Result<(), Finished> {
+        if self.before.is_empty() {
+            return Ok(());
+        }
+        let weak = self.system.take_weak();
+        self.note_weak(method, step.t0, weak);
+        if let Some((row, _)) = violated {
+            return Err(self.restore(row, method, step.t0));
+        }
+        if weak && self.system.watches_rows() && self.choose(method.t(), method.y()) {
+            return Err(Finished::Rows(method.y().to_vec()));
+        }
+        Ok(())
+    }
+
+    /// Keeps the states of a step for the search for positions where rows become dependent: all of
+    /// small mechanisms, else those where an evaluation has found rows nearly dependent.
+    fn note_weak(&mut self, method: &dyn Method<System>, t0: f64, weak: bool) {
+        let n_v = self.system.scene.layout.n_v;
+        let kept = &mut self.out.weak;
+        if kept.len() >= ranks::states_kept(n_v) as usize || !(weak || n_v <= SMALL_MECHANISM) {
+            return;
+        }
+        let last = kept.last().and_then(Option::as_ref);
+        if !last.is_some_and(|n| n[0] == t0) {
+            kept.push(None);
+            kept.push(Some(self.system.numbers_at(t0, &self.before)));
+        }
+        kept.push(Some(self.system.numbers_at(method.t(), method.y())));
+    }
+
+    /// Puts the state onto all rows, one of which no longer follows from the others.
+    fn restore(&mut self, row: usize, method: &dyn Method<System>, t0: f64) -> Finished {
+        let l = self.system.scene.layout;
+        let t = method.t();
+        let mut numbers = self.system.numbers_at(t, method.y());
+        if !ranks::repair(&self.system.scene, &mut numbers) {
+            let what = Failure {
+                what: row,
+                recoverable: false,
+            };
+            let (reason, h) = (Reason::Projection(what), t - t0);
+            return Stop { reason, t, h }.into();
+        }
+        self.out.restored.push((t, row));
+        let y = numbers[l.y()].to_vec();
+        self.choose(t, &y);
+        Finished::Rows(y)
+    }
+
+    /// Chooses other rows where they are better; whether it did.
+    fn choose(&mut self, t: f64, y: &[f64]) -> bool {
+        let l = self.system.scene.layout;
+        self.system.numbers[0] = t;
+        self.system.numbers[l.y()].copy_from_slice(&y[..l.y().len()]);
+        let Some(active) = ranks::better_rows(&self.system.scene, &self.system.numbers) else {
+            return false;
+        };
+        let chosen = (self.out.rows.len(), t, active.clone());
+        if self.system.reselect(active).is_err() {
+            return false;
+        }
+        self.out.selections.push(chosen);
+        true
+    }
+}

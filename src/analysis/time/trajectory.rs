@@ -1,0 +1,82 @@
+//! The result of an analysis over time: states at output times, events, and why it ended.
+
+use crate::numeric::{Stats, Stop};
+use crate::scene::cams::Broken;
+
+/// The reason why an analysis ended before the last output time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    /// the caller asked
+    Interrupted,
+    /// the method could not go on
+    Stop(Stop),
+    /// a sensor asked: its place in [`Scene::sensors`](crate::scene::Scene::sensors)
+    Sensor(usize),
+    /// a contact of curves ends
+    Broken {
+        /// when
+        t: f64,
+        /// which, and what to do
+        broken: Broken,
+    },
+}
+
+/// States at the output times that were reached.
+#[derive(Clone, Debug, Default)]
+pub struct Trajectory {
+    /// output times reached
+    pub t: Vec<f64>,
+    /// all numbers (t | q | v | x | turns) at each
+    pub rows: Vec<Vec<f64>>,
+    /// what it cost
+    pub stats: Stats,
+    /// the methods that worked, in order, with the time at which each took over
+    pub methods: Vec<(f64, String)>,
+    /// number of switches that were located
+    pub events: usize,
+    /// sensors that were triggered: when, and their places in the scene
+    pub triggered: Vec<(f64, usize)>,
+    /// states (all numbers) about positions where rows are nearly dependent; `None` separates what
+    /// does not follow on
+    pub weak: Vec<Option<Vec<f64>>>,
+    /// choices of rows after the first: the row of results from which each holds, when it was made,
+    /// and which rows take part
+    pub selections: Vec<(usize, f64, Vec<bool>)>,
+    /// rows that were left out and no longer followed from the others: when each was restored, and
+    /// its index
+    pub restored: Vec<(f64, usize)>,
+    /// `None`: all output times were reached
+    pub ended: Option<Ended>,
+}
+
+impl Trajectory {
+    /// Adds a state.
+    pub(super) fn push(&mut self, t: f64, row: Vec<f64>) {
+        self.t.push(t);
+        self.rows.push(row);
+    }
+
+    /// Returns whether the last state is earlier than `t`, or there is none.
+    pub(super) fn ends_before(&self, t: f64) -> bool {
+        self.t.last().is_none_or(|&last| last < t)
+    }
+
+    /// Notes that a method works from `t` on, unless it did so far.
+    pub(super) fn begin_method(&mut self, t: f64, name: &str) {
+        if self.methods.last().is_none_or(|m| m.1 != name) {
+            self.methods.push((t, name.to_string()));
+        }
+    }
+
+    /// Adds the cost of a method.
+    pub(super) fn add_cost(&mut self, more: &Stats) {
+        let sum = &mut self.stats;
+        sum.steps += more.steps;
+        sum.rejected += more.rejected;
+        sum.evaluations += more.evaluations;
+        sum.jacobians += more.jacobians;
+        sum.factorizations += more.factorizations;
+        sum.newton_iterations += more.newton_iterations;
+        sum.below_rounding += more.below_rounding;
+    }
+}

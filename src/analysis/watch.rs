@@ -1,0 +1,17 @@
+//! Hooks through which a caller follows a long analysis and can end it.
+
+use crate::numeric::Stats;
+
+/// Hooks called while an analysis goes on, after each step of it.
+pub trait Watch {
+    /// Returns whether to stop now; results so far are kept.
+    fn interrupted(&mut self) -> bool {
+        false
+    }
+    /// Takes note of the time that has been reached, of the last step, and of what it all has cost.
+    fn progress(&mut self, _t: f64, _h: f64, _stats: &Stats) {}
+}
+
+/// The hooks of a caller who does not look.
+pub struct Unwatched;
+impl Watch for Unwatched {}
