@@ -1,0 +1,122 @@
+//! A simulation at rest: one equilibrium, or one at each output time.
+
+use super::Session;
+use super::outcome::counts;
+use super::simulate::Span;
+use crate::analysis::statics::{self, NoEquilibrium, Settings};
+use crate::analysis::system::System;
+use crate::analysis::watch::Watch;
+use crate::expr::program::Program;
+use crate::numeric::Stats;
+use crate::results::{self, Event, Kind, Status};
+use std::time::Instant;
+
+/// The equilibria that were found, one after the other.
+#[derive(Default)]
+struct Equilibria {
+    /// all numbers at each
+    rows: Vec<Vec<f64>>,
+    stats: Stats,
+    /// the method, and the stability of the last one
+    method: String,
+    /// when none was found, and why
+    failed: Option<(f64, NoEquilibrium)>,
+}
+
+impl Session {
+    /// Finds an equilibrium now, or one at each output time up to an end that is still to come.
+    pub(super) fn at_rest(
+        &mut self,
+        system: &mut System,
+        span: Span,
+        program: &Program,
+        watch: &mut dyn Watch,
+    ) -> Status {
+        let (kind, times) = if span.end > span.start {
+            (Kind::QuasiStatic, span.output.times(span.start, span.end))
+        } else {
+            (Kind::Static, vec![span.start])
+        };
+        let first = system.numbers.clone();
+        // the equilibria
+        let clock = Instant::now();
+        let found = self.equilibria(system, &times, watch);
+        let seconds = clock.elapsed().as_secs_f64();
+        // their results
+        self.rows(kind, program, &found.rows);
+        let (status, stop_reason, worst) = ending(found.failed);
+        // what the next simulation begins with
+        let last = found.rows.last().cloned().unwrap_or(first);
+        let end = last[0];
+        self.keep(system, last);
+        if let Some(carried) = &mut self.carried {
+            carried.at_rest = true;
+        }
+        // the record
+        self.close(results::Simulation {
+            kind,
+            start: span.start,
+            end,
+            outputs: found.rows.len(),
+            method: found.method,
+            status,
+            stop_reason,
+            solve_seconds: seconds,
+            counts: counts(&found.stats),
+            worst,
+        })
+    }
+
+    /// Settles the system at each time, as long as there is an equilibrium.
+    fn equilibria(
+        &mut self,
+        system: &mut System,
+        times: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Equilibria {
+        let settings = Settings::of(&self.model.equilibrium);
+        let mut all = Equilibria {
+            method: "EQUILIBRIUM".into(),
+            ..Equilibria::default()
+        };
+        for &t in times {
+            let y = system.numbers[system.scene.layout.y()].to_vec();
+            let numbers = system.row(t, &y);
+            system.numbers.copy_from_slice(&numbers);
+            let found = match statics::settle(system, &settings, watch, &mut all.stats) {
+                Ok(found) => found,
+                Err(why) => {
+                    all.failed = Some((t, why));
+                    break;
+                }
+            };
+            self.run.log.push(Event::Static {
+                time: t,
+                iterations: found.iterations as u32,
+                imbalance: found.imbalance,
+            });
+            let stability = found.stability.words();
+            if found.stability.unstable > 0 {
+                self.warn(&format!("the equilibrium at time {t} is {stability}"));
+            }
+            all.method = format!("EQUILIBRIUM, {stability}");
+            all.rows.push(system.numbers.clone());
+        }
+        all
+    }
+}
+
+/// Returns the status, a sentence, and the names of what was worst.
+fn ending(failed: Option<(f64, NoEquilibrium)>) -> (Status, String, Vec<String>) {
+    match failed {
+        None => (Status::Completed, String::new(), Vec::new()),
+        Some((_, NoEquilibrium::Interrupted)) => {
+            let reason = "interrupted; the results so far are kept".to_string();
+            (Status::Interrupted, reason, Vec::new())
+        }
+        Some((t, NoEquilibrium::Unbalanced(sentence, name))) => {
+            let reason = format!("at time {t} {sentence}");
+            (Status::NoEquilibrium, reason, vec![name])
+        }
+    }
+}

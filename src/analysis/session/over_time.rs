@@ -1,0 +1,164 @@
+//! A simulation over time: from its settings to its results and its place in the record.
+
+use super::outcome::counts;
+use super::simulate::Span;
+use super::{Analysis, Session};
+use crate::analysis::system::System;
+use crate::analysis::time::options::{self, Options};
+use crate::analysis::time::trajectory::{Ended, Trajectory};
+use crate::analysis::time::{dynamics, kinematics};
+use crate::analysis::watch::Watch;
+use crate::expr::program::Program;
+use crate::numeric;
+use crate::results::{self, Event, Kind, Status};
+use std::time::Instant;
+
+impl Session {
+    /// Runs a kinematic or dynamic simulation and adds its rows to the run.
+    pub(super) fn over_time(
+        &mut self,
+        system: &mut System,
+        analysis: Analysis,
+        span: Span,
+        program: &Program,
+        watch: &mut dyn Watch,
+    ) -> Status {
+        let kind = if analysis == Analysis::Kinematic {
+            Kind::Kinematic
+        } else {
+            Kind::Dynamic
+        };
+        // the integration
+        let settings = self.integration_of(system, kind, span);
+        self.log_begin(kind, &settings);
+        let first = system.numbers.clone();
+        let chosen = system.scene.active.clone();
+        let (trajectory, seconds) = self.timed(system, kind, span, &settings, watch);
+        // its results
+        self.selected_rows(kind, program, system, &trajectory);
+        self.run.log.push(Event::End);
+        self.rank_changes(system, chosen, &trajectory);
+        self.note_sensors(system, &trajectory);
+        let (status, stop_reason, worst) = self.outcome(system, &trajectory);
+        self.drift(system, &first, &trajectory.rows);
+        // what the next simulation begins with
+        let last = trajectory.rows.last().cloned().unwrap_or(first);
+        self.keep(system, last);
+        // the record
+        self.warn_of_rounding(&trajectory, settings.error);
+        self.run.record.error = Some(settings.error);
+        self.close(results::Simulation {
+            kind,
+            start: span.start,
+            end: trajectory.t.last().copied().unwrap_or(span.start),
+            outputs: trajectory.rows.len(),
+            method: methods(&trajectory),
+            status,
+            stop_reason,
+            solve_seconds: seconds,
+            counts: counts(&trajectory.stats),
+            worst,
+        })
+    }
+
+    /// Chooses the method, and prepares the system for it.
+    fn integration_of(&mut self, system: &mut System, kind: Kind, span: Span) -> Options {
+        let mut settings = self.integration();
+        if settings.method == "AUTO" && kind == Kind::Dynamic {
+            settings.first = options::first_method(system, span.end - span.start).into();
+        }
+        self.prepare_implicit(system, &mut settings);
+        settings
+    }
+
+    fn log_begin(&mut self, kind: Kind, settings: &Options) {
+        let asked = &self.model.integrator;
+        let integrator = asked.method.clone();
+        let begin = Event::Begin {
+            kind,
+            integrator: integrator.unwrap_or_else(|| settings.method.clone()),
+            formulation: asked.formulation.clone().unwrap_or_default(),
+            error: settings.error,
+        };
+        self.run.log.push(begin);
+    }
+
+    /// Integrates as often as the options say; the last trajectory, and the median of the seconds.
+    fn timed(
+        &self,
+        system: &mut System,
+        kind: Kind,
+        span: Span,
+        settings: &Options,
+        watch: &mut dyn Watch,
+    ) -> (Trajectory, f64) {
+        let outputs = span.output.times(span.start, span.end);
+        let first = system.numbers.clone();
+        let chosen = system.scene.active.clone();
+        let mut seconds = Vec::new();
+        let mut trajectory = Trajectory::default();
+        for _ in 0..self.options.repeat.max(1) {
+            if !trajectory.selections.is_empty() && system.reselect(chosen.clone()).is_err() {
+                break;
+            }
+            system.numbers.copy_from_slice(&first);
+            let clock = Instant::now();
+            trajectory = if kind == Kind::Kinematic && !is_integrated(system) {
+                kinematics::trace(system, &outputs, settings.h_max, watch)
+            } else {
+                dynamics::integrate(system, &outputs, settings, watch)
+            };
+            seconds.push(clock.elapsed().as_secs_f64());
+        }
+        seconds.sort_by(f64::total_cmp);
+        let median = seconds[seconds.len() / 2];
+        (trajectory, median)
+    }
+
+    /// Notes in the log which sensors were triggered, and whether one ended the run.
+    fn note_sensors(&mut self, system: &System, trajectory: &Trajectory) {
+        for &(t, k) in &trajectory.triggered {
+            let sensor = &system.scene.sensors[k];
+            let message = format!("SENSOR/{} is triggered at time {t}", sensor.id);
+            self.run.log.push(Event::Info(message));
+        }
+        if let Some(Ended::Sensor(k)) = trajectory.ended {
+            self.halted |= system.scene.sensors[k].halt;
+        }
+    }
+
+    /// Warns where a smaller error was asked for than rounding permits.
+    fn warn_of_rounding(&mut self, trajectory: &Trajectory, error: f64) {
+        let (below, steps) = (trajectory.stats.below_rounding, trajectory.stats.steps);
+        if below > 0 {
+            self.warn(&format!(
+                "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} steps, which are as exact as rounding permits"
+            ));
+        }
+    }
+}
+
+/// Returns whether a mechanism without freedom has states all the same: these go on by integration,
+/// which keeps positions on the rows as well.
+fn is_integrated(system: &System) -> bool {
+    let l = system.scene.layout;
+    l.n_x > 0 || l.n_q > 0 && system.external.remembers() || !system.samples.is_empty()
+}
+
+/// Writes the methods that worked: "DOP853, then RADAU5 from 0.3, where …".
+fn methods(trajectory: &Trajectory) -> String {
+    let mut text = String::new();
+    for (k, (t, name)) in trajectory.methods.iter().enumerate() {
+        if k > 0 {
+            let why = if numeric::is_implicit(&trajectory.methods[k - 1].1) {
+                "the motion stays where a function changes its branch"
+            } else {
+                "steps were limited by stiffness"
+            };
+            text += &format!(", then {name} from {t}, where {why}");
+        } else {
+            text += name;
+        }
+    }
+    text
+}

@@ -1,0 +1,123 @@
+//! INTEGRATOR, overruled by the options of a session.
+
+use super::Session;
+use crate::analysis::system::System;
+use crate::analysis::system::implicit::Formulation;
+use crate::analysis::time::options::{self, Options};
+use crate::diagnostic::Diagnostic;
+use crate::numeric;
+
+/// Permitted local error when nobody says.
+const DEFAULT_ERROR: f64 = 1e-6;
+
+impl Session {
+    /// Checks that the method that is asked for exists.
+    ///
+    /// # Errors
+    /// The methods that there are.
+    pub(super) fn check_method(&self) -> Result<(), Vec<Diagnostic>> {
+        let method = self.integration().method;
+        let known = numeric::METHODS.iter().map(|m| m.name);
+        if method == "AUTO" || known.clone().any(|name| name == method) {
+            return Ok(());
+        }
+        let names: Vec<&str> = known.chain(["AUTO"]).collect();
+        Err(vec![
+            Diagnostic::error("method", format!("there is no method `{method}`"))
+                .help(format!("the methods are {}", names.join(", "))),
+        ])
+    }
+
+    /// Checks that INTEGRATOR and the options have numbers that an integration can keep.
+    ///
+    /// # Errors
+    /// Each number that it cannot.
+    pub(super) fn check_settings(&self) -> Result<(), Vec<Diagnostic>> {
+        let i = &self.model.integrator;
+        let positive = |x: f64| x > 0.0 && !x.is_nan();
+        let whole = |k: Option<u32>| k.map(f64::from);
+        let given = [
+            (
+                "--error",
+                "the permitted error",
+                self.options
+                    .error
+                    .filter(|e| !(positive(*e) && e.is_finite())),
+            ),
+            (
+                "INTEGRATOR",
+                "ERROR",
+                i.error.filter(|e| !(positive(*e) && e.is_finite())),
+            ),
+            ("INTEGRATOR", "HMAX", i.hmax.filter(|h| !positive(*h))),
+            ("INTEGRATOR", "HINIT", i.hinit.filter(|h| !positive(*h))),
+            (
+                "INTEGRATOR",
+                "KMAX",
+                whole(i.kmax).filter(|k| !positive(*k)),
+            ),
+            (
+                "INTEGRATOR",
+                "MAXIT",
+                whole(i.maxit).filter(|k| !positive(*k)),
+            ),
+            (
+                "INTEGRATOR",
+                "HMIN",
+                i.hmin.filter(|h| h.is_nan() || *h < 0.0),
+            ),
+        ];
+        let wrong = given.into_iter().filter_map(|(element, name, value)| {
+            let what = format!("{name} must be positive, not {}", value?);
+            Some(Diagnostic::error("unfit_value", what).element(element))
+        });
+        let mut wrong: Vec<Diagnostic> = wrong.collect();
+        if let (Some(least), Some(most)) = (i.hmin, i.hmax)
+            && least > most
+        {
+            let what = format!("HMIN = {least} is larger than HMAX = {most}");
+            wrong.push(Diagnostic::error("unfit_value", what).element("INTEGRATOR"));
+        }
+        if wrong.is_empty() { Ok(()) } else { Err(wrong) }
+    }
+
+    /// Returns the options of an integration: INTEGRATOR, overruled by those of the session.
+    pub(super) fn integration(&self) -> Options {
+        let i = &self.model.integrator;
+        let asked = self
+            .options
+            .method
+            .as_deref()
+            .or(i.method.as_deref())
+            .unwrap_or("AUTO");
+        Options {
+            error: self.options.error.or(i.error).unwrap_or(DEFAULT_ERROR),
+            method: options::method_named(asked),
+            h_initial: i.hinit,
+            h_max: i.hmax.unwrap_or(f64::INFINITY),
+            h_min: i.hmin.unwrap_or(0.0),
+            max_order: i.kmax.map(|k| k as usize),
+            max_newton: i.maxit.map(|k| k as usize),
+            ..Options::default()
+        }
+    }
+
+    /// Records the equations as methods for implicit equations want them, if one is asked for.
+    pub(super) fn prepare_implicit(&mut self, system: &mut System, settings: &mut Options) {
+        if !numeric::is_implicit(&settings.method) {
+            return;
+        }
+        let asked = self.model.integrator.formulation.as_deref();
+        // HHT holds positions alone; BDF and Newmark's rule are better off with velocities too
+        let formulation = match (asked, settings.method.as_str()) {
+            (Some("I3"), _) | (None, "HHT") => Formulation::Index3,
+            _ => Formulation::Stabilized,
+        };
+        if let Err(why) = system.make_implicit(formulation) {
+            for d in why {
+                self.warn(&format!("{}: RADAU5 takes its place", d.message));
+            }
+            settings.method = "RADAU5".into();
+        }
+    }
+}

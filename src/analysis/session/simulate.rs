@@ -1,0 +1,206 @@
+//! One simulation: what it is, whether it can be run, and what is told before and after it.
+
+use super::start::Kept;
+use super::{Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
+use crate::analysis::start::assemble::Assembly;
+use crate::analysis::system::System;
+use crate::analysis::time::drives;
+use crate::analysis::time::output::{self, Output};
+use crate::analysis::verify::massless::massless;
+use crate::analysis::watch::Watch;
+use crate::diagnostic::Diagnostic;
+use crate::expr::program::Program;
+use crate::results::{Event, Kind, Status};
+use crate::scene::Scene;
+
+/// Velocities times links of the largest scene that is searched for free directions without mass
+/// before each run: a motion of all links takes about a microsecond per link.
+const MAX_MASSLESS_SEARCH: usize = 200_000;
+
+/// The time that a simulation covers, and its output times.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub start: f64,
+    pub end: f64,
+    pub output: Output,
+}
+
+impl Session {
+    /// Runs one simulation up to `end` with output steps as they are asked for.
+    ///
+    /// # Errors
+    /// What is wrong in the model. A numerical failure is no error: see the record.
+    pub fn simulate_with(
+        &mut self,
+        analysis: Analysis,
+        end: f64,
+        output: Output,
+        watch: &mut dyn Watch,
+    ) -> Result<Status, Vec<Diagnostic>> {
+        // what is asked for
+        self.check_method()?;
+        self.check_settings()?;
+        check_output(output.count(self.time(), end))?;
+        // the system in its state, and which analysis moves it
+        let (mut system, assembly, analysis) = self.begin(analysis)?;
+        self.check_masses(&system, analysis)?;
+        self.check_drives(&system, analysis, end)?;
+        // what is told before it moves
+        self.first_facts(&system, &assembly);
+        self.warn_of_start(&system, &assembly);
+        let program = self.columns_program(&system)?;
+        if self.carried.is_none() || analysis == Analysis::InitialConditions {
+            self.show_start(&system, &assembly, &program);
+        }
+        // the analysis
+        let (active, start) = (system.scene.active.clone(), self.time());
+        let span = Span { start, end, output };
+        let status = match analysis {
+            Analysis::InitialConditions => {
+                let numbers = system.numbers.clone();
+                self.keep(&system, numbers);
+                Status::Completed
+            }
+            Analysis::Static => self.at_rest(&mut system, span, &program, watch),
+            _ => self.over_time(&mut system, analysis, span, &program, watch),
+        };
+        if system.scene.active != active {
+            // reactions are others
+            self.columns_program = None;
+        }
+        // what the next simulation may go on with
+        if self.hooks.is_empty() && analysis == Analysis::Dynamic && status == Status::Completed {
+            self.kept = Some(Box::new(Kept::new(&self.model, DYNAMIC, system, assembly)));
+        }
+        Ok(status)
+    }
+
+    /// Brings the model into its state; which analysis moves it, as its freedom says.
+    fn begin(&mut self, asked: Analysis) -> Result<(System, Assembly, Analysis), Vec<Diagnostic>> {
+        let mode = match asked {
+            Analysis::Kinematic => KINEMATIC,
+            Analysis::InitialConditions => INITIAL_CONDITIONS,
+            Analysis::Static => STATIC,
+            Analysis::Dynamic | Analysis::Transient => DYNAMIC,
+        };
+        let (mut system, assembly) = self.prepare(mode, &[])?;
+        let analysis = match asked {
+            Analysis::Transient if assembly.freedom > 0 => Analysis::Dynamic,
+            Analysis::Transient => Analysis::Kinematic,
+            Analysis::Dynamic if assembly.freedom == 0 => {
+                self.warn("the mechanism has no freedom: it is moved by its motions alone");
+                Analysis::Kinematic
+            }
+            Analysis::Kinematic if assembly.freedom > 0 => {
+                return Err(vec![has_freedom(assembly.freedom)]);
+            }
+            other => other,
+        };
+        if analysis == Analysis::Kinematic && mode != KINEMATIC {
+            (system, _) = self.prepare(KINEMATIC, &[])?;
+        }
+        Ok((system, assembly, analysis))
+    }
+
+    /// Checks that nothing moves without mass when dynamics begins.
+    fn check_masses(&self, system: &System, analysis: Analysis) -> Result<(), Vec<Diagnostic>> {
+        let begins = analysis == Analysis::Dynamic && self.carried.is_none();
+        if !begins || !is_searched_for_masses(&system.scene) {
+            return Ok(());
+        }
+        let (l, numbers) = (system.scene.layout, &system.numbers);
+        let (q, x) = (&numbers[l.q()], &numbers[l.x()]);
+        let massless = massless(&system.scene, &self.model, numbers[0], q, x);
+        if massless.is_empty() {
+            Ok(())
+        } else {
+            Err(massless)
+        }
+    }
+
+    /// Checks that motions do not jump, or notes where they do when somebody insists.
+    fn check_drives(
+        &mut self,
+        system: &System,
+        analysis: Analysis,
+        end: f64,
+    ) -> Result<(), Vec<Diagnostic>> {
+        if !matches!(analysis, Analysis::Kinematic | Analysis::Dynamic) {
+            return Ok(());
+        }
+        let breaks = drives::breaks(&system.scene, self.time(), end)?;
+        let refused = drives::refused(&breaks);
+        if !refused.is_empty() && !self.options.piecewise {
+            return Err(refused);
+        }
+        for warning in drives::warnings(&breaks, self.options.piecewise) {
+            self.warn(&warning);
+        }
+        let jumps = breaks.into_iter().filter(|b| b.order < 2);
+        self.run.record.piecewise.extend(jumps.map(|b| b.into()));
+        Ok(())
+    }
+
+    /// Warns of what assembly and the scene found.
+    fn warn_of_start(&mut self, system: &System, assembly: &Assembly) {
+        for warning in &assembly.warnings {
+            self.warn(warning);
+        }
+        for found in &system.scene.warnings {
+            let element = found.element.as_deref().unwrap_or("the model");
+            self.warn(&format!("{element}: {}", found.message));
+        }
+    }
+
+    /// Puts out the state in which a simulation begins.
+    fn show_start(&mut self, system: &System, assembly: &Assembly, program: &Program) {
+        self.run.log.push(Event::InitialConditions {
+            time: self.time(),
+            iterations: assembly.iterations as u32,
+        });
+        let first = std::slice::from_ref(&system.numbers);
+        self.rows(Kind::InitialConditions, program, first);
+    }
+
+    /// Returns the program of the columns; warns of columns that cannot be computed.
+    ///
+    /// # Errors
+    /// The columns among those that the user asked for.
+    pub(super) fn columns_program(&mut self, system: &System) -> Result<Program, Vec<Diagnostic>> {
+        if let Some(program) = &self.columns_program {
+            return Ok(program.clone());
+        }
+        let (program, complaints) = self.columns.program(&system.scene);
+        for complaint in complaints {
+            let mut wanted = self.options.columns.iter();
+            if wanted.any(|c| complaint.starts_with(c.as_str())) {
+                return Err(vec![Diagnostic::error("unavailable", complaint)]);
+            }
+            self.warn(&complaint);
+        }
+        self.columns_program = Some(program.clone());
+        Ok(program)
+    }
+}
+
+fn check_output(asked: usize) -> Result<(), Vec<Diagnostic>> {
+    if asked <= output::MOST {
+        return Ok(());
+    }
+    Err(vec![
+        Diagnostic::error("unfit_value", format!("{asked} output steps are too many"))
+            .help(format!("a simulation has {} at most", output::MOST)),
+    ])
+}
+
+fn has_freedom(freedom: usize) -> Diagnostic {
+    let what =
+        format!("a kinematic simulation needs a mechanism without freedom; this one has {freedom}");
+    Diagnostic::error("freedom", what)
+        .help("drive the remaining freedoms by MOTION, or simulate dynamically")
+}
+
+/// Returns whether the free directions of a scene are few enough to look for those without mass.
+fn is_searched_for_masses(scene: &Scene) -> bool {
+    scene.layout.n_v * scene.links.len() <= MAX_MASSLESS_SEARCH
+}
