@@ -86,6 +86,99 @@ fn shown(run: &mut Run, kind: &str, entity: String, id: u32, components: Vec<Com
     });
 }
 
+/// A component of a REQUEST.
+struct RequestComponent {
+    /// 1 to 8
+    place: usize,
+    name: String,
+    /// its expression; empty when a closure computes it
+    text: String,
+}
+
+/// Returns the components of a REQUEST as expressions, or those that a closure computes.
+fn components(
+    id: u32,
+    kind: &RequestKind,
+    computed: &dyn Fn(u32, &Formula) -> bool,
+) -> Vec<RequestComponent> {
+    match kind {
+        RequestKind::Displacement { i, j, rm } => {
+            let mut all = measured(1, "MAG", "DM", ["DX", "DY", "DZ"], (*i, *j, *rm));
+            all.extend(
+                (["PSI", "THETA", "PHI"].iter().enumerate()).map(|(k, name)| RequestComponent {
+                    place: 6 + k,
+                    name: name.to_string(),
+                    text: format!("{name}({i},{})", j.unwrap_or(0)),
+                }),
+            );
+            all
+        }
+        RequestKind::Velocity { i, j, rm } => {
+            let translation = ("VM", ["VX", "VY", "VZ"]);
+            both(translation, ("WM", ["WX", "WY", "WZ"]), (*i, *j, *rm))
+        }
+        RequestKind::Acceleration { i, j, rm } => {
+            let translation = ("ACCM", ["ACCX", "ACCY", "ACCZ"]);
+            let rotation = ("WDTM", ["WDTX", "WDTY", "WDTZ"]);
+            both(translation, rotation, (*i, *j, *rm))
+        }
+        RequestKind::Force { i, j, rm } => {
+            let translation = ("FM", ["FX", "FY", "FZ"]);
+            both(translation, ("TM", ["TX", "TY", "TZ"]), (*i, *j, *rm))
+        }
+        RequestKind::Functions(all) => (all.iter().enumerate())
+            .filter_map(|(k, f)| match f {
+                Some(Formula::Expression { text, .. }) => Some(function(k + 1, text)),
+                _ => None,
+            })
+            .collect(),
+        RequestKind::User(user) if computed(id, user) => (1..=8).map(|k| function(k, "")).collect(),
+        RequestKind::User(_) => Vec::new(),
+    }
+}
+
+fn function(place: usize, text: &str) -> RequestComponent {
+    RequestComponent {
+        place,
+        name: format!("F{place}"),
+        text: text.into(),
+    }
+}
+
+/// Returns a magnitude and three components that measures between markers I and J yield, those of RM
+/// resolving the components.
+fn measured(
+    first: usize,
+    magnitude: &str,
+    of_magnitude: &str,
+    measures: [&str; 3],
+    (i, j, rm): (u32, Option<u32>, Option<u32>),
+) -> Vec<RequestComponent> {
+    let (j, rm) = (j.unwrap_or(0), rm.unwrap_or(0));
+    let mut all = vec![RequestComponent {
+        place: first,
+        name: magnitude.into(),
+        text: format!("{of_magnitude}({i},{j})"),
+    }];
+    all.extend(measures.iter().zip(first + 1..).map(|(name, place)| {
+        let text = format!("{name}({i},{j},{rm})");
+        let name = name.to_string();
+        RequestComponent { place, name, text }
+    }));
+    all
+}
+
+/// Returns the eight components of a quantity that has a part of translation and one of rotation.
+fn both(
+    translation: (&str, [&str; 3]),
+    rotation: (&str, [&str; 3]),
+    markers: (u32, Option<u32>, Option<u32>),
+) -> Vec<RequestComponent> {
+    let mut all = measured(1, "MAG", translation.0, translation.1, markers);
+    all.extend(measured(5, "AMAG", rotation.0, rotation.1, markers));
+    all
+}
+
 impl Columns {
     /// Declares all columns of a run: those of the parts, joints and forces when `full`, requests, and `user` expressions.
     /// `computed` tells whether there is a closure for a REQUEST of this number with this USER.
@@ -263,7 +356,7 @@ impl Columns {
         }
     }
 
-    /// Each request as its components' expressions.
+    /// Declares the columns of all requests, which are those of the table.
     fn requests(
         &mut self,
         model: &Model,
@@ -277,93 +370,20 @@ impl Columns {
                 .results_name
                 .clone()
                 .unwrap_or_else(|| name_of(&request.place, "REQUEST", id));
-            let two =
-                |name: &str, i: u32, j: Option<u32>| format!("{name}({i},{})", j.unwrap_or(0));
-            let three = |name: &str, i: u32, j: Option<u32>, rm: Option<u32>| {
-                format!("{name}({i},{},{})", j.unwrap_or(0), rm.unwrap_or(0))
-            };
-            let set = |m: &str, c: [&str; 3], tm: &str, tc: [&str; 3], i, j, rm| {
-                let mut all = vec![(1, "MAG".to_string(), two(m, i, j))];
-                all.extend(
-                    c.iter()
-                        .enumerate()
-                        .map(|(k, n)| (k + 2, n.to_string(), three(n, i, j, rm))),
-                );
-                all.push((5, "AMAG".to_string(), two(tm, i, j)));
-                all.extend(
-                    tc.iter()
-                        .enumerate()
-                        .map(|(k, n)| (k + 6, n.to_string(), three(n, i, j, rm))),
-                );
-                all
-            };
-            let components: Vec<(usize, String, String)> = match &request.kind {
-                RequestKind::Displacement { i, j, rm } => {
-                    let mut all = vec![(1, "MAG".to_string(), two("DM", *i, *j))];
-                    for (k, n) in ["DX", "DY", "DZ"].iter().enumerate() {
-                        all.push((k + 2, n.to_string(), three(n, *i, *j, *rm)));
-                    }
-                    for (k, n) in ["PSI", "THETA", "PHI"].iter().enumerate() {
-                        all.push((k + 6, n.to_string(), two(n, *i, *j)));
-                    }
-                    all
-                }
-                RequestKind::Velocity { i, j, rm } => set(
-                    "VM",
-                    ["VX", "VY", "VZ"],
-                    "WM",
-                    ["WX", "WY", "WZ"],
-                    *i,
-                    *j,
-                    *rm,
-                ),
-                RequestKind::Acceleration { i, j, rm } => set(
-                    "ACCM",
-                    ["ACCX", "ACCY", "ACCZ"],
-                    "WDTM",
-                    ["WDTX", "WDTY", "WDTZ"],
-                    *i,
-                    *j,
-                    *rm,
-                ),
-                RequestKind::Force { i, j, rm } => set(
-                    "FM",
-                    ["FX", "FY", "FZ"],
-                    "TM",
-                    ["TX", "TY", "TZ"],
-                    *i,
-                    *j,
-                    *rm,
-                ),
-                RequestKind::Functions(all) => all
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(k, f)| match f {
-                        Some(Formula::Expression { text, .. }) => {
-                            Some((k + 1, format!("F{}", k + 1), text.clone()))
-                        }
-                        _ => None,
-                    })
-                    .collect(),
-                RequestKind::User(user) if computed(id, user) => (1..=8)
-                    .map(|k| (k, format!("F{k}"), String::new()))
-                    .collect(),
-                RequestKind::User(_) => Vec::new(),
-            };
             let by_closure = matches!(request.kind, RequestKind::User(_));
             let mut columns = Vec::new();
-            for (k, name, text) in components {
-                let given = request.cnames.get(k - 1);
+            for component in components(id, &request.kind, computed) {
+                let given = request.cnames.get(component.place - 1);
                 if given.is_some_and(String::is_empty) {
                     continue;
                 }
-                let name = given.cloned().unwrap_or(name);
+                let name = given.cloned().unwrap_or(component.name);
                 let title = format!("{entity}.{name}");
                 let column = if by_closure {
-                    let component = k - 1;
+                    let component = component.place - 1;
                     self.push(run, title, String::new(), What::Request { id, component })
                 } else {
-                    self.text(run, title, &text, &units)
+                    self.text(run, title, &component.text, &units)
                 };
                 table.push(column);
                 columns.push(Component { name, column });

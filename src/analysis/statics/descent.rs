@@ -1,4 +1,4 @@
-//! The fall: steps that grow until they are Newton's, and what ends it.
+//! The descent: steps that grow until they are Newton's, and what ends it.
 
 use super::metric::total_mass;
 use super::point::Point;
@@ -12,142 +12,268 @@ use nalgebra::{DMatrix, DVector};
 const ROUNDING: f64 = 1e-13;
 /// Part of the loads below which an iteration that no longer improves has arrived.
 const STAGNANT: f64 = 1e-8;
-/// How much longer steps may become while something soft between what is stiff still goes: then the matrix keeps a digit.
-const SOFT: f64 = 1e3;
+/// Factor by which steps may become longer while something soft between what is stiff still goes:
+/// then the matrix keeps a digit.
+const SOFT_FACTOR: f64 = 1e3;
 /// Samples of what rounding could do.
-const SAMPLES: usize = 4;
-/// Steps of the fall at most, whatever MAXIT says of Newton.
+const NOISE_SAMPLES: usize = 4;
+/// Steps of the descent at most, whatever MAXIT says of Newton.
 const MAX_STEPS: usize = 3000;
-/// Steps within the tolerances of EQUILIBRIUM that may still make it better: Newton's take a few, what rattles between kinks or rounding takes for ever.
-const POLISH: usize = 25;
+/// Steps within the tolerances of EQUILIBRIUM that may still make it better: Newton's take a few,
+/// what rattles between kinks or rounding takes for ever.
+const MAX_POLISHING: usize = 25;
 /// Of these, steps in a row that need not make it half as bad, where the tolerances were asked for.
-const IDLE: usize = 5;
-/// Steps at the limit of their length without any change of the loads, after which it falls forever.
-const FALLING: usize = 300;
+const MAX_IDLE: usize = 5;
+/// Steps at the limit of their length without any change of the loads, after which the mechanism
+/// falls for ever.
+const MAX_FALLING: usize = 300;
+
+/// The course of a descent from step to step.
+struct Course {
+    /// largest loads and states so far: what is left is measured against them
+    scales: [f64; 2],
+    /// length of the next step; `None`: the first
+    length: Option<f64>,
+    /// steps in a row at the limit of their length that changed no load
+    falling: usize,
+    /// steps in a row within the tolerances; of these, steps that did not halve what was left
+    polishing: usize,
+    idle: usize,
+    /// the least that was left within the tolerances
+    best: f64,
+    /// size of the last step before it was shortened, where it was as long as it may be
+    wanted: f64,
+}
+
+impl Course {
+    fn new() -> Self {
+        Self {
+            scales: [0.0; 2],
+            length: None,
+            falling: 0,
+            polishing: 0,
+            idle: 0,
+            best: f64::INFINITY,
+            wanted: f64::INFINITY,
+        }
+    }
+
+    /// Counts a configuration that is as good as was asked for, or not; whether it is time to end.
+    fn is_polished(&mut self, enough: bool, left: f64, asked: bool) -> bool {
+        self.polishing = if enough { self.polishing + 1 } else { 0 };
+        self.idle = if enough && left > 0.5 * self.best {
+            self.idle + 1
+        } else {
+            0
+        };
+        if enough && self.idle == 0 {
+            self.best = left;
+        }
+        self.polishing > MAX_POLISHING || asked && self.idle > MAX_IDLE
+    }
+
+    /// Takes a step into account; whether what is stiff has arrived while what is soft still goes, so
+    /// that neither gets better.
+    fn advance(&mut self, p: &Point, step: &Taken, small: bool, longest: f64) -> bool {
+        let (next, full) = (&step.point, step.length >= longest);
+        let same = (next.left[0] - p.left[0]).abs() <= 1e-6 * p.left[0];
+        self.falling = if step.shortened && same {
+            self.falling + 1
+        } else {
+            0
+        };
+        let arrived =
+            small && full && next.left[0] > 0.5 * p.left[0] && step.wanted > 0.5 * self.wanted;
+        self.wanted = if full { step.wanted } else { f64::INFINITY };
+        let growth = if step.shortened {
+            1.0
+        } else if step.quality < 0.1 {
+            10.0
+        } else {
+            2.0
+        };
+        self.length = Some(step.length * growth);
+        arrived
+    }
+}
+
+/// A step that was taken.
+struct Taken {
+    point: Point,
+    /// how far the loads at its end are from those that were foretold
+    quality: f64,
+    /// whether it was made shorter because of TLIMIT or ALIMIT
+    shortened: bool,
+    length: f64,
+    /// its size before that, in units of the limits
+    wanted: f64,
+}
+
+/// The result of trying steps, each shorter than the one before.
+enum Search {
+    Found(Taken),
+    /// Newton's steps no longer improve: what is left is rounding
+    Arrived,
+    Nothing,
+}
+
+/// The size of what is left, against what rounding does.
+struct Left {
+    /// what rounding does in each coordinate, and its size in the metric
+    noise: DVector<f64>,
+    floor: f64,
+    /// hardly more than that is left
+    small: bool,
+}
 
 impl Settler<'_> {
-    /// Falls from `p` until nothing pulls any more; the derivatives at the end.
-    pub(super) fn fall(
+    /// Descends from `p` until nothing pulls any more; the derivatives at the end.
+    pub(super) fn descend(
         &mut self,
         p: &mut Point,
         iterations: &mut usize,
         watch: &mut dyn Watch,
     ) -> (Result<(), NoEquilibrium>, DMatrix<f64>) {
-        let n = self.n_v();
-        let mut scales = [0.0_f64; 2];
-        let mut h: Option<f64> = None;
-        let (mut falling, mut polish) = (0, 0);
-        // the least that was left within the tolerances, and for how many steps it has not been halved
-        let (mut best, mut idle) = (f64::INFINITY, 0);
-        // how large the last step wanted to be
-        let mut before = f64::INFINITY;
         let mut jacobian = self.jacobian(p);
+        let outcome = self.steps(p, &mut jacobian, iterations, watch);
+        (outcome, jacobian)
+    }
+
+    fn steps(
+        &mut self,
+        p: &mut Point,
+        jacobian: &mut DMatrix<f64>,
+        iterations: &mut usize,
+        watch: &mut dyn Watch,
+    ) -> Result<(), NoEquilibrium> {
         let budget = MAX_STEPS.max(self.settings.iterations) + *iterations;
+        let mut course = Course::new();
         loop {
-            scales[0] = scales[0].max(self.load_scale(p)).max(p.left[0]);
-            scales[1] = scales[1].max(p.left[1]).max(self.state_scale(p));
+            // what is left
+            let [loads, states] = &mut course.scales;
+            *loads = loads.max(self.load_scale(p)).max(p.left[0]);
+            *states = states.max(p.left[1]).max(self.state_scale(p));
+            let scales = course.scales;
             if p.left[0] <= ROUNDING * scales[0] && p.left[1] <= ROUNDING * scales[1] {
-                return (Ok(()), jacobian);
+                return Ok(());
             }
-            let noise = self.noise(&jacobian);
-            let floor = p.metric.size(&noise);
-            let small =
-                p.left[0] <= (STAGNANT * scales[0]).max(floor) && p.left[1] <= STAGNANT * scales[1];
+            let left = self.left(p, jacobian, scales);
             if watch.interrupted() {
-                return (Err(NoEquilibrium::Interrupted), jacobian);
+                return Err(NoEquilibrium::Interrupted);
             }
             // as good as was asked for: go on only as long as that soon ends
-            let enough = self.converged(p) && (small || self.settings.asked);
-            polish = if enough { polish + 1 } else { 0 };
-            idle = if enough && p.left[0] > 0.5 * best {
-                idle + 1
-            } else {
-                0
-            };
-            if enough && idle == 0 {
-                best = p.left[0];
+            let asked = self.settings.asked;
+            let enough = self.converged(p) && (left.small || asked);
+            if course.is_polished(enough, p.left[0], asked) {
+                return Ok(());
             }
-            if polish > POLISH || self.settings.asked && idle > IDLE {
-                return (Ok(()), jacobian);
+            if *iterations >= budget || course.falling > MAX_FALLING {
+                return self.unless_rounding(p, jacobian, &left);
             }
-            if *iterations >= budget || falling > FALLING {
-                if self.is_rounding(p, &jacobian, &noise) {
-                    return (Ok(()), jacobian);
-                }
-                return (Err(self.unbalanced(p)), jacobian);
-            }
-            let mut longest = self.longest(p, &jacobian);
-            if small {
-                if self.is_rounding(p, &jacobian, &noise) {
-                    // stiff contacts make more of the last digits than any step could take away
-                    if p.left[1] <= ROUNDING * scales[1] {
-                        return (Ok(()), jacobian);
-                    }
-                } else {
-                    // something soft between what is stiff still goes
-                    longest *= SOFT;
-                }
-            }
-            let mut length = h.unwrap_or_else(|| self.first(p)).min(longest);
-            let mut wanted = 0.0;
-            // shorter and shorter until the end is what was foretold
-            let accepted = loop {
-                let pace = Pace::new(length, &jacobian, n);
-                let trial = self.step(p, &jacobian, &pace);
-                let found = trial.and_then(|step| {
-                    wanted = self.excess(&step);
-                    (self.attempt(p, &jacobian, floor, step.clone()))
-                        .or_else(|| self.corrected(p, floor, step, &pace))
-                });
-                if found.is_some() {
-                    break found;
-                }
-                if small && length >= longest {
-                    // Newton's steps no longer improve: what is left is rounding
-                    return (Ok(()), jacobian);
-                }
-                length *= 0.25;
-                if length < 1e-14 * longest.min(1e6) {
-                    break None;
-                }
+            // a step
+            let Some(longest) = self.permitted(p, jacobian, &left, scales) else {
+                return Ok(());
             };
-            let Some((next, quality, shortened)) = accepted else {
-                if small || self.converged(p) || self.is_rounding(p, &jacobian, &noise) {
-                    return (Ok(()), jacobian);
-                }
-                return (Err(self.unbalanced(p)), jacobian);
+            let length = course.length.unwrap_or_else(|| self.first(p)).min(longest);
+            let step = match self.search(p, jacobian, &left, (length, longest)) {
+                Search::Found(step) => step,
+                Search::Arrived => return Ok(()),
+                Search::Nothing if left.small || self.converged(p) => return Ok(()),
+                Search::Nothing => return self.unless_rounding(p, jacobian, &left),
             };
-            let same = (next.left[0] - p.left[0]).abs() <= 1e-6 * p.left[0];
-            falling = if shortened && same { falling + 1 } else { 0 };
-            // what is stiff may have arrived while what is soft still goes: neither gets better
-            let arrived = small
-                && length >= longest
-                && next.left[0] > 0.5 * p.left[0]
-                && wanted > 0.5 * before;
-            before = if length >= longest {
-                wanted
-            } else {
-                f64::INFINITY
-            };
-            *p = next;
+            // take it
+            let arrived = course.advance(p, &step, left.small, longest);
+            *p = step.point;
             *iterations += 1;
-            jacobian = self.jacobian(p);
+            *jacobian = self.jacobian(p);
             if arrived {
-                return (Ok(()), jacobian);
+                return Ok(());
             }
-            let growth = if shortened {
-                1.0
-            } else if quality < 0.1 {
-                10.0
-            } else {
-                2.0
-            };
-            h = Some(length * growth);
-            debug_assert_eq!(jacobian.nrows(), n + self.states.len());
         }
     }
 
-    /// How large forces are, in the metric, whatever cancels.
+    /// Measures what is left against what rounding does.
+    fn left(&self, p: &Point, jacobian: &DMatrix<f64>, scales: [f64; 2]) -> Left {
+        let noise = self.noise(jacobian);
+        let floor = p.metric.size(&noise);
+        let small =
+            p.left[0] <= (STAGNANT * scales[0]).max(floor) && p.left[1] <= STAGNANT * scales[1];
+        Left {
+            noise,
+            floor,
+            small,
+        }
+    }
+
+    /// Ends the descent where it leads no further.
+    fn unless_rounding(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        left: &Left,
+    ) -> Result<(), NoEquilibrium> {
+        if self.is_rounding(p, jacobian, &left.noise) {
+            return Ok(());
+        }
+        Err(self.unbalanced(p))
+    }
+
+    /// Returns how long a step may be; `None`: no step can make it better.
+    fn permitted(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        left: &Left,
+        scales: [f64; 2],
+    ) -> Option<f64> {
+        let longest = self.longest(p, jacobian);
+        if !left.small {
+            return Some(longest);
+        }
+        if !self.is_rounding(p, jacobian, &left.noise) {
+            // something soft between what is stiff still goes
+            return Some(longest * SOFT_FACTOR);
+        }
+        // stiff contacts make more of the last digits than any step could take away
+        (p.left[1] > ROUNDING * scales[1]).then_some(longest)
+    }
+
+    /// Tries shorter and shorter steps until the loads at the end are those that were foretold.
+    fn search(
+        &mut self,
+        p: &Point,
+        jacobian: &DMatrix<f64>,
+        left: &Left,
+        (mut length, longest): (f64, f64),
+    ) -> Search {
+        let mut wanted = 0.0;
+        loop {
+            let pace = Pace::new(length, jacobian, self.n_v());
+            let found = self.step(p, jacobian, &pace).and_then(|step| {
+                wanted = self.excess(&step);
+                (self.attempt(p, jacobian, left.floor, step.clone()))
+                    .or_else(|| self.corrected(p, left.floor, step, &pace))
+            });
+            if let Some((point, quality, shortened)) = found {
+                return Search::Found(Taken {
+                    point,
+                    quality,
+                    shortened,
+                    length,
+                    wanted,
+                });
+            }
+            if left.small && length >= longest {
+                return Search::Arrived;
+            }
+            length *= 0.25;
+            if length < 1e-14 * longest.min(1e6) {
+                return Search::Nothing;
+            }
+        }
+    }
+
+    /// Returns how large forces are, in the metric, whatever cancels.
     fn load_scale(&self, p: &Point) -> f64 {
         let scene = &self.system.scene;
         let at = Equations::new(scene, &p.numbers);
@@ -156,7 +282,8 @@ impl Settler<'_> {
         scale / total_mass(scene).sqrt()
     }
 
-    /// What the last digits of the positions make of stiff forces, in each coordinate, as it is met:
+    /// Returns what the last digits of the positions make of stiff forces, in each coordinate, as it is
+    /// met:
     ///
     /// ```text
     /// n_i = ε √Σ (∂f_i/∂q_v u_v)²      u: a radian, or the size of the mechanism
@@ -169,7 +296,7 @@ impl Settler<'_> {
         })
     }
 
-    /// A radian, or the size of the mechanism, for each coordinate.
+    /// Returns a radian, or the size of the mechanism, for each coordinate.
     fn units(&self) -> Vec<f64> {
         let scene = &self.system.scene;
         let mut unit = vec![1.0; self.n_v()];
@@ -181,8 +308,9 @@ impl Settler<'_> {
         unit
     }
 
-    /// Whether what is left is what the last digits of the positions make of stiff forces: in every coordinate by its size, and in soft directions, where
-    /// stiff forces cancel, by what Newton's step would still do about it.
+    /// Returns whether what is left is what the last digits of the positions make of stiff forces: in
+    /// every coordinate by its size, and in soft directions, where stiff forces cancel, by what
+    /// Newton's step would still do about it.
     fn is_rounding(&mut self, p: &Point, jacobian: &DMatrix<f64>, noise: &DVector<f64>) -> bool {
         let unit = self.units();
         let within = (0..self.n_v()).all(|i| {
@@ -192,13 +320,17 @@ impl Settler<'_> {
         if !within {
             return false;
         }
-        let pace = Pace::new(SOFT * self.longest(p, jacobian), jacobian, self.n_v());
+        let pace = Pace::new(
+            SOFT_FACTOR * self.longest(p, jacobian),
+            jacobian,
+            self.n_v(),
+        );
         let Some(step) = self.newton(p, jacobian, &pace, &p.force) else {
             return true;
         };
         // noise of any sign; a few samples tell how far it goes
         let mut signs = 0x9e37_79b9_7f4a_7c15_u64;
-        let reach = (0..SAMPLES).filter_map(|_| {
+        let reach = (0..NOISE_SAMPLES).filter_map(|_| {
             let any = noise.map(|n| {
                 signs = signs.rotate_left(7).wrapping_mul(0xd128_2a95_8b1c_9e6d);
                 if signs >> 63 == 0 { n } else { -n }
@@ -210,14 +342,14 @@ impl Settler<'_> {
         self.excess(&step) <= reach
     }
 
-    /// How large the terms of the differential equations are.
+    /// Returns how large the terms of the differential equations are.
     fn state_scale(&self, p: &Point) -> f64 {
         let first = self.system.scene.layout.x().start;
         let states = self.states.iter().map(|x| p.numbers[first + x].abs());
         states.fold(0.0, f64::max)
     }
 
-    /// Length of the first step: a hundredth of the mechanism's size, or of a radian.
+    /// Returns the length of the first step: a hundredth of the mechanism's size, or of a radian.
     fn first(&self, p: &Point) -> f64 {
         let scene = &self.system.scene;
         let rate = p.metric.solve(&p.force);
@@ -231,7 +363,8 @@ impl Settler<'_> {
         if fastest > 0.0 { 0.01 / fastest } else { 1.0 }
     }
 
-    /// Length of a step that is Newton's but for the part of the mass that STABILITY asks for, small against all stiffness.
+    /// Returns the length of a step that is Newton's but for the part of the mass that STABILITY asks
+    /// for, small against all stiffness.
     pub(super) fn longest(&self, p: &Point, jacobian: &DMatrix<f64>) -> f64 {
         let n = self.n_v();
         let mut least = f64::INFINITY;
@@ -245,7 +378,7 @@ impl Settler<'_> {
         1.0 / (scale * self.settings.stability.min(1e-2) * 1e-7)
     }
 
-    /// Whether what is left satisfies the tolerances of EQUILIBRIUM.
+    /// Returns whether what is left satisfies the tolerances of EQUILIBRIUM.
     fn converged(&self, p: &Point) -> bool {
         p.force.amax() <= self.settings.imbalance && p.state.amax() <= self.settings.error
     }

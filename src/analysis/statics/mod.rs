@@ -1,6 +1,6 @@
 //! Equilibrium: where loads and reactions balance at rest.
 //!
-//! A damped fall from the present configuration, taken in ever longer implicit steps until it is Newton's iteration:
+//! A damped descent from the present configuration, taken in ever longer implicit steps until it is Newton's iteration:
 //!
 //! ```text
 //! D q̇ = f(q, x) + Gᵀλ,   ẋ = e(q, x),   g(q) = 0                          D: mass matrix, a little added where there is none
@@ -8,13 +8,13 @@
 //! ⎣    G       0  ⎦ ⎣Δλ⎦ = ⎣   −g    ⎦     K = ∂(f + Gᵀλ)/∂q,  λ balances f as well as rows can
 //! ```
 //!
-//! Short steps follow the fall, which loses energy and therefore ends at a stable place or nowhere; long ones converge
+//! Short steps follow the descent, which loses energy and therefore ends at a stable place or nowhere; long ones converge
 //! quadratically. A step is kept when the loads found at its end are those that its linear model foretold, and when the matrix
 //! is positive on the motions that the rows leave: then it cannot jump to the top of a hill. A singular stiffness, as of a
 //! body that touches nothing yet, needs no special treatment.
 //!
 //! A state may be the integral of a velocity (a spring that knows how far it was wound): at rest its rate is zero wherever it stands, and no equation of
-//! the end finds it. Where no equilibrium is found otherwise, such states follow the velocities of the fall, Δ/h:   Δx/h = e + … + ∂e/∂v Δ/h.
+//! the end finds it. Where no equilibrium is found otherwise, such states follow the velocities of the descent, Δ/h:   Δx/h = e + … + ∂e/∂v Δ/h.
 //!
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the model stood there from the start.
 
@@ -218,7 +218,7 @@ impl<'a> Settler<'a> {
         let mut iterations = 0;
         loop {
             let stood = iterations == 0;
-            let (outcome, jacobian) = self.fall(&mut p, &mut iterations, watch);
+            let (outcome, jacobian) = self.descend(&mut p, &mut iterations, watch);
             self.keep(&p);
             outcome?;
             let stood = stood && iterations == 0;
