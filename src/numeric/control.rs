@@ -1,41 +1,48 @@
 //! The error norm, and the rules that turn an error into the next step.
 //!
-//! An error is measured per unknown, relative to the magnitude of that unknown, and the worst one counts:
+//! An error is measured per unknown, relative to the magnitude of that unknown, and the worst one
+//! counts:
 //!
 //! ```text
-//! Mᵢ = max(|yᵢ| at all steps so far, |yᵢ| at the end of this one, φ typicalᵢ, σᵢ maxⱼ Mⱼ of its group)        φ: Options::floor
-//! ‖e‖ = maxᵢ |eᵢ| / (E Mᵢ)                                                           a step is good when ‖e‖ ≤ 1
+//! Mᵢ = max(|yᵢ| at all steps so far, |yᵢ| at the end of this one, φ typicalᵢ, σᵢ maxⱼ Mⱼ)
+//! ‖e‖ = maxᵢ |eᵢ| / (E Mᵢ)                                   a step is good when ‖e‖ ≤ 1
 //! ```
 //!
-//! Results are judged column by column against the largest value of the column, so the largest magnitude so far is the right measure:
-//! an oscillation through zero costs nothing there. The worst unknown counts rather than a mean, since a chain of
-//! a thousand links at rest must not hide the one that moves. A number that is not finite makes the norm not finite.
+//! with the requested tolerance E, φ of [`Options::floor`], and j over the unknowns of the same
+//! group as i ([`Relation`]).
+//!
+//! Results are judged column by column against the largest value of the column, so the largest
+//! magnitude so far is the right measure: an oscillation through zero costs nothing there. The
+//! worst unknown counts rather than a mean, since a chain of a thousand links at rest must not hide
+//! the one that moves. A number that is not finite makes the norm not finite.
 
-use super::{Options, Relation};
+use super::{Failure, Options, Reason, Relation, Stats, Step, Stop};
 
-/// Least relative error that double precision can control.
-const FINEST: f64 = 1e-14;
+/// Smallest relative error that double precision can control.
+const SMALLEST_TOLERANCE: f64 = 1e-14;
 
-/// Magnitudes of the unknowns and the norm they define.
+/// Magnitudes of the unknowns, and the error norm that they define.
 #[derive(Clone, Debug)]
 pub struct Weights {
+    /// E
     tolerance: f64,
+    /// φ
     floor: f64,
-    /// as the problem gave it   (n)
+    /// typical magnitudes that the problem gave   (n)
     typical: Vec<f64>,
     /// Mᵢ   (n)
     magnitude: Vec<f64>,
     relations: Vec<Relation>,
-    /// no magnitude is more than this   (n)
+    /// upper bounds of the magnitudes   (n)
     most: Vec<f64>,
-    /// largest magnitude in each group
+    /// largest magnitude of each group   (groups)
     largest: Vec<f64>,
 }
 
 impl Weights {
-    /// Weights for `n` unknowns, all of typical magnitude one until [`Weights::reset`].
+    /// Creates weights for `n` unknowns, all of typical magnitude one until [`Weights::reset`].
     pub fn new(n: usize, options: &Options) -> Self {
-        let tolerance = options.tolerance.max(FINEST);
+        let tolerance = options.tolerance.max(SMALLEST_TOLERANCE);
         Weights {
             tolerance,
             floor: options.floor,
@@ -47,7 +54,7 @@ impl Weights {
         }
     }
 
-    /// Asks which unknowns are measured with others.
+    /// Asks the problem, through `fill`, how magnitudes of unknowns depend on each other.
     pub fn relate(&mut self, fill: impl FnOnce(&mut [Relation])) {
         self.relations.fill(Relation::default());
         fill(&mut self.relations);
@@ -58,7 +65,7 @@ impl Weights {
         self.largest = vec![0.0; groups.max().map_or(0, |g| usize::from(g) + 1)];
     }
 
-    /// Forgets what was seen and asks for the typical magnitudes.
+    /// Forgets the magnitudes seen so far and asks for the typical ones through `fill`.
     pub fn reset(&mut self, fill: impl FnOnce(&mut [f64])) {
         fill(&mut self.typical);
         for (m, typical) in self.magnitude.iter_mut().zip(&mut self.typical) {
@@ -71,7 +78,7 @@ impl Weights {
         }
     }
 
-    /// Takes note of the magnitudes of `y`.
+    /// Raises the magnitudes to those of the solution `y`.
     pub fn see(&mut self, y: &[f64]) {
         for (m, y) in self.magnitude.iter_mut().zip(y) {
             *m = if y.abs() > *m { y.abs() } else { *m };
@@ -93,38 +100,39 @@ impl Weights {
         }
     }
 
-    /// Typical magnitudes   (n)
+    /// Returns the typical magnitudes   (n)
     pub fn typical(&self) -> &[f64] {
         &self.typical
     }
 
-    /// Unknowns that are rates of others, with these.
+    /// Iterates over the unknowns that are rates of others: the rate, and the unknown it belongs
+    /// to.
     pub fn rates(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let all = self.relations.iter().enumerate();
         all.filter_map(|(i, r)| Some((i, r.rate_of?)))
     }
 
-    /// `Mᵢ`   (n)
+    /// Returns `Mᵢ`   (n)
     pub fn magnitude(&self) -> &[f64] {
         &self.magnitude
     }
 
-    /// What no magnitude is more than   (n)
+    /// Returns the upper bounds of the magnitudes   (n)
     pub fn most(&self) -> &[f64] {
         &self.most
     }
 
-    /// E as used: not below what double precision can control.
+    /// Returns E, raised to what double precision can control.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// `‖e‖` of a step that ends at `y`.
+    /// Returns `‖e‖` of a step that ends at `y`.
     pub fn norm(&self, e: &[f64], y: &[f64]) -> f64 {
         worst(self.relative(e, y)) / self.tolerance
     }
 
-    /// `eᵢ / Mᵢ` of a step that ends at `y`.
+    /// Iterates over `eᵢ / Mᵢ` of a step that ends at `y`.
     pub fn relative<'a>(&'a self, e: &'a [f64], y: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let magnitudes = self.magnitude.iter().zip(&self.most);
         e.iter()
@@ -134,7 +142,7 @@ impl Weights {
     }
 }
 
-/// The largest absolute value; not finite when one of them is not.
+/// Returns the largest absolute value, or NaN when one of the values is not finite.
 pub fn worst(values: impl Iterator<Item = f64>) -> f64 {
     let (mut largest, mut sum) = (0.0, 0.0);
     for x in values {
@@ -145,7 +153,7 @@ pub fn worst(values: impl Iterator<Item = f64>) -> f64 {
     if sum.is_finite() { largest } else { f64::NAN }
 }
 
-/// Where the largest absolute value stands; the first number that is not finite when there is one.
+/// Returns the index of the first value that is not finite, or else of the largest absolute value.
 pub fn worst_index(values: impl Iterator<Item = f64>) -> usize {
     let (mut at, mut largest) = (0, -1.0);
     for (i, x) in values.enumerate() {
@@ -173,11 +181,13 @@ pub struct Pi {
     safety: f64,
     shrink: f64,
     grow: f64,
+    /// ‖e‖ of the last accepted step
     previous: f64,
 }
 
 impl Pi {
-    /// Control for an error estimate that behaves like `h^k`.
+    /// Creates the control for an error estimate that behaves like `h^k`; a step is multiplied by
+    /// `shrink` at least and by `grow` at most.
     pub fn new(k: f64, beta: f64, safety: f64, shrink: f64, grow: f64) -> Self {
         Pi {
             alpha: 1.0 / k - 0.75 * beta,
@@ -194,8 +204,10 @@ impl Pi {
         self.previous = 1.0;
     }
 
-    /// Factor for the next step after one with `‖e‖ ≤ 1`. `calm` forbids growth (right after a rejection);
-    /// `guessed` allows more of it (the step was no more than a guess).
+    /// Returns the factor for the next step after one with `‖e‖ ≤ 1`.
+    ///
+    /// `calm` forbids growth (right after a rejection); `guessed` allows more of it (the step was
+    /// only a guess).
     pub fn accepted(&mut self, error: f64, calm: bool, guessed: bool) -> f64 {
         let error = error.max(1e-10);
         let factor = self.safety * error.powf(-self.alpha) * self.previous.powf(self.beta);
@@ -204,7 +216,8 @@ impl Pi {
         factor.clamp(self.shrink, if guessed { 5.0 * grow } else { grow })
     }
 
-    /// Factor for another attempt after one with `‖e‖ > 1`, or with an error that is no number.
+    /// Returns the factor for another attempt after one with `‖e‖ > 1`, or with an error that is no
+    /// number.
     pub fn rejected(&self, error: f64) -> f64 {
         let factor = self.safety * error.powf(-self.alpha);
         if factor.is_finite() {
@@ -215,22 +228,25 @@ impl Pi {
     }
 }
 
-/// Guesses the first step of a one-step method from the time scale of the solution.
+/// The guess of the first step of a one-step method, from the time scale of the solution.
 pub struct Starter<'a> {
     /// order of the method
     pub order: usize,
-    /// the request
+    /// requested tolerance and limits of the step
     pub options: &'a Options,
-    /// magnitudes; here the typical ones count in full, since little has been seen
+    /// magnitudes; the typical ones count in full here, since little of the solution is known
     pub weights: &'a Weights,
 }
 
 impl Starter<'_> {
+    /// Guesses the first step from `(t, y)`, where the rate is `f`:
+    ///
     /// ```text
     /// 1/τ = max(‖f‖, √‖Δf/Δt‖)  relative to magnitudes,        h = τ (E/100)^(1/k)
     /// ```
     ///
-    /// The second derivative comes from one explicit Euler step of τ/100; when `rate` fails there the guess rests on `f` alone.
+    /// The second derivative comes from one explicit Euler step of τ/100; when `rate` fails there
+    /// the guess rests on `f` alone. `y_probe` and `f_probe` are scratch   (n each)
     pub fn first_step(
         &self,
         t: f64,
@@ -238,7 +254,7 @@ impl Starter<'_> {
         f: &[f64],
         y_probe: &mut [f64],
         f_probe: &mut [f64],
-        mut rate: impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), super::Failure>,
+        mut rate: impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     ) -> f64 {
         if let Some(h) = self.options.h_initial {
             return h.min(self.options.h_max);
@@ -280,21 +296,23 @@ impl Starter<'_> {
     }
 }
 
-/// Why there is no step where one that is shorter than the shortest is proposed at once: the unknown that changes fastest grows without bound.
-pub fn too_fast(rate: &[f64], weights: &Weights) -> super::Reason {
+/// Names the unknown that changes fastest, as the reason to stop where the very first proposal is
+/// shorter than the shortest step: it grows without bound.
+pub fn too_fast(rate: &[f64], weights: &Weights) -> Reason {
     let speeds = rate.iter().zip(weights.magnitude()).map(|(f, m)| f / m);
-    super::Reason::ErrorTest(worst_index(speeds))
+    Reason::ErrorTest(worst_index(speeds))
 }
 
-/// The shortest sensible step at `t`: time must visibly pass.
-pub fn shortest(t: f64, options: &Options) -> f64 {
+/// Returns the shortest sensible step at `t`, in s: time must change in double precision.
+fn shortest(t: f64, options: &Options) -> f64 {
     options.h_min.max(16.0 * f64::EPSILON * t.abs()).max(1e-200)
 }
 
-/// Fits a step to the limit: never beyond, and never leaving a remnant that is much shorter than the step.
+/// Fits a step to the limit: never beyond, and never leaving a remnant that is much shorter than
+/// the step.
 ///
-/// Returns the length and whether the step ends exactly at the limit.
-pub fn fit(t: f64, h: f64, t_limit: f64) -> (f64, bool) {
+/// Returns the length, and whether the step ends exactly at the limit.
+fn fit(t: f64, h: f64, t_limit: f64) -> (f64, bool) {
     let rest = t_limit - t;
     if h * 1.01 >= rest {
         (rest, true)
@@ -302,5 +320,108 @@ pub fn fit(t: f64, h: f64, t_limit: f64) -> (f64, bool) {
         (rest / 2.0, false)
     } else {
         (h, false)
+    }
+}
+
+/// The rejection of an attempted step.
+#[derive(Clone, Copy, Debug)]
+pub struct Rejection {
+    /// the cause, for a [`Stop`]
+    pub reason: Reason,
+    /// whether a shorter step may help
+    pub recoverable: bool,
+    /// factor for the length of the next attempt
+    pub factor: f64,
+}
+
+/// The attempts at one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Attempts {
+    t0: f64,
+    t_limit: f64,
+    shortest: f64,
+    /// attempts rejected so far
+    rejected: usize,
+    /// the cause of the last rejection
+    cause: Option<Reason>,
+}
+
+impl Attempts {
+    /// Prepares the attempts at a step from `t0` that must not pass `t_limit`.
+    pub fn new(t0: f64, t_limit: f64, options: &Options) -> Self {
+        Attempts {
+            t0,
+            t_limit,
+            shortest: shortest(t0, options),
+            rejected: 0,
+            cause: None,
+        }
+    }
+
+    /// Returns the number of attempts rejected so far.
+    pub fn rejected(&self) -> usize {
+        self.rejected
+    }
+
+    /// Fits the next attempt of about the `proposed` length; returns its length and its end, in s.
+    ///
+    /// # Errors
+    /// When as many steps as permitted have been attempted, or when the step is shorter than the
+    /// shortest: for the cause of the last rejection, or for `too_fast` when there was none.
+    pub fn next(
+        &self,
+        proposed: f64,
+        options: &Options,
+        stats: &Stats,
+        too_fast: impl FnOnce() -> Reason,
+    ) -> Result<(f64, f64), Stop> {
+        let (h, at_limit) = fit(self.t0, proposed, self.t_limit);
+        if stats.steps + stats.rejected >= options.max_steps {
+            return Err(self.stop(Reason::TooManySteps, h));
+        }
+        if h < self.shortest && (self.rejected > 0 || !at_limit) {
+            return Err(self.stop(self.cause.unwrap_or_else(too_fast), h));
+        }
+        Ok((h, if at_limit { self.t_limit } else { self.t0 + h }))
+    }
+
+    /// Notes a rejected attempt of length `h`.
+    ///
+    /// # Errors
+    /// When a shorter step would not help.
+    pub fn reject(&mut self, why: Rejection, h: f64, stats: &mut Stats) -> Result<(), Stop> {
+        self.cause = Some(why.reason);
+        if !why.recoverable {
+            return Err(self.stop(why.reason, h));
+        }
+        self.repeat(stats);
+        Ok(())
+    }
+
+    /// Notes an attempt that is repeated with another length.
+    pub fn repeat(&mut self, stats: &mut Stats) {
+        self.rejected += 1;
+        stats.rejected += 1;
+    }
+
+    /// Notes the accepted attempt of length `h` that ends at `t1`; returns the step.
+    pub fn accepted(&self, h: f64, t1: f64, order: usize, stats: &mut Stats) -> Step {
+        stats.steps += 1;
+        Step {
+            t0: self.t0,
+            t1,
+            h,
+            order,
+            rejected: self.rejected,
+        }
+    }
+
+    /// Ends the integration in an attempt of length `h`.
+    pub fn stop(&self, reason: Reason, h: f64) -> Stop {
+        Stop {
+            reason,
+            t: self.t0,
+            h,
+        }
     }
 }

@@ -1,59 +1,111 @@
-//! The implicit equations of one step of a DAE method: Newton with a kept matrix.
+//! The implicit equations of one step of a DAE method: Newton's iteration with a kept matrix.
 //!
 //! ```text
-//! F(t, ŷ + e, ẏ̂ + cj e) = 0                      ŷ, ẏ̂ predicted, cj of the method                   (1)
-//! (∂F/∂y + cj₀ ∂F/∂ẏ) Δ = −F,   e += 2/(1 + cj/cj₀) Δ        matrix of an earlier step               (2)
-//! h^rowsᵢ Fᵢ,  h^unknownsⱼ yⱼ                     scaled by levels, h ≈ 1/cj a power of two           (3)
+//! F(t, ŷ + e, ẏ̂ + cj e) = 0                  ŷ, ẏ̂ predicted, cj of the method               (1)
+//! (∂F/∂y + cj₀ ∂F/∂ẏ) Δ = −F,   e += 2/(1 + cj/cj₀) Δ       matrix of an earlier step         (2)
+//! h^rowsᵢ Fᵢ,  h^unknownsⱼ yⱼ                 scaled by levels, h ≈ 1/cj a power of two        (3)
 //! ```
 //!
-//! The matrix is kept until cj leaves [0.6, 1.67] cj₀ or the iteration converges too slowly with it; then it is evaluated and factored anew and the
-//! iteration repeated, and only when that fails too the step is at fault. The measured rate ρ of convergence predicts the error left, ρ/(1−ρ) ‖Δ‖,
-//! which must be a small part of the error permitted in a step.
+//! The matrix is kept until cj leaves [0.6, 1.67] cj₀ or the iteration converges too slowly with
+//! it; then it is evaluated and factored anew and the iteration repeated, and only when that fails
+//! too is the step at fault. The measured rate ρ of convergence predicts the error left,
+//! ρ/(1−ρ) ‖Δ‖, which must be a small part of the error permitted in a step.
 //!
-//! Unknowns whose error is not controlled are looked at loosely, multipliers of higher index not at all: they are linear in the rest of the
-//! iteration and carry rounding errors of order 1/h², which no iteration removes.
+//! Unknowns whose error is not controlled are judged loosely, multipliers of higher index not at
+//! all: they are linear in the rest of the iteration and carry rounding errors of order 1/h², which
+//! no iteration removes.
 //!
-//! Source: Brenan, Campbell & Petzold, Numerical Solution of Initial-Value Problems in DAEs, 5.2.2; Petzold & Lötstedt 1986 for (3).
+//! Source: Brenan, Campbell & Petzold, Numerical Solution of Initial-Value Problems in DAEs, 5.2.2;
+//! Petzold & Lötstedt 1986 for (3).
 
 use super::control::{worst, worst_index};
 use super::sparse::Factors;
 use super::{Dae, Failure, Kind, Options, Reason, Stats};
 
-/// Error left in the iteration, as part of the error permitted in a step.
-const SHARE: f64 = 0.1;
-/// Change of cj beyond which the matrix is factored anew.
-const CJ_RANGE: f64 = 0.6;
-/// Rate of convergence beyond which the iteration is given up.
-const SLOWEST: f64 = 0.9;
-/// The rate of convergence with a kept matrix is trusted less from step to step: ρ/(1−ρ) to this power.
-const AGEING: f64 = 0.7;
-/// Least accuracy asked of uncontrolled algebraic unknowns, relative to their magnitude.
-const LOOSE: f64 = 1e-3;
+/// Error that the iteration may leave, as a part of the error permitted in a step.
+const PERMITTED_REST: f64 = 0.1;
+/// Smallest ratio cj/cj₀, and inverse of the largest, with which the matrix is kept.
+const SMALLEST_CJ_RATIO: f64 = 0.6;
+/// Rate of convergence ρ beyond which the iteration is given up.
+const SLOWEST_RATE: f64 = 0.9;
+/// Power of ρ/(1−ρ) from step to step: the rate measured with a kept matrix is trusted less and
+/// less.
+const RATE_AGEING: f64 = 0.7;
+/// Accuracy asked of uncontrolled algebraic unknowns, relative to their magnitude.
+const UNCONTROLLED_TOLERANCE: f64 = 1e-3;
+/// Weight in the norm of unknowns whose rate occurs, but whose error is not controlled.
+const UNCONTROLLED_WEIGHT: f64 = 0.01;
 
 /// Newton's iteration for (1).
 #[derive(Clone, Debug)]
 pub struct Corrector {
+    /// corrections permitted in a step
     allowed: usize,
     factors: Factors,
-    /// entries of the Jacobian; power of h of each, from −4 to 4   (entries)
+    /// entries of the Jacobian   (entries)
     values: Vec<f64>,
+    /// power of h in (3) of each entry, from −4 to 4   (entries)
     level: Vec<i8>,
-    /// powers of h of rows and unknowns   (n each)
+    /// powers of h in (3) of the rows   (n)
     rows: Vec<u8>,
+    /// powers of h in (3) of the unknowns   (n)
     unknowns: Vec<u8>,
-    /// which unknowns the norms look at, and how closely: 1 controlled, less loosely, 0 not   (n)
+    /// weight of each unknown in the norm: 1 controlled, less judged loosely, 0 ignored   (n)
     attention: Vec<f64>,
     /// residual, then correction   (n)
     delta: Vec<f64>,
-    /// coefficient and scaling step of the factors; 0 when there are none
+    /// cj₀, the coefficient of the factors, in 1/s; 0 when there are none
     cj: f64,
+    /// h of (3), the scaling step of the factors, in s
     h: f64,
-    /// ρ/(1−ρ) of the last iteration with these factors, and the first correction of it
+    /// ρ/(1−ρ) of the last iteration with these factors
     rate_factor: f64,
+    /// size of the first correction of that iteration
     measured: f64,
 }
 
-/// Why (1) was not solved.
+/// The unknowns of (1) in work, with the errors permitted in them.
+#[derive(Clone, Debug)]
+pub struct Iterate {
+    /// solution: predicted, then corrected   (n)
+    pub y: Vec<f64>,
+    /// its rate: predicted, then corrected   (n)
+    pub ydot: Vec<f64>,
+    /// correction of the solution   (n)
+    pub e: Vec<f64>,
+    /// 1/(error permitted in a step)   (n)
+    pub scale: Vec<f64>,
+    /// predicted solution and rate, kept for a second iteration   (n each)
+    predicted: [Vec<f64>; 2],
+}
+
+impl Iterate {
+    /// Room for `n` unknowns.
+    pub fn new(n: usize) -> Self {
+        let zeros = || vec![0.0; n];
+        Iterate {
+            y: zeros(),
+            ydot: zeros(),
+            e: zeros(),
+            scale: zeros(),
+            predicted: [zeros(), zeros()],
+        }
+    }
+
+    /// Keeps the prediction for a second iteration.
+    fn keep_prediction(&mut self) {
+        self.predicted[0].copy_from_slice(&self.y);
+        self.predicted[1].copy_from_slice(&self.ydot);
+    }
+
+    /// Goes back to the prediction.
+    fn restore_prediction(&mut self) {
+        self.y.copy_from_slice(&self.predicted[0]);
+        self.ydot.copy_from_slice(&self.predicted[1]);
+    }
+}
+
+/// The cause why (1) was not solved.
 #[derive(Clone, Copy, Debug)]
 pub struct Trouble {
     /// the cause, for a [`super::Stop`]
@@ -63,12 +115,14 @@ pub struct Trouble {
 }
 
 impl Trouble {
+    /// Trouble from an evaluation of the problem.
     fn of(failure: Failure) -> Self {
         Trouble {
             reason: Reason::Evaluation(failure),
             recoverable: failure.recoverable,
         }
     }
+    /// Trouble that a shorter step may remove.
     fn may_pass(reason: Reason) -> Self {
         Trouble {
             reason,
@@ -78,7 +132,7 @@ impl Trouble {
 }
 
 impl Corrector {
-    /// A corrector for `n` unknowns; [`Corrector::start`] learns the pattern.
+    /// Creates a corrector for `n` unknowns; [`Corrector::start`] learns the pattern.
     pub fn new(n: usize, options: &Options) -> Self {
         Corrector {
             allowed: options.max_newton.max(2),
@@ -96,7 +150,8 @@ impl Corrector {
         }
     }
 
-    /// Learns what is constant about a problem.
+    /// Reads the pattern, the levels and the kinds of unknowns of a problem, and forgets the
+    /// factors.
     pub fn start<P: Dae + ?Sized>(&mut self, problem: &P, tolerance: f64) {
         let (n, pattern, levels) = (self.delta.len(), problem.pattern(), problem.levels());
         self.factors = Factors::new(n, &pattern);
@@ -112,8 +167,8 @@ impl Corrector {
             .zip(&self.unknowns)
             .map(|(kind, level)| match (kind, level) {
                 (Kind::Differential | Kind::AlgebraicControlled, _) => 1.0,
-                (Kind::DifferentialUncontrolled, _) => 0.01,
-                (_, 0) => (tolerance / LOOSE).min(1.0),
+                (Kind::DifferentialUncontrolled, _) => UNCONTROLLED_WEIGHT,
+                (_, 0) => (tolerance / UNCONTROLLED_TOLERANCE).min(1.0),
                 _ => 0.0,
             })
             .collect();
@@ -125,7 +180,7 @@ impl Corrector {
         self.cj = 0.0;
     }
 
-    /// `h` to the power of a level.
+    /// Returns `h` to the power of a level.
     fn power(h: f64, level: i8) -> f64 {
         match level {
             0 => 1.0,
@@ -141,13 +196,14 @@ impl Corrector {
     fn factor<P: Dae + ?Sized>(
         &mut self,
         problem: &mut P,
-        (t, y, ydot, cj): (f64, &[f64], &[f64], f64),
+        (t, cj): (f64, f64),
+        at: &Iterate,
         stats: &mut Stats,
     ) -> Result<(), Trouble> {
         self.cj = 0.0;
         stats.jacobians += 1;
         problem
-            .jacobian(t, y, ydot, cj, &mut self.values)
+            .jacobian(t, &at.y, &at.ydot, cj, &mut self.values)
             .map_err(Trouble::of)?;
         // 1/cj rounded to a power of two, so that scaling is exact
         self.h = f64::from_bits(cj.recip().to_bits() & 0x7ff0_0000_0000_0000);
@@ -165,34 +221,28 @@ impl Corrector {
         Ok(())
     }
 
-    /// Solves (1). On entry `y` and `ydot` are predicted; on success they satisfy it, and `e` is the correction of `y`.
-    ///
-    /// `scale` holds 1/(error permitted in a step) per unknown, `predicted` room to keep the prediction for another try   (n; 2 × n)
+    /// Solves (1) at time `t` with coefficient `cj`. On entry `y` and `ydot` of the iterate are
+    /// predicted; on success they satisfy (1), and `e` is the correction of `y`.
     ///
     /// # Errors
-    /// When the problem fails, the matrix is singular, or the iteration does not converge with a fresh matrix.
-    #[allow(clippy::too_many_arguments)] // the state of a step has many arrays
+    /// When the problem fails, the matrix is singular, or the iteration does not converge with a
+    /// fresh matrix.
     pub fn correct<P: Dae + ?Sized>(
         &mut self,
         problem: &mut P,
         (t, cj): (f64, f64),
-        y: &mut [f64],
-        ydot: &mut [f64],
-        e: &mut [f64],
-        scale: &[f64],
-        predicted: &mut [Vec<f64>; 2],
+        at: &mut Iterate,
         stats: &mut Stats,
     ) -> Result<(), Trouble> {
         let ratio = cj / self.cj;
         let mut fresh = false;
-        if !(self.cj != 0.0 && ratio > CJ_RANGE && ratio < 1.0 / CJ_RANGE) {
-            self.factor(problem, (t, y, ydot, cj), stats)?;
+        if !(self.cj != 0.0 && ratio > SMALLEST_CJ_RATIO && ratio < 1.0 / SMALLEST_CJ_RATIO) {
+            self.factor(problem, (t, cj), at, stats)?;
             fresh = true;
         }
-        predicted[0].copy_from_slice(y);
-        predicted[1].copy_from_slice(ydot);
+        at.keep_prediction();
         loop {
-            match self.iterate(problem, (t, cj), y, ydot, e, scale, stats) {
+            match self.iterate(problem, (t, cj), at, stats) {
                 Ok(()) => return Ok(()),
                 Err(trouble) if fresh || !trouble.recoverable => {
                     if fresh {
@@ -201,30 +251,25 @@ impl Corrector {
                     return Err(trouble);
                 }
                 Err(_) => {
-                    y.copy_from_slice(&predicted[0]);
-                    ydot.copy_from_slice(&predicted[1]);
-                    self.factor(problem, (t, y, ydot, cj), stats)?;
+                    at.restore_prediction();
+                    self.factor(problem, (t, cj), at, stats)?;
                     fresh = true;
                 }
             }
         }
     }
 
-    /// (2) until the error left is small.
-    #[allow(clippy::too_many_arguments)]
+    /// Repeats (2) until the error left is small.
     fn iterate<P: Dae + ?Sized>(
         &mut self,
         problem: &mut P,
         (t, cj): (f64, f64),
-        y: &mut [f64],
-        ydot: &mut [f64],
-        e: &mut [f64],
-        scale: &[f64],
+        at: &mut Iterate,
         stats: &mut Stats,
     ) -> Result<(), Trouble> {
-        e.fill(0.0);
+        at.e.fill(0.0);
         // the matrix ages, so does what is known of its convergence
-        self.rate_factor = self.rate_factor.max(f64::EPSILON).powf(AGEING);
+        self.rate_factor = self.rate_factor.max(f64::EPSILON).powf(RATE_AGEING);
         let damping = if cj == self.cj {
             1.0
         } else {
@@ -232,14 +277,14 @@ impl Corrector {
         };
         let (mut first, mut worst_row) = (0.0, 0);
         for iteration in 0..self.allowed {
+            // residual and correction
             stats.evaluations += 1;
             problem
-                .residual(t, y, ydot, &mut self.delta)
+                .residual(t, &at.y, &at.ydot, &mut self.delta)
                 .map_err(Trouble::of)?;
             if !worst(self.delta.iter().copied()).is_finite() {
-                return Err(Trouble::may_pass(Reason::NotFinite(worst_index(
-                    self.delta.iter().copied(),
-                ))));
+                let index = worst_index(self.delta.iter().copied());
+                return Err(Trouble::may_pass(Reason::NotFinite(index)));
             }
             for (r, level) in self.delta.iter_mut().zip(&self.rows) {
                 *r *= -damping * Self::power(self.h, *level as i8);
@@ -247,47 +292,54 @@ impl Corrector {
             worst_row = worst_index(self.delta.iter().copied());
             self.factors.solve(&mut self.delta);
             stats.newton_iterations += 1;
-            let mut size = 0.0;
-            let mut sum = 0.0;
-            for i in 0..y.len() {
-                let d = self.delta[i] * Self::power(self.h, -(self.unknowns[i] as i8));
-                y[i] += d;
-                ydot[i] += cj * d;
-                e[i] += d;
-                let change = (d * scale[i] * self.attention[i]).abs();
-                sum += d.abs();
-                size = if change > size { change } else { size };
-            }
-            if !sum.is_finite() || !f64::is_finite(size) {
+            let Some(size) = self.apply(cj, at) else {
                 return Err(Trouble::may_pass(Reason::Newton(worst_row)));
-            }
+            };
+
+            // the error left
             let mut factor = self.rate_factor;
             if iteration == 0 {
                 first = size;
-                // nothing to correct
-                if size <= 1e-4 * SHARE {
+                if size <= 1e-4 * PERMITTED_REST {
                     return Ok(());
                 }
-                // what a Newton iteration leaves is quadratic: a larger correction than the measured one converges worse
+                // a Newton iteration converges quadratically: a correction larger than the measured
+                // one leaves more in proportion
                 factor *= (size / self.measured).max(1.0);
-                // and with another cj no better than |1 − damping|
+                // and with another cj no less than |1 − damping|
                 factor = factor.max((1.0 - damping).abs());
             } else {
                 let rate = (size / first).powf(1.0 / iteration as f64);
-                if rate > SLOWEST {
+                if rate > SLOWEST_RATE {
                     break;
                 }
                 factor = rate / (1.0 - rate);
                 (self.rate_factor, self.measured) = (factor, first);
             }
-            if factor * size <= SHARE {
+            if factor * size <= PERMITTED_REST {
                 return Ok(());
             }
         }
         Err(Trouble::may_pass(Reason::Newton(worst_row)))
     }
 
-    /// Whether the error of each unknown is controlled: 1, or 0   (n)
+    /// Adds the correction to the unknowns; returns its size, or `None` if it is not finite.
+    fn apply(&self, cj: f64, at: &mut Iterate) -> Option<f64> {
+        let mut size = 0.0;
+        let mut sum = 0.0;
+        for i in 0..at.y.len() {
+            let d = self.delta[i] * Self::power(self.h, -(self.unknowns[i] as i8));
+            at.y[i] += d;
+            at.ydot[i] += cj * d;
+            at.e[i] += d;
+            let change = (d * at.scale[i] * self.attention[i]).abs();
+            sum += d.abs();
+            size = if change > size { change } else { size };
+        }
+        (f64::is_finite(sum) && f64::is_finite(size)).then_some(size)
+    }
+
+    /// Returns 1 for each unknown whose error is controlled, and 0 for the others   (n)
     pub fn controlled(kinds: &[Kind]) -> Vec<f64> {
         kinds
             .iter()

@@ -1,19 +1,23 @@
 //! Dense LU factorizations in place, real and complex, for the small systems of implicit methods.
 //!
 //! ```text
-//! P A = L U        by columns, partial pivoting; column j is finished before column j + 1 is touched (left-looking)
+//! P A = L U        by columns, partial pivoting; column j is finished before column j + 1 is
+//!                  touched (left-looking)
 //! ```
 //!
-//! While column `j` is updated it stays in the nearest cache, and four earlier columns are applied to it at a time, so each of its entries is loaded once
-//! per eight operations. A complex matrix is two real ones, its real and imaginary parts, so that the same loops
-//! run in vector registers. Nothing allocates after construction (nalgebra's factorization, as fast at these sizes, allocates its
-//! pivots each time).
+//! While column `j` is updated it stays in the nearest cache, and four earlier columns are applied
+//! to it at a time, so each of its entries is loaded once per eight operations. A complex matrix is
+//! two real ones, its real and imaginary parts, so that the same loops run in vector registers.
+//! Nothing allocates after construction (nalgebra's factorization, as fast at these sizes,
+//! allocates its pivots each time).
 //!
-//! *Zeros*: each column of L knows where its last number stands, each of U where its first does, and what is multiplied by zero is passed over. Parts
-//! that are free and tied to their neighbours by forces (the beams of a blade) have matrices like bands, whose factors then cost what the band costs;
-//! a full matrix takes the time it took.
+//! *Zeros*: each column of L knows the place of its last nonzero, each column of U that of its
+//! first, and products with zero are skipped. Parts that are free and tied to their neighbours by
+//! forces (the beams of a blade) have matrices like bands, whose factors then cost what the band
+//! costs; a full matrix takes no longer than without this.
 //!
-//! *Singular*: a pivot that is zero or not finite; the error is the index of its column, the unknown that nothing determines.
+//! *Singular*: a pivot that is zero or not finite; the error is the index of its column, the
+//! unknown that nothing determines.
 #![allow(clippy::needless_range_loop)] // several columns at one row index
 
 /// Factors of a real matrix.
@@ -24,13 +28,14 @@ pub struct Lu {
     a: Vec<f64>,
     /// row exchanged with row j at step j   (n)
     pivots: Vec<usize>,
-    /// L is zero from this row on, U before that one, by columns   (n each)
+    /// row from which on each column of L is zero   (n)
     low: Vec<usize>,
+    /// row before which each column of U is zero   (n)
     top: Vec<usize>,
 }
 
 impl Lu {
-    /// Room for an `n × n` matrix.
+    /// Creates room for an `n × n` matrix.
     pub fn new(n: usize) -> Self {
         Lu {
             n,
@@ -41,17 +46,18 @@ impl Lu {
         }
     }
 
-    /// Rows of the matrix.
+    /// Returns the number of rows.
     pub fn size(&self) -> usize {
         self.n
     }
 
-    /// Where to put the matrix before [`Lu::factor`]: `[i + n·j]`   (n × n)
+    /// Returns the place for the matrix before [`Lu::factor`]: `[i + n·j]`   (n × n)
     pub fn matrix_mut(&mut self) -> &mut [f64] {
         &mut self.a
     }
 
-    /// Factors the matrix in place. A column counts as zero when its pivot is below `tiny` times what it began with.
+    /// Factors the matrix in place. A column counts as zero when its pivot is below `tiny` times
+    /// the largest entry it began with.
     ///
     /// # Errors
     /// The column without a pivot.
@@ -68,47 +74,9 @@ impl Lu {
             for k in 0..j {
                 column.swap(k, self.pivots[k]);
             }
-            // four earlier columns at a time: their rows of U first, then one sweep below
-            let mut k = 0;
-            while k + 4 <= j {
-                if column[k..k + 4].iter().all(|u| *u == 0.0) {
-                    k += 4;
-                    continue;
-                }
-                let (l0, l1) = (&done[k * n..(k + 1) * n], &done[(k + 1) * n..(k + 2) * n]);
-                let (l2, l3) = (
-                    &done[(k + 2) * n..(k + 3) * n],
-                    &done[(k + 3) * n..(k + 4) * n],
-                );
-                let u0 = column[k];
-                let u1 = column[k + 1] - l0[k + 1] * u0;
-                let u2 = column[k + 2] - l0[k + 2] * u0 - l1[k + 2] * u1;
-                let u3 = column[k + 3] - l0[k + 3] * u0 - l1[k + 3] * u1 - l2[k + 3] * u2;
-                column[k + 1..k + 4].copy_from_slice(&[u1, u2, u3]);
-                let low = self.low[k..k + 4].iter().fold(k + 4, |m, l| m.max(*l));
-                let below = &mut column[k + 4..low];
-                let m = below.len();
-                let (l0, l1, l2, l3) = (
-                    &l0[k + 4..][..m],
-                    &l1[k + 4..][..m],
-                    &l2[k + 4..][..m],
-                    &l3[k + 4..][..m],
-                );
-                for i in 0..m {
-                    below[i] -= (l0[i] * u0 + l1[i] * u1) + (l2[i] * u2 + l3[i] * u3);
-                }
-                k += 4;
-            }
-            for k in k..j {
-                let u = column[k];
-                if u == 0.0 {
-                    continue;
-                }
-                let below = &mut column[k + 1..self.low[k]];
-                for (c, l) in below.iter_mut().zip(&done[k * n + k + 1..(k + 1) * n]) {
-                    *c -= l * u;
-                }
-            }
+            subtract_columns(column, done, &self.low[..j]);
+
+            // choose the pivot
             let mut pivot = j;
             for i in j + 1..n {
                 if column[i].abs() > column[pivot].abs() {
@@ -122,6 +90,8 @@ impl Lu {
             {
                 return Err(j);
             }
+
+            // exchange rows
             self.pivots[j] = pivot;
             if pivot != j {
                 column.swap(j, pivot);
@@ -132,6 +102,8 @@ impl Lu {
                     }
                 }
             }
+
+            // divide by the pivot
             let mut sum = 0.0;
             self.low[j] = j + 1;
             for i in j + 1..n {
@@ -150,14 +122,14 @@ impl Lu {
         Ok(())
     }
 
-    /// Whether the determinant is positive.
+    /// Returns whether the determinant is positive.
     pub fn positive(&self) -> bool {
         let n = self.n;
         let sign = |k: usize| (self.pivots[k] != k) != (self.a[k * n + k] < 0.0);
         !(0..n).fold(false, |negative, k| negative != sign(k))
     }
 
-    /// `x ← A⁻¹ x`
+    /// Solves `x ← A⁻¹ x`.
     pub fn solve(&self, x: &mut [f64]) {
         let n = self.n;
         let x = &mut x[..n];
@@ -192,22 +164,75 @@ impl Lu {
     }
 }
 
+/// Subtracts from `column` the columns of L in `done`, as many as `low` has, times its entries of
+/// U.
+///
+/// `low[k]`: the row from which on column `k` of L is zero.
+#[inline]
+fn subtract_columns(column: &mut [f64], done: &[f64], low: &[usize]) {
+    let (n, j) = (column.len(), low.len());
+    // four columns at a time: their rows of U first, then one sweep below
+    let mut k = 0;
+    while k + 4 <= j {
+        if column[k..k + 4].iter().all(|u| *u == 0.0) {
+            k += 4;
+            continue;
+        }
+        let (l0, l1) = (&done[k * n..(k + 1) * n], &done[(k + 1) * n..(k + 2) * n]);
+        let (l2, l3) = (
+            &done[(k + 2) * n..(k + 3) * n],
+            &done[(k + 3) * n..(k + 4) * n],
+        );
+        let u0 = column[k];
+        let u1 = column[k + 1] - l0[k + 1] * u0;
+        let u2 = column[k + 2] - l0[k + 2] * u0 - l1[k + 2] * u1;
+        let u3 = column[k + 3] - l0[k + 3] * u0 - l1[k + 3] * u1 - l2[k + 3] * u2;
+        column[k + 1..k + 4].copy_from_slice(&[u1, u2, u3]);
+        let end = low[k..k + 4].iter().fold(k + 4, |m, l| m.max(*l));
+        let below = &mut column[k + 4..end];
+        let m = below.len();
+        let (l0, l1, l2, l3) = (
+            &l0[k + 4..][..m],
+            &l1[k + 4..][..m],
+            &l2[k + 4..][..m],
+            &l3[k + 4..][..m],
+        );
+        for i in 0..m {
+            below[i] -= (l0[i] * u0 + l1[i] * u1) + (l2[i] * u2 + l3[i] * u3);
+        }
+        k += 4;
+    }
+    // the remaining ones
+    for k in k..j {
+        let u = column[k];
+        if u == 0.0 {
+            continue;
+        }
+        let below = &mut column[k + 1..low[k]];
+        for (c, l) in below.iter_mut().zip(&done[k * n + k + 1..(k + 1) * n]) {
+            *c -= l * u;
+        }
+    }
+}
+
 /// Factors of a complex matrix.
 #[derive(Clone, Debug)]
 pub struct ComplexLu {
     n: usize,
-    /// real and imaginary parts, by columns   (n × n each)
+    /// real part, by columns   (n × n)
     re: Vec<f64>,
+    /// imaginary part, by columns   (n × n)
     im: Vec<f64>,
     /// row exchanged with row j at step j   (n)
     pivots: Vec<usize>,
-    /// L is zero from this row on, U before that one, by columns   (n each)
+    /// row from which on each column of L is zero   (n)
     low: Vec<usize>,
+    /// row before which each column of U is zero   (n)
     top: Vec<usize>,
 }
 
 impl ComplexLu {
-    /// Room for an `n × n` matrix.
+    /// Creates room for an `n × n` matrix.
     pub fn new(n: usize) -> Self {
         ComplexLu {
             n,
@@ -219,7 +244,8 @@ impl ComplexLu {
         }
     }
 
-    /// Where to put real and imaginary parts before [`ComplexLu::factor`]: `[i + n·j]`   (n × n each)
+    /// Returns the places for real and imaginary parts before [`ComplexLu::factor`]: `[i + n·j]`
+    /// (n × n each)
     pub fn matrix_mut(&mut self) -> (&mut [f64], &mut [f64]) {
         (&mut self.re, &mut self.im)
     }
@@ -299,7 +325,7 @@ impl ComplexLu {
         Ok(())
     }
 
-    /// `x ← A⁻¹ x`, real and imaginary parts apart.
+    /// Solves `x ← A⁻¹ x`, real and imaginary parts apart.
     pub fn solve(&self, re: &mut [f64], im: &mut [f64]) {
         let n = self.n;
         let (re, im) = (&mut re[..n], &mut im[..n]);
@@ -334,7 +360,7 @@ impl ComplexLu {
     }
 }
 
-/// `1/(re + i im)`, without overflow on the way.
+/// Returns `1/(re + i im)`, without overflow on the way.
 fn reciprocal(re: f64, im: f64) -> (f64, f64) {
     if re.abs() >= im.abs() {
         let q = im / re;

@@ -1,18 +1,18 @@
-//! Whether a large symmetric matrix with many zeros is positive: [`is_positive`].
+//! A test whether a large symmetric matrix with many zeros is positive definite: [`is_positive`].
 //!
 //! ```text
-//! P A Pᵀ = L Lᵀ       row i of L begins where row i of P A Pᵀ does: nothing fills in before its envelope
+//! P A Pᵀ = L Lᵀ       row i of L begins where row i of P A Pᵀ does: no fill outside the envelope
 //! ```
 //!
-//! P numbers neighbours close to each other (reverse Cuthill–McKee), so that chains of parts have a narrow envelope; a full matrix takes the time of a full
-//! factorization.
+//! P numbers neighbours close to each other (reverse Cuthill–McKee), so that chains of parts have a
+//! narrow envelope; a full matrix takes as long as its full factorization.
 //!
 //! Source: George & Liu, Computer Solution of Large Sparse Positive Definite Systems, 4.
 
 use nalgebra::DMatrix;
 use std::collections::VecDeque;
 
-/// Whether a symmetric matrix is positive definite; its lower triangle is read.
+/// Returns whether a symmetric matrix is positive definite; its lower triangle is read.
 pub fn is_positive(a: &DMatrix<f64>) -> bool {
     let n = a.nrows();
     if (0..n).any(|i| a[(i, i)] <= 0.0 || a[(i, i)].is_nan()) {
@@ -47,7 +47,7 @@ pub fn is_positive(a: &DMatrix<f64>) -> bool {
         }
         let squares: f64 = row[..k - begin].iter().map(|x| x * x).sum();
         let pivot = row[k - begin] - squares;
-        // neither zero nor no number
+        // a pivot that is zero, negative or NaN
         if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
@@ -58,7 +58,7 @@ pub fn is_positive(a: &DMatrix<f64>) -> bool {
     true
 }
 
-/// The other rows in which each row has an entry.
+/// Returns the other rows in which each row has an entry.
 fn neighbours(a: &DMatrix<f64>) -> Vec<Vec<usize>> {
     let mut neighbours = vec![Vec::new(); a.nrows()];
     for j in 0..a.ncols() {
@@ -72,7 +72,8 @@ fn neighbours(a: &DMatrix<f64>) -> Vec<Vec<usize>> {
     neighbours
 }
 
-/// Rows in an order that keeps neighbours close: breadth first from a row far out, fewest neighbours first, turned round.
+/// Orders the rows so that neighbours are close: breadth first from a peripheral row, fewest
+/// neighbours first, then reversed.
 fn order(neighbours: &[Vec<usize>]) -> Vec<usize> {
     let n = neighbours.len();
     let mut order = Vec::with_capacity(n);
@@ -81,7 +82,7 @@ fn order(neighbours: &[Vec<usize>]) -> Vec<usize> {
         if seen[start] {
             continue;
         }
-        // what is farthest from anywhere is far out
+        // the row farthest from any row is peripheral
         let far = *spread(start, neighbours, &mut seen.clone())
             .last()
             .unwrap_or(&start);
@@ -91,7 +92,7 @@ fn order(neighbours: &[Vec<usize>]) -> Vec<usize> {
     order
 }
 
-/// Rows that hang together with `start`, breadth first.
+/// Returns the rows connected with `start`, breadth first.
 fn spread(start: usize, neighbours: &[Vec<usize>], seen: &mut [bool]) -> Vec<usize> {
     let mut all = Vec::new();
     let mut queue = VecDeque::from([start]);

@@ -1,32 +1,38 @@
-//! The first root of switching functions inside a step.
+//! Events: the first sign change of switching functions inside a step.
 //!
-//! The functions `g(t)` are all evaluated at once, on the interpolant of an accepted step. Each has a *side*, the sign it had last; an event is the
-//! first time at which one of them is on its other side.
+//! All functions `g(t)` are evaluated together, on the interpolant of an accepted step. Each has a
+//! *side*, the sign it had last; an event is the first time at which one of them is on its other
+//! side.
 //!
 //! ```text
-//! 1  sample     t0 < s₁ < … < s_m < t1; the first interval at whose end a function has changed sides holds the event
-//! 2  dips       where |g| has a minimum between samples of one sign, the vertex of the parabola through three of them is sampled too, and the
-//!               notch in which the secants beside an interval meet, when that lies across zero (a convex function is above both secants):
-//!               so a function that crosses and returns between two samples (a double root, or a distance that shrinks and grows) is seen
-//! 3  bracket    at `a` no function has crossed, at `b` one has; the next point is the earliest secant root of those that have, drawn
-//!               to the middle as far as needed to keep the bracket of bisection (method ITP)
-//! 4  end        b − a is a few units in the last place; the event is at `b`, where the sign is the new one
+//! 1  sample     t0 < s₁ < … < s_m < t1; the event lies in the first interval at whose end a
+//!               function has changed sides
+//! 2  dips       where |g| has a minimum between samples of one sign, two more points are sampled:
+//!               the vertex of the parabola through three samples, and the notch, where the secants
+//!               beside an interval meet across zero (a convex function lies above both secants).
+//!               So a function is seen that crosses and returns between two samples: a double root,
+//!               or a distance that shrinks and grows
+//! 3  bracket    at `a` no function has crossed, at `b` one has; the next point is the earliest
+//!               secant root of those that have, moved towards the middle as far as needed to keep
+//!               the bracket of bisection (method ITP)
+//! 4  end        b − a is a few units in the last place; the event is at `b`, after the change
 //! ```
 //!
-//! Since the event is put at `b`, integration restarts with a clear sign, and what has just switched does not switch again by rounding.
-//! A value of exactly zero is on no side: a function that starts there takes the side it leaves to, without an event; one that touches zero
-//! and goes back has not crossed; one that stays at zero says nothing.
+//! Since the event is put at `b`, integration restarts with a clear sign, and a function that has
+//! just switched does not switch again by rounding. A value of exactly zero is on no side: a
+//! function that starts there takes the side to which it leaves, without an event; one that touches
+//! zero and goes back has not crossed; one that stays at zero never crosses.
 //!
 //! Source of ITP: Oliveira & Takahashi, ACM TOMS 47 (2020).
 
 /// Interior samples per step.
 pub const SAMPLES: usize = 4;
-/// Further samples at dips, per step, for one function.
-const DIPS: usize = 8;
-/// Further samples at dips, per step, for all.
-const ALL_DIPS: usize = 64;
+/// Most further samples at dips per step, for one function.
+const MOST_DIPS: usize = 8;
+/// Most further samples at dips per step, for all functions together.
+const MOST_DIPS_OF_ALL: usize = 64;
 
-/// Which crossings count.
+/// The direction of the crossings that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
     /// both
@@ -38,30 +44,33 @@ pub enum Direction {
     Falling,
 }
 
-/// Finds the first event of several switching functions, step after step.
+/// The search for the first event of several switching functions, step after step.
 #[derive(Clone, Debug)]
 pub struct Locator {
-    /// which crossings count   (n)
+    /// crossings that count   (n)
     direction: Vec<Direction>,
-    /// sign last seen, 0 when never clear   (n)
+    /// sign last seen; 0 while it has never been clear   (n)
     side: Vec<i8>,
-    /// leaving zero is a crossing
+    /// whether leaving zero is a crossing
     zero_counts: bool,
     /// functions that crossed at the last event
     crossed: Vec<usize>,
-    /// times and values of the samples of this step, in order   (SAMPLES + 2 + dips, each n)
+    /// times of the samples of this step, in order, in s   (SAMPLES + 2 + dips)
     times: Vec<f64>,
+    /// values at these times   (as many, each n)
     values: Vec<Vec<f64>>,
-    /// values at both ends of the bracket and at the trial point   (n each)
+    /// values at the beginning of the bracket   (n)
     at_a: Vec<f64>,
+    /// values at the end of the bracket   (n)
     at_b: Vec<f64>,
+    /// values at the trial point   (n)
     at_x: Vec<f64>,
 }
 
 impl Locator {
-    /// A locator for `n` functions, all crossings counting.
+    /// Creates a locator for `n` functions; all crossings count.
     pub fn new(n: usize) -> Self {
-        let room = SAMPLES + 2 + (DIPS + n).min(ALL_DIPS);
+        let room = SAMPLES + 2 + (MOST_DIPS + n).min(MOST_DIPS_OF_ALL);
         Locator {
             direction: vec![Direction::Either; n],
             side: vec![0; n],
@@ -88,8 +97,9 @@ impl Locator {
         }
     }
 
-    /// Takes the values and the sides at the start: where a value is rounding, its sign says less than the side it came to.
-    /// From now on a function that is on no side crosses when it leaves zero.
+    /// Takes the values and the sides at the start: where a value is mere rounding, its side is
+    /// more reliable than its sign. From now on a function that is on no side crosses when it
+    /// leaves zero.
     pub fn begin_on(&mut self, values: &[f64], sides: &[i8]) {
         self.values[0].copy_from_slice(values);
         self.side.copy_from_slice(sides);
@@ -101,20 +111,22 @@ impl Locator {
         self.values[0].copy_from_slice(values);
     }
 
-    /// The side of each function: +1, −1, or 0 while it has been exactly zero   (n)
+    /// Returns the side of each function: +1, −1, or 0 while it has been exactly zero   (n)
     pub fn sides(&self) -> &[i8] {
         &self.side
     }
 
-    /// The functions that crossed at the event last found.
+    /// Returns the functions that crossed at the last event.
     pub fn crossed(&self) -> &[usize] {
         &self.crossed
     }
 
-    /// Looks for the first event in `(t0, t1]`; `g(t, values)` evaluates all functions there.
+    /// Looks for the first event in `(t0, t1]`; `g(t, values)` evaluates all functions at `t`.
+    /// Returns the time of the event, in s.
     ///
-    /// The values at `t0` are those of [`Locator::begin`], or of the end of the step scanned before. After an event the
-    /// next scan begins at it. A value that is not a number is on no side.
+    /// The values at `t0` are those of [`Locator::begin`], or of the end of the step scanned
+    /// before. After an event the next scan begins at it. A value that is not a number is on no
+    /// side.
     ///
     /// # Errors
     /// Those of `g`.
@@ -128,7 +140,7 @@ impl Locator {
         if self.side.is_empty() {
             return Ok(None);
         }
-        // 1: samples, up to the first at which something has crossed
+        // 1: sample up to the first crossing
         self.times.clear();
         self.times.push(t0);
         let mut found = false;
@@ -146,14 +158,14 @@ impl Locator {
             }
             self.adopt_sides(i);
         }
-        // 2: dips before that; they may insert samples before the last one
+        // 2: look for dips before that; they may insert samples before the last one
         let dip = self.find_dip(&mut g)?;
         let last = self.times.len() - 1;
         let Some(i) = dip.or(found.then_some(last)) else {
             self.values.swap(0, last);
             return Ok(None);
         };
-        // 3 and 4
+        // 3 and 4: close in
         let t = self.close_in(i, &mut g)?;
         for k in 0..self.side.len() {
             if self.counts(k, self.side[k], sign(self.at_b[k])) {
@@ -167,12 +179,12 @@ impl Locator {
         Ok(Some(t))
     }
 
-    /// Whether a crossing that counts is seen at sample `i`.
+    /// Returns whether a crossing that counts is seen at sample `i`.
     fn has_crossed(&self, i: usize) -> bool {
         self.any_crossed(&self.values[i])
     }
 
-    /// Functions that come off zero, or cross where it does not count, take their new side.
+    /// Sets the sides to the signs at sample `i`, except where a value is zero.
     fn adopt_sides(&mut self, i: usize) {
         for (side, value) in self.side.iter_mut().zip(&self.values[i]) {
             if sign(*value) != 0 {
@@ -181,7 +193,8 @@ impl Locator {
         }
     }
 
-    /// Samples where a function may have been across zero between samples; gives the sample that has crossed, put into its place.
+    /// Samples the dips where a function may have been across zero between samples; returns the
+    /// sample that has crossed, which is inserted in its place.
     fn find_dip<E>(
         &mut self,
         g: &mut impl FnMut(f64, &mut [f64]) -> Result<(), E>,
@@ -193,7 +206,7 @@ impl Locator {
             let dip = |k: usize| self.vertex(i, k).or_else(|| self.notch(i, k));
             let dip = functions.clone().find_map(dip);
             let place = |t: f64| self.times.partition_point(|&s| s < t);
-            // a time between two samples: they may be neighbours in the last place
+            // a time between two samples, which may differ in the last place only
             let Some((t, place)) = dip
                 .map(|t| (t, place(t)))
                 .filter(|&(t, p)| (1..self.times.len()).contains(&p) && self.times[p] != t)
@@ -205,7 +218,7 @@ impl Locator {
             g(t, &mut self.values[end])?;
             self.times.insert(place, t);
             self.values[place..=end].rotate_right(1);
-            // sides are those at the beginning of the dip, since nothing before it has crossed
+            // the sides are those at the beginning of the dip, since nothing has crossed before it
             let (before, here) = (&self.values[place - 1], &self.values[place]);
             let crossed = |k: usize| self.counts(k, sign(before[k]), sign(here[k]));
             if functions.clone().any(crossed) {
@@ -221,21 +234,22 @@ impl Locator {
         Ok(None)
     }
 
-    /// Where the secants of function `k` beside the interval from sample i − 1 to i meet within it, when that lies across zero. At the end of the
-    /// step the secant that is missing is the other one's mirror image.
+    /// Returns the time at which the secants of function `k` beside the interval from sample i − 1
+    /// to i meet, if that is inside it and across zero. At an end of the step the missing secant is
+    /// the mirror image of the other one.
     fn notch(&self, i: usize, k: usize) -> Option<f64> {
         let value = |i: usize| self.values[i][k];
         let secant = |i: usize| {
             let h = self.times[i] - self.times[i - 1];
             (value(i) - value(i - 1)) / h
         };
-        // a step may end just on zero
+        // a step may end exactly at zero
         let [before, here] = [i - 1, i].map(|i| sign(value(i)));
         let s = if here == 0 { before } else { here };
         if s == 0 || before == -s {
             return None;
         }
-        // as if it were positive: falling before, rising after
+        // as if the values were positive: falling before, rising after
         let up = f64::from(s);
         let falling = (i > 1 && sign(value(i - 2)) != -s).then(|| up * secant(i - 1));
         let rising =
@@ -260,7 +274,8 @@ impl Locator {
         (inside && a + falling * x < 0.0).then(|| self.times[i - 1] + x)
     }
 
-    /// Where the parabola of function `k` through samples i − 1, i, i + 1 of one sign has its vertex, when that lies across zero.
+    /// Returns the time of the vertex of the parabola of function `k` through samples i − 1, i, i +
+    /// 1 of one sign, if it lies across zero.
     fn vertex(&self, i: usize, k: usize) -> Option<f64> {
         if i + 1 >= self.times.len() {
             return None;
@@ -284,12 +299,13 @@ impl Locator {
         let x = -0.5 * slope / bend;
         let least = f1 + 0.5 * slope * x;
         let inside = x > h0 && x < h2 && x.abs() > 1e-3 * (h2 - h0);
-        // the parabola is an estimate: a near miss is worth a look
+        // the parabola is an estimate, so a near miss is sampled too
         let across = sign(least) != s || least.abs() < 0.1 * f1.abs();
         (inside && across).then(|| self.times[i] + x)
     }
 
-    /// Shrinks the bracket between samples i − 1 and i onto the first crossing; the values there are left in `at_b`.
+    /// Shrinks the bracket between samples i − 1 and i onto the first crossing; returns its end, in
+    /// s, and leaves the values there in `at_b`.
     fn close_in<E>(
         &mut self,
         i: usize,
@@ -304,7 +320,8 @@ impl Locator {
         let whole = b - a;
         while b - a > resolution {
             let middle = a + 0.5 * (b - a);
-            // earliest secant root of what has crossed, a little towards the middle
+            // earliest secant root of the functions that have crossed, moved a little towards the
+            // middle
             let mut x = b;
             for k in 0..self.side.len() {
                 let (fa, fb) = (self.at_a[k], self.at_b[k]);
@@ -318,7 +335,7 @@ impl Locator {
             } else {
                 middle
             };
-            // not farther from the middle than bisection permits
+            // no farther from the middle than bisection permits
             let room = (radius - 0.5 * (b - a)).max(0.0);
             x = x.clamp(middle - room, middle + room);
             if !(x > a && x < b) {
@@ -334,7 +351,7 @@ impl Locator {
             } else {
                 a = x;
                 std::mem::swap(&mut self.at_a, &mut self.at_x);
-                // crossings that do not count, and functions leaving zero
+                // crossings that do not count, and functions that leave zero
                 for (side, value) in self.side.iter_mut().zip(&self.at_a) {
                     if sign(*value) != 0 {
                         *side = sign(*value);
@@ -346,7 +363,7 @@ impl Locator {
         Ok(b)
     }
 
-    /// Whether going from side to sign is a crossing of function `k` that counts.
+    /// Returns whether going from `side` to `sign` is a crossing of function `k` that counts.
     fn counts(&self, k: usize, side: i8, sign: i8) -> bool {
         let crosses = side * sign < 0 || self.zero_counts && side == 0 && sign != 0;
         crosses
@@ -357,13 +374,14 @@ impl Locator {
             }
     }
 
+    /// Returns whether a crossing that counts leads from the sides to these values.
     fn any_crossed(&self, values: &[f64]) -> bool {
         let mut each = self.side.iter().zip(values).enumerate();
         each.any(|(k, (side, value))| self.counts(k, *side, sign(*value)))
     }
 }
 
-/// The side of a value: 0 for zero, and for what is no number.
+/// Returns the side of a value: 0 for zero and for NaN.
 pub fn sign(x: f64) -> i8 {
     if x > 0.0 {
         1

@@ -1,31 +1,42 @@
-//! Generalized-α of order 2 for `F(t, y, ẏ) = 0`: HHT with damping of the highest frequencies, Newmark without.
+//! Generalized-α of order 2 for `F(t, y, ẏ) = 0`: HHT with damping of the highest frequencies,
+//! Newmark without.
 //!
 //! ```text
-//! F(tₙ₊₁, yₙ₊₁, ẏₙ₊₁) = 0                                                                  (1)
-//! yₙ₊₁ = yₙ + h ((1−γ) aₙ + γ aₙ₊₁)                                                        (2)
-//! (1−αm) aₙ₊₁ + αm aₙ = (1−αf) ẏₙ₊₁ + αf ẏₙ         a: the rate at tₙ + Δh, Δ = αm − αf       (3)
-//! αf = ρ/(1+ρ),  αm = (3ρ−1)/(2(1+ρ)),  γ = ½ + αf − αm                                     (4)
-//! ŷ = yₙ + h ẏₙ + h²/(2 h₀) (ẏₙ − ẏₙ₋₁)                                                     (5)
-//! y − y(t) = c h³ y‴,  y − ŷ = (c − c_p) h³ y‴,  error = |c/(c − c_p)| ‖y − ŷ‖              (6)
+//! F(tₙ₊₁, yₙ₊₁, ẏₙ₊₁) = 0                                                                (1)
+//! yₙ₊₁ = yₙ + h ((1−γ) aₙ + γ aₙ₊₁)                                                      (2)
+//! (1−αm) aₙ₊₁ + αm aₙ = (1−αf) ẏₙ₊₁ + αf ẏₙ        a: the rate at tₙ + Δh, Δ = αm − αf   (3)
+//! αf = ρ/(1+ρ),  αm = (3ρ−1)/(2(1+ρ)),  γ = ½ + αf − αm                                   (4)
+//! ŷ = yₙ + h ẏₙ + h²/(2 h₀) (ẏₙ − ẏₙ₋₁)                                                   (5)
+//! y − y(t) = c h³ y‴,  y − ŷ = (c − c_p) h³ y‴,  error = |c/(c − c_p)| ‖y − ŷ‖            (6)
 //! ```
 //!
-//! ρ is what is left of an infinitely fast mode after a step: 1 keeps all (Newmark's rule of the average acceleration, γ = ½), 0 annihilates it. HHT takes
-//! ρ = 0.54, which is its usual α = −0.3. Since (1) holds at the end of the step, constraints do too, whatever the relation between y and ẏ.
+//! ρ is the part of an infinitely fast mode that is left after a step: 1 keeps all of it (Newmark's
+//! rule of the average acceleration, γ = ½), 0 annihilates it. HHT takes ρ = 0.54, which is its
+//! usual α = −0.3. Since (1) holds at the end of the step, constraints do too, whatever the
+//! relation between y and ẏ.
 //!
-//! *Change of step*: a belongs to a place in the step, so it is moved along with it: a ← ẏ + (a − ẏ) h_new/h_old.
-//! *Algebraic unknowns* have no rate in F; the one that (3) gives them is not used, they are predicted as they were and interpolated linearly.
-//! *Newmark and constraints*: without damping the multipliers of constraints on positions ring; stabilized rows or HHT do not.
+//! *Change of step*: a belongs to a place in the step, so it is moved along with it:
+//! a ← ẏ + (a − ẏ) h_new/h_old.
 //!
-//! Source: Hilber, Hughes & Taylor 1977; Jansen, Whiting & Hulbert, CMAME 190 (2000), for first-order systems; Arnold & Brüls, Multibody System Dynamics 18 (2007).
+//! *Algebraic unknowns* have no rate in F. The one that (3) gives them is not used: they are
+//! predicted unchanged and interpolated linearly.
+//!
+//! *Newmark and constraints*: without damping the multipliers of constraints on positions ring;
+//! with stabilized rows or with HHT they do not.
+//!
+//! Source: Hilber, Hughes & Taylor 1977; Jansen, Whiting & Hulbert, CMAME 190 (2000), for
+//! first-order systems; Arnold & Brüls, Multibody System Dynamics 18 (2007).
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
-use super::control::{self, Pi, Weights, worst, worst_index};
-use super::corrector::Corrector;
+use super::control::{self, Attempts, Pi, Rejection, Weights, worst, worst_index};
+use super::corrector::{Corrector, Iterate};
 use super::{Dae, Failure, Kind, Method, Options, Reason, Stats, Step, Stop};
 
-/// What HHT leaves of an infinitely fast mode: α = −0.3.
-const HHT: f64 = 0.7 / 1.3;
-/// Growth of the step below which it is kept, for the sake of the matrix.
+/// Order of the method.
+const ORDER: usize = 2;
+/// ρ of (4) for HHT, which is its usual α = −0.3.
+const HHT_RHO: f64 = 0.7 / 1.3;
+/// Growth of the step, as a factor, below which it stays as it is, for the sake of the matrix.
 const KEEP_STEP: f64 = 1.25;
 
 /// Generalized-α; see the file's card.
@@ -37,45 +48,51 @@ pub struct Hht {
     stats: Stats,
     /// permitted error of a step
     tolerance: f64,
-    /// αf, αm, γ of (4); c of (6)
+    /// αf of (4)
     alpha_f: f64,
+    /// αm of (4)
     alpha_m: f64,
+    /// γ of (4)
     gamma: f64,
+    /// c of (6)
     c: f64,
+    /// state at the end of the last accepted step
     now: State,
+    /// state at its beginning
     before: State,
+    /// whether there is a step to undo, or to interpolate in
     can_undo: bool,
-    /// which unknowns have rates; are controlled: 1 or 0; that over the error permitted   (n)
+    /// 1 for each unknown whose rate occurs, 0 for the others   (n)
     differential: Vec<f64>,
+    /// 1 for each unknown whose error is controlled, 0 for the others   (n)
     controlled: Vec<f64>,
-    scale: Vec<f64>,
-    /// solution, rate and correction in work; rate minus cj y   (n each)
-    y: Vec<f64>,
-    ydot: Vec<f64>,
-    e: Vec<f64>,
-    predicted: [Vec<f64>; 2],
+    /// the step in work
+    next: Iterate,
     corrector: Corrector,
 }
 
-/// What the next step builds on.
+/// The state that the next step starts from.
 #[derive(Clone, Debug)]
 struct State {
+    /// in s
     t: f64,
-    /// length of the step before, 0 at the start; proposed length of the next
+    /// length of the step before, in s; 0 at the start
     h_used: f64,
+    /// proposed length of the next step, in s
     h: f64,
-    /// no growth after a rejection
-    calm: bool,
-    /// solution, rate, a of (3); rate a step before   (n each)
+    /// solution   (n)
     y: Vec<f64>,
+    /// rate   (n)
     ydot: Vec<f64>,
+    /// a of (3)   (n)
     a: Vec<f64>,
+    /// rate a step before   (n)
     ydot_before: Vec<f64>,
 }
 
 impl State {
     fn copy_from(&mut self, other: &State) {
-        (self.t, self.h_used, self.h, self.calm) = (other.t, other.h_used, other.h, other.calm);
+        (self.t, self.h_used, self.h) = (other.t, other.h_used, other.h);
         self.y.copy_from_slice(&other.y);
         self.ydot.copy_from_slice(&other.ydot);
         self.a.copy_from_slice(&other.a);
@@ -84,17 +101,18 @@ impl State {
 }
 
 impl Hht {
-    /// Newmark's method for `n` unknowns: ρ = 1.
+    /// Prepares Newmark's method for `n` unknowns: ρ = 1.
     pub fn newmark(n: usize, options: &Options) -> Self {
         Self::with_damping(n, options, 1.0)
     }
 
-    /// HHT for `n` unknowns: α = −0.3.
+    /// Prepares HHT for `n` unknowns: α = −0.3.
     pub fn new(n: usize, options: &Options) -> Self {
-        Self::with_damping(n, options, HHT)
+        Self::with_damping(n, options, HHT_RHO)
     }
 
-    /// The method that leaves the part `rho` of an infinitely fast mode after a step, 0 ≤ `rho` ≤ 1.
+    /// Prepares the method that leaves the part `rho` of an infinitely fast mode after a step,
+    /// 0 ≤ `rho` ≤ 1.
     pub fn with_damping(n: usize, options: &Options, rho: f64) -> Self {
         let zeros = || vec![0.0; n];
         let rho = rho.clamp(0.0, 1.0);
@@ -110,7 +128,6 @@ impl Hht {
             t: 0.0,
             h_used: 0.0,
             h: 0.0,
-            calm: false,
             y: zeros(),
             ydot: zeros(),
             a: zeros(),
@@ -131,15 +148,12 @@ impl Hht {
             can_undo: false,
             differential: vec![1.0; n],
             controlled: vec![1.0; n],
-            scale: zeros(),
-            y: zeros(),
-            ydot: zeros(),
-            e: zeros(),
-            predicted: [zeros(), zeros()],
+            next: Iterate::new(n),
             corrector: Corrector::new(n, options),
         }
     }
 
+    /// Begins at `(t, y)`: consistent values, first step, nothing known of the past.
     fn begin<P: Dae + ?Sized>(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
         let stop = |reason| Stop { reason, t, h: 0.0 };
         self.can_undo = false;
@@ -165,7 +179,7 @@ impl Hht {
             (0..y.len()).map(|i| self.controlled[i] * now.ydot[i] / now.y[i].abs().max(typical[i])),
         );
         let guess = self.tolerance.sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
-        (now.t, now.h_used, now.calm) = (t, 0.0, false);
+        (now.t, now.h_used) = (t, 0.0);
         now.h = self
             .options
             .h_initial
@@ -174,13 +188,13 @@ impl Hht {
         Ok(())
     }
 
-    /// One attempt; gives the error, or the reason, whether a shorter step may help, and the factor for it.
+    /// Attempts a step of length `h` to `t1`; returns its error, as a part of that permitted.
     fn attempt<P: Dae + ?Sized>(
         &mut self,
         problem: &mut P,
         h: f64,
         t1: f64,
-    ) -> Result<f64, (Reason, bool, f64)> {
+    ) -> Result<f64, Rejection> {
         let now = &self.now;
         let (af, am, gamma) = (self.alpha_f, self.alpha_m, self.gamma);
         let moved = if now.h_used > 0.0 {
@@ -195,28 +209,23 @@ impl Hht {
         };
         // ẏ = cj (y − yₙ) + …, from (2) and (3)
         let cj = (1.0 - am) / ((1.0 - af) * gamma * h);
-        for i in 0..self.y.len() {
+        for i in 0..self.next.y.len() {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
             let rise = self.differential[i]
                 * (h * now.ydot[i] + bend * (now.ydot[i] - now.ydot_before[i]));
-            self.y[i] = now.y[i] + rise;
-            self.ydot[i] =
+            self.next.y[i] = now.y[i] + rise;
+            self.next.ydot[i] =
                 cj * (rise - h * (1.0 - gamma) * a) + (am * a - af * now.ydot[i]) / (1.0 - af);
-            let (m, y) = (self.weights.magnitude()[i], self.y[i].abs());
-            self.scale[i] = 1.0 / (self.tolerance * if y > m { y } else { m });
+            let (m, y) = (self.weights.magnitude()[i], self.next.y[i].abs());
+            self.next.scale[i] = 1.0 / (self.tolerance * if y > m { y } else { m });
         }
         self.corrector
-            .correct(
-                problem,
-                (t1, cj),
-                &mut self.y,
-                &mut self.ydot,
-                &mut self.e,
-                &self.scale,
-                &mut self.predicted,
-                &mut self.stats,
-            )
-            .map_err(|trouble| (trouble.reason, trouble.recoverable, 0.25))?;
+            .correct(problem, (t1, cj), &mut self.next, &mut self.stats)
+            .map_err(|trouble| Rejection {
+                reason: trouble.reason,
+                recoverable: trouble.recoverable,
+                factor: 0.25,
+            })?;
         // (6); before the first step is done the prediction is of order 1
         let factor = if now.h_used > 0.0 {
             let c_p = -(1.0 / 6.0 + 0.25 * now.h_used / h);
@@ -224,24 +233,20 @@ impl Hht {
         } else {
             0.5
         };
-        let weighted = self
-            .e
-            .iter()
-            .zip(&self.scale)
-            .zip(&self.controlled)
-            .map(|((e, s), c)| e * s * c);
+        let errors = self.next.e.iter().zip(&self.next.scale);
+        let weighted = errors.zip(&self.controlled).map(|((e, s), c)| e * s * c);
         let error = factor * worst(weighted.clone());
         if error <= 1.0 {
             return Ok(error);
         }
-        Err((
-            Reason::ErrorTest(worst_index(weighted)),
-            true,
-            self.control.rejected(error),
-        ))
+        Err(Rejection {
+            reason: Reason::ErrorTest(worst_index(weighted)),
+            recoverable: true,
+            factor: self.control.rejected(error),
+        })
     }
 
-    /// The state after an accepted step.
+    /// Advances the state over an accepted step.
     fn complete(&mut self, t1: f64, h: f64) {
         let now = &mut self.now;
         let moved = if now.h_used > 0.0 {
@@ -249,18 +254,19 @@ impl Hht {
         } else {
             1.0
         };
-        for i in 0..self.y.len() {
+        for i in 0..self.next.y.len() {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
-            now.a[i] = (self.y[i] - now.y[i] - h * (1.0 - self.gamma) * a) / (h * self.gamma);
+            now.a[i] = (self.next.y[i] - now.y[i] - h * (1.0 - self.gamma) * a) / (h * self.gamma);
         }
         now.ydot_before.copy_from_slice(&now.ydot);
-        now.y.copy_from_slice(&self.y);
-        now.ydot.copy_from_slice(&self.ydot);
+        now.y.copy_from_slice(&self.next.y);
+        now.ydot.copy_from_slice(&self.next.ydot);
         (now.t, now.h_used) = (t1, h);
     }
 }
 
-/// The permitted error of a step for a requested accuracy: a run of order 2 sums h⁻¹ errors of h³.
+/// Returns the permitted error of a step for a requested accuracy: a run of order 2 sums h⁻¹
+/// errors of h³.
 fn inner_tolerance(request: f64) -> f64 {
     0.3 * request.powf(1.5)
 }
@@ -288,27 +294,16 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
     }
 
     fn step(&mut self, problem: &mut P, t_limit: f64) -> Result<Step, Stop> {
-        let t0 = self.now.t;
         self.before.copy_from(&self.now);
-        let shortest = control::shortest(t0, &self.options);
-        let mut cause = None;
-        let mut rejected = 0;
+        let mut attempts = Attempts::new(self.now.t, t_limit, &self.options);
         loop {
             let proposed = self.now.h.min(self.options.h_max);
-            let (h, at_limit) = control::fit(t0, proposed, t_limit);
-            let stop = |reason| Err(Stop { reason, t: t0, h });
-            if self.stats.steps + self.stats.rejected >= self.options.max_steps {
-                return stop(Reason::TooManySteps);
-            }
-            if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(
-                    cause.unwrap_or_else(|| control::too_fast(&self.now.ydot, &self.weights)),
-                );
-            }
-            let t1 = if at_limit { t_limit } else { t0 + h };
+            let too_fast = || control::too_fast(&self.now.ydot, &self.weights);
+            let (h, t1) = attempts.next(proposed, &self.options, &self.stats, too_fast)?;
             match self.attempt(problem, h, t1) {
                 Ok(error) => {
-                    let factor = self.control.accepted(error, rejected > 0, false);
+                    let calm = attempts.rejected() > 0;
+                    let factor = self.control.accepted(error, calm, false);
                     self.complete(t1, h);
                     let grown = if (1.0..KEEP_STEP).contains(&factor) {
                         h
@@ -321,27 +316,15 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                     } else {
                         grown
                     };
-                    self.weights.see(&self.y);
-                    self.stats.steps += 1;
+                    self.weights.see(&self.next.y);
                     self.can_undo = true;
-                    return Ok(Step {
-                        t0,
-                        t1,
-                        h,
-                        order: 2,
-                        rejected,
-                    });
+                    return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }
-                Err((reason, recoverable, factor)) => {
-                    cause = Some(reason);
-                    if !recoverable {
-                        return stop(reason);
-                    }
-                    self.now.h = h * factor;
+                Err(rejection) => {
+                    attempts.reject(rejection, h, &mut self.stats)?;
+                    self.now.h = h * rejection.factor;
                 }
             }
-            rejected += 1;
-            self.stats.rejected += 1;
         }
     }
 

@@ -1,19 +1,19 @@
 //! Methods for differential and differential-algebraic equations, and the linear algebra they need.
 //!
-//! This floor has never heard of a body: it sees numbers, residuals and rates. A method offers steps and an interpolant;
-//! output times, events and files belong to the analysis that drives it.
+//! This floor knows numbers, residuals and rates, and nothing of bodies. A method offers steps and
+//! an interpolant; output times, events and files belong to the analysis that drives it.
 //!
 //! ```text
 //! method = ode_method("DOP853", n, &options)          one row of the table of methods
 //! method.start(problem, t, y)
 //! while method.t() < end:
-//!     step = method.step(problem, end)                an accepted step from step.t0 to step.t1, or why there is none
+//!     step = method.step(problem, end)                an accepted step, or the reason for none
 //!     method.interpolate(problem, t, out)             any time inside it
 //!     method.undo()  or  method.reinitialize(…)       when an event lies inside it
 //! ```
 //!
-//! The requested tolerance is the permitted local error of each unknown relative to the largest magnitude it has had so far
-//! (see [`control::Weights`]).
+//! The requested tolerance is the permitted local error of each unknown relative to the largest
+//! magnitude it has had so far (see [`control::Weights`]).
 
 pub mod bdf;
 pub mod control;
@@ -26,7 +26,6 @@ pub mod newton;
 pub mod noise;
 pub mod pattern;
 pub mod radau;
-mod radau_systems;
 pub mod rank;
 pub mod runge_kutta;
 pub mod sparse;
@@ -36,46 +35,53 @@ pub use hht::Hht;
 pub use radau::Radau;
 pub use runge_kutta::Dop853;
 
-/// Why an evaluation could not be done: a small code the analysis translates into words ("what" is chosen by the problem).
+/// The failure of an evaluation: a small code that the problem chooses and the analysis translates
+/// into words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Failure {
-    /// meaning is the problem's: usually the index of a row, or of an output that is not finite
+    /// meaning chosen by the problem: usually the index of a row, or of an output that is not
+    /// finite
     pub what: usize,
-    /// whether a smaller step may help (a stage left the domain) or not (a mistake of the user's that will not go away)
+    /// whether a smaller step may help (a stage left the domain) or not (a mistake of the user's)
     pub recoverable: bool,
 }
 
-/// An explicit system `ẏ = f(t, y)`, possibly with invariants `g(t, y) = 0` that exact solutions keep.
+/// An explicit system `ẏ = f(t, y)`, possibly with invariants `g(t, y) = 0` that exact solutions
+/// keep.
 pub trait Ode {
-    /// Number of unknowns.
+    /// Returns the number of unknowns.
     fn size(&self) -> usize;
-    /// `ydot = f(t, y)`
+    /// Evaluates `ydot = f(t, y)`.
     ///
     /// # Errors
     /// When `f` has no finite value there.
     fn rate(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
-    /// Moves `y` back onto the invariants; tells whether it changed.
+    /// Moves `y` back onto the invariants; returns whether it changed.
     ///
     /// # Errors
     /// When they cannot be reached from here.
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
         Ok(false)
     }
-    /// Removes from an error estimate of a step that ends at `(t, y)` what projection will remove anyway; false: nothing to
-    /// remove. Asked only before a step is rejected.
+    /// Removes from the error estimate of a step that ends at `(t, y)` the part that projection
+    /// will remove; returns false if there is nothing to remove. Called only before a step is
+    /// rejected.
     ///
-    /// Where invariants become dependent, rates normal to them are full of magnified rounding that the solution never sees.
+    /// Where invariants become dependent, rates normal to them are full of magnified rounding that
+    /// never reaches the solution.
     fn filter_error(&mut self, _t: f64, _y: &[f64], _error: &mut [f64]) -> bool {
         false
     }
-    /// A better length for a step that was attempted from `t` with `h`, or `None`. `gap`: the part of a step within which the
-    /// method does not evaluate.
+    /// Returns a better length, in s, for a step that was attempted from `t` with length `h`, or
+    /// `None`. `gap`: the part of a step within which the method does not evaluate.
     ///
-    /// Where `f` is a quotient of numbers that vanish together at an instant, evaluations should keep away from it.
+    /// Where `f` is a quotient of numbers that vanish together at an instant, evaluations should
+    /// keep away from that instant.
     fn place_step(&mut self, _t: f64, _h: f64, _gap: [f64; 2]) -> Option<f64> {
         None
     }
-    /// `jacobian[i + n·j] = ∂fᵢ/∂yⱼ` (by columns), `dfdt[i] = ∂fᵢ/∂t`. Explicit methods never ask for it.
+    /// Evaluates `jacobian[i + n·j] = ∂fᵢ/∂yⱼ` (by columns) and `dfdt[i] = ∂fᵢ/∂t`. Explicit
+    /// methods never call it.
     ///
     /// # Errors
     /// When it has no finite value there.
@@ -86,12 +92,14 @@ pub trait Ode {
         jacobian: &mut [f64],
         dfdt: &mut [f64],
     ) -> Result<(), Failure>;
-    /// Where `∂f/∂y` has entries, if most of it is empty: then [`Ode::jacobian_entries`] is asked for it. As long as it stays the same it is the same
-    /// `Arc`. Asked at the start, and whenever a method begins anew.
+    /// Returns the pattern of `∂f/∂y` if most of it is empty; then [`Ode::jacobian_entries`] is
+    /// called instead of [`Ode::jacobian`].
+    ///
+    /// Called at the start and at every restart; the same pattern is returned as the same `Arc`.
     fn pattern(&mut self) -> Option<std::sync::Arc<pattern::Pattern>> {
         None
     }
-    /// `∂f/∂y` at the entries of the pattern.
+    /// Evaluates `∂f/∂y` at the entries of the pattern.
     ///
     /// # Errors
     /// When it has no finite value there.
@@ -103,24 +111,25 @@ pub trait Ode {
     ) -> Result<(), Failure> {
         unreachable!("a problem that tells the pattern of its Jacobian tells its entries")
     }
-    /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)
+    /// Sets the typical magnitude of each unknown; errors are measured against a small part of it
+    /// ([`Options::floor`]) or more   (n)
     fn typical(&self, typical: &mut [f64]);
-    /// How the magnitudes of unknowns hang together   (n)
+    /// Sets how the magnitude of each unknown depends on others   (n)
     fn relations(&self, _relations: &mut [Relation]) {}
 }
 
 /// An implicit system `F(t, y, ẏ) = 0`.
 pub trait Dae {
-    /// Number of unknowns and of rows.
+    /// Returns the number of unknowns and of rows.
     fn size(&self) -> usize;
-    /// `r = F(t, y, ydot)`
+    /// Evaluates `r = F(t, y, ydot)`.
     ///
     /// # Errors
     /// When `F` has no finite value there.
     fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure>;
-    /// Rows and columns of the entries of the Jacobian, fixed for the whole life of the problem.
+    /// Returns rows and columns of the entries of the Jacobian, fixed for the life of the problem.
     fn pattern(&self) -> Vec<(usize, usize)>;
-    /// `values[e] = (∂F/∂y + cj ∂F/∂ẏ)` at the `e`-th entry of the pattern.
+    /// Evaluates `values[e] = (∂F/∂y + cj ∂F/∂ẏ)` at the `e`-th entry of the pattern.
     ///
     /// # Errors
     /// When it has no finite value there.
@@ -132,37 +141,43 @@ pub trait Dae {
         cj: f64,
         values: &mut [f64],
     ) -> Result<(), Failure>;
-    /// A consistent start: given the differential unknowns in `y`, sets its algebraic unknowns and all rates `ydot`
-    /// so that `F(t, y, ydot) = 0` (and, for higher index, its hidden constraints hold).
+    /// Makes a start consistent: given the differential unknowns in `y`, sets its algebraic
+    /// unknowns and all rates `ydot` so that `F(t, y, ydot) = 0` (and, for higher index, its hidden
+    /// constraints hold).
     ///
     /// # Errors
     /// When there is none near `y`.
     fn consistent(&mut self, t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure>;
-    /// How each unknown is treated by the error norm   (n)
+    /// Returns how the error norm treats each unknown   (n)
     fn kinds(&self) -> Vec<Kind>;
-    /// How the entries of rows and unknowns grow as the step shrinks; see [`Levels`].
+    /// Returns the powers of the step with which rows and unknowns grow; see [`Levels`].
     fn levels(&self) -> Levels {
         Levels {
             rows: vec![0; self.size()],
             unknowns: vec![0; self.size()],
         }
     }
-    /// Typical magnitude of each unknown; a small part of it ([`Options::floor`]) is the least magnitude that an error is measured against   (n)
+    /// Sets the typical magnitude of each unknown; errors are measured against a small part of it
+    /// ([`Options::floor`]) or more   (n)
     fn typical(&self, typical: &mut [f64]);
-    /// How the magnitudes of unknowns hang together   (n)
+    /// Sets how the magnitude of each unknown depends on others   (n)
     fn relations(&self, _relations: &mut [Relation]) {}
 }
 
-/// How the magnitude that errors of an unknown are measured against hangs together with those of others.
+/// The dependence of the magnitude of an unknown, against which its errors are measured, on other
+/// unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relation {
-    /// it is never more than this: an angle is as exact as its fraction of a turn, however many turns there are
+    /// upper bound of the magnitude: an angle is as exact as its fraction of a turn, however many
+    /// turns it has made
     pub most: f64,
-    /// unknowns of one kind
+    /// number of the group of unknowns of one kind that it belongs to
     pub group: Option<u16>,
-    /// it is at least this part of the largest in its group: where one angle of many hardly moves, it is the others that are seen
+    /// least magnitude, as a part of the largest in its group: where one angle of many hardly
+    /// moves, the motion of the others decides
     pub share: f64,
-    /// the unknown that it is the rate of, where the error of a rate may be judged by what it does to that within a step
+    /// the unknown whose rate it is, if its error may be judged by the change it makes to that one
+    /// within a step
     pub rate_of: Option<usize>,
 }
 
@@ -177,7 +192,7 @@ impl Default for Relation {
     }
 }
 
-/// What an unknown of a [`Dae`] is.
+/// The treatment of an unknown of a [`Dae`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// its rate occurs; its error is controlled
@@ -192,8 +207,9 @@ pub enum Kind {
 
 /// Powers of the step that balance the Newton matrix of a [`Dae`] of higher index.
 ///
-/// Row `i` is multiplied by `h^rows[i]`, and unknown `j` is solved for as `h^unknowns[j] · yⱼ`, so that the matrix stays well conditioned
-/// as `h → 0`. For positions, velocities and multipliers (index 3) and the rows that belong to them:
+/// Row `i` is multiplied by `h^rows[i]`, and unknown `j` is solved for as `h^unknowns[j] · yⱼ`, so
+/// that the matrix stays well conditioned as `h → 0`. For positions, velocities and multipliers
+/// (index 3) and the rows that belong to them:
 ///
 /// ```text
 /// unknowns  q 0   v 1   λ 2   (μ of a stabilized index-2 form 1)
@@ -207,14 +223,14 @@ pub struct Levels {
     pub unknowns: Vec<u8>,
 }
 
-/// What is asked of a method.
+/// The request to a method: accuracy and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// E: permitted local error of each unknown, relative to its magnitude
     pub tolerance: f64,
     /// part of the typical magnitude below which errors are measured absolutely
     pub floor: f64,
-    /// first step; found from the problem when absent, in s
+    /// first step, in s; estimated from the problem when absent
     pub h_initial: Option<f64>,
     /// longest step, in s
     pub h_max: f64,
@@ -246,19 +262,19 @@ impl Default for Options {
 /// An accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// where it began, in s
+    /// beginning, in s
     pub t0: f64,
-    /// where it ended, in s
+    /// end, in s
     pub t1: f64,
-    /// its length, in s
+    /// length, in s
     pub h: f64,
-    /// order of the method in it
+    /// order of the method in this step
     pub order: usize,
     /// attempts rejected before it
     pub rejected: usize,
 }
 
-/// Why a method could not go on, and where.
+/// The end of an integration that could not go on: its cause and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
     /// the cause
@@ -272,9 +288,9 @@ pub struct Stop {
 /// The cause of a [`Stop`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// the problem said that it has no value, however short the step
+    /// the problem reported that it has no value, however short the step
     Evaluation(Failure),
-    /// a rate or residual with this index was not a number, however short the step
+    /// the rate or residual with this index was not a number, however short the step
     NotFinite(usize),
     /// the invariants could not be reached, however short the step
     Projection(Failure),
@@ -286,13 +302,13 @@ pub enum Reason {
     Singular(usize),
     /// as many steps as permitted
     TooManySteps,
-    /// branches change without end in hardly any time; what they change most is this unknown
+    /// branches keep changing while time hardly advances; this unknown changes most
     Endless(usize),
-    /// thousands of steps got hardly any further; this unknown changes fastest
+    /// thousands of steps hardly advanced time; this unknown changes fastest
     Stalled(usize),
 }
 
-/// What an integration has cost so far.
+/// Counts of the work of an integration so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// accepted steps
@@ -307,15 +323,17 @@ pub struct Stats {
     pub factorizations: usize,
     /// Newton iterations
     pub newton_iterations: usize,
-    /// accepted steps whose error estimate was larger than permitted, and no more than rounding (see [`noise`])
+    /// accepted steps with an error estimate above the permitted one that rounding explains (see
+    /// [`noise`])
     pub below_rounding: usize,
 }
 
-/// What every method offers for a problem of type `P`.
+/// The contract of a method for problems of type `P`.
 ///
-/// A new method provides: its state at the end of the last accepted step (`t`, `y`, `ydot`); a step that never passes `t_limit`, that shortens
-/// itself when the problem fails, and that gives up with a reason; an interpolant over that step whose order befits the method; one level of undo;
-/// a restart that keeps the magnitudes seen so far; and counts. After `start` nothing allocates.
+/// A new method provides: its state at the end of the last accepted step (`t`, `y`, `ydot`); a step
+/// that never passes `t_limit`, that shortens itself when the problem fails, and that gives up with
+/// a reason; an interpolant over that step whose order befits the method; one level of undo; a
+/// restart that keeps the magnitudes seen so far; and counts. After `start` nothing allocates.
 pub trait Method<P: ?Sized> {
     /// Begins at `(t, y)` with nothing known about the past.
     ///
@@ -327,20 +345,20 @@ pub trait Method<P: ?Sized> {
     /// # Errors
     /// When the problem cannot be evaluated there.
     fn reinitialize(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop>;
-    /// One accepted step, not beyond `t_limit`, which must lie after `t`.
+    /// Takes one accepted step, not beyond `t_limit`, which must lie after `t`.
     ///
     /// # Errors
     /// When no step can be taken; the state is that of the last accepted step.
     fn step(&mut self, problem: &mut P, t_limit: f64) -> Result<Step, Stop>;
-    /// Goes back to the beginning of the last accepted step; the next step will be no longer than up to its own `t_limit`.
-    /// Only the last step can be undone.
+    /// Goes back to the beginning of the last accepted step; the next step ends no later than its
+    /// own `t_limit`. Only the last step can be undone.
     fn undo(&mut self);
-    /// The solution at `t` inside the last accepted step.
+    /// Interpolates the solution at `t` inside the last accepted step.
     ///
     /// # Errors
     /// When a further evaluation that the interpolant needs fails.
     fn interpolate(&mut self, problem: &mut P, t: f64, y: &mut [f64]) -> Result<(), Failure>;
-    /// The derivative of the interpolant at `t` inside the last accepted step.
+    /// Differentiates the interpolant at `t` inside the last accepted step.
     ///
     /// # Errors
     /// When a further evaluation that the interpolant needs fails.
@@ -350,17 +368,18 @@ pub trait Method<P: ?Sized> {
         t: f64,
         ydot: &mut [f64],
     ) -> Result<(), Failure>;
-    /// Proposes the length of the next step.
+    /// Proposes the length of the next step, in s.
     fn propose(&mut self, h: f64);
-    /// End of the last accepted step.
+    /// Returns the end of the last accepted step, in s.
     fn t(&self) -> f64;
-    /// The solution there   (n)
+    /// Returns the solution there   (n)
     fn y(&self) -> &[f64];
-    /// Its rate there   (n)
+    /// Returns its rate there   (n)
     fn ydot(&self) -> &[f64];
-    /// What it has cost so far.
+    /// Returns the counts of the work so far.
     fn stats(&self) -> &Stats;
-    /// Whether the steps are limited by stability rather than accuracy, so that an implicit method would do better.
+    /// Returns whether stability rather than accuracy limits the steps, so that an implicit method
+    /// would do better.
     fn stiff(&self) -> bool {
         false
     }
@@ -369,19 +388,19 @@ pub trait Method<P: ?Sized> {
 /// One row of the table of methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MethodRow {
-    /// its name
+    /// name, as it is written in models and commands
     pub name: &'static str,
-    /// in a few words
+    /// description in a few words
     pub summary: &'static str,
-    /// which equations it treats
+    /// form of the equations it treats
     pub form: Form,
-    /// whether it solves no equations, so that stiff problems are beyond it
+    /// whether it solves no equations, so that it cannot treat stiff problems
     pub explicit: bool,
-    /// its (highest) order
+    /// order of the method, the highest if it varies
     pub order: usize,
 }
 
-/// The form in which a method wants its problem.
+/// The form of the equations that a method treats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// `ẏ = f(t, y)`, see [`Ode`]
@@ -390,7 +409,7 @@ pub enum Form {
     Dae,
 }
 
-/// Whether the method of that name wants `F(t, y, ẏ) = 0`.
+/// Returns whether the method of that name treats `F(t, y, ẏ) = 0`.
 pub fn is_implicit(name: &str) -> bool {
     METHODS
         .iter()
@@ -403,13 +422,14 @@ macro_rules! methods {
         ode { $($ode_name:literal, $ode_explicit:literal, $ode_order:literal, $ode_summary:literal => $ode:expr;)* }
         dae { $($dae_name:literal, $dae_explicit:literal, $dae_order:literal, $dae_summary:literal => $dae:expr;)* }
     ) => {
-        /// All methods. The first of each form is the default of its kind.
+        /// The table of all methods. The first of each form is the default of its kind.
         pub const METHODS: &[MethodRow] = &[
             $(MethodRow { name: $ode_name, summary: $ode_summary, form: Form::Ode, explicit: $ode_explicit, order: $ode_order },)*
             $(MethodRow { name: $dae_name, summary: $dae_summary, form: Form::Dae, explicit: $dae_explicit, order: $dae_order },)*
         ];
 
-        /// The method of that name for problems `ẏ = f(t, y)` of `n` unknowns.
+        /// Creates the method of that name for problems `ẏ = f(t, y)` of `n` unknowns, if it is in
+        /// the table.
         pub fn ode_method<P: Ode + ?Sized>(name: &str, n: usize, options: &Options) -> Option<Box<dyn Method<P>>> {
             match name {
                 $($ode_name => Some(Box::new($ode(n, options))),)*
@@ -417,7 +437,8 @@ macro_rules! methods {
             }
         }
 
-        /// The method of that name for problems `F(t, y, ẏ) = 0` of `n` unknowns.
+        /// Creates the method of that name for problems `F(t, y, ẏ) = 0` of `n` unknowns, if it is
+        /// in the table.
         pub fn dae_method<P: Dae + ?Sized>(name: &str, n: usize, options: &Options) -> Option<Box<dyn Method<P>>> {
             match name {
                 $($dae_name => Some(Box::new($dae(n, options))),)*

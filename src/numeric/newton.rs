@@ -1,17 +1,19 @@
 //! Newton's method, damped, for square systems `F(x) = 0` far from their solution: [`Newton`].
 //!
 //! ```text
-//! J(x) Δ = −F(x),   x ← x + λ Δ                                                         (1)
-//! J(x) Δ̄ = −F(x + λ Δ)                    what is left, seen through the same matrix     (2)
-//! accept when ‖Δ̄‖ ≤ (1 − λ/4) ‖Δ‖         the correction shrinks                         (3)
-//! λ' = ½ ‖Δ‖ λ² / ‖Δ̄ − (1−λ) Δ‖           damping that the curvature just seen allows    (4)
+//! J(x) Δ = −F(x),   x ← x + λ Δ                                                        (1)
+//! J(x) Δ̄ = −F(x + λ Δ)                    the next correction with the same matrix      (2)
+//! accept when ‖Δ̄‖ ≤ (1 − λ/4) ‖Δ‖         the correction shrinks                        (3)
+//! λ' = ½ ‖Δ‖ λ² / ‖Δ̄ − (1−λ) Δ‖           the damping that the measured curvature allows (4)
 //! ```
 //!
-//! Corrections are compared, not residuals: rows of any unit and scale may stand together, and no row can dominate. Sizes are in units of the
-//! typical magnitude of each unknown. When a full step leaves less than a quarter, the factors are kept and Δ̄ is the next correction.
+//! Corrections are compared, not residuals: rows of any unit and scale may stand together, and no
+//! row can dominate. Sizes are in units of the typical magnitude of each unknown. When a full step
+//! leaves less than a quarter, the factors are kept and Δ̄ is the next correction.
 //!
-//! *Singular*: a matrix without a pivot in a column ends the iteration and names the unknown. *No convergence* names the row that contributes most to the residual,
-//! each measured by what its own unknowns could contribute; *failures* of the problem halve the step first.
+//! *Singular*: a matrix without a pivot in a column ends the iteration and names the unknown.
+//! *No convergence* names the row with the largest residual, relative to the changes that typical
+//! changes of its unknowns would make. *Failures* of the problem first halve the step.
 //!
 //! Source: Deuflhard, Newton Methods for Nonlinear Problems, 3.3 (NLEQ-ERR).
 
@@ -19,10 +21,10 @@ use super::control::worst;
 use super::sparse::Factors;
 use super::{Failure, Reason};
 
-/// Least damping.
-const LEAST: f64 = 1e-8;
-/// Part left by a full step up to which the factors are kept.
-const KEEP: f64 = 0.25;
+/// Smallest damping λ; a shorter correction is given up.
+const LEAST_DAMPING: f64 = 1e-8;
+/// Ratio ‖Δ̄‖/‖Δ‖ after a full correction up to which the factors are kept.
+const KEEP_FACTORS_RATIO: f64 = 0.25;
 
 /// A square system of nonlinear equations.
 pub trait System {
@@ -44,7 +46,7 @@ pub trait System {
     fn typical(&self, typical: &mut [f64]);
 }
 
-/// A solution found.
+/// The record of a solution found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved {
     /// corrections made
@@ -55,7 +57,7 @@ pub struct Solved {
     pub size: f64,
 }
 
-/// Why none was found; the unknowns are left at the best point reached.
+/// The reason why no solution was found; the unknowns are left at the best point reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotSolved {
     /// the cause, with the row or unknown at fault
@@ -66,7 +68,8 @@ pub struct NotSolved {
     pub size: f64,
 }
 
-/// Damped Newton; see the file's card. Solving again reuses the memory and, when it can, the pivot order.
+/// Damped Newton; see the file's card. Solving again reuses the memory and, when it can, the pivot
+/// order.
 #[derive(Clone, Debug)]
 pub struct Newton {
     factors: Factors,
@@ -74,15 +77,41 @@ pub struct Newton {
     values: Vec<f64>,
     /// 1/typical   (n)
     scale: Vec<f64>,
-    /// F, Δ, Δ̄, trial point   (n each)
+    /// F   (n)
     r: Vec<f64>,
+    /// Δ   (n)
     delta: Vec<f64>,
+    /// Δ̄   (n)
     left: Vec<f64>,
+    /// trial point   (n)
     trial: Vec<f64>,
 }
 
+/// The iteration so far.
+struct Progress {
+    /// corrections made
+    iterations: usize,
+    /// Jacobians factored
+    factorizations: usize,
+    /// ‖Δ‖ of the correction in work
+    size: f64,
+    /// λ of the correction in work
+    damping: f64,
+    /// λ‖Δ‖ and ‖Δ̄‖ of the correction before, for a forecast of the damping
+    before: Option<(f64, f64)>,
+}
+
+/// Limits a damping to its range; a full correction where none is computed.
+fn damping_within(damping: f64) -> f64 {
+    if damping.is_finite() {
+        damping.clamp(LEAST_DAMPING, 1.0)
+    } else {
+        1.0
+    }
+}
+
 impl Newton {
-    /// For systems with the pattern of `problem`.
+    /// Prepares for systems with the pattern of `problem`.
     pub fn new<P: System + ?Sized>(problem: &P) -> Self {
         let (n, pattern) = (problem.size(), problem.pattern());
         let zeros = || vec![0.0; n];
@@ -107,7 +136,8 @@ impl Newton {
         }
     }
 
-    /// Moves `x` to a solution: until the correction is below `tolerance` times the typical magnitudes, in at most `allowed` corrections.
+    /// Moves `x` to a solution: until the correction is below `tolerance` times the typical
+    /// magnitudes, in at most `allowed` corrections.
     ///
     /// # Errors
     /// When the problem fails at `x`, the matrix is singular, or the iteration does not get there.
@@ -118,141 +148,177 @@ impl Newton {
         tolerance: f64,
         allowed: usize,
     ) -> Result<Solved, NotSolved> {
-        let (mut iterations, mut factorizations) = (0, 0);
-        let mut size = f64::INFINITY;
-        let mut damping = 1.0f64;
-        // λ‖Δ‖ and Δ̄ of the step before, for a forecast of the damping
-        let mut before: Option<(f64, f64)> = None;
-        let fail = |reason, iterations, size| {
-            Err(NotSolved {
+        let mut progress = Progress {
+            iterations: 0,
+            factorizations: 0,
+            size: f64::INFINITY,
+            damping: 1.0,
+            before: None,
+        };
+        let outcome = self.iterate(problem, x, (tolerance, allowed), &mut progress);
+        let iterations = progress.iterations;
+        match outcome {
+            Ok(size) => Ok(Solved {
+                iterations,
+                factorizations: progress.factorizations,
+                size,
+            }),
+            Err(reason) => Err(NotSolved {
                 reason,
                 iterations,
-                size,
-            })
-        };
-        if let Err(reason) = self.evaluate(problem, x) {
-            return fail(reason, iterations, size);
+                size: progress.size,
+            }),
         }
-        while iterations < allowed {
-            // (1)
-            if let Err(failure) = problem.jacobian(x, &mut self.values) {
-                return fail(Reason::Evaluation(failure), iterations, size);
-            }
-            factorizations += 1;
-            if let Err(unknown) = self.factors.factor(&self.values) {
-                return fail(Reason::Singular(unknown), iterations, size);
-            }
-            self.delta.copy_from_slice(&self.r);
-            self.factors.solve(&mut self.delta);
-            self.delta.iter_mut().for_each(|d| *d = -*d);
-            size = self.norm(&self.delta);
-            if !size.is_finite() {
-                return fail(Reason::Newton(self.worst_row()), iterations, size);
-            }
-            if let Some((reach, left)) = before {
-                let change = worst(
-                    self.left
-                        .iter()
-                        .zip(&self.delta)
-                        .zip(&self.scale)
-                        .map(|((l, d), s)| (l - d) * s),
-                );
-                let forecast = reach * left / (change * size);
-                damping = if forecast.is_finite() {
-                    forecast.clamp(LEAST, 1.0)
-                } else {
-                    1.0
-                };
-            }
-            loop {
-                iterations += 1;
-                if size <= tolerance {
-                    x.iter_mut().zip(&self.delta).for_each(|(x, d)| *x += d);
-                    return Ok(Solved {
-                        iterations,
-                        factorizations,
-                        size,
-                    });
-                }
-                // (2), shorter while the problem fails or the correction does not shrink (3)
-                let (left, allowance) = loop {
-                    for ((trial, x), d) in self.trial.iter_mut().zip(&*x).zip(&self.delta) {
-                        *trial = x + damping * d;
-                    }
-                    let mut trial = std::mem::take(&mut self.trial);
-                    let outcome = self.evaluate(problem, &trial);
-                    std::mem::swap(&mut self.trial, &mut trial);
-                    let verdict = match outcome {
-                        Ok(()) => {
-                            self.left.copy_from_slice(&self.r);
-                            self.factors.solve(&mut self.left);
-                            self.left.iter_mut().for_each(|l| *l = -*l);
-                            let left = self.norm(&self.left);
-                            let keep = 1.0 - damping;
-                            let curved = worst(
-                                self.left
-                                    .iter()
-                                    .zip(&self.delta)
-                                    .zip(&self.scale)
-                                    .map(|((l, d), s)| (l - keep * d) * s),
-                            );
-                            let allowance = 0.5 * size * damping * damping / curved;
-                            if left <= (1.0 - 0.25 * damping) * size {
-                                break (left, allowance);
-                            }
-                            Ok(allowance)
-                        }
-                        Err(
-                            reason @ Reason::Evaluation(Failure {
-                                recoverable: false, ..
-                            }),
-                        ) => {
-                            return fail(reason, iterations, size);
-                        }
-                        Err(reason) => Err(reason),
-                    };
-                    damping = match verdict {
-                        Ok(allowance) if allowance > 0.0 => (0.5 * damping).min(allowance),
-                        _ => 0.5 * damping,
-                    };
-                    if damping < LEAST || damping.is_nan() {
-                        // the residual of the point that is kept
-                        let kept = self.evaluate(problem, x).err();
-                        let reason = verdict
-                            .err()
-                            .or(kept)
-                            .unwrap_or_else(|| Reason::Newton(self.worst_row()));
-                        return fail(reason, iterations, size);
-                    }
-                };
-                x.copy_from_slice(&self.trial);
-                if left <= tolerance && damping == 1.0 {
-                    x.iter_mut().zip(&self.left).for_each(|(x, l)| *x += l);
-                    return Ok(Solved {
-                        iterations,
-                        factorizations,
-                        size: left,
-                    });
-                }
-                let quick = damping == 1.0 && left <= KEEP * size;
-                before = Some((damping * size, left));
-                damping = if allowance.is_finite() {
-                    allowance.clamp(LEAST, 1.0)
-                } else {
-                    1.0
-                };
-                if !quick || iterations >= allowed {
-                    break;
-                }
-                // the same factors serve again
-                std::mem::swap(&mut self.delta, &mut self.left);
-                (size, damping) = (left, 1.0);
-            }
-        }
-        fail(Reason::Newton(self.worst_row()), iterations, size)
     }
 
-    /// `r = F(x)`, all of it finite.
+    /// Alternates between new factors and the corrections that they are good for; returns the size
+    /// of the last correction.
+    fn iterate<P: System + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        x: &mut [f64],
+        (tolerance, allowed): (f64, usize),
+        progress: &mut Progress,
+    ) -> Result<f64, Reason> {
+        self.evaluate(problem, x)?;
+        while progress.iterations < allowed {
+            self.linearize(problem, x, progress)?;
+            let limits = (tolerance, allowed);
+            if let Some(size) = self.correct(problem, x, limits, progress)? {
+                return Ok(size);
+            }
+        }
+        Err(Reason::Newton(self.worst_row()))
+    }
+
+    /// Computes the correction (1) at `x` with new factors, and forecasts its damping.
+    fn linearize<P: System + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        x: &[f64],
+        progress: &mut Progress,
+    ) -> Result<(), Reason> {
+        problem
+            .jacobian(x, &mut self.values)
+            .map_err(Reason::Evaluation)?;
+        progress.factorizations += 1;
+        self.factors
+            .factor(&self.values)
+            .map_err(Reason::Singular)?;
+        self.delta.copy_from_slice(&self.r);
+        self.factors.solve(&mut self.delta);
+        self.delta.iter_mut().for_each(|d| *d = -*d);
+        progress.size = self.norm(&self.delta);
+        if !progress.size.is_finite() {
+            return Err(Reason::Newton(self.worst_row()));
+        }
+        if let Some((moved, left)) = progress.before {
+            let change = self.distance(1.0);
+            progress.damping = damping_within(moved * left / (change * progress.size));
+        }
+        Ok(())
+    }
+
+    /// Corrects `x` for as long as the factors are good; returns the size of the last correction
+    /// once it is small enough.
+    fn correct<P: System + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        x: &mut [f64],
+        (tolerance, allowed): (f64, usize),
+        progress: &mut Progress,
+    ) -> Result<Option<f64>, Reason> {
+        loop {
+            progress.iterations += 1;
+            if progress.size <= tolerance {
+                x.iter_mut().zip(&self.delta).for_each(|(x, d)| *x += d);
+                return Ok(Some(progress.size));
+            }
+            let (left, allowance) = self.damp(problem, x, progress)?;
+            x.copy_from_slice(&self.trial);
+            let full = progress.damping == 1.0;
+            if left <= tolerance && full {
+                x.iter_mut().zip(&self.left).for_each(|(x, l)| *x += l);
+                return Ok(Some(left));
+            }
+            let quick = full && left <= KEEP_FACTORS_RATIO * progress.size;
+            progress.before = Some((progress.damping * progress.size, left));
+            progress.damping = damping_within(allowance);
+            if !quick || progress.iterations >= allowed {
+                return Ok(None);
+            }
+            // the same factors serve again
+            std::mem::swap(&mut self.delta, &mut self.left);
+            (progress.size, progress.damping) = (left, 1.0);
+        }
+    }
+
+    /// Shortens the correction until the problem has a value at the trial point and (3) holds
+    /// there.
+    ///
+    /// Returns ‖Δ̄‖, and the damping (4) for the next correction.
+    fn damp<P: System + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        x: &[f64],
+        progress: &mut Progress,
+    ) -> Result<(f64, f64), Reason> {
+        loop {
+            let (size, damping) = (progress.size, progress.damping);
+            for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.delta) {
+                *trial = x + damping * d;
+            }
+            let mut trial = std::mem::take(&mut self.trial);
+            let outcome = self.evaluate(problem, &trial);
+            std::mem::swap(&mut self.trial, &mut trial);
+            let verdict = match outcome {
+                Ok(()) => {
+                    let (left, allowance) = self.remaining(size, damping);
+                    if left <= (1.0 - 0.25 * damping) * size {
+                        return Ok((left, allowance));
+                    }
+                    Ok(allowance)
+                }
+                Err(
+                    reason @ Reason::Evaluation(Failure {
+                        recoverable: false, ..
+                    }),
+                ) => return Err(reason),
+                Err(reason) => Err(reason),
+            };
+            progress.damping = match verdict {
+                Ok(allowance) if allowance > 0.0 => (0.5 * damping).min(allowance),
+                _ => 0.5 * damping,
+            };
+            if progress.damping < LEAST_DAMPING || progress.damping.is_nan() {
+                // the residual of the point that is kept
+                let kept = self.evaluate(problem, x).err();
+                let cause = verdict.err().or(kept);
+                return Err(cause.unwrap_or_else(|| Reason::Newton(self.worst_row())));
+            }
+        }
+    }
+
+    /// Computes Δ̄ of (2) from the residual at the trial point; returns ‖Δ̄‖ and the damping (4).
+    fn remaining(&mut self, size: f64, damping: f64) -> (f64, f64) {
+        self.left.copy_from_slice(&self.r);
+        self.factors.solve(&mut self.left);
+        self.left.iter_mut().for_each(|l| *l = -*l);
+        let left = self.norm(&self.left);
+        let curved = self.distance(1.0 - damping);
+        (left, 0.5 * size * damping * damping / curved)
+    }
+
+    /// Returns `‖Δ̄ − part Δ‖`.
+    fn distance(&self, part: f64) -> f64 {
+        let both = self.left.iter().zip(&self.delta).zip(&self.scale);
+        worst(both.map(|((l, d), s)| (l - part * d) * s))
+    }
+
+    /// Sets `r = F(x)`.
+    ///
+    /// # Errors
+    /// When it is not finite.
     fn evaluate<P: System + ?Sized>(&mut self, problem: &mut P, x: &[f64]) -> Result<(), Reason> {
         problem
             .residual(x, &mut self.r)
@@ -263,11 +329,13 @@ impl Newton {
             .map_or(Ok(()), |i| Err(Reason::NotFinite(i)))
     }
 
+    /// Returns ‖x‖, in units of typical magnitudes.
     fn norm(&self, x: &[f64]) -> f64 {
         worst(x.iter().zip(&self.scale).map(|(x, s)| x * s))
     }
 
-    /// The row whose residual is largest, measured by what typical changes of its unknowns would contribute.
+    /// Returns the row with the largest residual, relative to the largest change of it that typical
+    /// changes of its unknowns would make.
     fn worst_row(&mut self) -> usize {
         self.left.fill(0.0);
         for ((i, j), v) in self.pattern.iter().zip(&self.values) {

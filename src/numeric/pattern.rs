@@ -1,27 +1,28 @@
-//! Where a Jacobian has entries, and which of its columns can be found together: [`Pattern`].
+//! The pattern of a Jacobian, and the columns of it that can be differentiated together:
+//! [`Pattern`].
 //!
 //! ```text
-//! columns that share no row form a group: one derivative along their sum yields every entry of each of them
+//! columns that share no row form a group: one derivative along their sum yields all their entries
 //! ```
 //!
-//! Groups are made greedily, columns with many entries first. A band of width b takes b groups, however long it is; a full row as many
-//! as it has entries.
+//! Groups are made greedily, columns with many entries first. A band of width b takes b groups,
+//! however long it is; a full row as many as it has entries.
 //!
 //! Source: Curtis, Powell & Reid, J. Inst. Math. Appl. 13 (1974).
 
 /// The places of the entries of a matrix, by columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pattern {
-    /// where each column begins among the entries   (columns + 1)
+    /// beginning of each column among the entries   (columns + 1)
     start: Vec<usize>,
     /// row of each entry, ascending within a column   (entries)
     row: Vec<usize>,
-    /// columns that share no row
+    /// groups of columns that share no row
     groups: Vec<Vec<usize>>,
 }
 
 impl Pattern {
-    /// Of a matrix whose row `i` has entries in the columns `rows[i]`.
+    /// Builds the pattern of a matrix whose row `i` has entries in the columns `rows[i]`.
     pub fn of_rows(n_columns: usize, rows: &[Vec<u32>]) -> Self {
         let mut columns = vec![Vec::new(); n_columns];
         for (i, row) in rows.iter().enumerate() {
@@ -32,7 +33,8 @@ impl Pattern {
         Self::of_columns(rows.len(), columns)
     }
 
-    /// Of a matrix of `n_rows` rows whose column `j` has entries in the rows `columns[j]`.
+    /// Builds the pattern of a matrix of `n_rows` rows whose column `j` has entries in the rows
+    /// `columns[j]`.
     pub fn of_columns(n_rows: usize, mut columns: Vec<Vec<usize>>) -> Self {
         let mut by_row = vec![Vec::new(); n_rows];
         for (j, column) in columns.iter_mut().enumerate() {
@@ -46,7 +48,7 @@ impl Pattern {
         order.sort_by_key(|&j| std::cmp::Reverse(columns[j].len()));
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let mut group_of = vec![usize::MAX; columns.len()];
-        // the column for which a group was last found to be taken
+        // for each group, the last column that found it taken
         let mut taken: Vec<usize> = Vec::new();
         for j in order {
             for &other in columns[j].iter().flat_map(|&i| &by_row[i]) {
@@ -71,27 +73,27 @@ impl Pattern {
         Self { start, row, groups }
     }
 
-    /// How many columns there are.
+    /// Returns the number of columns.
     pub fn n_columns(&self) -> usize {
         self.start.len().saturating_sub(1)
     }
 
-    /// How many entries there are.
+    /// Returns the number of entries.
     pub fn n_entries(&self) -> usize {
         self.row.len()
     }
 
-    /// Columns that share no row, all of them.
+    /// Returns the groups of columns that share no row; together they are all columns.
     pub fn groups(&self) -> &[Vec<usize>] {
         &self.groups
     }
 
-    /// The entries of a column: index among all entries, and row.
+    /// Iterates over the entries of a column: index among all entries, and row.
     pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         (self.start[j]..self.start[j + 1]).map(|e| (e, self.row[e]))
     }
 
-    /// Row and column of every entry, in order.
+    /// Iterates over row and column of every entry, in order.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..self.n_columns()).flat_map(|j| self.column(j).map(move |(_, i)| (i, j)))
     }

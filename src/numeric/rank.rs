@@ -1,35 +1,41 @@
-//! Which rows of a matrix depend on which: rank, independent rows, combinations, free directions, least-norm solutions.
+//! Dependence among the rows of a matrix: rank, independent rows, combinations, free directions,
+//! least-norm solutions.
 //!
 //! ```text
 //! rows      aᵢ = dᵢ âᵢ,  |âᵢ| = 1                                        (1)
 //! pivots    Householder reflections on the rows, one row per pivot:
 //!           Â = L Qᵀ,  L m × r lower trapezoidal                          (2)
-//! chosen    the first row, in the order given, whose part outside the rows chosen so far is at least a tenth of the largest such part
+//! chosen    the first row, in the order given, whose part outside the rows chosen so far is at
+//!           least a tenth of the largest such part
 //! stop      when that largest part is below the tolerance: the rank is the number of rows chosen
 //! row       aₖ = Σ cⱼ aⱼ over independent j:   L₁ᵀ ĉ = ℓₖ                 (3)
 //! solution  x = Q z,  z = argmin |L z − b̂|                                (4)
 //! ```
 //!
-//! *Preference for the order given*: of two rows that say the same the first counts as independent, so that what is reported as superfluous is what came later.
+//! *Preference for the order given*: of two equivalent rows the first counts as independent, so
+//! that later rows are reported as redundant.
 //!
-//! *Tolerance*: a row of a mechanism at a configuration that satisfies its constraints to 1e-10 … 1e-12 depends on others up to errors of that
-//! size, however many bodies lie between; rows that differ because a user typed six or seven digits differ by 1e-7 and more. [`TOLERANCE`] lies between.
-//! [`Rank::margin`] tells how clear the decision was, for a caller that wants to warn. Rows are compared by direction, so their units do not matter;
-//! columns of different units should be scaled alike by the caller (a length of the mechanism).
+//! *Tolerance*: where a mechanism satisfies its constraints to 1e-10 … 1e-12, a dependent row
+//! differs from the combination of others by errors of that size, however many bodies lie between;
+//! rows that differ because a user typed six or seven digits differ by 1e-7 and more. [`TOLERANCE`]
+//! lies between. [`Rank::margin`] tells how clear the decision was, for a caller that wants to
+//! warn. Rows are compared by direction, so their units do not matter; columns of different units
+//! should be scaled alike by the caller (a length of the mechanism).
 
 /// Part of a row outside the others, relative to its length, below which it depends on them.
 pub const TOLERANCE: f64 = 1e-8;
-/// Length of a row relative to the longest, below which it is empty.
-const EMPTY: f64 = 1e-13;
-/// Preference for earlier rows: they may have this part of the largest remainder.
-const PREFERENCE: f64 = 0.1;
+/// Length of a row, as a part of the longest, below which it is empty.
+const EMPTY_ROW: f64 = 1e-13;
+/// Part of the largest remainder that an earlier row needs to be chosen before it.
+const PREFERENCE_FOR_EARLIER: f64 = 0.1;
 
 /// A row that depends on others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dependence {
     /// the dependent row
     pub row: usize,
-    /// independent rows and their factors: `a[row] = Σ factor · a[independent row]`; empty for an empty row
+    /// independent rows and their factors: `a[row] = Σ factor · a[independent row]`; empty for an
+    /// empty row
     pub combination: Vec<(usize, f64)>,
     /// length of what the combination leaves over, relative to the length of the row
     pub remainder: f64,
@@ -45,16 +51,16 @@ pub struct Rank {
     order: Vec<usize>,
     /// lengths dᵢ of (1), by row   (m)
     length: Vec<f64>,
-    /// rows of L, by row; beyond the rank what is left of the row   (m × n)
+    /// rows of L, by row; beyond the rank, the remainder of the row   (m × n)
     l: Vec<Vec<f64>>,
     /// Householder vectors v, I − v vᵀ with |v|² = 2   (rank × n)
     reflections: Vec<Vec<f64>>,
-    /// smallest part of a row that was kept, largest part that was dropped
+    /// smallest part of a row that was kept, and largest part that was dropped
     margin: (f64, f64),
 }
 
 impl Rank {
-    /// Decides over the matrix with the given `rows`, each of length `n`.
+    /// Decides the rank of the matrix with the given `rows`, each of length `n`.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a [f64]>, n: usize, tolerance: f64) -> Self {
         let mut l: Vec<Vec<f64>> = rows.into_iter().map(<[f64]>::to_vec).collect();
         let m = l.len();
@@ -65,7 +71,7 @@ impl Rank {
             .filter(|d| d.is_finite())
             .fold(0.0, f64::max);
         for (row, d) in l.iter_mut().zip(&mut length) {
-            if *d > EMPTY * longest && d.is_finite() {
+            if *d > EMPTY_ROW * longest && d.is_finite() {
                 row.iter_mut().for_each(|a| *a /= *d);
             } else {
                 row.fill(0.0);
@@ -86,7 +92,7 @@ impl Rank {
             }
             let at = remaining
                 .iter()
-                .position(|i| part(i) >= PREFERENCE * largest)
+                .position(|i| part(i) >= PREFERENCE_FOR_EARLIER * largest)
                 .unwrap_or(0);
             let pivot = remaining.remove(at);
             kept = kept.min(part(&pivot));
@@ -111,24 +117,25 @@ impl Rank {
         }
     }
 
-    /// Number of independent rows.
+    /// Returns the number of independent rows.
     pub fn rank(&self) -> usize {
         self.rank
     }
 
-    /// Independent rows, ascending.
+    /// Returns the independent rows, ascending.
     pub fn independent(&self) -> Vec<usize> {
         let mut rows = self.order[..self.rank].to_vec();
         rows.sort_unstable();
         rows
     }
 
-    /// Smallest part of a row that was taken for independent, and largest that was taken for dependent, relative to the rows' lengths.
+    /// Returns the smallest part of a row that was taken for independent, and the largest that was
+    /// taken for dependent, relative to the lengths of the rows.
     pub fn margin(&self) -> (f64, f64) {
         self.margin
     }
 
-    /// Dependent rows, ascending, each with its combination of independent ones (3).
+    /// Returns the dependent rows, ascending, each with its combination of independent ones (3).
     pub fn dependent(&self) -> Vec<Dependence> {
         let r = self.rank;
         let mut found = Vec::new();
@@ -163,7 +170,8 @@ impl Rank {
         found
     }
 
-    /// Directions `x` with `A x = 0`, one per unknown that the rows leave free: orthonormal   ((n − rank) × n)
+    /// Returns directions `x` with `A x = 0`, one per unknown that the rows leave free: orthonormal
+    /// ((n − rank) × n)
     pub fn free_directions(&self) -> Vec<Vec<f64>> {
         (self.rank..self.n)
             .map(|k| {
@@ -175,8 +183,8 @@ impl Rank {
             .collect()
     }
 
-    /// The same directions, combined so that each has a one at an unknown of its own and zeros at those of the others: as sparse as can be had cheaply.
-    /// Gives these unknowns beside the directions.
+    /// Returns the same directions, combined so that each has a one at an unknown of its own and
+    /// zeros at those of the others, beside these unknowns.
     pub fn free_motions(&self) -> Vec<(usize, Vec<f64>)> {
         let mut motions = self.free_directions();
         let mut own = Vec::new();
@@ -215,18 +223,22 @@ impl Rank {
         motions
     }
 
-    /// The shortest `x` that satisfies `A x = b` best (4), each row counting by its direction. Gives the row with the largest distance left, and that
-    /// distance `|aᵢ x − bᵢ|`: zero up to rounding when the rows do not contradict each other.
+    /// Finds the shortest `x` that satisfies `A x = b` best (4), each row counting by its
+    /// direction.
+    ///
+    /// Returns the row with the largest distance left and that distance `|aᵢ x − bᵢ|`: zero up to
+    /// rounding when the rows do not contradict each other.
     pub fn least_norm(&self, b: &[f64], x: &mut [f64]) -> (usize, f64) {
         self.solve(|_| 1.0, b, x)
     }
 
-    /// The shortest `x` with the least `|A x − b|`, each row counting as it is; gives as [`Rank::least_norm`] does.
+    /// Finds the shortest `x` with the least `|A x − b|`, each row counting with its length;
+    /// returns as [`Rank::least_norm`] does.
     pub fn least_squares(&self, b: &[f64], x: &mut [f64]) -> (usize, f64) {
         self.solve(|i| self.length[i], b, x)
     }
 
-    /// Least `Σ weight² (âᵢ x − b̂ᵢ)²`.
+    /// Minimizes `Σ weight² (âᵢ x − b̂ᵢ)²`.
     fn solve(&self, weight: impl Fn(usize) -> f64, b: &[f64], x: &mut [f64]) -> (usize, f64) {
         let (m, r) = (self.order.len(), self.rank);
         // argmin |L z − b̂| by reflections on the columns of L, rows in the order of choice
@@ -261,7 +273,7 @@ impl Rank {
         )
     }
 
-    /// `x ← Q x`
+    /// Multiplies `x ← Q x`.
     fn leave_basis(&self, x: &mut [f64]) {
         for v in self.reflections.iter().rev() {
             reflect(v, x);
@@ -269,7 +281,7 @@ impl Rank {
     }
 }
 
-/// Length of a vector, without overflow.
+/// Returns the length of a vector, without overflow on the way.
 fn norm(x: &[f64]) -> f64 {
     let largest = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     if largest == 0.0 || !largest.is_finite() {
@@ -282,7 +294,7 @@ fn norm(x: &[f64]) -> f64 {
             .sqrt()
 }
 
-/// The Householder vector that turns `x[k..]` into its first component.
+/// Returns the Householder vector that turns `x[k..]` into its first component.
 fn reflection(x: &[f64], k: usize) -> Vec<f64> {
     let mut v = x.to_vec();
     v[..k].fill(0.0);
@@ -296,7 +308,7 @@ fn reflection(x: &[f64], k: usize) -> Vec<f64> {
     v
 }
 
-/// `x ← (I − v vᵀ) x`
+/// Reflects `x ← (I − v vᵀ) x`.
 fn reflect(v: &[f64], x: &mut [f64]) {
     let along: f64 = v.iter().zip(&*x).map(|(v, x)| v * x).sum();
     x.iter_mut().zip(v).for_each(|(x, v)| *x -= along * v);
@@ -370,7 +382,8 @@ mod tests {
     }
 
     proptest! {
-        /// A product of random factors has the rank of the thinner one, and everything that is claimed of it holds.
+        /// A product of random factors has the rank of the thinner one, and everything that is
+        /// claimed of it holds.
         #[test]
         fn random_products_have_the_rank_they_were_given(
             m in 1usize..9, n in 1usize..9, r in 0usize..6,

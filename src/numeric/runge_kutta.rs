@@ -1,44 +1,52 @@
 //! Explicit Runge–Kutta of order 8 for what is not stiff, projected onto invariants: DOP853.
 //!
 //! ```text
-//! kᵢ = f(t + cᵢ h, y + h Σ_{j<i} aᵢⱼ kⱼ)        i = 1 … 12                                  (1)
-//! y₁ = project(y + h Σ bᵢ kᵢ)                                                              (2)
-//! e₅ = h Σ eᵢ kᵢ,   e₃ = h Σ (bᵢ − b̂ᵢ) kᵢ,   error = s ‖e₅‖² / √(‖e₅‖² + ‖e₃‖²/100)        (3)
-//! y(t + θh) = y + θ(r₁ + (1−θ)(r₂ + θ(r₃ + (1−θ)(r₄ + θ(r₅ + (1−θ)(r₆ + θ r₇))))))         (4)
+//! kᵢ = f(t + cᵢ h, y + h Σ_{j<i} aᵢⱼ kⱼ)        i = 1 … 12                                 (1)
+//! y₁ = project(y + h Σ bᵢ kᵢ)                                                             (2)
+//! e₅ = h Σ eᵢ kᵢ,   e₃ = h Σ (bᵢ − b̂ᵢ) kᵢ,   error = s ‖e₅‖² / √(‖e₅‖² + ‖e₃‖²/100)       (3)
+//! y(t + θh) = y + θ(r₁ + (1−θ)(r₂ + θ(r₃ + (1−θ)(r₄ + θ(r₅ + (1−θ)(r₆ + θ r₇))))))        (4)
 //! ```
 //!
-//! The factor s = 20 in (3) is measured: over pendulum, double pendulum, Kepler and Euler top, requests 1e-3 … 1e-11, it brings the error at the end
-//! of a run to about the request (0.1 to 10 times) and makes it fall in proportion; the work for a given true error does not depend on it.
+//! The factor s = 20 in (3) is measured: over pendulum, double pendulum, Kepler and Euler top,
+//! requests 1e-3 … 1e-11, it brings the error at the end of a run to about the request (0.1 to 10
+//! times) and makes it fall in proportion; the work for a given true error does not depend on it.
 //!
-//! The error test (3) needs no rate at the new point. So the new point is projected first and its rate, which is `k₁` of the next step, is
-//! evaluated once on the invariants: projection costs no evaluation. The interpolant (4) is of order 7 and needs three more evaluations;
-//! they are made when the first interpolation inside a step is asked for.
+//! The error test (3) needs no rate at the new point. So the new point is projected first and its
+//! rate, which is `k₁` of the next step, is evaluated once on the invariants: projection costs no
+//! evaluation. The interpolant (4) is of order 7 and needs three more evaluations; they are made at
+//! the first interpolation inside a step.
 //!
-//! *Stiffness*: `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` beyond 6.1, the edge of the stability region, in most steps of a run of steps means
-//! that stability holds the step down; [`Method::stiff`] then says so and the integration goes on.
-//! *Rounding*: what rounding explains of an error (`noise.rs`) shortens no step: a shorter one would be no better. It is looked for where an error is too
-//! large, and where the two estimates, which are of different order, come out alike.
-//! *Failures*: a stage where the problem fails, or a number that is not finite, shortens the step; no sensible step left is a [`Stop`].
+//! *Stiffness*: when `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` lies beyond 6.1, the edge of the
+//! stability region, in most of the recent steps, stability holds the step down. [`Method::stiff`]
+//! says so, and the integration goes on.
 //!
-//! Source: Dormand & Prince 1980; coefficients, error and dense output of Hairer, Nørsett & Wanner, Solving ODEs I, II.5–II.10 (program DOP853).
+//! *Rounding*: the part of an error that rounding explains (`noise.rs`) shortens no step, since a
+//! shorter one would be no better. It is measured where an error is too large, and where the two
+//! estimates, which are of different order, come out alike.
+//!
+//! *Failures*: a stage where the problem fails, or a number that is not finite, shortens the step;
+//! when no sensible step is left the method ends with a [`Stop`].
+//!
+//! Source: Dormand & Prince 1980; coefficients, error and dense output of Hairer, Nørsett & Wanner,
+//! Solving ODEs I, II.5–II.10 (program DOP853).
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
-use super::control::{self, Pi, Weights, worst, worst_index};
-use super::noise::{self, Noise};
+use super::control::{self, Attempts, Pi, Rejection, Weights, worst, worst_index};
+use super::noise::{self, Noise, Probed};
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 
 /// Order of the method.
 const ORDER: usize = 8;
-/// s of (3).
+/// s of (3); measured, see above.
 const ERROR_SCALE: f64 = 20.0;
 /// `h |λ|` at the edge of the stability region.
-const STABILITY: f64 = 6.1;
-/// Steps beyond the edge before the problem is called stiff.
+const STABILITY_EDGE: f64 = 6.1;
+/// Steps beyond the edge from which on the problem is called stiff.
 const STIFF_STEPS: u32 = 15;
-/// Calm steps in a row after which they are forgotten.
+/// Steps within the edge, in a row, after which those beyond it are forgotten.
 const CALM_STEPS: u32 = 6;
 
-/// `out = y + h (a₁ k₁ + a₂ k₂ + …)`: a row of the tableau as one loop.
+/// Computes `out = y + h (a₁ k₁ + a₂ k₂ + …)`: a row of the tableau as one loop.
 macro_rules! row {
     ($out:ident = $y:ident + $h:ident * ($k0:ident $a0:literal $(, $k:ident $a:literal)*)) => {{
         let n = $y.len();
@@ -57,33 +65,40 @@ pub struct Dop853 {
     weights: Weights,
     control: Pi,
     noise: Noise,
-    /// whether the last attempt was as good as rounding permits, and no better
+    /// whether the error of the last attempt was too large, and explained by rounding
     noisy: bool,
     stats: Stats,
-    /// beginning and length of the last step
+    /// beginning of the last step, in s
     t0: f64,
+    /// length of the last step, in s
     h: f64,
-    /// end of the last accepted step
+    /// end of the last accepted step, in s
     t1: f64,
     /// whether (t1, y1, f1) is the state, or (t0, y0, f0)
     advanced: bool,
-    /// step proposed for the next attempt
+    /// step proposed for the next attempt, in s
     h_next: f64,
-    /// the last attempt was rejected, or this is the first step
+    /// the last attempt was rejected
     calm: bool,
+    /// no step has been accepted since the start
     first: bool,
+    /// steps beyond the edge of stability, not yet forgotten
     beyond_edge: u32,
+    /// steps in a row within that edge
     within_edge: u32,
-    /// state and rate at t0 and t1   (n each)
+    /// solution at t0   (n)
     y0: Vec<f64>,
+    /// rate at t0, which is k₁   (n)
     f0: Vec<f64>,
+    /// solution at t1   (n)
     y1: Vec<f64>,
+    /// rate at t1, which is k₁₃   (n)
     f1: Vec<f64>,
-    /// argument of a stage; after the step that of the twelfth   (n)
+    /// argument of a stage; after the step, that of the twelfth   (n)
     stage: Vec<f64>,
     /// k₂ … k₁₂   (11 × n)
     k: [Vec<f64>; 11],
-    /// how often the present step has been placed anew
+    /// changes of the length of the present step for [`Ode::place_step`]
     placed: usize,
     /// whether `dense` belongs to the last step
     dense_ready: bool,
@@ -91,31 +106,35 @@ pub struct Dop853 {
     dense: [Vec<f64>; 7],
 }
 
-/// Why an attempt came to nothing.
+/// The reason why an attempt was not accepted.
 enum Trouble {
+    /// the error, as a part of that permitted, is too large
     Error(f64),
-    /// another length is better
+    /// another length, in s, is better
     Place(f64),
+    /// there is no value; the flag says whether a shorter step may help
     Reason(Reason, bool),
 }
 
-/// The part of a step between whose ends there is no evaluation.
-const GAP: [f64; 2] = [1.0 / 3.0, 0.6];
+/// Widest interval without an evaluation, from and to these parts of a step.
+const STAGE_GAP: [f64; 2] = [1.0 / 3.0, 0.6];
 
-/// How often a step is placed anew at most.
-const PLACINGS: usize = 4;
+/// Most changes of the length of one step that [`Ode::place_step`] asks for.
+const MOST_PLACINGS: usize = 4;
 
-/// Errors smaller than this are rounding where invariants are nearly dependent; a request below it is not pressed there.
-const NOISE: f64 = 3e-10;
+/// Relative error below which a filtered error is rounding, where invariants are nearly dependent;
+/// a smaller request is not enforced there.
+const INVARIANT_NOISE: f64 = 3e-10;
 
-/// The two estimates of (3) are of different order: where they come out less apart than this, they may be rounding.
-const ALIKE: f64 = 10.0;
-/// An error that holds the next step back, as a part of that permitted.
-const WORTH_A_LOOK: f64 = 0.1;
-/// Part of an error that is rounding which counts all the same, lest the next step is much too long.
-const EXPLAINED: f64 = 0.02;
+/// Ratio ‖e₃‖/‖e₅‖ of (3) below which both may be rounding: in smooth motion their different orders
+/// keep them further apart.
+const ALIKE_RATIO: f64 = 10.0;
+/// Error, as a part of that permitted, from which it holds the next step back.
+const SUSPECT_ERROR: f64 = 0.1;
+/// Part of an error that counts although rounding explains it, lest the next step is much too long.
+const REMAINING_SHARE: f64 = 0.02;
 
-/// `‖e₅‖² / √(‖e₅‖² + ‖e₃‖²/100)`
+/// Returns `‖e₅‖² / √(‖e₅‖² + ‖e₃‖²/100)`.
 fn blended(e5: f64, e3: f64) -> f64 {
     let blend = e5 * e5 + 0.01 * e3 * e3;
     if blend > 0.0 {
@@ -126,7 +145,7 @@ fn blended(e5: f64, e3: f64) -> f64 {
 }
 
 impl Dop853 {
-    /// The method for `n` unknowns.
+    /// Prepares the method for `n` unknowns.
     pub fn new(n: usize, options: &Options) -> Self {
         let zeros = || vec![0.0; n];
         Dop853 {
@@ -157,6 +176,7 @@ impl Dop853 {
         }
     }
 
+    /// Begins at `(t, y)`: rate, first step, nothing known of the past.
     fn begin<P: Ode + ?Sized>(&mut self, problem: &mut P, t: f64, y: &[f64]) -> Result<(), Stop> {
         self.t0 = t;
         self.advanced = false;
@@ -195,8 +215,8 @@ impl Dop853 {
         Ok(())
     }
 
-    /// The twelve stages (1), the new point (2) before its projection, and its error (3).
-    fn attempt<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> Result<f64, Failure> {
+    /// Evaluates the twelve stages (1).
+    fn evaluate_stages<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> Result<(), Failure> {
         let (t, n) = (self.t0, self.y0.len());
         let (y, stage) = (&self.y0[..n], &mut self.stage);
         let k1 = &self.f0;
@@ -226,15 +246,20 @@ impl Dop853 {
         stage!(k12 at 1.0: k1 2.273310147516538, k4 -10.53449546673725, k5 -2.0008720582248625, k6 -17.9589318631188,
             k7 27.94888452941996, k8 -2.8589982771350235, k9 -8.87285693353063, k10 12.360567175794303, k11 0.6433927460157636);
 
-        let (k1, k6, k7, k8, k9, k10) =
-            (&k1[..n], &k6[..n], &k7[..n], &k8[..n], &k9[..n], &k10[..n]);
+        Ok(())
+    }
+
+    /// Computes the new point (2) before its projection; returns ‖e₅‖ and ‖e₃‖ of (3), or `None`
+    /// when a number is not finite.
+    fn combine(&mut self, h: f64) -> Option<[f64; 2]> {
+        let n = self.y0.len();
+        let y = &self.y0[..n];
+        let [_, _, _, _, k6, k7, k8, k9, k10, k11, k12] = &self.k;
+        let (k1, k6, k7, k8) = (&self.f0[..n], &k6[..n], &k7[..n], &k8[..n]);
+        let (k9, k10, k11, k12) = (&k9[..n], &k10[..n], &k11[..n], &k12[..n]);
         let most = &self.weights.most()[..n];
-        let (k11, k12, y1, magnitude) = (
-            &k11[..n],
-            &k12[..n],
-            &mut self.y1[..n],
-            &self.weights.magnitude()[..n],
-        );
+        let magnitude = &self.weights.magnitude()[..n];
+        let y1 = &mut self.y1[..n];
         let (mut worst5, mut worst3, mut sum) = (0.0, 0.0, 0.0);
         for i in 0..n {
             let slope = 0.054293734116568765 * k1[i]
@@ -270,42 +295,50 @@ impl Dop853 {
             worst5 = if e5 > worst5 { e5 } else { worst5 };
             worst3 = if e3 > worst3 { e3 } else { worst3 };
         }
-        if !sum.is_finite() {
+        f64::is_finite(sum).then_some([worst5, worst3])
+    }
+
+    /// Computes stages, new point and error of a step of length `h`; returns the error as a part of
+    /// that permitted, less what projection removes and rounding explains, or NaN.
+    fn attempt<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> Result<f64, Failure> {
+        self.evaluate_stages(problem, h)?;
+        let Some([worst5, worst3]) = self.combine(h) else {
             return Ok(f64::NAN);
-        }
+        };
         let scale = ERROR_SCALE / self.weights.tolerance();
         let mut error = scale * blended(worst5, worst3);
         self.noisy = false;
         if error > 1.0 {
-            let scale = ERROR_SCALE / self.weights.tolerance().max(NOISE);
-            error = error.min(scale * self.filtered(problem, t + h, h));
+            let scale = ERROR_SCALE / self.weights.tolerance().max(INVARIANT_NOISE);
+            error = error.min(scale * self.filtered(problem, self.t0 + h, h));
         }
-        let suspect = error > 1.0 || error > WORTH_A_LOOK && worst3 < ALIKE * worst5;
-        if suspect && error < scale * noise::MOST {
-            // what rounding explains is no error of the step; the rest is measured against it, where that is more than what is asked for
+        let alike = worst3 < ALIKE_RATIO * worst5;
+        let suspect = error > 1.0 || error > SUSPECT_ERROR && alike;
+        if suspect && error < scale * noise::LARGEST_NOISE {
+            // the rest is measured against rounding, where that is more than the request
             let explained = self.rounding(problem, h) * ERROR_SCALE / self.weights.tolerance();
             self.noisy = error > 1.0 && explained > 1.0;
-            error = (error - explained).max(EXPLAINED * error) / explained.max(1.0);
+            error = (error - explained).max(REMAINING_SHARE * error) / explained.max(1.0);
         }
         Ok(error)
     }
 
-    /// The relative error estimate that rounding explains.
+    /// Returns the relative error estimate that rounding explains.
     fn rounding<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> f64 {
         // k₂ and k₃ have done their work
         let [k2, k3, ..] = &mut self.k;
-        self.noise.of_step(
-            problem,
-            (self.t0, h),
-            &self.y0,
-            &self.f0,
-            &self.weights,
-            [k2, k3],
-            &mut self.stats,
-        )
+        let at = Probed {
+            t: self.t0,
+            y: &self.y0,
+            f: &self.f0,
+            weights: &self.weights,
+        };
+        self.noise
+            .of_step(problem, at, h, [k2, k3], &mut self.stats)
     }
 
-    /// The error (3) of the step just attempted without what the problem will project away; infinite where that changes nothing.
+    /// Returns the error (3) of the step just attempted without the part that projection removes;
+    /// infinite where that changes nothing.
     fn filtered<P: Ode + ?Sized>(&mut self, problem: &mut P, t1: f64, h: f64) -> f64 {
         let n = self.y0.len();
         let k1 = &self.f0;
@@ -341,7 +374,8 @@ impl Dop853 {
         blended(size(e5), size(e3))
     }
 
-    /// Attempts a step of length `h` to `t1`; on success (t1, y1, f1) is the state.
+    /// Attempts a step of length `h` to `t1` and returns its error; on success (t1, y1, f1) is the
+    /// state.
     fn advance<P: Ode + ?Sized>(
         &mut self,
         problem: &mut P,
@@ -350,12 +384,13 @@ impl Dop853 {
     ) -> Result<f64, Trouble> {
         let evaluation = |f: Failure| Trouble::Reason(Reason::Evaluation(f), f.recoverable);
         let error = self.attempt(problem, h).map_err(evaluation)?;
-        let better = problem.place_step(self.t0, h, GAP);
-        if let Some(better) = better.filter(|_| self.placed < PLACINGS) {
+        let better = problem.place_step(self.t0, h, STAGE_GAP);
+        if let Some(better) = better.filter(|_| self.placed < MOST_PLACINGS) {
             return Err(Trouble::Place(better));
         }
         if error.is_nan() {
-            // the first bad number in the order of evaluation; later ones are its children
+            // the first number that is not finite in the order of evaluation: the others follow
+            // from it
             let bad = |row: &Vec<f64>| row.iter().position(|x| !x.is_finite());
             let index = self.k.iter().find_map(bad).or_else(|| bad(&self.y1));
             return Err(Trouble::Reason(Reason::NotFinite(index.unwrap_or(0)), true));
@@ -379,7 +414,25 @@ impl Dop853 {
         Ok(error)
     }
 
-    /// Watches `h |λ|` against the edge of the stability region.
+    /// Accepts the step to `t1` with its error: proposes the next one and notes magnitudes.
+    fn accept(&mut self, error: f64, guessed: bool, t1: f64) {
+        let factor = self.control.accepted(error, self.calm, guessed);
+        // a step that the limit cut short says little against the one that was proposed
+        self.h_next = if self.h < self.h_next {
+            (self.h * factor).max(self.h_next)
+        } else {
+            self.h * factor
+        };
+        (self.calm, self.first) = (false, false);
+        self.placed = 0;
+        self.t1 = t1;
+        self.advanced = true;
+        self.weights.see(&self.y1);
+        self.watch_stiffness();
+        self.stats.below_rounding += usize::from(self.noisy);
+    }
+
+    /// Counts the steps in which `h |λ|` lies beyond the edge of the stability region.
     fn watch_stiffness(&mut self) {
         let k12 = &self.k[10];
         let (mut rates, mut states) = (0.0, 0.0);
@@ -389,7 +442,7 @@ impl Dop853 {
             rates += df * df;
             states += dy * dy;
         }
-        if states > 0.0 && self.h * self.h * rates > STABILITY * STABILITY * states {
+        if states > 0.0 && self.h * self.h * rates > STABILITY_EDGE * STABILITY_EDGE * states {
             self.beyond_edge += 1;
             self.within_edge = 0;
         } else {
@@ -400,7 +453,7 @@ impl Dop853 {
         }
     }
 
-    /// The unknown that an error estimate accuses.
+    /// Returns the unknown with the largest error estimate e₃.
     fn worst_unknown(&self) -> usize {
         let [.., k9, _, _, k12] = &self.k;
         let e = self
@@ -419,7 +472,7 @@ impl Dop853 {
         }))
     }
 
-    /// The coefficients of (4), with three evaluations.
+    /// Computes the coefficients of (4), with three evaluations.
     fn prepare_dense<P: Ode + ?Sized>(&mut self, problem: &mut P) -> Result<(), Failure> {
         if self.dense_ready {
             return Ok(());
@@ -490,79 +543,38 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
             self.advanced = false;
         }
         self.dense_ready = false;
-        let shortest = control::shortest(self.t0, &self.options);
-        let mut cause = None;
-        let mut rejected = 0;
+        let mut attempts = Attempts::new(self.t0, t_limit, &self.options);
         loop {
-            let (h, at_limit) = control::fit(self.t0, self.h_next.min(self.options.h_max), t_limit);
-            let stop = |reason| {
-                Err(Stop {
-                    reason,
-                    t: self.t0,
-                    h,
-                })
-            };
-            if self.stats.steps + self.stats.rejected >= self.options.max_steps {
-                return stop(Reason::TooManySteps);
-            }
-            if h < shortest && (rejected > 0 || !at_limit) {
-                return stop(cause.unwrap_or_else(|| control::too_fast(&self.f0, &self.weights)));
-            }
-            let t1 = if at_limit { t_limit } else { self.t0 + h };
+            let proposed = self.h_next.min(self.options.h_max);
+            let too_fast = || control::too_fast(&self.f0, &self.weights);
+            let (h, t1) = attempts.next(proposed, &self.options, &self.stats, too_fast)?;
             self.h = h;
-            match self.advance(problem, h, t1) {
+            let rejection = match self.advance(problem, h, t1) {
                 Ok(error) => {
-                    let factor =
-                        self.control
-                            .accepted(error, self.calm, self.first && rejected == 0);
-                    // a step that the limit cut short says little against the one that was proposed
-                    self.h_next = if h < self.h_next {
-                        (h * factor).max(self.h_next)
-                    } else {
-                        h * factor
-                    };
-                    (self.calm, self.first) = (false, false);
-                    self.placed = 0;
-                    self.t1 = t1;
-                    self.advanced = true;
-                    self.weights.see(&self.y1);
-                    self.watch_stiffness();
-                    self.stats.steps += 1;
-                    self.stats.below_rounding += usize::from(self.noisy);
-                    return Ok(Step {
-                        t0: self.t0,
-                        t1,
-                        h,
-                        order: ORDER,
-                        rejected,
-                    });
-                }
-                Err(Trouble::Error(error)) => {
-                    self.h_next = h * self.control.rejected(error);
-                    cause = Some(Reason::ErrorTest(self.worst_unknown()));
+                    let guessed = self.first && attempts.rejected() == 0;
+                    self.accept(error, guessed, t1);
+                    return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }
                 Err(Trouble::Place(better)) => {
                     self.h_next = better;
                     self.placed += 1;
-                    rejected += 1;
-                    self.stats.rejected += 1;
+                    attempts.repeat(&mut self.stats);
                     continue;
                 }
-                Err(Trouble::Reason(reason, recoverable)) => {
-                    cause = Some(reason);
-                    if !recoverable {
-                        return Err(Stop {
-                            reason,
-                            t: self.t0,
-                            h,
-                        });
-                    }
-                    self.h_next = h * 0.25;
-                }
-            }
+                Err(Trouble::Error(error)) => Rejection {
+                    reason: Reason::ErrorTest(self.worst_unknown()),
+                    recoverable: true,
+                    factor: self.control.rejected(error),
+                },
+                Err(Trouble::Reason(reason, recoverable)) => Rejection {
+                    reason,
+                    recoverable,
+                    factor: 0.25,
+                },
+            };
+            attempts.reject(rejection, h, &mut self.stats)?;
+            self.h_next = h * rejection.factor;
             self.calm = true;
-            rejected += 1;
-            self.stats.rejected += 1;
         }
     }
 

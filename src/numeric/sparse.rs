@@ -2,39 +2,47 @@
 //!
 //! ```text
 //! small     up to DENSE_LIMIT unknowns, at least half full: dense LU
-//! analyse   once: Markowitz elimination. Of the columns and rows with fewest entries left, take the entry a(i,j) of least (rᵢ−1)(cⱼ−1)
-//!           that is at least a tenth of the largest in its column; it yields pivot order and pattern of L and U         (1)
-//! refactor  often: same order, same pattern, column by column (left-looking): scatter column, subtract earlier columns of L,
-//!           divide by the pivot. No search, no allocation                                                              (2)
-//! watch     an entry of L above 1e5, a pivot lost against its column: analyse anew with the values of now              (3)
-//!           the first solution after each factorization: residual |b − A x| above 1e-10 is refined once; above 1e-6 the next
-//!           factorization is analysed anew                                                                            (4)
+//! analyse   once: Markowitz elimination. Of the columns and rows with fewest entries left, take
+//!           the entry a(i,j) of least (rᵢ−1)(cⱼ−1) that is at least a tenth of the largest in its
+//!           column; it yields pivot order and pattern of L and U                              (1)
+//! refactor  often: same order, same pattern, column by column (left-looking): scatter the column,
+//!           subtract earlier columns of L, divide by the pivot. No search, no allocation       (2)
+//! watch     an entry of L above 1e5, a pivot lost against its column: analyse again with the
+//!           present values                                                                     (3)
+//!           the first solution after each factorization: a residual |b − A x| above 1e-10 is
+//!           refined once; above 1e-6 the next factorization is analysed again                  (4)
 //! ```
 //!
-//! Markowitz' choice orders and pivots in one go, so rows without a diagonal entry (constraints) need no treatment of their own, and entries that
-//! happen to be zero at the moment of analysis stay in the pattern. Rows are scaled by powers of two first, so that a unit does not decide a pivot.
+//! Markowitz' choice orders and pivots in one go, so rows without a diagonal entry (constraints)
+//! need no special treatment, and entries that happen to be zero during the analysis stay in the
+//! pattern. Rows are scaled by powers of two first, so that a unit does not decide a pivot.
 //!
-//! *Singular*: a column whose remaining entries are all below 1e-14 of what it began with; the error is the unknown of that column, which nothing determines.
+//! *Singular*: a column whose remaining entries are all below 1e-14 of the largest it began with;
+//! the error is the unknown of that column, which nothing determines.
 //!
-//! Source: Duff, Erisman & Reid, Direct Methods for Sparse Matrices, 7.2 and 10; Davis & Palamadai, ACM TOMS 37 (2010) for the refactorization.
-//! Road not taken: a list of multiply–subtract operations instead of (2) is slower (index traffic), generated code no faster.
+//! Source: Duff, Erisman & Reid, Direct Methods for Sparse Matrices, 7.2 and 10; Davis & Palamadai,
+//! ACM TOMS 37 (2010) for the refactorization.
+//!
+//! Tried and not kept: a list of multiply–subtract operations instead of (2) is slower (index
+//! traffic), generated code no faster.
 #![allow(clippy::needless_range_loop)] // several arrays at one index read best that way
 
 use super::dense::Lu;
 use std::collections::BTreeSet;
 
-/// Up to this many unknowns, and unless half of the matrix is empty, dense factors are faster.
+/// Number of unknowns up to which dense factors are faster, unless half of the matrix is empty.
 pub const DENSE_LIMIT: usize = 35;
-/// Part of the largest entry of a column that a pivot must have.
-const THRESHOLD: f64 = 0.1;
-/// Largest entry of L tolerated before the pivots are chosen anew.
-const GROWTH: f64 = 1e5;
-/// Part of a column's first size below which it counts as zero.
-const TINY: f64 = 1e-14;
-/// Relative residuals that ask for refinement, and for another analysis.
-const REFINE: f64 = 1e-10;
-const REJECT: f64 = 1e-6;
-/// Candidate columns, and rows, looked at per pivot.
+/// Part of the largest entry of its column that a pivot must have.
+const PIVOT_THRESHOLD: f64 = 0.1;
+/// Largest entry of L above which the pivots are chosen again.
+const LARGEST_GROWTH: f64 = 1e5;
+/// Part of the largest entry a column began with below which the column counts as zero.
+const SINGULAR_COLUMN: f64 = 1e-14;
+/// Relative residual above which a solution is refined.
+const REFINED_RESIDUAL: f64 = 1e-10;
+/// Relative residual after refinement above which the next factorization is analysed again.
+const REJECTED_RESIDUAL: f64 = 1e-6;
+/// Candidate columns, and candidate rows, examined per pivot.
 const CANDIDATES: usize = 4;
 
 /// A square matrix of fixed pattern, factored.
@@ -48,13 +56,15 @@ pub struct Factors {
     /// powers of two that bring the rows to size one   (n)
     scale: Vec<f64>,
     kind: Kind,
-    /// right-hand side and residual of the solution being checked   (n each)
+    /// right-hand side of the solution being checked   (n)
     b: Vec<f64>,
+    /// residual of that solution   (n)
     r: Vec<f64>,
-    /// the next solution is the first with these factors
+    /// whether the next solution is the first with these factors
     unchecked: bool,
-    /// the last residual was bad
+    /// whether the last residual asks for another analysis
     distrusted: bool,
+    /// analyses made so far
     analyses: usize,
 }
 
@@ -67,13 +77,13 @@ enum Kind {
 }
 
 impl Factors {
-    /// For matrices of `n` unknowns with entries at the given rows and columns.
+    /// Prepares for matrices of `n` unknowns with entries at the given rows and columns.
     pub fn new(n: usize, pattern: &[(usize, usize)]) -> Self {
         let full = 2 * pattern.len() >= n * n;
         Self::with_dense_limit(n, pattern, if full { DENSE_LIMIT } else { 0 })
     }
 
-    /// As [`Factors::new`], dense up to `limit` unknowns.
+    /// Prepares like [`Factors::new`], dense up to `limit` unknowns.
     pub fn with_dense_limit(n: usize, pattern: &[(usize, usize)], limit: usize) -> Self {
         debug_assert!(pattern.iter().all(|(i, j)| *i < n && *j < n));
         Factors {
@@ -97,12 +107,12 @@ impl Factors {
         }
     }
 
-    /// How often pivots were chosen.
+    /// Returns how often pivots were chosen.
     pub fn analyses(&self) -> usize {
         self.analyses
     }
 
-    /// Entries of L and U together (n² for dense factors).
+    /// Returns the number of entries of L and U together (n² for dense factors).
     pub fn fill(&self) -> usize {
         match &self.kind {
             Kind::Dense(_) => self.n * self.n,
@@ -132,7 +142,7 @@ impl Factors {
             for ((i, j), v) in self.pattern.iter().zip(&self.values) {
                 matrix[*i as usize + self.n * *j as usize] += v * self.scale[*i as usize];
             }
-            return lu.factor(TINY);
+            return lu.factor(SINGULAR_COLUMN);
         }
         self.analyses += 1;
         self.kind = Kind::Empty;
@@ -144,6 +154,7 @@ impl Factors {
         Ok(())
     }
 
+    /// Sets the scale that brings the largest entry of each row to between 1 and 2.
     fn scale_rows(&mut self) {
         self.scale.fill(0.0);
         for ((i, _), v) in self.pattern.iter().zip(&self.values) {
@@ -155,7 +166,7 @@ impl Factors {
         }
     }
 
-    /// `x ← A⁻¹ x`
+    /// Solves `x ← A⁻¹ x`.
     pub fn solve(&mut self, x: &mut [f64]) {
         if !self.unchecked {
             return self.back_substitute(x);
@@ -163,16 +174,17 @@ impl Factors {
         self.unchecked = false;
         self.b.copy_from_slice(x);
         self.back_substitute(x);
-        if self.residual(x) > REFINE {
+        if self.residual(x) > REFINED_RESIDUAL {
             let mut r = std::mem::take(&mut self.r);
             self.back_substitute(&mut r);
             x.iter_mut().zip(&r).for_each(|(x, r)| *x += r);
             self.r = r;
-            self.distrusted = self.residual(x) > REJECT;
+            self.distrusted = self.residual(x) > REJECTED_RESIDUAL;
         }
     }
 
-    /// `r = b − A x`; its largest entry relative to the terms it is made of, by scaled rows.
+    /// Computes `r = b − A x`; returns its largest entry relative to the terms of its sum, by
+    /// scaled rows.
     fn residual(&mut self, x: &[f64]) -> f64 {
         self.r.copy_from_slice(&self.b);
         let mut size = self
@@ -193,6 +205,7 @@ impl Factors {
         if rest == 0.0 { 0.0 } else { rest / size }
     }
 
+    /// Solves with the factors as they are, without a check.
     fn back_substitute(&mut self, x: &mut [f64]) {
         match &mut self.kind {
             Kind::Dense(lu) => {
@@ -205,7 +218,7 @@ impl Factors {
     }
 }
 
-/// The power of two that brings `x` between 1 and 2; one for what has none.
+/// Returns the power of two that brings `x` between 1 and 2, or one where there is none.
 fn inverse_power(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52) & 0x7ff;
     if (64..1982).contains(&exponent) {
@@ -215,23 +228,30 @@ fn inverse_power(x: f64) -> f64 {
     }
 }
 
-/// `P S A Q = L U` by columns; rows and columns are numbered in the order of elimination.
+/// The factors `P S A Q = L U` by columns; rows and columns are numbered in the order of
+/// elimination.
 #[derive(Clone, Debug)]
 struct Sparse {
     n: usize,
     /// original row and column of each pivot   (n)
     row: Vec<u32>,
+    /// original column of each pivot   (n)
     column: Vec<u32>,
-    /// entries of A by column: index among the values, row position, original row   (n + 1; entries)
+    /// beginnings of the columns of A among their entries   (n + 1)
     a_start: Vec<u32>,
+    /// entries of A by column: index among the values, row position, original row   (entries)
     a_entry: Vec<(u32, u32, u32)>,
-    /// L below the diagonal by column   (n + 1; fill)
+    /// beginnings of the columns of L below the diagonal   (n + 1)
     l_start: Vec<u32>,
+    /// rows of the entries of L   (fill)
     l_row: Vec<u32>,
+    /// entries of L   (fill)
     l_value: Vec<f64>,
-    /// U above the diagonal by column, rows ascending   (n + 1; fill)
+    /// beginnings of the columns of U above the diagonal, rows ascending   (n + 1)
     u_start: Vec<u32>,
+    /// rows of the entries of U   (fill)
     u_row: Vec<u32>,
+    /// entries of U   (fill)
     u_value: Vec<f64>,
     /// 1/pivot   (n)
     inverse: Vec<f64>,
@@ -240,7 +260,7 @@ struct Sparse {
 }
 
 impl Sparse {
-    /// (2); false when a pivot has become bad (3).
+    /// Refactors with new values (2); returns false when a pivot has become bad (3).
     fn refactor(&mut self, values: &[f64], scale: &[f64]) -> bool {
         let x = &mut self.x[..];
         let mut worst = 0.0;
@@ -271,16 +291,17 @@ impl Sparse {
                 *value = l;
                 worst = if l.abs() <= worst { worst } else { l.abs() };
             }
-            // a zero or lost pivot without entries below it
+            // a zero or lost pivot may have no entries below it
             worst = if inverse.is_finite() {
                 worst
             } else {
                 f64::INFINITY
             };
         }
-        worst < GROWTH
+        worst < LARGEST_GROWTH
     }
 
+    /// Solves `b ← A⁻¹ b`; `scale` are the factors of the rows.
     fn solve(&mut self, b: &mut [f64], scale: &[f64]) {
         let x = &mut self.x[..];
         for (x, row) in x.iter_mut().zip(&self.row) {
@@ -308,13 +329,15 @@ impl Sparse {
 /// The elimination (1) in progress.
 struct Markowitz {
     n: usize,
-    /// entries left in each column: row and value; columns left in each row
+    /// entries left in each column: row and value
     columns: Vec<Vec<(u32, f64)>>,
+    /// columns left in each row
     rows: Vec<Vec<u32>>,
-    /// largest entry each column began with   (n)
+    /// largest entry that each column began with   (n)
     size: Vec<f64>,
-    /// columns and rows left, by number of entries
+    /// columns left, by number of entries
     by_column: BTreeSet<(usize, u32)>,
+    /// rows left, by number of entries
     by_row: BTreeSet<(usize, u32)>,
     /// pivots in order, each with its column of L and row of U (original numbers)
     pivots: Vec<Pivot>,
@@ -370,6 +393,7 @@ impl Markowitz {
         }
     }
 
+    /// Eliminates until every column has its pivot; returns the patterns of the factors.
     fn eliminate(mut self, pattern: &[(u32, u32)]) -> Result<Sparse, usize> {
         while self.pivots.len() < self.n {
             let (i, j) = self.choose()?;
@@ -378,7 +402,8 @@ impl Markowitz {
         Ok(self.assemble(pattern))
     }
 
-    /// The next pivot: least (r−1)(c−1) among a few sparsest columns and rows, the larger one on a tie.
+    /// Chooses the next pivot: least (r−1)(c−1) among a few sparsest columns and rows, the larger
+    /// one on a tie.
     fn choose(&self) -> Result<(u32, u32), usize> {
         let mut best: Option<(usize, f64, u32, u32)> = None;
         let mut consider = |i: u32, j: u32, ratio: f64| {
@@ -391,7 +416,7 @@ impl Markowitz {
         for (_, j) in &self.by_column {
             let largest = self.largest(*j)?;
             for (i, v) in &self.columns[*j as usize] {
-                if v.abs() >= THRESHOLD * largest {
+                if v.abs() >= PIVOT_THRESHOLD * largest {
                     consider(*i, *j, v.abs() / largest);
                 }
             }
@@ -404,7 +429,7 @@ impl Markowitz {
             for j in &self.rows[*i as usize] {
                 let largest = self.largest(*j)?;
                 let here = self.columns[*j as usize].iter().find(|(row, _)| row == i);
-                if let Some((_, v)) = here.filter(|(_, v)| v.abs() >= THRESHOLD * largest) {
+                if let Some((_, v)) = here.filter(|(_, v)| v.abs() >= PIVOT_THRESHOLD * largest) {
                     consider(*i, *j, v.abs() / largest);
                 }
             }
@@ -413,7 +438,7 @@ impl Markowitz {
         best.map(|(_, _, i, j)| (i, j)).ok_or(0)
     }
 
-    /// The largest entry left in column `j`.
+    /// Returns the largest entry left in column `j`.
     fn largest(&self, j: u32) -> Result<f64, usize> {
         let column = &self.columns[j as usize];
         let mut largest = 0.0;
@@ -423,7 +448,7 @@ impl Markowitz {
             }
             largest = f64::max(largest, v.abs());
         }
-        if largest > TINY * self.size[j as usize] {
+        if largest > SINGULAR_COLUMN * self.size[j as usize] {
             Ok(largest)
         } else {
             Err(j as usize)
@@ -485,7 +510,7 @@ impl Markowitz {
         });
     }
 
-    /// The patterns, renumbered in the order of elimination.
+    /// Renumbers the patterns of L and U in the order of elimination.
     fn assemble(self, pattern: &[(u32, u32)]) -> Sparse {
         let n = self.n;
         let (mut row_at, mut column_at) = (vec![0u32; n], vec![0u32; n]);
@@ -529,7 +554,7 @@ impl Markowitz {
     }
 }
 
-/// Lists one after the other, with their beginnings.
+/// Joins the lists into one; returns the beginning of each, and the entries.
 fn concatenate<T: Ord + Copy>(lists: Vec<Vec<T>>, sort: bool) -> (Vec<u32>, Vec<T>) {
     let mut start = Vec::with_capacity(lists.len() + 1);
     let mut all = Vec::with_capacity(lists.iter().map(Vec::len).sum());
@@ -549,7 +574,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The Newton matrix of a chain of bodies: 6 × 6 blocks and 5 × 6 constraint blocks to both neighbours, 11 unknowns a body.
+    /// The Newton matrix of a chain of bodies: 6 × 6 blocks and 5 × 6 constraint blocks to both
+    /// neighbours, 11 unknowns a body.
     fn chain(
         bodies: usize,
         mut draw: impl FnMut() -> f64,
@@ -674,7 +700,8 @@ mod tests {
     }
 
     proptest! {
-        /// Random patterns: the sparse solution is the dense one, and both agree on what is singular.
+        /// Random patterns: the sparse solution is the dense one, and both agree on what is
+        /// singular.
         #[test]
         fn sparse_agrees_with_dense(
             n in 1usize..30,

@@ -4,28 +4,29 @@
 //! (γ − J) x = b            (α + iβ − J)(x + iy) = b + ic                         (1)
 //! ```
 //!
-//! Full where the Jacobian is, sparse where the problem tells its pattern. Then the complex system is solved as a real one of twice the size,
-//! whose entries beyond `J` stand on and beside the diagonal only:
+//! The systems are full unless the problem gives the pattern of its Jacobian. With a pattern the
+//! complex system is solved as a real one of twice the size, whose entries beyond `J` stand on and
+//! beside the diagonal only:
 //!
 //! ```text
 //! ⎡α − J   −β  ⎤ ⎡x⎤   ⎡b⎤
 //! ⎣  β    α − J⎦ ⎣y⎦ = ⎣c⎦        x and y of one unknown stand together         (2)
 //! ```
 //!
-//! The elimination of positions (`q̇ = v`: their rows have two entries) comes first by itself, as pivots are chosen where they cost least: what is left
-//! has the size of the velocities.
+//! Positions are eliminated first without being told apart (`q̇ = v`: their rows have two entries),
+//! as pivots are chosen where they cost least; what is left has the size of the velocities.
 
-use super::dense::{ComplexLu, Lu};
-use super::pattern::Pattern;
-use super::sparse::Factors;
-use super::{Failure, Ode};
+use crate::numeric::dense::{ComplexLu, Lu};
+use crate::numeric::pattern::Pattern;
+use crate::numeric::sparse::Factors;
+use crate::numeric::{Failure, Ode};
 use std::sync::Arc;
 
-/// Both systems (1), with the Jacobian they are made of.
+/// Both systems (1), and the Jacobian in them.
 #[derive(Clone, Debug)]
 pub(super) struct Systems {
     n: usize,
-    /// ∂f/∂y: by columns, or at the entries of the pattern
+    /// ∂f/∂y, by columns, or at the entries of the pattern
     jacobian: Vec<f64>,
     /// ∂f/∂t   (n)
     dfdt: Vec<f64>,
@@ -42,10 +43,11 @@ enum Kind {
 struct Sparse {
     pattern: Arc<Pattern>,
     real: Factors,
-    /// (2)
+    /// factors of (2)
     complex: Factors,
-    /// entries of either; right-hand side of (2)   (2 · entries + 4 n; 2 n)
+    /// entries of the matrix being factored   (2 · entries + 4 n)
     values: Vec<f64>,
+    /// right-hand side of (2)   (2 n)
     both: Vec<f64>,
 }
 
@@ -96,7 +98,7 @@ impl Sparse {
 }
 
 impl Systems {
-    /// Full ones of `n` unknowns.
+    /// Creates full systems of `n` unknowns.
     pub fn new(n: usize) -> Self {
         Systems {
             n,
@@ -106,7 +108,7 @@ impl Systems {
         }
     }
 
-    /// Takes the form that the problem's Jacobian has.
+    /// Becomes full or sparse, as the problem's Jacobian is.
     pub fn shape<P: Ode + ?Sized>(&mut self, problem: &mut P) {
         let n = self.n;
         match (problem.pattern(), &self.kind) {
@@ -123,7 +125,10 @@ impl Systems {
         }
     }
 
-    /// The Jacobian at a point.
+    /// Evaluates the Jacobian at `(t, y)`.
+    ///
+    /// # Errors
+    /// When it has no finite value there.
     pub fn evaluate<P: Ode + ?Sized>(
         &mut self,
         problem: &mut P,
@@ -136,7 +141,7 @@ impl Systems {
         }
     }
 
-    /// A row whose derivatives are not finite.
+    /// Returns a row whose derivatives are not finite, if there is one.
     pub fn not_finite(&self) -> Option<usize> {
         let sum: f64 = self.jacobian.iter().map(|x| x * 0.0).sum();
         if sum == 0.0 {
@@ -149,7 +154,7 @@ impl Systems {
         }
     }
 
-    /// Factors (1).
+    /// Factors both matrices of (1).
     ///
     /// # Errors
     /// The unknown that nothing determines.
