@@ -29,6 +29,13 @@ fn codes_in(source: &str) -> Vec<String> {
     for (at, _) in source.match_indices("code: \"") {
         found.extend(word(&source[at + 6..]));
     }
+    // families of reasons and warnings give theirs in a method
+    for (at, _) in source.match_indices("fn code(") {
+        let body = source[at..].split("\n    }").next().unwrap_or_default();
+        for arm in body.split("=> ").skip(1) {
+            found.extend(word(arm));
+        }
+    }
     for giver in GIVERS {
         for (at, _) in source.match_indices(giver) {
             let mut rest = source[at + giver.len()..].trim_start();

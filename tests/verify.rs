@@ -34,7 +34,7 @@ fn a_dependent_row_names_the_loop_and_the_direction() {
         "",
     ));
     assert_eq!((v.gruebler, v.freedom, v.dependent.len()), (-2, Some(1), 3));
-    let words: Vec<&str> = v.dependent.iter().map(|d| d.words.as_str()).collect();
+    let words: Vec<String> = v.dependent.iter().map(|d| d.sentence()).collect();
     // the joint that closes the loop is named, the other three fix the same
     for direction in [
         "translation along ground Z",
@@ -59,7 +59,7 @@ fn a_dependent_row_names_the_loop_and_the_direction() {
     for u in &v.undetermined {
         assert_eq!(u.components, ["FZ", "TX", "TY"], "{}", u.element);
     }
-    assert!(v.advice[0].contains("INLINE"), "{:?}", v.advice);
+    assert!(v.advice[0].to_string().contains("INLINE"), "{:?}", v.advice);
 }
 
 /// The advice is true: with it nothing is redundant and the freedom is the same.
@@ -91,9 +91,9 @@ fn a_folded_parallelogram_has_a_second_freedom_there_and_only_there() {
     let here: Vec<_> = v.dependent.iter().filter(|d| d.only_here).collect();
     assert_eq!(here.len(), 1);
     assert!(
-        here[0].words.contains("at this position only"),
+        here[0].sentence().contains("at this position only"),
         "{}",
-        here[0].words
+        here[0].sentence()
     );
     assert_eq!(v.free.len(), 2);
 }

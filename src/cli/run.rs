@@ -156,6 +156,7 @@ pub fn run(args: &Args) -> Outcome {
         Ok(status) => (status, None),
         Err(errors) => {
             record.status = Status::Model;
+            record.stop_code = errors.first().map_or("", |d| d.code);
             record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
             session
                 .run

@@ -3,8 +3,10 @@
 //! A code never changes its meaning. Rows stand in the order in which a text is read; then those about files and commands.
 
 mod model;
+mod run;
 
 pub use model::MODEL_CODES;
+pub use run::RUN_CODES;
 
 /// What a code means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,9 +24,9 @@ pub fn code(name: &str) -> Option<&'static Code> {
     all().find(|code| code.name.eq_ignore_ascii_case(name))
 }
 
-/// All codes: those of the language and of files, then those of models.
+/// All codes: those of the language and of files, of models, of runs.
 pub fn all() -> impl Iterator<Item = &'static Code> {
-    CODES.iter().chain(MODEL_CODES)
+    CODES.iter().chain(MODEL_CODES).chain(RUN_CODES)
 }
 
 /// The codes of the language, in the order in which a text is read; then those of files and commands.
@@ -443,10 +445,11 @@ jumps it runs, with a warning, and forces jump.",
     },
     Code {
         name: "method",
-        summary: "the method of integration has a name that is not known",
+        summary: "the method of integration is not known, or cannot take this model",
         explanation: "\
 `--method` and INTEGRATOR/… name a method: AUTO (the program chooses), DOP853, RADAU5, BDF, HHT, NEWMARK. The names
-of Adams are understood too: GSTIFF, WSTIFF, HASTIFF and CONSTANT_BDF are done by RADAU5, ABAM and RKF45 by DOP853.",
+of Adams are understood too: GSTIFF, WSTIFF, HASTIFF and CONSTANT_BDF are done by RADAU5, ABAM and RKF45 by DOP853.
+Where BDF, HHT or NEWMARK cannot take the functions of a model, RADAU5 takes their place and the run says so.",
     },
     Code {
         name: "user_routine",

@@ -11,6 +11,7 @@ pub fn record(run: &Run) -> Value {
     let r = &run.record;
     let mut record = json!({
         "status": r.status.word(),
+        "stop_code": r.stop_code,
         "stop_reason": r.stop_reason,
         "exit_code": r.status.exit_code(),
         "model": r.model,
@@ -62,6 +63,7 @@ fn simulation(s: &Simulation) -> Value {
     let mut value = json!({
         "kind": s.kind.name(),
         "status": s.status.word(),
+        "stop_code": s.stop_code,
         "stop_reason": s.stop_reason,
         "start": s.start,
         "end": s.end,

@@ -226,7 +226,9 @@ impl std::ops::AddAssign for Counts {
 pub struct Record {
     /// why it ended
     pub status: Status,
-    /// the same in a sentence; empty: everything was done
+    /// why it ended early, as a code that `cognate explain` knows; empty: everything was done
+    pub stop_code: &'static str,
+    /// the same in a sentence
     pub stop_reason: String,
     /// the file that was run, as the user named it
     pub model: String,
@@ -303,6 +305,8 @@ pub struct Simulation {
     pub method: String,
     /// why it ended
     pub status: Status,
+    /// why it ended early, as a code that `cognate explain` knows; empty: everything was done
+    pub stop_code: &'static str,
     /// the same in a sentence
     pub stop_reason: String,
     /// solving alone, in s
@@ -311,6 +315,25 @@ pub struct Simulation {
     pub counts: Counts,
     /// names of the worst rows or elements where it stopped
     pub worst: Vec<String>,
+}
+
+impl Simulation {
+    /// A simulation that has not done anything yet.
+    pub fn new(kind: Kind, start: f64) -> Self {
+        Self {
+            kind,
+            start,
+            end: start,
+            outputs: 0,
+            method: String::new(),
+            status: Status::Completed,
+            stop_code: "",
+            stop_reason: String::new(),
+            solve_seconds: 0.0,
+            counts: Counts::default(),
+            worst: Vec::new(),
+        }
+    }
 }
 
 /// One thing that happened, as the log tells it.

@@ -2,6 +2,7 @@
 
 use super::compile::{Compiler, NamedTie, part_name};
 use super::contacts::Shell;
+use super::equations::Unsupported;
 use super::external_inputs::{ExternalInput, HookKind, HookName, SceneDelay, SceneHook};
 use super::forces::{ForceElement, ForceLaw};
 use super::layout::Layout;
@@ -751,7 +752,8 @@ impl<'m> Builder<'m> {
             Key::Value(d) => equations[*d][0],
         };
         if let Err(unsolvable) = loops::find(&mut self.scene, &guess) {
-            let error = |what: String| Diagnostic::error("loop", what);
+            let error =
+                |u: Unsupported| Diagnostic::error("loop", u.lack.to_string()).element(u.asked_by);
             c.errors.extend(unsolvable.into_iter().map(error));
         }
     }

@@ -10,7 +10,7 @@
 //! of numbers, and whoever fills that row solves ρ = 0 by Newton's iteration.
 
 use super::Scene;
-use super::equations::Equations;
+use super::equations::{Equations, Lack, Unsupported};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
 use crate::scalar::Scalar;
@@ -47,7 +47,10 @@ const PLACEHOLDER: u32 = u32::MAX / 2;
 ///
 /// # Errors
 /// Loops without a solution, by name.
-pub(super) fn find(scene: &mut Scene, guesses: &dyn Fn(&Key) -> f64) -> Result<(), Vec<String>> {
+pub(super) fn find(
+    scene: &mut Scene,
+    guesses: &dyn Fn(&Key) -> f64,
+) -> Result<(), Vec<Unsupported>> {
     let mut keys: Vec<Key> = scene
         .differentials
         .iter()
@@ -151,7 +154,7 @@ fn residuals<'b>(
 }
 
 /// Whether ρ is linear in its unknowns.
-fn linear(scene: &Scene) -> Result<bool, Vec<String>> {
+fn linear(scene: &Scene) -> Result<bool, Vec<Unsupported>> {
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let numbers = inputs(scene, &builder);
     let (_, jacobian) = residuals(scene, &numbers, &builder);
@@ -162,10 +165,7 @@ fn linear(scene: &Scene) -> Result<bool, Vec<String>> {
         let zero = |s: &Sym<'_>| matches!(s, Sym::Constant(c) if *c == 0.0);
         let column = jacobian.iter().all(|row| zero(&row[k]));
         if jacobian[k].iter().all(zero) || column {
-            lost.push(format!(
-                "{}: its loop has no solution, or any: nothing determines the value that it reads of itself",
-                u.name
-            ));
+            lost.push(Unsupported::new(&u.name, Lack::LoopEquation));
         }
     }
     if !lost.is_empty() {
@@ -240,8 +240,8 @@ fn solve<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
 /// ρ of loops that are not linear, as a program of the numbers; `None` when there are none.
 ///
 /// # Errors
-/// What the equations complained about.
-pub fn program(scene: &Scene) -> Result<Option<Program>, Vec<String>> {
+/// What the equations cannot supply.
+pub fn program(scene: &Scene) -> Result<Option<Program>, Vec<Unsupported>> {
     if scene.layout.n_loops == 0 {
         return Ok(None);
     }

@@ -1,7 +1,7 @@
 //! The equations of a scene as straight-line programs: run once over recording numbers, then as often as needed.
 
 use super::Scene;
-use super::equations::{Equations, STATIC};
+use super::equations::{Equations, STATIC, Unsupported};
 use super::layout::Layout;
 use super::loops;
 use super::solve::{gram, solve_symmetric};
@@ -13,8 +13,8 @@ use std::cell::{Cell, RefCell};
 /// [`Layout`] describes.
 ///
 /// # Errors
-/// What the equations complained about.
-pub fn record<F>(scene: &Scene, f: F) -> Result<Program, Vec<String>>
+/// What the equations cannot supply.
+pub fn record<F>(scene: &Scene, f: F) -> Result<Program, Vec<Unsupported>>
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
@@ -27,7 +27,7 @@ where
 }
 
 /// As [`record`]; what could not be computed is NaN in the program, and told.
-pub fn record_with_complaints<F>(scene: &Scene, f: F) -> (Program, Vec<String>)
+pub fn record_with_complaints<F>(scene: &Scene, f: F) -> (Program, Vec<Unsupported>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
@@ -35,7 +35,7 @@ where
 }
 
 /// As [`record_with_complaints`], for programs that read `n_more` further numbers after those of the layout.
-pub fn record_more<F>(scene: &Scene, n_more: usize, f: F) -> (Program, Vec<String>)
+pub fn record_more<F>(scene: &Scene, n_more: usize, f: F) -> (Program, Vec<Unsupported>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
 {
@@ -69,7 +69,7 @@ fn recorded<F, E>(
     moving: bool,
     f: F,
     end: E,
-) -> (Vec<Program>, Vec<String>)
+) -> (Vec<Program>, Vec<Unsupported>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
     E: FnOnce(&mut Builder, Vec<Value>) -> Vec<Vec<Value>>,
@@ -147,8 +147,8 @@ pub(crate) struct Timed {
 /// Where loads, differential equations and motions may break at times that are fixed beforehand.
 ///
 /// # Errors
-/// What the equations complained about.
-pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<String>> {
+/// What the equations cannot supply.
+pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<Unsupported>> {
     let linear = scene.loops_linear && !scene.loops.is_empty();
     let n_more = if linear { scene.loops.len() } else { 0 };
     let mut levels = Vec::new();
@@ -176,8 +176,8 @@ pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<String>> {
 /// Where loads, differential equations and motions change branch. `None`: nowhere.
 ///
 /// # Errors
-/// What the equations complained about.
-pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<String>> {
+/// What the equations cannot supply.
+pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<Unsupported>> {
     let linear = scene.loops_linear && !scene.loops.is_empty();
     let n_more = if linear { scene.loops.len() } else { 0 };
     // unknowns are known here, so that their elimination does not count as a switch

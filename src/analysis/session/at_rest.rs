@@ -3,6 +3,7 @@
 use super::Session;
 use super::outcome::counts;
 use super::simulate::Span;
+use super::stop_reason::StopReason;
 use crate::analysis::statics::{self, NoEquilibrium, Settings};
 use crate::analysis::system::System;
 use crate::analysis::watch::Watch;
@@ -44,7 +45,7 @@ impl Session {
         let seconds = clock.elapsed().as_secs_f64();
         // their results
         self.rows(kind, program, &found.rows);
-        let (status, stop_reason, worst) = ending(found.failed);
+        let stopped = found.failed.map(|(t, why)| stop_reason(t, why));
         // what the next simulation begins with
         let last = found.rows.last().cloned().unwrap_or(first);
         let end = last[0];
@@ -53,18 +54,15 @@ impl Session {
             carried.at_rest = true;
         }
         // the record
-        self.close(results::Simulation {
-            kind,
-            start: span.start,
+        let simulation = results::Simulation {
             end,
             outputs: found.rows.len(),
             method: found.method,
-            status,
-            stop_reason,
             solve_seconds: seconds,
             counts: counts(&found.stats),
-            worst,
-        })
+            ..results::Simulation::new(kind, span.start)
+        };
+        self.close(simulation, stopped)
     }
 
     /// Settles the system at each time, as long as there is an equilibrium.
@@ -106,17 +104,10 @@ impl Session {
     }
 }
 
-/// Returns the status, a sentence, and the names of what was worst.
-fn ending(failed: Option<(f64, NoEquilibrium)>) -> (Status, String, Vec<String>) {
-    match failed {
-        None => (Status::Completed, String::new(), Vec::new()),
-        Some((_, NoEquilibrium::Interrupted)) => {
-            let reason = "interrupted; the results so far are kept".to_string();
-            (Status::Interrupted, reason, Vec::new())
-        }
-        Some((t, NoEquilibrium::Unbalanced(sentence, name))) => {
-            let reason = format!("at time {t} {sentence}");
-            (Status::NoEquilibrium, reason, vec![name])
-        }
+/// Returns why a search for an equilibrium at time `at` ended without one.
+fn stop_reason(at: f64, why: NoEquilibrium) -> StopReason {
+    match why {
+        NoEquilibrium::Interrupted => StopReason::Interrupted,
+        NoEquilibrium::Unbalanced(imbalance) => StopReason::NoEquilibrium { at, imbalance },
     }
 }

@@ -1,13 +1,12 @@
 //! What a run reports: one formula of an instant per column.
 
-use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
 use crate::model::{Formula, Model, RequestKind};
 use crate::results::{Component, Entity, Run, Units};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
-use crate::scene::equations::Equations;
+use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::programs::record_with_complaints;
 use crate::space::{MarkerState, kinematic};
 
@@ -448,8 +447,8 @@ impl Columns {
         }
     }
 
-    /// The columns as a program of the scene, and what could not be computed.
-    pub fn program(&self, scene: &Scene) -> (Program, Vec<String>) {
+    /// The columns as a program of the scene, and what could not be supplied.
+    pub fn program(&self, scene: &Scene) -> (Program, Vec<Unsupported>) {
         record_with_complaints(scene, |at| {
             self.what.iter().map(|w| self.value(w, scene, at)).collect()
         })
@@ -483,12 +482,4 @@ pub fn name_of(place: &crate::model::Place, keyword: &str, id: u32) -> String {
         .name
         .clone()
         .unwrap_or_else(|| format!("{keyword}_{id}"))
-}
-
-/// A warning that some columns have no value.
-pub fn unavailable(complaints: &[String]) -> Vec<Diagnostic> {
-    complaints
-        .iter()
-        .map(|c| Diagnostic::warning("unavailable", c.clone()))
-        .collect()
 }

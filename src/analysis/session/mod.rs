@@ -14,6 +14,7 @@ mod shells;
 mod simulate;
 mod start;
 pub mod state;
+mod stop_reason;
 
 use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;

@@ -1,6 +1,7 @@
 //! What a run tells about its simulations: rows of results, facts of the record, how it ended and which element is to blame.
 
 use super::Session;
+use super::stop_reason::{Cause, StopReason};
 use crate::analysis::session::columns;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
@@ -13,13 +14,24 @@ use crate::scene::build::unknown_names;
 use crate::scene::equations::row_name;
 
 impl Session {
-    /// Adds a simulation that has ended to the record; how it ended.
-    pub(super) fn close(&mut self, simulation: results::Simulation) -> Status {
+    /// Adds a simulation that has ended to the record; how it ended. `stopped`: why it ended early.
+    pub(super) fn close(
+        &mut self,
+        mut simulation: results::Simulation,
+        stopped: Option<StopReason>,
+    ) -> Status {
+        if let Some(why) = stopped {
+            simulation.status = why.status();
+            simulation.stop_code = why.code();
+            simulation.stop_reason = why.to_string();
+            simulation.worst = why.worst();
+        }
         let record = &mut self.run.record;
         record.counts += simulation.counts;
         record.solve_seconds += simulation.solve_seconds;
         record.method.clone_from(&simulation.method);
         record.status = simulation.status;
+        record.stop_code = simulation.stop_code;
         record.stop_reason.clone_from(&simulation.stop_reason);
         record.simulations.push(simulation);
         record.status
@@ -185,67 +197,27 @@ impl Session {
         self.run.record.freedom = assembly.freedom as i64;
     }
 
-    /// Status, a sentence, and the names of what was worst.
-    pub(super) fn outcome(
+    /// Why a simulation over time ended early; `None`: all was done.
+    pub(super) fn stop_reason(
         &self,
         system: &System,
         trajectory: &Trajectory,
-    ) -> (Status, String, Vec<String>) {
-        match &trajectory.ended {
-            None => (Status::Completed, String::new(), Vec::new()),
-            Some(Ended::Interrupted) => (
-                Status::Interrupted,
-                "interrupted; the results so far are kept".into(),
-                Vec::new(),
-            ),
-            Some(Ended::Sensor(k)) => {
-                let name = format!("SENSOR/{}", system.scene.sensors[*k].id);
-                let at = trajectory.t.last().copied().unwrap_or(self.time());
-                let reason = format!("{name} ended the simulation at time {at}");
-                (Status::Completed, reason, Vec::new())
-            }
-            Some(Ended::Broken { t, broken }) => (
-                Status::Stopped,
-                format!(
-                    "stopped at time {t}: {}; {}",
-                    broken.sentence, broken.advice
-                ),
-                vec![broken.element.clone()],
-            ),
-            Some(Ended::Stop(stop)) => {
-                let (status, mut sentence, mut worst) = explain(system, stop);
+    ) -> Option<StopReason> {
+        Some(match trajectory.ended.as_ref()? {
+            Ended::Interrupted => StopReason::Interrupted,
+            Ended::Sensor(k) => StopReason::Sensor {
+                id: system.scene.sensors[*k].id,
+                at: trajectory.t.last().copied().unwrap_or(self.time()),
+            },
+            Ended::Broken { t, broken } => StopReason::Contact {
+                at: *t,
+                broken: broken.clone(),
+            },
+            Ended::Stop(stop) => {
                 let stands = trajectory.rows.last().unwrap_or(&system.numbers);
-                let lost = !matches!(stop.reason, Reason::TooManySteps | Reason::Projection(_));
-                if let Some(why) = lost
-                    .then(|| valueless::named(&system.scene, stands))
-                    .flatten()
-                {
-                    sentence = format!("stopped at time {}: {why}", stop.t);
-                    worst = why.split(':').next().unwrap_or_default().to_string();
-                    return (status, sentence, vec![worst]);
-                }
-                let rows = !matches!(stop.reason, Reason::TooManySteps | Reason::Singular(_));
-                if let (true, Some(lock)) = (rows, ranks::locked(&system.scene, stands)) {
-                    let why = match &lock.motion {
-                        Some(motion) => format!(
-                            "the mechanism is locked: {motion} drives it past its reach, {} cannot follow",
-                            lock.row
-                        ),
-                        None => format!(
-                            "the constraints can be kept no longer: {} has become dependent on others",
-                            lock.row
-                        ),
-                    };
-                    sentence = format!(
-                        "stopped at time {}: {why}, where {}",
-                        stop.t,
-                        ranks::words(&lock.place)
-                    );
-                    worst = lock.row;
-                }
-                (status, sentence, vec![worst])
+                explained(system, stop, stands)
             }
-        }
+        })
     }
 
     /// Energy and constraint drift over the rows of a simulation.
@@ -296,8 +268,28 @@ pub(super) fn counts(stats: &crate::numeric::Stats) -> Counts {
     }
 }
 
-/// A stop in words: status, sentence, and the name of the worst unknown or row.
-pub(super) fn explain(system: &System, stop: &Stop) -> (Status, String, String) {
+/// Why a method stopped: the function that lost its value, the row that locks, or else what the method met.
+fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
+    let (scene, at) = (&system.scene, stop.t);
+    let may_lack_a_value = !matches!(stop.reason, Reason::TooManySteps | Reason::Projection(_));
+    if may_lack_a_value && let Some(lost) = valueless::find(scene, stands) {
+        return StopReason::Function { at, lost };
+    }
+    let may_be_locked = !matches!(stop.reason, Reason::TooManySteps | Reason::Singular(_));
+    if may_be_locked && let Some(lock) = ranks::locked(scene, stands) {
+        return StopReason::Locked { at, lock };
+    }
+    let (cause, worst) = cause(system, stop.reason);
+    StopReason::Method {
+        at,
+        step: stop.h,
+        cause,
+        worst,
+    }
+}
+
+/// What a method met, and the name of the worst unknown or row.
+fn cause(system: &System, reason: Reason) -> (Cause, String) {
     let scene = &system.scene;
     let mut names = unknown_names(scene);
     // what a method for implicit equations sees after the unknowns
@@ -313,58 +305,22 @@ pub(super) fn explain(system: &System, stop: &Stop) -> (Status, String, String) 
             .and_then(|k| scene.loops.get(k))
             .map_or_else(|| format!("unknown {k}"), |u| u.name.clone()),
     };
-    let n = names.len();
-    let (status, what, worst) = match stop.reason {
-        Reason::Evaluation(f) if f.what >= n => (
-            Status::Stopped,
-            "a function that depends on itself has no solution near",
-            unknown(f.what),
-        ),
-        Reason::Evaluation(f) => (
-            Status::Stopped,
-            "the equations have no finite value",
-            unknown(f.what),
-        ),
-        Reason::NotFinite(k) => (Status::Stopped, "a rate is not a number", unknown(k)),
+    match reason {
+        Reason::Evaluation(f) if f.what >= names.len() => (Cause::Loop, unknown(f.what)),
+        Reason::Evaluation(f) => (Cause::Equations, unknown(f.what)),
+        Reason::NotFinite(k) => (Cause::Rate, unknown(k)),
         Reason::Projection(f) => {
-            let name = scene
-                .rows
-                .get(f.what)
-                .map_or_else(|| "the constraints".into(), row_name);
-            (
-                Status::Stopped,
-                "the constraints cannot be kept: the mechanism is locked or folds",
-                name,
-            )
+            let row = scene.rows.get(f.what);
+            let name = row.map_or_else(|| "the constraints".into(), row_name);
+            (Cause::Projection, name)
         }
-        Reason::ErrorTest(k) => (
-            Status::Stopped,
-            "the error stays above its tolerance however short the step",
-            unknown(k),
-        ),
-        Reason::Newton(k) => (
-            Status::Stopped,
-            "Newton's iteration does not converge however short the step",
-            unknown(k),
-        ),
-        Reason::Singular(k) => (Status::Stopped, "nothing determines an unknown", unknown(k)),
-        Reason::Endless(k) => (
-            Status::Stopped,
-            "a function changes its branch without end; let it change over a short way, as STEP does",
-            unknown(k),
-        ),
-        Reason::Stalled(k) => (
-            Status::Stopped,
-            "thousands of steps got hardly any further; something is too stiff or changes too fast for this method",
-            unknown(k),
-        ),
-        Reason::TooManySteps => (Status::Limit, "as many steps as permitted", String::new()),
-    };
-    let sentence = format!(
-        "stopped at time {} with step {:.3e}: {what} ({worst})",
-        stop.t, stop.h
-    );
-    (status, sentence, worst)
+        Reason::ErrorTest(k) => (Cause::ErrorTest, unknown(k)),
+        Reason::Newton(k) => (Cause::Newton, unknown(k)),
+        Reason::Singular(k) => (Cause::Singular, unknown(k)),
+        Reason::Endless(k) => (Cause::Endless, unknown(k)),
+        Reason::Stalled(k) => (Cause::Stalled, unknown(k)),
+        Reason::TooManySteps => (Cause::TooManySteps, String::new()),
+    }
 }
 
 /// Units of a model as result files spell them.

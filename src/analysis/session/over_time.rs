@@ -39,7 +39,7 @@ impl Session {
         self.run.log.push(Event::End);
         self.rank_changes(system, chosen, &trajectory);
         self.note_sensors(system, &trajectory);
-        let (status, stop_reason, worst) = self.outcome(system, &trajectory);
+        let stopped = self.stop_reason(system, &trajectory);
         self.drift(system, &first, &trajectory.rows);
         // what the next simulation begins with
         let last = trajectory.rows.last().cloned().unwrap_or(first);
@@ -47,18 +47,15 @@ impl Session {
         // the record
         self.warn_of_rounding(&trajectory, settings.error);
         self.run.record.error = Some(settings.error);
-        self.close(results::Simulation {
-            kind,
-            start: span.start,
+        let simulation = results::Simulation {
             end: trajectory.t.last().copied().unwrap_or(span.start),
             outputs: trajectory.rows.len(),
             method: methods(&trajectory),
-            status,
-            stop_reason,
             solve_seconds: seconds,
             counts: counts(&trajectory.stats),
-            worst,
-        })
+            ..results::Simulation::new(kind, span.start)
+        };
+        self.close(simulation, stopped)
     }
 
     /// Chooses the method, and prepares the system for it.

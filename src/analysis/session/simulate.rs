@@ -8,7 +8,7 @@ use crate::analysis::time::drives;
 use crate::analysis::time::output::{self, Output};
 use crate::analysis::verify::massless::massless;
 use crate::analysis::watch::Watch;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::program::Program;
 use crate::results::{Event, Kind, Status};
 use crate::scene::Scene;
@@ -172,11 +172,14 @@ impl Session {
         }
         let (program, complaints) = self.columns.program(&system.scene);
         for complaint in complaints {
-            let mut wanted = self.options.columns.iter();
-            if wanted.any(|c| complaint.starts_with(c.as_str())) {
-                return Err(vec![Diagnostic::error("unavailable", complaint)]);
+            if self.options.columns.contains(&complaint.asked_by) {
+                let refused = Diagnostic {
+                    severity: Severity::Error,
+                    ..complaint.warning()
+                };
+                return Err(vec![refused]);
             }
-            self.warn(&complaint);
+            self.warn(&complaint.to_string());
         }
         self.columns_program = Some(program.clone());
         Ok(program)

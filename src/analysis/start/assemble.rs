@@ -4,12 +4,13 @@
 //! reflections (`numeric/rank.rs`), translations first; a row that depends on earlier ones is left out, and is no
 //! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
 
-use crate::analysis::start::misalignment::{length, short};
+use crate::analysis::start::direction::{AXIS_LETTERS, Direction};
 use crate::analysis::start::nearby;
-use crate::analysis::verify::direction;
+use crate::analysis::start::quantity::{length, short};
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
+use crate::physics::row::Law;
 use crate::scene::cams;
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::programs::weights;
@@ -349,27 +350,45 @@ fn contradictions(scene: &Scene, g: &DVector<f64>, numbers: &[f64]) -> Vec<Diagn
         .take(20)
         .map(|r| {
             let row = &scene.rows[r];
-            let by = match &row.kind {
-                RowKind::Markers { law, .. } if law.is_length() => {
-                    let way = direction(scene, &at, r).replace("translation ", "");
-                    format!("{} {way}", length(g[r], &scene.length_unit))
-                }
-                RowKind::Markers { .. } => {
-                    let way = direction(scene, &at, r).replace("rotation ", "");
-                    let angle = g[r].clamp(-1.0, 1.0).asin().to_degrees();
-                    format!("{} deg {way}", short(angle.abs()))
-                }
-                RowKind::Cam { .. } => {
-                    let way = direction(scene, &at, r).replace("translation ", "");
-                    format!("{} {way}", length(g[r], &scene.length_unit))
-                }
-                _ => short(g[r].abs()),
-            };
-            Diagnostic::error("assembly", format!("cannot be satisfied: {} is off by {by}", row.equation))
+            Diagnostic::error("assembly", format!("cannot be satisfied: {}", gap(scene, &at, r, g[r])))
                 .element(row.element.clone())
                 .help("move the parts nearer to where the joints want them, or remove a constraint that contradicts")
         })
         .collect()
+}
+
+/// Tells how far a row is from being satisfied: "Zi.Xj is off by 3 deg about ground X".
+fn gap(scene: &Scene, at: &Equations<'_, f64>, r: usize, g: f64) -> String {
+    let row = &scene.rows[r];
+    let direction = Direction::of_row(scene, at, r);
+    let along = || format!("{} {}", length(g, &scene.length_unit), direction.way());
+    let by = match row.kind {
+        // no motion turns two parallel axes away from each other to first order
+        RowKind::Markers {
+            law: Law::Dot(a, b),
+            i,
+            j,
+            ..
+        } if direction == Direction::Nothing => {
+            let axis = |k: usize, m: usize| {
+                format!("{} of MARKER/{}", AXIS_LETTERS[k], scene.markers[m].id)
+            };
+            return format!(
+                "the axes {} and {} are parallel; {} needs 90 deg between them",
+                axis(a, i),
+                axis(b, j),
+                row.equation
+            );
+        }
+        RowKind::Markers { law, .. } if law.is_length() => along(),
+        RowKind::Cam { .. } => along(),
+        RowKind::Markers { .. } => {
+            let angle = g.clamp(-1.0, 1.0).asin().to_degrees();
+            format!("{} deg {}", short(angle.abs()), direction.way())
+        }
+        RowKind::Displacements(_) | RowKind::Formula { .. } => short(g.abs()),
+    };
+    format!("{} is off by {by}", row.equation)
 }
 
 /// Independent rows, and for each other row what it is a combination of: translations before rotations before sums.
@@ -431,16 +450,12 @@ pub fn rank(
 fn prescribed_too_much(scene: &Scene, numbers: &[f64], r: usize, rate: f64) -> Diagnostic {
     let at = Equations::new(scene, numbers);
     let row = &scene.rows[r];
-    let way = direction(scene, &at, r);
-    let (way, rate) = match way.strip_prefix("rotation ") {
-        Some(way) => (
-            way.to_string(),
-            format!("{} deg", short(rate.abs().to_degrees())),
-        ),
-        None => (
-            way.replace("translation ", ""),
-            length(rate, &scene.length_unit),
-        ),
+    let direction = Direction::of_row(scene, &at, r);
+    let way = direction.way();
+    let rate = if direction.is_rotation() {
+        format!("{} deg", short(rate.abs().to_degrees()))
+    } else {
+        length(rate, &scene.length_unit)
     };
     let motions: Vec<String> = (scene.motions.iter())
         .map(|m| format!("MOTION/{}", m.id))

@@ -344,7 +344,7 @@ pub fn unmet(
             };
             let off = (path.at::<f64>(reached[k], 0) - path.at(given, 0)).norm();
             if off > MET * scene.length {
-                let off = crate::analysis::start::misalignment::length(off, &scene.length_unit);
+                let off = crate::analysis::start::quantity::length(off, &scene.length_unit);
                 told.push(format!(
                     "{} {} cannot be met: the constraints put the contact {off} away from the point of CURVE/{} next to it",
                     cam.name(),

@@ -1,6 +1,7 @@
 //! How well the parts of a dataset fit together before and after assembly: by how much joints are off, and which parts had to be turned round.
 
-use crate::analysis::verify::axis;
+use crate::analysis::start::direction::Axis;
+use crate::analysis::start::quantity::{length, short};
 use crate::model::{JointKind, Model, PrimitiveKind};
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
@@ -30,33 +31,6 @@ fn ties(model: &Model) -> Vec<(String, Tie, u32, u32)> {
     joints.chain(primitives).collect()
 }
 
-/// A length with its unit.
-pub(in crate::analysis) fn length(value: f64, unit: &str) -> String {
-    let number = short(value.abs());
-    if unit.is_empty() {
-        number
-    } else {
-        format!("{number} {unit}")
-    }
-}
-
-/// Four digits, without what says nothing.
-pub(in crate::analysis) fn short(x: f64) -> String {
-    if x == 0.0 {
-        return "0".into();
-    }
-    if !(1e-3..1e5).contains(&x.abs()) {
-        return format!("{x:.3e}");
-    }
-    let decimals = (3 - x.abs().log10().floor() as i32).max(0) as usize;
-    let text = format!("{x:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
-    } else {
-        text
-    }
-}
-
 /// Joints that do not fit as the dataset places the parts: by how much, and in which direction.
 pub fn misaligned(scene: &Scene, model: &Model) -> Vec<String> {
     let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
@@ -81,18 +55,15 @@ pub fn misaligned(scene: &Scene, model: &Model) -> Vec<String> {
                 _ => {}
             }
         }
-        let axes = [
-            (format!("MARKER/{j}"), J.rotation),
-            (format!("MARKER/{i}"), I.rotation),
-        ];
+        let axes = [(j, J.rotation), (i, I.rotation)];
         let mut off = Vec::new();
         if offset.norm() > WORTH_TELLING * scene.length {
             let by = length(offset.norm(), &scene.length_unit);
-            off.push(format!("{by} along {}", axis(offset, &axes)));
+            off.push(format!("{by} along {}", Axis::along(offset, &axes)));
         }
         if turn.norm() > WORTH_TELLING {
             let by = short(turn.norm().to_degrees());
-            off.push(format!("{by} deg about {}", axis(turn, &axes)));
+            off.push(format!("{by} deg about {}", Axis::along(turn, &axes)));
         }
         if !off.is_empty() {
             told.push(format!(

@@ -25,6 +25,7 @@ mod point;
 mod stability;
 mod step;
 
+pub use outcome::Imbalance;
 pub use stability::Stability;
 
 use crate::analysis::system::System;
@@ -97,8 +98,8 @@ pub struct Equilibrium {
 /// Why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoEquilibrium {
-    /// what is not balanced, in a sentence, and the name of the coordinate
-    Unbalanced(String, String),
+    /// what is not balanced
+    Unbalanced(Imbalance),
     /// the caller asked to stop
     Interrupted,
 }
@@ -139,11 +140,11 @@ pub fn settle(
     let begin = settler.system.numbers.clone();
     let mut found = settler.run(watch);
     // most states that integrate velocities only count: they are wound up where nothing else holds the load
-    if moving.is_some() && matches!(found, Err(NoEquilibrium::Unbalanced(..))) {
+    if moving.is_some() && matches!(found, Err(NoEquilibrium::Unbalanced(_))) {
         let end = std::mem::replace(&mut settler.system.numbers, begin);
         settler.moving = moving;
         match settler.run(watch) {
-            Err(NoEquilibrium::Unbalanced(..)) => settler.system.numbers = end,
+            Err(NoEquilibrium::Unbalanced(_)) => settler.system.numbers = end,
             other => found = other,
         }
     }
@@ -173,7 +174,9 @@ impl<'a> Settler<'a> {
             out
         });
         if let Some(first) = complaints.first() {
-            return Err(NoEquilibrium::Unbalanced(first.clone(), String::new()));
+            return Err(NoEquilibrium::Unbalanced(Imbalance::Unsupported(
+                first.clone(),
+            )));
         }
         let moving = record_moving(scene, |at| {
             let rates = at.state_rates();
@@ -207,12 +210,7 @@ impl<'a> Settler<'a> {
         let l = self.system.scene.layout;
         let mut start = self.system.numbers.clone();
         start[l.v()].fill(0.0);
-        let nothing = || {
-            NoEquilibrium::Unbalanced(
-                "the loads have no finite value in the configuration to start from".into(),
-                String::new(),
-            )
-        };
+        let nothing = || NoEquilibrium::Unbalanced(Imbalance::NoValue);
         let mut p = self.point(&start).ok_or_else(nothing)?;
         let mut saddles = 0;
         let mut iterations = 0;

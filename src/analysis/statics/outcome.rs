@@ -4,8 +4,90 @@ use super::point::Point;
 use super::step::Pace;
 use super::{NoEquilibrium, Settler};
 use crate::scene::Scene;
-use crate::scene::equations::Equations;
+use crate::scene::equations::{Equations, Unsupported};
+use crate::space::Vec3;
 use nalgebra::DVector;
+use std::fmt;
+
+/// What is not balanced where no equilibrium is found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Imbalance {
+    /// the loads cannot be written down; why
+    Unsupported(Unsupported),
+    /// the loads have no finite value to start from
+    NoValue,
+    /// a differential equation does not come to rest
+    Rate {
+        /// its name
+        name: String,
+        /// the rate that is left
+        rate: f64,
+    },
+    /// a load on a freedom is left
+    Load {
+        /// a torque, else a force
+        torque: bool,
+        /// its size
+        size: f64,
+        /// the part that it acts on
+        part: String,
+        /// unit vector in ground axes
+        way: Vec3<f64>,
+        /// the coordinate of the freedom
+        coordinate: String,
+        /// it stays however far anything gives way
+        uncarried: bool,
+    },
+    /// the search ended for no reason that could be found
+    Unknown,
+}
+
+impl Imbalance {
+    /// Name of the coordinate or equation that is not at rest; empty: none is to blame.
+    pub fn name(&self) -> &str {
+        match self {
+            Imbalance::Unsupported(_) | Imbalance::NoValue | Imbalance::Unknown => "",
+            Imbalance::Rate { name, .. } => name,
+            Imbalance::Load { coordinate, .. } => coordinate,
+        }
+    }
+}
+
+impl fmt::Display for Imbalance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Imbalance::Unsupported(why) => write!(f, "{why}"),
+            Imbalance::NoValue => {
+                f.write_str("the loads have no finite value in the configuration to start from")
+            }
+            Imbalance::Rate { name, rate } => {
+                write!(f, "no equilibrium: {name} keeps the rate {rate:.6e}")
+            }
+            Imbalance::Load {
+                torque,
+                size,
+                part,
+                way,
+                coordinate,
+                uncarried,
+            } => {
+                let what = if *torque { "torque" } else { "force" };
+                let round = |x: f64| if x.abs() < 5e-7 { 0.0 } else { x };
+                let [x, y, z] = way.0.map(round);
+                let nothing = if *uncarried {
+                    "; nothing carries it"
+                } else {
+                    ""
+                };
+                write!(
+                    f,
+                    "no equilibrium: a {what} of {size:.6e} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {coordinate}{nothing}"
+                )
+            }
+            Imbalance::Unknown => f.write_str("no equilibrium"),
+        }
+    }
+}
 
 /// How often a step is made shorter until its matrix is regular.
 const MAX_SHORTER: usize = 8;
@@ -61,11 +143,13 @@ impl Settler<'_> {
             let place = self.states[k];
             let found = scene.differentials.iter().find(|d| d.state == Some(place));
             let name = found.map_or_else(String::new, |d| d.name.clone());
-            let sentence = format!("no equilibrium: {name} keeps the rate {:.6e}", p.state[k]);
-            return NoEquilibrium::Unbalanced(sentence, name);
+            return NoEquilibrium::Unbalanced(Imbalance::Rate {
+                name,
+                rate: p.state[k],
+            });
         }
         let Some((_, c, f, force)) = worst else {
-            return NoEquilibrium::Unbalanced("no equilibrium".into(), String::new());
+            return NoEquilibrium::Unbalanced(Imbalance::Unknown);
         };
         let at = Equations::new(scene, &p.numbers);
         let axis = at.freedom_axis(f);
@@ -75,20 +159,14 @@ impl Settler<'_> {
             .map_or_else(String::new, |part| {
                 crate::scene::compile::part_name(part.point_mass, part.id)
             });
-        let what = if f.turn { "torque" } else { "force" };
-        let round = |x: f64| if x.abs() < 5e-7 { 0.0 } else { x };
-        let [x, y, z] = way.0.map(round);
-        let nothing = if uncarried.is_some() {
-            "; nothing carries it"
-        } else {
-            ""
-        };
-        let sentence = format!(
-            "no equilibrium: a {what} of {:.6e} on {part} remains along ({x:.6}, {y:.6}, {z:.6}), {}{nothing}",
-            force.abs(),
-            c.name
-        );
-        NoEquilibrium::Unbalanced(sentence, c.name.clone())
+        NoEquilibrium::Unbalanced(Imbalance::Load {
+            torque: f.turn,
+            size: force.abs(),
+            part,
+            way,
+            coordinate: c.name.clone(),
+            uncarried: uncarried.is_some(),
+        })
     }
 }
 

@@ -18,6 +18,7 @@ use crate::physics::contact::Question;
 use crate::physics::contact::curves::Curves;
 use crate::scalar::Dual;
 use crate::scene::Scene;
+use crate::scene::equations::{Lack, Unsupported};
 use crate::scene::external_inputs::{ExternalInput, HookKind, HookName};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
@@ -165,13 +166,14 @@ impl fmt::Debug for Callable {
 }
 
 /// What computes the numbers of a hook.
-fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<String>> {
+fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<Unsupported>> {
     match kind {
         HookKind::User { closure, .. } => Ok(Callable(hooks[*closure].law.clone())),
         HookKind::Touches { question, .. } => match question {
             Question::Outlines([i, j]) => {
                 let curves = Curves::new(i.clone(), j.clone());
-                let curves = curves.ok_or_else(|| vec![format!("{element}: two points")])?;
+                let curves =
+                    curves.ok_or_else(|| vec![Unsupported::new(element, Lack::Outlines)])?;
                 Ok(Callable(Arc::new(
                     move |call: &Call<'_>, out: &mut [f64]| curves.ask(call.values, out),
                 )))
@@ -185,14 +187,13 @@ fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<S
             #[cfg(feature = "geometry")]
             Question::Solids(solids) => {
                 let query = crate::physics::contact::query::Query::new(&solids[0], &solids[1]);
-                let query =
-                    query.ok_or_else(|| vec![format!("{element}: its points have no hull")])?;
+                let query = query.ok_or_else(|| vec![Unsupported::new(element, Lack::Hull)])?;
                 Ok(Callable(Arc::new(
                     move |call: &Call<'_>, out: &mut [f64]| query.ask(call.values, out),
                 )))
             }
             #[cfg(not(feature = "geometry"))]
-            Question::Solids(_) => Err(vec![format!("{element}: needs the feature geometry")]),
+            Question::Solids(_) => Err(vec![Unsupported::new(element, Lack::Geometry)]),
         },
     }
 }
@@ -276,8 +277,8 @@ impl ExternalInputs {
     /// Of a scene, with the closures that its hooks refer to.
     ///
     /// # Errors
-    /// What the equations complained about; closures that would read what depends on them.
-    pub fn new(scene: &Scene, hooks: &[Hook]) -> Result<Self, Vec<String>> {
+    /// What the equations cannot supply; closures that would read what depends on them.
+    pub fn new(scene: &Scene, hooks: &[Hook]) -> Result<Self, Vec<Unsupported>> {
         let first = scene.layout.external().start;
         let mut this = Self {
             still: scene.layout.y().is_empty(),
@@ -312,10 +313,7 @@ impl ExternalInputs {
                     })?;
                     let places = first + hook.place..first + hook.place + hook.n;
                     if places.clone().any(|place| inputs.reads(place)) {
-                        return Err(vec![format!(
-                            "{}: its closure reads what depends on its own result",
-                            hook.element
-                        )]);
+                        return Err(vec![Unsupported::new(&hook.element, Lack::OwnResult)]);
                     }
                     let reads = match &hook.kind {
                         HookKind::User { .. } => vec![true; inputs.n_outputs()],

@@ -24,7 +24,7 @@ use crate::numeric::pattern::Pattern;
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
-use crate::scene::equations::{Equations, KINEMATIC, STATIC};
+use crate::scene::equations::{Equations, KINEMATIC, STATIC, Unsupported};
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, Switching, record};
 use crate::scene::solve::{self, WEAK};
@@ -142,16 +142,9 @@ const SHARE_OF_SPEED: f64 = 0.02;
 /// Angle by which what decides a branch may turn within a step: a quarter of a turn, in which a step is looked at several times.
 const FOLLOWED: f64 = std::f64::consts::FRAC_PI_2;
 
-/// A model whose equations cannot be written down.
-pub fn complaints(what: Vec<String>) -> Vec<Diagnostic> {
-    let said = |w: String| match w.split_once(": ") {
-        // "VARIABLE/7 FUNCTION: …" begins with the element that asks
-        Some((asks, what)) if asks.contains('/') => {
-            Diagnostic::error("unsupported", what).element(asks)
-        }
-        _ => Diagnostic::error("unsupported", w),
-    };
-    what.into_iter().map(said).collect()
+/// Makes errors of what the equations cannot supply.
+pub fn complaints(what: Vec<Unsupported>) -> Vec<Diagnostic> {
+    what.iter().map(Unsupported::error).collect()
 }
 
 /// The rate by whichever elimination takes fewer operations; deep forests are not tried the quadratic way.

@@ -13,6 +13,7 @@ use crate::analysis::system::external_inputs::Law;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::scene::Scene;
+use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::programs::record;
 use nalgebra::{DMatrix, DVector};
@@ -60,8 +61,8 @@ impl Samples {
     /// Of a scene.
     ///
     /// # Errors
-    /// What the equations complained about.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<String>> {
+    /// What the equations cannot supply.
+    pub fn new(scene: &Scene) -> Result<Self, Vec<Unsupported>> {
         let first = scene.layout.external().start;
         let mut all = Vec::new();
         for s in &scene.samplers {

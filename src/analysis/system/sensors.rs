@@ -12,6 +12,7 @@ use crate::analysis::system::System;
 use crate::expr::program::{Program, Work};
 use crate::model::Comparison;
 use crate::scene::Scene;
+use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::{ExternalInput, SceneSensor};
 use crate::scene::programs::record;
 use std::f64::consts::{PI, TAU};
@@ -47,8 +48,8 @@ impl Sensors {
     /// Of a scene.
     ///
     /// # Errors
-    /// What the equations complained about.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<String>> {
+    /// What the equations cannot supply.
+    pub fn new(scene: &Scene) -> Result<Self, Vec<Unsupported>> {
         let n = scene.sensors.len();
         if n == 0 {
             return Ok(Self::default());

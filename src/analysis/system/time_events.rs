@@ -16,6 +16,7 @@
 use crate::expr::program::{Levels, Program, Work};
 use crate::scalar::Interval;
 use crate::scene::Scene;
+use crate::scene::equations::Unsupported;
 use crate::scene::layout::Layout;
 use crate::scene::programs;
 
@@ -62,8 +63,8 @@ impl TimeEvents {
     /// Of a scene.
     ///
     /// # Errors
-    /// What the equations complained about.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<String>> {
+    /// What the equations cannot supply.
+    pub fn new(scene: &Scene) -> Result<Self, Vec<Unsupported>> {
         let programs::Timed { values, levels } = programs::timed(scene)?;
         if levels.is_empty() {
             return Ok(Self::default());

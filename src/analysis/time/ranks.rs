@@ -462,12 +462,13 @@ fn place(scene: &Scene, numbers: &[f64], touched: &[bool]) -> Vec<(String, f64)>
     all.into_iter().map(|(_, name, x)| (name, x)).collect()
 }
 
-/// Why the rows can be kept no longer near a state, in words, with the row that is worst.
+/// Why the rows can be kept no longer near a state, with the row that is worst.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Lock {
     /// "JOINT/4 D.Xg"
     pub row: String,
-    /// "MOTION/1", when one drives against the rows
-    pub motion: Option<String>,
+    /// user's number of the MOTION that drives against the rows, where one does
+    pub motion: Option<u32>,
     /// coordinates there
     pub place: Vec<(String, f64)>,
 }
@@ -512,7 +513,7 @@ pub fn locked(scene: &Scene, numbers: &[f64]) -> Option<Lock> {
     let motion = (0..values.len())
         .max_by(|&i, &j| pushes[i].total_cmp(&pushes[j]))
         .filter(|&k| pushes[k] > 1e-9)
-        .map(|k| format!("MOTION/{}", scene.motions[k].id));
+        .map(|k| scene.motions[k].id);
     Some(Lock {
         row: row_name(&scene.rows[rows[worst]]),
         motion,
@@ -526,10 +527,7 @@ pub fn words(place: &[(String, f64)]) -> String {
     let some: Vec<String> = some
         .map(|(name, x)| {
             let x = if x.abs() < 1e-12 { 0.0 } else { *x };
-            format!(
-                "{name} = {}",
-                crate::analysis::start::misalignment::short(x)
-            )
+            format!("{name} = {}", crate::analysis::start::quantity::short(x))
         })
         .collect();
     let more = if place.len() > 4 { ", …" } else { "" };

@@ -12,6 +12,7 @@ use crate::expr::walk;
 use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
+use std::fmt;
 
 /// How much later, as parts of the time that the clock shows, or of a unit of it.
 const LATER: [f64; 6] = [0.0, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
@@ -19,8 +20,53 @@ const LATER: [f64; 6] = [0.0, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
 /// A divisor that is smaller than this part of what it is later is that of a pole.
 const VANISHED: f64 = 1e-8;
 
-/// "SFORCE/1 FUNCTION: SQRT of -0.01 has no value", for the numbers of the last state; `None`: all functions have values that stay bounded.
-pub fn named(scene: &Scene, numbers: &[f64]) -> Option<String> {
+/// A function that has no value, or soon none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Valueless {
+    /// "SFORCE/1 FUNCTION"
+    pub function: String,
+    /// how it loses its value
+    pub loss: Loss,
+}
+
+/// How a function loses its value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Loss {
+    /// an operation is asked for what it has no value for: "SQRT of -0.01 has no value"
+    Domain(String),
+    /// no operation is to blame
+    NotFinite,
+    /// an operation divides by what goes to zero
+    Pole {
+        /// its text
+        operation: String,
+        /// the value it has reached
+        value: f64,
+        /// when
+        at: f64,
+    },
+}
+
+impl fmt::Display for Valueless {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = &self.function;
+        match &self.loss {
+            Loss::Domain(why) => write!(f, "{name}: {why}"),
+            Loss::NotFinite => write!(f, "{name} has no finite value"),
+            Loss::Pole {
+                operation,
+                value,
+                at,
+            } => write!(
+                f,
+                "{name}: {operation} grows without bound, to {value:.3e} at TIME = {at}"
+            ),
+        }
+    }
+}
+
+/// Finds the function that has no value at the numbers of the last state or just after it; `None`: all have values that stay bounded.
+pub fn find(scene: &Scene, numbers: &[f64]) -> Option<Valueless> {
     let rates = Equations::new(scene, numbers).rates();
     let unit = numbers[Layout::TIME].abs().max(1.0);
     let then = |later: f64| {
@@ -42,8 +88,8 @@ pub fn named(scene: &Scene, numbers: &[f64]) -> Option<String> {
     })
 }
 
-/// "SFORCE/3 FUNCTION: 1/(TIME-0.5) grows without bound at TIME = 0.5, for …": the first operation that divides by what is nearly zero now, but not then.
-fn pole(scene: &Scene, now: &[f64], then: &[f64]) -> Option<String> {
+/// Finds the first operation that divides by what is nearly zero now, but not then.
+fn pole(scene: &Scene, now: &[f64], then: &[f64]) -> Option<Valueless> {
     let [at_now, at_then] = [now, then].map(|numbers| Equations::new(scene, numbers));
     scene.formulas.iter().find_map(|f| {
         let expr = Expr::parse(&f.text).ok()?;
@@ -64,13 +110,14 @@ fn pole(scene: &Scene, now: &[f64], then: &[f64]) -> Option<String> {
                 _ => false,
             }
         })?;
-        let what = expr.ast().written(ix);
-        let value = here[ix as usize].unwrap_or(f64::NAN);
-        let time = now[Layout::TIME];
-        Some(format!(
-            "{}: {what} grows without bound, to {value:.3e} at TIME = {time}",
-            f.name
-        ))
+        Some(Valueless {
+            function: f.name.clone(),
+            loss: Loss::Pole {
+                operation: expr.ast().written(ix),
+                value: here[ix as usize].unwrap_or(f64::NAN),
+                at: now[Layout::TIME],
+            },
+        })
     })
 }
 
@@ -88,7 +135,7 @@ fn divisor(ast: &Ast, ix: NodeIx, values: &[Option<f64>]) -> Option<f64> {
     }
 }
 
-fn there(scene: &Scene, numbers: &[f64]) -> Option<String> {
+fn there(scene: &Scene, numbers: &[f64]) -> Option<Valueless> {
     let at = Equations::new(scene, numbers);
     scene.formulas.iter().find_map(|f| {
         let inputs = f.program.inputs();
@@ -115,9 +162,13 @@ fn there(scene: &Scene, numbers: &[f64]) -> Option<String> {
         let said = Expr::parse(&f.text)
             .ok()
             .and_then(|e| e.eval_with(&host).err());
-        Some(match said {
-            Some(d) if d.code == "domain" => format!("{}: {}", f.name, d.message),
-            _ => format!("{} has no finite value", f.name),
+        let loss = match said {
+            Some(d) if d.code == "domain" => Loss::Domain(d.message),
+            _ => Loss::NotFinite,
+        };
+        Some(Valueless {
+            function: f.name.clone(),
+            loss,
         })
     })
 }

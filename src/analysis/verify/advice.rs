@@ -10,6 +10,7 @@ use crate::physics::joint::Tie;
 use crate::scene::equations::Equations;
 use crate::scene::{Row, RowKind, Scene};
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// What an element may be weakened to, most usual first.
 const CANDIDATES: [Tie; 12] = [
@@ -27,8 +28,61 @@ const CANDIDATES: [Tie; 12] = [
     Tie::Primitive(PrimitiveKind::Orientation),
 ];
 
-/// Sentences of advice, one per element with rows that depend on others wherever one looks.
-pub(super) fn advice(scene: &Scene, numbers: &[f64], assembly: &Assembly) -> Vec<String> {
+/// A change of an element after which it fixes nothing twice, and the motion is the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advice {
+    /// "JOINT/4"
+    pub element: String,
+    /// what to do with it
+    pub change: Change,
+}
+
+/// What to do with an element that has superfluous rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// all of its rows follow from others
+    Remove,
+    /// this weaker tie between the same markers keeps what is needed
+    Replace(Tie),
+    /// no tie has just the equations that are needed
+    Weaken {
+        /// equations that are needed
+        kept: usize,
+        /// equations that it has
+        of: usize,
+    },
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = &self.element;
+        match self.change {
+            Change::Remove => {
+                write!(f, "{name} is not needed: without it the motion is the same")
+            }
+            Change::Replace(Tie::Joint(kind)) => {
+                let kind = format!("{kind:?}").to_uppercase();
+                write!(
+                    f,
+                    "{name} as {kind} with the same markers permits the same motion and fixes nothing twice"
+                )
+            }
+            Change::Replace(Tie::Primitive(kind)) => {
+                let kind = super::words::primitive(kind);
+                write!(
+                    f,
+                    "JPRIM {kind} with the markers of {name} in its place permits the same motion and fixes nothing twice"
+                )
+            }
+            Change::Weaken { kept, of } => {
+                write!(f, "{name} could do with {kept} of its {of} equations")
+            }
+        }
+    }
+}
+
+/// Finds advice for each element with rows that depend on others wherever one looks.
+pub(super) fn advice(scene: &Scene, numbers: &[f64], assembly: &Assembly) -> Vec<Advice> {
     let mut of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for r in assembly.redundant.iter().map(|r| r.row) {
         if let Some(c) = scene.constraints.iter().position(|c| c.rows.contains(&r)) {
@@ -38,28 +92,22 @@ pub(super) fn advice(scene: &Scene, numbers: &[f64], assembly: &Assembly) -> Vec
     of.into_iter()
         .map(|(c, superfluous)| {
             let element = &scene.constraints[c];
-            let name = format!("{}/{}", element.keyword, element.id);
             let kept = element.rows.len() - superfluous.len();
-            if kept == 0 {
-                return format!("{name} is not needed: without it the motion is the same");
-            }
             let better = CANDIDATES
-                .iter()
-                .filter(|tie| tie.rows().len() == kept)
-                .find(|tie| fits(scene, numbers, assembly, c, **tie));
-            match better {
-                Some(Tie::Joint(kind)) => {
-                    let kind = format!("{kind:?}").to_uppercase();
-                    format!("{name} as {kind} with the same markers permits the same motion and fixes nothing twice")
-                }
-                Some(Tie::Primitive(kind)) => {
-                    let kind = super::words::primitive(*kind);
-                    format!("JPRIM {kind} with the markers of {name} in its place permits the same motion and fixes nothing twice")
-                }
-                None => format!(
-                    "{name} could do with {kept} of its {} equations",
-                    element.rows.len()
-                ),
+                .into_iter()
+                .filter(|tie| kept > 0 && tie.rows().len() == kept)
+                .find(|tie| fits(scene, numbers, assembly, c, *tie));
+            let change = match better {
+                _ if kept == 0 => Change::Remove,
+                Some(tie) => Change::Replace(tie),
+                None => Change::Weaken {
+                    kept,
+                    of: element.rows.len(),
+                },
+            };
+            Advice {
+                element: format!("{}/{}", element.keyword, element.id),
+                change,
             }
         })
         .collect()

@@ -2,8 +2,9 @@
 //!
 //! Directions that satisfy all rows to first order, combined so that each has an unknown of its own: as few parts as can be had cheaply move in each.
 
-use super::words::{axis, point};
 use crate::analysis::start::assemble;
+use crate::analysis::start::direction::Axis;
+use crate::analysis::start::quantity::point;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
 use crate::scene::compile::part_name;
@@ -149,7 +150,7 @@ fn how(
         let own = (0..3).find(|&k| state.R_GM.column(k).dot(unit).abs() > 1.0 - 1e-9);
         match own {
             Some(k) => format!("its {}", ["X", "Y", "Z"][k]),
-            None => axis(direction, &[]),
+            None => Axis::along(direction, &[]).to_string(),
         }
     };
     let turning = w.norm() * scene.length;

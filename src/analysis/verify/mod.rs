@@ -14,11 +14,11 @@ pub(crate) mod massless;
 pub mod outline;
 mod words;
 
+pub use advice::{Advice, Change};
 pub use free::{Free, Moving};
-pub use words::axis;
-pub(super) use words::direction;
 
 use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::direction::Direction;
 use crate::analysis::start::nearby::Place;
 use crate::analysis::start::{initial_conditions, misalignment, placement};
 use crate::diagnostic::Diagnostic;
@@ -33,23 +33,46 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Stress in an element, relative to the largest in the state, below which it takes no part.
 const NONE: f64 = 1e-7;
 
-/// A row that depends on others, in words.
+/// A row that depends on others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dependent {
     /// "JOINT/4 Zi.Xj"
     pub row: String,
     /// "JOINT/4"
     pub element: String,
-    /// "rotation about ground X"
-    pub direction: String,
+    /// the motion it forbids
+    pub direction: Direction,
     /// elements that fix the same already, carriers first
     pub fixed_by: Vec<String>,
     /// factors of the rows it is a combination of; rows of joints that carry parts are not among them
     pub combination: Vec<(String, f64)>,
     /// it depends on others at this position, but not nearby
     pub only_here: bool,
-    /// all of this in a sentence
-    pub words: String,
+    /// it is the row of a MOTION, which drives rather than fixes
+    pub drives: bool,
+}
+
+impl Dependent {
+    /// Tells it in a sentence: "JOINT/4 fixes rotation about ground X, already fixed by JOINT/1, JOINT/2".
+    pub fn sentence(&self) -> String {
+        self.sentence_of(&[self])
+    }
+
+    /// Tells it of several rows of the same element that the same elements fix already.
+    pub fn sentence_of(&self, rows: &[&Dependent]) -> String {
+        let verb = if self.drives { "drives" } else { "fixes" };
+        let directions: Vec<String> = rows.iter().map(|d| d.direction.to_string()).collect();
+        let mut text = format!("{} {verb} {}", self.element, directions.join(", "));
+        if self.fixed_by.is_empty() {
+            text += ", though the parts it ties cannot move against each other";
+        } else {
+            text += &format!(", already fixed by {}", self.fixed_by.join(", "));
+        }
+        if self.only_here {
+            text += " (at this position only)";
+        }
+        text
+    }
 }
 
 /// An element whose reaction is not determined.
@@ -83,7 +106,7 @@ pub struct Verification {
     /// reactions that are not unique
     pub undetermined: Vec<Undetermined>,
     /// what could be changed
-    pub advice: Vec<String>,
+    pub advice: Vec<Advice>,
     /// free directions
     pub free: Vec<Free>,
     /// rows that cannot be satisfied
@@ -371,18 +394,16 @@ fn explain(scene: &Scene, numbers: &[f64], assembly: &Assembly, found: &mut Veri
             }
         }
         let row = &scene.rows[d.row];
-        let direction = words::direction(scene, &at, d.row);
-        let only_here = here_only.contains(&d.row);
         found.dependent.push(Dependent {
-            words: words::sentence(&row.element, &direction, &fixed_by, only_here),
             row: d.name.clone(),
             element: row.element.clone(),
-            direction,
+            direction: Direction::of_row(scene, &at, d.row),
             fixed_by,
             combination: (d.combination.iter())
                 .map(|&(r, f)| (row_name(&scene.rows[r]), f))
                 .collect(),
-            only_here,
+            only_here: here_only.contains(&d.row),
+            drives: own.is_some_and(|c| scene.constraints[c].keyword == "MOTION"),
         });
     }
     const COMPONENTS: [&str; 6] = ["FX", "FY", "FZ", "TX", "TY", "TZ"];

@@ -81,8 +81,8 @@ fn as_json(v: &Verification) -> Value {
                 .map(|(row, factor)| json!({ "row": row, "factor": factor }))
                 .collect();
             json!({
-                "row": d.row, "element": d.element, "direction": d.direction, "fixed_by": d.fixed_by,
-                "combination": combination, "only_here": d.only_here, "words": d.words,
+                "row": d.row, "element": d.element, "direction": d.direction.to_string(), "fixed_by": d.fixed_by,
+                "combination": combination, "only_here": d.only_here, "words": d.sentence(),
             })
         })
         .collect();
@@ -114,7 +114,7 @@ fn as_json(v: &Verification) -> Value {
         "redundant": v.redundant(),
         "dependent": dependent,
         "reactions_not_unique": undetermined,
-        "advice": v.advice,
+        "advice": v.advice.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "free": free,
         "assembly": { "iterations": v.assembly.0, "moved": v.assembly.1 },
         "warnings": v.warnings,

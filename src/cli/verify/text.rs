@@ -1,6 +1,6 @@
 //! A verification as a person reads it: the count line by line, then what there is to say, what says the same of many elements said once.
 
-use crate::analysis::verify::{Dependent, Undetermined, Verification};
+use crate::analysis::verify::{Advice, Dependent, Undetermined, Verification};
 use std::fmt::Write;
 
 /// More findings of one sort than this are told by their kinds: one in full, of the others the names.
@@ -72,11 +72,8 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
         (&a.element, &a.fixed_by, a.only_here) == (&b.element, &b.fixed_by, b.only_here)
     });
     let sentence = |(first, group): &(&Dependent, Vec<&Dependent>)| {
-        let directions: Vec<&str> = group.iter().map(|d| d.direction.as_str()).collect();
         let rows: Vec<&str> = group.iter().map(|d| d.row.as_str()).collect();
-        let words = first
-            .words
-            .replacen(&first.direction, &directions.join(", "), 1);
+        let words = first.sentence_of(group);
         format!("redundant: {words} ({})", rows.join(", "))
     };
     if by_element.len() <= MANY {
@@ -85,9 +82,8 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
     // rotations or translations, as many of them, fixed by one other element or around a loop
     type Group<'a> = (&'a Dependent, Vec<&'a Dependent>);
     let kind = |(first, group): &Group<'_>| {
-        let words = group.iter().map(|d| d.direction.starts_with("rotation"));
-        let words: Vec<bool> = words.collect();
-        (words, first.fixed_by.len() == 1, first.only_here)
+        let rotations: Vec<bool> = group.iter().map(|d| d.direction.is_rotation()).collect();
+        (rotations, first.fixed_by.len() == 1, first.only_here)
     };
     let mut lines = vec![format!(
         "{} redundant equations; --json tells of each what fixes it already",
@@ -142,25 +138,14 @@ fn not_unique(all: &[Undetermined]) -> Vec<String> {
     alike.iter().map(tell).collect()
 }
 
-/// What could be changed.
-fn advice(all: &[String]) -> Vec<String> {
+/// What could be changed; where that is much, what is the same for many elements stands once.
+fn advice(all: &[Advice]) -> Vec<String> {
     if all.len() <= MANY {
         return all.iter().map(|a| format!("advice: {a}")).collect();
     }
-    let element = |text: &str| -> Option<String> {
-        let named = |w: &&str| {
-            let number = w.split_once('/').map(|(_, n)| n);
-            number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
-        };
-        text.split(' ').find(named).map(str::to_string)
-    };
-    let kind = |text: &String| match element(text) {
-        Some(name) => text.replacen(&name, "", 1),
-        None => text.clone(),
-    };
     let mut lines = Vec::new();
-    for (first, group) in groups(all, |a, b| kind(a) == kind(b)) {
-        let others: Vec<String> = group[1..].iter().filter_map(|a| element(a)).collect();
+    for (first, group) in groups(all, |a, b| a.change == b.change) {
+        let others: Vec<&str> = group[1..].iter().map(|a| a.element.as_str()).collect();
         let mut text = format!("advice: {first}");
         if !others.is_empty() {
             let _ = write!(text, "; likewise {}", others.join(", "));
@@ -185,18 +170,20 @@ fn groups<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<(&T, Vec<&T>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::start::direction::{Axis, Direction};
+    use crate::analysis::verify::Change;
 
     fn dependent(k: usize, fixed_by: &[&str]) -> Dependent {
         let element = format!("JOINT/{k}");
         let fixed_by: Vec<String> = fixed_by.iter().map(ToString::to_string).collect();
         Dependent {
             row: format!("{element} Zi.Xj"),
-            words: format!("{element} fixes rotation about ground Y, already fixed by it"),
             element,
-            direction: "rotation about ground Y".into(),
+            direction: Direction::Rotation(Axis::Ground(1)),
             fixed_by,
             combination: Vec::new(),
             only_here: false,
+            drives: false,
         }
     }
 
@@ -223,9 +210,11 @@ mod tests {
 
     #[test]
     fn advice_of_one_kind_is_given_once() {
-        let all: Vec<String> = (1..=9)
-            .map(|k| format!("JPRIM/{k} is not needed: without it the motion is the same"))
-            .collect();
+        let of = |k: usize| Advice {
+            element: format!("JPRIM/{k}"),
+            change: Change::Remove,
+        };
+        let all: Vec<Advice> = (1..=9).map(of).collect();
         let lines = advice(&all);
         assert_eq!(lines.len(), 1);
         assert!(lines[0].ends_with(

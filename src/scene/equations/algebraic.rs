@@ -8,7 +8,7 @@
 //! may be time, other equations, VARIABLEs and ARRAYs of these, and places of markers; what has no rate that is known
 //! without accelerations is named.
 
-use super::Equations;
+use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::{Input, Work};
 use crate::scalar::{Jet, Scalar};
@@ -28,7 +28,7 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn algebraic_rate(&self, d: usize) -> S {
         let equation = &self.scene.differentials[d];
         if self.rates_open.borrow().contains(&d) {
-            return self.complain(format!("DIF1({}) depends on itself", equation.id));
+            return self.complain(&format!("DIF1({})", equation.id), Lack::OwnValue);
         }
         self.rates_open.borrow_mut().push(d);
         let along = self.moved(equation.formula, Moving::Others(d), &mut Vec::new());
@@ -99,10 +99,7 @@ impl<S: Scalar> Equations<'_, S> {
             Some(jet) => at_rate(jet.value, jet.first),
             None => Jet::new(
                 S::zero(),
-                self.complain(format!(
-                    "{asked_by}: {} has no rate that is known here, which DIF1 asks for",
-                    measure.name()
-                )),
+                self.complain(asked_by, Lack::Rate(measure)),
                 S::zero(),
             ),
         }

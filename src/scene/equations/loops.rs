@@ -1,6 +1,6 @@
 //! What functions read too early: found out, and their equations.
 
-use super::Equations;
+use super::{Equations, Lack};
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
 
@@ -18,10 +18,7 @@ impl<S: Scalar> Equations<'_, S> {
         let k = self.scene.loops.iter().position(|u| u.key == key)?;
         match self.loops.get(k) {
             Some(&value) => Some(value),
-            None => Some(self.complain(format!(
-                "{} is known only where its loop is solved",
-                self.scene.loops[k].name
-            ))),
+            None => Some(self.complain(&self.scene.loops[k].name, Lack::OutsideLoop)),
         }
     }
 
@@ -31,9 +28,9 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// Something is asked for that depends on who asks.
-    pub(super) fn too_early(&self, key: Key, why: impl FnOnce() -> String) -> S {
+    pub(super) fn too_early(&self, key: Key, asked_by: &str, lack: Lack) -> S {
         if !self.discovering {
-            return self.complain(why());
+            return self.complain(asked_by, lack);
         }
         let mut found = self.discovered.borrow_mut();
         if !found.contains(&key) {

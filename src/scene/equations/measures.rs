@@ -1,6 +1,6 @@
 //! What the functions of the model read: displacements, velocities, accelerations, angles with their turns, values of system elements.
 
-use super::Equations;
+use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure, orientation_components};
 use crate::expr::program::Input;
 use crate::scalar::Scalar;
@@ -29,28 +29,20 @@ impl<S: Scalar> Equations<'_, S> {
                         self.turned(Counted::Measure(measure, ids), value)
                     }
                     Some(value) => value,
-                    None => self.complain(without_value(measure, ids, asked_by)),
+                    None => self.complain(asked_by, without_value(measure, ids)),
                 }
             }
             Family::Acceleration => {
                 if self.solving.get() {
-                    return self.too_early(Key::Measure(measure, ids), || {
-                        format!(
-                            "{asked_by}: {} reads an acceleration that depends on this very function",
-                            row.name
-                        )
-                    });
+                    let key = Key::Measure(measure, ids);
+                    return self.too_early(key, asked_by, Lack::OwnAcceleration(measure));
                 }
                 if self.discovering {
                     return S::zero();
                 }
                 let state = |id: u32| self.marker_by_id(id, true);
-                kinematic::kinematic_of(measure, ids, state).unwrap_or_else(|| {
-                    self.complain(format!(
-                        "{asked_by}: {} names a marker that does not exist",
-                        row.name
-                    ))
-                })
+                kinematic::kinematic_of(measure, ids, state)
+                    .unwrap_or_else(|| self.complain(asked_by, Lack::Marker(measure)))
             }
             Family::GenericForce => self.generic_force(measure, ids, asked_by),
             Family::ElementForce => self.element_force(measure, ids, asked_by),
@@ -101,37 +93,54 @@ impl<S: Scalar> Equations<'_, S> {
         match measure {
             Measure::Varval => match scene.variables.get(&id) {
                 Some(&f) => self.formula(f),
-                None => self.complain(format!("{asked_by}: VARIABLE/{id} does not exist")),
+                None => self.complain(asked_by, Lack::Element("VARIABLE", id)),
             },
             Measure::Aryval => match self.entry(id, k) {
                 Some(Entry::Number(x)) => S::constant(x),
                 Some(Entry::State(d)) => self.state_of(d),
                 Some(Entry::Formula(f)) => self.formula(f),
-                None => self.complain(format!("{asked_by}: ARRAY/{id} has no entry {k}")),
+                None => {
+                    let keyword = "ARRAY";
+                    self.complain(
+                        asked_by,
+                        Lack::Entry {
+                            keyword,
+                            id,
+                            entry: k,
+                        },
+                    )
+                }
             },
             Measure::Pinval | Measure::Pouval => {
                 let output = measure == Measure::Pouval;
                 let plant = scene.plants.get(&(output, id));
                 match plant.and_then(|p| p.get((k as usize).wrapping_sub(1))) {
                     Some(&f) => self.formula(f),
-                    None => self.complain(format!(
-                        "{asked_by}: {}/{id} has no entry {k}",
-                        if output { "POUTPUT" } else { "PINPUT" }
-                    )),
+                    None => {
+                        let keyword = if output { "POUTPUT" } else { "PINPUT" };
+                        self.complain(
+                            asked_by,
+                            Lack::Entry {
+                                keyword,
+                                id,
+                                entry: k,
+                            },
+                        )
+                    }
                 }
             }
             Measure::Senval => match scene.sensor_place(id) {
                 Some(place) => self.external[place],
-                None => self.complain(format!("{asked_by}: SENSOR/{id} does not exist")),
+                None => self.complain(asked_by, Lack::Element("SENSOR", id)),
             },
             Measure::Dif | Measure::Dif1 => {
                 match scene.differentials.iter().position(|d| d.id == id) {
                     Some(d) if measure == Measure::Dif => self.state_of(d),
                     Some(d) => self.rate_of(d),
-                    None => self.complain(format!("{asked_by}: DIFF/{id} does not exist")),
+                    None => self.complain(asked_by, Lack::Element("DIFF", id)),
                 }
             }
-            _ => self.complain(format!("{asked_by}: {} is not solved yet", measure.name())),
+            _ => self.complain(asked_by, Lack::Measure(measure)),
         }
     }
 
@@ -155,22 +164,17 @@ impl<S: Scalar> Equations<'_, S> {
     }
 }
 
-/// Why a measure of markers has no value: a marker is missing, or ORIENT is asked for what has no meaning here.
-fn without_value(measure: Measure, ids: [u32; 4], asked_by: &str) -> String {
-    let name = measure.name();
+/// What a measure of markers lacks: a marker, or ORIENT a meaning of what it is asked for.
+fn without_value(measure: Measure, ids: [u32; 4]) -> Lack {
     match (measure, ids) {
-        (Measure::Orient, [system @ (25 | 26), component, ..]) => format!(
-            "{asked_by}: ORIENT({system}, {component}, …): what system {system} means is not documented; \
-             YAW, PITCH and ROLL, AX, AY and AZ, or another system (`cognate functions ORIENT`) give an orientation"
-        ),
+        (Measure::Orient, [system @ (25 | 26), component, ..]) => {
+            Lack::Orientation { system, component }
+        }
         (Measure::Orient, [system, component, ..])
             if component > orientation_components(system) =>
         {
-            format!(
-                "{asked_by}: ORIENT({system}, {component}, …): system {system} has components 1 to {}",
-                orientation_components(system)
-            )
+            Lack::OrientationComponent { system, component }
         }
-        _ => format!("{asked_by}: {name} names a marker that does not exist or is left out"),
+        _ => Lack::Marker(measure),
     }
 }

@@ -16,11 +16,13 @@ mod measures;
 mod reactions;
 mod rows;
 mod undetermined_reactions;
+mod unsupported;
 
 pub use dynamics::Solved;
 pub(in crate::scene) use reactions::keyword_of;
 pub use rows::{RowValue, row_name};
 pub use undetermined_reactions::Share;
+pub use unsupported::{Lack, Unsupported};
 
 use super::external_inputs::ExternalInput;
 use super::layout::Layout;
@@ -69,8 +71,8 @@ pub struct Equations<'s, S: Scalar> {
     discovered: RefCell<Vec<Key>>,
     /// equations whose rates are being found
     rates_open: RefCell<Vec<usize>>,
-    /// what went wrong, for the compiler to report
-    complaints: RefCell<Vec<String>>,
+    /// what could not be supplied, for the compiler to report
+    complaints: RefCell<Vec<Unsupported>>,
 }
 
 impl<'s, S: Scalar> Equations<'s, S> {
@@ -115,12 +117,14 @@ impl<'s, S: Scalar> Equations<'s, S> {
         this
     }
 
-    /// What could not be computed, in words; empty when all is well.
-    pub fn complaints(&self) -> Vec<String> {
+    /// What could not be supplied; empty when all is well.
+    pub fn complaints(&self) -> Vec<Unsupported> {
         self.complaints.borrow().clone()
     }
 
-    fn complain(&self, what: String) -> S {
+    /// Notes what could not be supplied; its value is NaN.
+    fn complain(&self, asked_by: &str, lack: Lack) -> S {
+        let what = Unsupported::new(asked_by, lack);
         let mut complaints = self.complaints.borrow_mut();
         if !complaints.contains(&what) {
             complaints.push(what);
@@ -316,8 +320,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
             return value;
         }
         if self.open.borrow().contains(&f) {
-            let why = || format!("{} depends on itself", self.scene.formulas[f].name);
-            return self.too_early(Key::Formula(f), why);
+            let name = &self.scene.formulas[f].name;
+            return self.too_early(Key::Formula(f), name, Lack::OwnValue);
         }
         let value = self.evaluate(f);
         self.formulas.borrow_mut()[f] = Some(value);

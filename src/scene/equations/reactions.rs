@@ -1,6 +1,6 @@
 //! What elements exert, as measures: reactions of constraints, actions of forces, sums between two markers.
 
-use super::Equations;
+use super::{Equations, Lack};
 use crate::expr::measures::Measure;
 use crate::physics::action::Action;
 use crate::scalar::Scalar;
@@ -166,9 +166,7 @@ impl<S: Scalar> Equations<'_, S> {
         }
         match found {
             Some(action) => self.component(&action, comp, rm, asked_by),
-            None => self.complain(format!(
-                "{asked_by}: NFORCE/{id} does not exist, is not active, or does not act on MARKER/{at}"
-            )),
+            None => self.complain(asked_by, Lack::NodalForce { id, marker: at }),
         }
     }
 
@@ -178,9 +176,7 @@ impl<S: Scalar> Equations<'_, S> {
         let mut all = scene.forces.iter();
         let found = all.find(|f| f.keyword == "FRICTION" && f.id == id);
         let Some((slip, j)) = found.and_then(|f| Some((f.slip(self)?, f.j?))) else {
-            return self.complain(format!(
-                "{asked_by}: FRICTION/{id} does not exist or is not active"
-            ));
+            return self.complain(asked_by, Lack::ActiveElement("FRICTION", id));
         };
         let axes = self.marker(j).R_GM;
         let k = index as usize;
@@ -189,9 +185,7 @@ impl<S: Scalar> Equations<'_, S> {
             4..=6 => axes.column(k - 4).dot(slip.action.torque),
             14..=16 => axes.column(k - 14).dot(slip.velocity),
             17..=19 => axes.column(k - 17).dot(slip.spin),
-            _ => self.complain(format!(
-                "{asked_by}: component {index} of FRICTION is not solved: there are force (1 to 3), torque (4 to 6), sliding velocity (14 to 16) and angular velocity (17 to 19)"
-            )),
+            _ => self.complain(asked_by, Lack::FrictionComponent(index)),
         }
     }
 
@@ -213,7 +207,7 @@ impl<S: Scalar> Equations<'_, S> {
             return self.friction(id, jflag, asked_by);
         }
         let Some(keyword) = keyword_of(measure) else {
-            return self.complain(format!("{asked_by}: {} is not solved yet", measure.name()));
+            return self.complain(asked_by, Lack::Measure(measure));
         };
         if self.solving.get()
             && self
@@ -222,17 +216,11 @@ impl<S: Scalar> Equations<'_, S> {
                 .iter()
                 .any(|c| c.keyword == keyword && c.id == id)
         {
-            return self.too_early(Key::Measure(measure, [id, jflag, comp, rm]), || {
-                format!(
-                    "{asked_by}: {} reads a reaction that depends on this very function",
-                    measure.name()
-                )
-            });
+            let key = Key::Measure(measure, [id, jflag, comp, rm]);
+            return self.too_early(key, asked_by, Lack::OwnReaction(measure));
         }
         let Some((action, p_I, p_J)) = self.element(keyword, id) else {
-            return self.complain(format!(
-                "{asked_by}: {keyword}/{id} does not exist or is not active"
-            ));
+            return self.complain(asked_by, Lack::ActiveElement(keyword, id));
         };
         let action = if jflag == 1 {
             action.reaction(p_I, p_J)
@@ -249,7 +237,7 @@ impl<S: Scalar> Equations<'_, S> {
         } else {
             match self.marker_by_id(rm, false) {
                 Some(m) => m.R_GM,
-                None => return self.complain(format!("{asked_by}: MARKER/{rm} does not exist")),
+                None => return self.complain(asked_by, Lack::Element("MARKER", rm)),
             }
         };
         let length = |v: Vec3<S>| {
@@ -262,7 +250,7 @@ impl<S: Scalar> Equations<'_, S> {
             2..=4 => axes.column(comp as usize - 2).dot(action.force),
             5 => length(action.torque),
             6..=8 => axes.column(comp as usize - 6).dot(action.torque),
-            _ => self.complain(format!("{asked_by}: component {comp} does not exist")),
+            _ => self.complain(asked_by, Lack::Component(comp)),
         }
     }
 
@@ -271,12 +259,8 @@ impl<S: Scalar> Equations<'_, S> {
         use Measure as M;
         let [i, j, k, _] = ids;
         if self.solving.get() && self.carries_reaction(i, j) {
-            return self.too_early(Key::Measure(measure, ids), || {
-                format!(
-                    "{asked_by}: {} reads a reaction that depends on this very function",
-                    measure.name()
-                )
-            });
+            let key = Key::Measure(measure, ids);
+            return self.too_early(key, asked_by, Lack::OwnReaction(measure));
         }
         let comp = match measure {
             M::Fm => 1,

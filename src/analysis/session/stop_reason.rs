@@ -1,0 +1,222 @@
+//! Why a simulation ended before all was done that was asked for: as data, and as the code, the status and the sentence of its record.
+
+use crate::analysis::statics::Imbalance;
+use crate::analysis::time::ranks::{self, Lock};
+use crate::analysis::time::valueless::Valueless;
+use crate::results::Status;
+use crate::scene::cams::Broken;
+use std::fmt;
+
+/// Why a simulation ended early.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum StopReason {
+    /// the user asked to stop
+    Interrupted,
+    /// a SENSOR asked to stop
+    Sensor {
+        /// user's number
+        id: u32,
+        /// when
+        at: f64,
+    },
+    /// a contact of curves ended
+    Contact {
+        /// when
+        at: f64,
+        /// which, why, and what to do
+        broken: Broken,
+    },
+    /// a function lost its value
+    Function {
+        /// when
+        at: f64,
+        /// which, and how
+        lost: Valueless,
+    },
+    /// the rows can be kept no longer
+    Locked {
+        /// when
+        at: f64,
+        /// the row, what drives against it, and the position
+        lock: Lock,
+    },
+    /// the method could not go on
+    Method {
+        /// when
+        at: f64,
+        /// length of the step that was tried
+        step: f64,
+        /// what it met
+        cause: Cause,
+        /// name of the unknown or row that was worst
+        worst: String,
+    },
+    /// no equilibrium was found
+    NoEquilibrium {
+        /// when
+        at: f64,
+        /// what is not balanced
+        imbalance: Imbalance,
+    },
+}
+
+/// What a method met where it could not go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cause {
+    /// no solution of an algebraic loop
+    Loop,
+    /// equations without a finite value
+    Equations,
+    /// a rate that is not a number
+    Rate,
+    /// rows that cannot be reached
+    Projection,
+    /// an error that no step makes small enough
+    ErrorTest,
+    /// an iteration that no step makes converge
+    Newton,
+    /// an unknown that no equation determines
+    Singular,
+    /// branches that change without end
+    Endless,
+    /// thousands of steps in hardly any time
+    Stalled,
+    /// the largest permitted number of steps
+    TooManySteps,
+}
+
+impl Cause {
+    /// Stable short name, explained by `cognate explain`.
+    fn code(self) -> &'static str {
+        match self {
+            Cause::Loop => "loop",
+            Cause::Equations | Cause::Rate => "no_finite_value",
+            Cause::Projection => "locked",
+            Cause::ErrorTest => "error_test",
+            Cause::Newton => "no_convergence",
+            Cause::Singular => "singular",
+            Cause::Endless => "endless_switching",
+            Cause::Stalled => "stalled",
+            Cause::TooManySteps => "too_many_steps",
+        }
+    }
+
+    /// What is wrong, without where and when.
+    fn sentence(self) -> &'static str {
+        match self {
+            Cause::Loop => "a function that depends on itself has no solution near",
+            Cause::Equations => "the equations have no finite value",
+            Cause::Rate => "a rate is not a number",
+            Cause::Projection => "the constraints cannot be kept: the mechanism is locked or folds",
+            Cause::ErrorTest => "the error stays above its tolerance however short the step",
+            Cause::Newton => "Newton's iteration does not converge however short the step",
+            Cause::Singular => "nothing determines an unknown",
+            Cause::Endless => {
+                "a function changes its branch without end; let it change over a short way, as STEP does"
+            }
+            Cause::Stalled => {
+                "thousands of steps got hardly any further; something is too stiff or changes too fast for this method"
+            }
+            Cause::TooManySteps => "as many steps as permitted",
+        }
+    }
+}
+
+impl StopReason {
+    /// Stable short name, explained by `cognate explain`.
+    pub(super) fn code(&self) -> &'static str {
+        match self {
+            StopReason::Interrupted => "interrupted",
+            StopReason::Sensor { .. } => "sensor",
+            StopReason::Contact { broken, .. } => broken.code,
+            StopReason::Function { .. } => "no_finite_value",
+            StopReason::Locked { .. } => "locked",
+            StopReason::Method { cause, .. } => cause.code(),
+            StopReason::NoEquilibrium { .. } => "no_equilibrium",
+        }
+    }
+
+    /// What it means for the run.
+    pub(super) fn status(&self) -> Status {
+        match self {
+            StopReason::Interrupted => Status::Interrupted,
+            // the model asked for it
+            StopReason::Sensor { .. } => Status::Completed,
+            StopReason::Contact { .. }
+            | StopReason::Function { .. }
+            | StopReason::Locked { .. } => Status::Stopped,
+            StopReason::Method { cause, .. } => match cause {
+                Cause::TooManySteps => Status::Limit,
+                Cause::Loop
+                | Cause::Equations
+                | Cause::Rate
+                | Cause::Projection
+                | Cause::ErrorTest
+                | Cause::Newton
+                | Cause::Singular
+                | Cause::Endless
+                | Cause::Stalled => Status::Stopped,
+            },
+            StopReason::NoEquilibrium { .. } => Status::NoEquilibrium,
+        }
+    }
+
+    /// Names of the elements, rows or unknowns to blame.
+    pub(super) fn worst(&self) -> Vec<String> {
+        let name = match self {
+            StopReason::Interrupted | StopReason::Sensor { .. } => "",
+            StopReason::Contact { broken, .. } => &broken.element,
+            StopReason::Function { lost, .. } => &lost.function,
+            StopReason::Locked { lock, .. } => &lock.row,
+            StopReason::Method { worst, .. } => worst,
+            StopReason::NoEquilibrium { imbalance, .. } => imbalance.name(),
+        };
+        let named = (!name.is_empty()).then(|| name.to_string());
+        named.into_iter().collect()
+    }
+}
+
+impl fmt::Display for StopReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            StopReason::Interrupted => f.write_str("interrupted; the results so far are kept"),
+            StopReason::Sensor { id, at } => {
+                write!(f, "SENSOR/{id} ended the simulation at time {at}")
+            }
+            StopReason::Contact { at, broken } => {
+                let (what, advice) = (&broken.sentence, &broken.advice);
+                write!(f, "stopped at time {at}: {what}; {advice}")
+            }
+            StopReason::Function { at, lost } => write!(f, "stopped at time {at}: {lost}"),
+            StopReason::Locked { at, lock } => {
+                write!(f, "stopped at time {at}: ")?;
+                let row = &lock.row;
+                match lock.motion {
+                    Some(id) => write!(
+                        f,
+                        "the mechanism is locked: MOTION/{id} drives it past its reach, {row} cannot follow"
+                    )?,
+                    None => write!(
+                        f,
+                        "the constraints can be kept no longer: {row} has become dependent on others"
+                    )?,
+                }
+                write!(f, ", where {}", ranks::words(&lock.place))
+            }
+            StopReason::Method {
+                at,
+                step,
+                cause,
+                worst,
+            } => {
+                let what = cause.sentence();
+                write!(f, "stopped at time {at} with step {step:.3e}: {what}")?;
+                match worst.as_str() {
+                    "" => Ok(()),
+                    name => write!(f, " ({name})"),
+                }
+            }
+            StopReason::NoEquilibrium { at, imbalance } => write!(f, "at time {at} {imbalance}"),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Codes of what a run says about itself: why it ended early, and what it warns of.
+
+use super::Code;
+
+/// Codes of runs: reasons to stop, then warnings.
+pub static RUN_CODES: &[Code] = &[
+    Code {
+        name: "interrupted",
+        summary: "the user stopped the run",
+        explanation: "Ctrl-C, or the caller of the library, asked to stop. All rows up to that time are written.",
+    },
+    Code {
+        name: "sensor",
+        summary: "a SENSOR stopped the simulation",
+        explanation: "A SENSOR with HALT or RETURN was triggered. That is no failure: the model asked for it.",
+    },
+    Code {
+        name: "no_finite_value",
+        summary: "a function has no finite value",
+        explanation: "\
+The message names the function, and the operation with the numbers it met, where one is to blame: SQRT of a negative number,
+LOG of zero, a quotient whose divisor goes to zero. A column of results that has no value at some time is empty there.
+
+    SQRT(DX(1,2))          where DX may be negative: SQRT(MAX(0, DX(1,2)))
+    1/DM(1,2)              grows without bound where the markers meet",
+    },
+    Code {
+        name: "locked",
+        summary: "the mechanism is locked: its constraints cannot all be kept any longer",
+        explanation: "\
+At the named position a row of the constraints has become dependent on others, and what drives the mechanism asks for more than
+that permits: a crank that pushes a rod beyond its length, a linkage in its dead centre. Prescribe less, or change the lengths.",
+    },
+    Code {
+        name: "error_test",
+        summary: "the error of an unknown stays above its tolerance however short the step",
+        explanation: "\
+The named unknown is not smooth: a function of it jumps, or is noisy. Look at the functions that read it, or ask for a larger
+ERROR to see what it does.",
+    },
+    Code {
+        name: "no_convergence",
+        summary: "Newton's iteration does not converge however short the step",
+        explanation: "\
+The equations of an implicit method have no solution near the last state, or their derivatives are wrong there. The named row is
+worst. Functions that jump are the usual cause; --method DOP853 does without the iteration.",
+    },
+    Code {
+        name: "singular",
+        summary: "no equation determines an unknown",
+        explanation: "\
+The matrix of Newton's iteration has no inverse: nothing that moves along the named unknown has mass, and no force depends on it.
+`cognate verify` names directions without mass.",
+    },
+    Code {
+        name: "endless_switching",
+        summary: "a function changes its branch again and again in hardly any time",
+        explanation: "\
+IF, SIGN, ABS and their like change branch where their argument passes zero. A relay that drives its own argument back across zero
+does so without end. Let the function change over a short way: STEP instead of IF.",
+    },
+    Code {
+        name: "stalled",
+        summary: "thousands of steps got hardly any further",
+        explanation: "\
+The named unknown changes so fast that the run would take for ever: a stiffness too large by orders of magnitude, a mass
+nearly zero, or an explicit method for a stiff model. RADAU5 is for stiff models.",
+    },
+    Code {
+        name: "too_many_steps",
+        summary: "the largest permitted number of steps was taken",
+        explanation: "The results so far are kept. Permit more steps, or ask for a larger ERROR.",
+    },
+    Code {
+        name: "no_equilibrium",
+        summary: "no equilibrium was found",
+        explanation: "\
+The message names the load that nothing balances, its direction in ground axes, and the part it acts on. A part that nothing holds
+falls for ever; a spring or a stop in that direction gives it a place to rest.",
+    },
+    Code {
+        name: "unstable_equilibrium",
+        summary: "the equilibrium that was found would be left after the smallest push",
+        explanation: "All loads balance, but in some directions a push is not answered by a force back: a pendulum on its head.",
+    },
+    Code {
+        name: "misaligned",
+        summary: "the parts do not fit together as the dataset places them",
+        explanation: "\
+The markers of a joint are apart, or turned against each other, by the amounts in the message. Assembly moves the parts until they fit.
+Typed numbers are off by little; much means a wrong QP, REULER or marker.",
+    },
+    Code {
+        name: "initial_condition",
+        summary: "an initial condition that cannot be met, or that is read in another way than documented",
+        explanation: "\
+The constraints leave no room for what an IC or EXACT asks, or the two numbers of a joint's IC fit the parts better when they are
+exchanged: Adams View writes velocity, displacement.",
+    },
+    Code {
+        name: "other_branch",
+        summary: "a part or a joint is assembled the other way round than it is drawn",
+        explanation: "\
+Position equations have several solutions: a linkage may close on either side. Assembly ended on another one than the dataset shows.
+Place the parts nearer to where they should be, or give EXACT coordinates.",
+    },
+    Code {
+        name: "held_sum",
+        summary: "the displacements of a COUPLER or GEAR do not sum up to zero where they are assembled",
+        explanation: "The sum that the assembled position shows is held from there on. Initial conditions of its joints change it.",
+    },
+    Code {
+        name: "rank_change",
+        summary: "the rank of the constraints changes during the run",
+        explanation: "\
+At the named position a row follows from others, or no longer does: a linkage passes its dead centre, or joints that were redundant
+begin to hold. The run goes on; reactions may jump there.",
+    },
+    Code {
+        name: "below_rounding",
+        summary: "the error that is asked for is smaller than what rounding leaves",
+        explanation: "The steps so far are as exact as rounding permits. A larger ERROR takes fewer steps for the same digits.",
+    },
+    Code {
+        name: "unknown_constraint",
+        summary: "a constraint that a routine computes, or whose curve is not in the dataset",
+        explanation: "`cognate verify` counts its equations, but cannot tell which motions it forbids: the freedom from the rank is without it.",
+    },
+];
