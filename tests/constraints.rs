@@ -4,9 +4,11 @@
 use cognate::analysis::start::assemble;
 use cognate::model::Model;
 use cognate::scene::cams;
+use cognate::scene::configuration::Configuration;
 use cognate::scene::equations::Equations;
 use cognate::scene::{LinkMotion, RowKind, Scene, Source, build::Options};
 use cognate::space::{Frame, Mat3, Vec3, rotation};
+use std::sync::Arc;
 
 /// Numbers in (−1, 1), the same on every run.
 struct Draw(u64);
@@ -117,7 +119,7 @@ fn pair(draw: &mut Draw, relative: &Mat3<f64>, ties: &str) -> String {
     )
 }
 
-fn compiled(text: &str, cut_all: bool) -> (Model, Scene) {
+fn compiled(text: &str, cut_all: bool) -> (Model, Arc<Scene>, Configuration) {
     let model = Model::from_text(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let options = Options {
         cut_all,
@@ -125,7 +127,8 @@ fn compiled(text: &str, cut_all: bool) -> (Model, Scene) {
         ..Options::default()
     };
     let scene = Scene::compile(&model, &options).unwrap_or_else(|e| panic!("{e:?}\n{text}"));
-    (model, scene)
+    let configuration = Configuration::new(&scene);
+    (model, scene, configuration)
 }
 
 /// Any positions and velocities.
@@ -200,7 +203,7 @@ fn motions_and_rows_of_every_tie_agree() {
             let k = keyword(kind);
             let ties = format!("{k}/1, {kind}, I={i}, J={j}\n{k}/2, {kind}, I={i}, J={j}\n");
             // FIXED and ORIENTATION relate J to I; markers of a universal joint are square to each other either way
-            let (_, scene) = compiled(&pair(&mut draw, &relative, &ties), false);
+            let (_, scene, configuration) = compiled(&pair(&mut draw, &relative, &ties), false);
             let rows = scene.rows.len();
             assert!(
                 scene.rows.iter().all(|r| r.element == format!("{k}/2")),
@@ -214,7 +217,7 @@ fn motions_and_rows_of_every_tie_agree() {
             for _ in 0..10 {
                 let (q, v) = anywhere(&scene, &mut draw);
                 let n = all_numbers(&scene, 0.0, &q, &v);
-                let at = Equations::<f64>::new(&scene, &n);
+                let at = Equations::<f64>::new(scene.within(&configuration), &n);
                 for r in 0..rows {
                     let row = at.row(r);
                     let name = format!("{kind} {}", scene.rows[r].equation);
@@ -295,30 +298,31 @@ fn gradients_and_rates_are_those_of_the_value() {
     let h = 1e-4;
     for tie in all_rows() {
         let text = pair(&mut draw, &Mat3::identity(), &tie);
-        let (_, mut scene) = compiled(&text, true);
+        let (_, scene, mut configuration) = compiled(&text, true);
         assert!(!scene.rows.is_empty(), "{tie}");
         let mut looked = 0;
         for _ in 0..5 {
             let (q, v) = anywhere(&scene, &mut draw);
             let t = draw.next();
             let here = all_numbers(&scene, t, &q, &v);
-            cams::track(&mut scene, &here);
+            cams::track(&scene, &mut configuration, &here);
+            let configured = scene.within(&configuration);
             // in a configuration drawn at random curves need not have a common tangent
-            let code = cams::broken(&scene, &here, None).map(|b| b.code);
+            let code = cams::broken(configured, &here, None).map(|b| b.code);
             if code == Some("no_common_tangent") {
                 continue;
             }
             looked += 1;
             let at_time = |dt: f64| {
                 let n = all_numbers(&scene, t + dt, &after(&scene, &q, &v, dt), &v);
-                let at = Equations::<f64>::new(&scene, &n);
+                let at = Equations::<f64>::new(configured, &n);
                 (0..scene.rows.len())
                     .map(|r| at.row(r).value)
                     .collect::<Vec<_>>()
             };
             let samples = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at_time(k * h));
             let n = all_numbers(&scene, t, &q, &v);
-            let at = Equations::<f64>::new(&scene, &n);
+            let at = Equations::<f64>::new(configured, &n);
             for (r, scene_row) in scene.rows.iter().enumerate() {
                 let row = at.row(r);
                 let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|k: usize| samples[k][r]);
@@ -355,13 +359,14 @@ fn gradients_and_rates_are_those_of_the_value() {
 
 /// Numbers that do not depend on how a model is formulated: acceleration of part 3 and the reaction of an element on I.
 fn answers(text: &str, cut_all: bool, element: (&str, u32)) -> [Vec3<f64>; 4] {
-    let (model, mut scene) = compiled(text, cut_all);
+    let (model, scene, mut configuration) = compiled(text, cut_all);
     let mut q = scene.initial_q.clone();
-    let found = assemble::positions(&mut scene, 0.0, &mut q, &[]).unwrap();
+    let found = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).unwrap();
+    let configured = scene.within(&configuration);
     assert!(found.redundant.is_empty(), "{:?}\n{text}", found.redundant);
-    let v = assemble::velocities(&scene, &model, 0.0, &q, &[]).unwrap();
+    let v = assemble::velocities(configured, &model, 0.0, &q, &[]).unwrap();
     let n = all_numbers(&scene, 0.0, &q, &v);
-    let at = Equations::<f64>::new(&scene, &n);
+    let at = Equations::<f64>::new(configured, &n);
     let three = scene.parts.iter().position(|p| p.id == 3).unwrap();
     let state = at.part(three, true);
     let reaction = at.action_of(element.0, element.1).unwrap();
@@ -611,12 +616,12 @@ fn displacements_of_the_forest_are_sums_of_coordinates() {
         "QP=0.05,0,0, REULER=0,-90D,0",
         "GEAR/1, JOINTS=1,2, CV=8\n",
     );
-    let (_, scene) = compiled(&text, false);
+    let (_, scene, _) = compiled(&text, false);
     let RowKind::Displacements(sum) = &scene.rows[0].kind else {
         panic!("a gear is a sum of displacements")
     };
     assert!(sum.terms.iter().all(|(_, d)| d.coordinates.is_some()));
     assert!(scene.counted.is_empty());
-    let (_, cut) = compiled(&text, true);
+    let (_, cut, _) = compiled(&text, true);
     assert_eq!(cut.counted.len(), 2);
 }

@@ -10,6 +10,7 @@ use cognate::analysis::watch::Unwatched;
 use cognate::analysis::{session::columns, start::assemble};
 use cognate::model::{Driven, MarkerOwner, Model, Orientation, Units};
 use cognate::results::{Run, Status};
+use cognate::scene::configuration::Configuration;
 use cognate::scene::{Scene, build};
 use cognate::space::{Mat3, Vec3, rotation};
 
@@ -282,16 +283,18 @@ fn without_forest(model: &Model, names: &[String]) -> Run {
         extra: wanted.extra.clone(),
         ..build::Options::default()
     };
-    let mut scene = Scene::compile(model, &options).expect("a scene");
+    let scene = Scene::compile(model, &options).expect("a scene");
+    let mut configuration = Configuration::new(&scene);
     let mut q = scene.initial_q.clone();
-    assemble::positions(&mut scene, 0.0, &mut q, &[]).expect("positions");
-    let v = assemble::velocities(&scene, model, 0.0, &q, &[]).expect("velocities");
+    assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).expect("positions");
+    let here = scene.within(&configuration);
+    let v = assemble::velocities(here, model, 0.0, &q, &[]).expect("velocities");
     let l = scene.layout;
-    let mut system = System::new(scene).expect("a system");
+    let mut system = System::new(scene, configuration).expect("a system");
     system.numbers[l.q()].copy_from_slice(&q);
     system.numbers[l.v()].copy_from_slice(&v);
     let outputs: Vec<f64> = (1..=5).map(|k| END * f64::from(k) / 5.0).collect();
-    let (program, complaints) = wanted.program(&system.scene);
+    let (program, complaints) = wanted.program(system.configured());
     assert!(complaints.is_empty(), "{complaints:?}");
     let mut rows = vec![system.numbers.clone()];
     let how = options::Options {

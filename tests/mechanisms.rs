@@ -14,6 +14,7 @@ use cognate::analysis::verify::{Verification, verify};
 use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
 use cognate::results::Status;
+use cognate::scene::configuration::Configuration;
 use cognate::scene::{Scene, build};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -279,7 +280,9 @@ fn rank_agrees_with_exact_arithmetic_where_geometry_is_rational() {
             ..build::Options::default()
         };
         let scene = Scene::compile(&m.idle(), &options).expect("a scene");
-        let (_, gradient, _) = assemble::rows_at(&scene, 0.0, &scene.initial_q, &[]);
+        let configuration = Configuration::new(&scene);
+        let configured = scene.within(&configuration);
+        let (_, gradient, _) = assemble::rows_at(configured, 0.0, &scene.initial_q, &[]);
         let rows: Vec<BTreeMap<usize, Fraction>> = (0..gradient.nrows())
             .map(|r| {
                 (0..gradient.ncols())

@@ -4,6 +4,7 @@
 use cognate::analysis::{start::assemble, system::System};
 use cognate::model::*;
 use cognate::numeric::{self, Method, Ode};
+use cognate::scene::configuration::Configuration;
 use cognate::scene::{Scene, build::Options};
 
 fn marker(part: u32, qp: [f64; 3]) -> Marker {
@@ -60,7 +61,7 @@ fn pendulum() -> Model {
 fn a_pendulum_is_a_handful_of_operations_and_swings_as_it_should() {
     for cut_all in [false, true] {
         let model = pendulum();
-        let mut scene = Scene::compile(
+        let scene = Scene::compile(
             &model,
             &Options {
                 cut_all,
@@ -70,11 +71,12 @@ fn a_pendulum_is_a_handful_of_operations_and_swings_as_it_should() {
         )
         .unwrap();
         let mut q = scene.initial_q.clone();
-        let found = assemble::positions(&mut scene, 0.0, &mut q, &[]).unwrap();
+        let mut configuration = Configuration::new(&scene);
+        let found = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).unwrap();
         println!("{found:?}");
         assert_eq!(found.freedom, 1);
-        let v = assemble::velocities(&scene, &model, 0.0, &q, &[]).unwrap();
-        let mut system = System::new(scene).unwrap();
+        let v = assemble::velocities(scene.within(&configuration), &model, 0.0, &q, &[]).unwrap();
+        let mut system = System::new(scene, configuration).unwrap();
         println!("operations {}", system.operations());
         let mut y = q;
         y.extend(v);

@@ -73,11 +73,11 @@ pub(super) fn active<'m, T>(
 }
 
 impl Scene {
-    /// Makes the scene of a model.
+    /// Makes the scene of a model; it is shared and never changes.
     ///
     /// # Errors
     /// Everything that keeps the model from being solved, all at once.
-    pub fn compile(model: &Model, options: &Options) -> Result<Scene, Vec<Diagnostic>> {
+    pub fn compile(model: &Model, options: &Options) -> Result<Arc<Scene>, Vec<Diagnostic>> {
         let mut left_out = LeftOut::of(model, &options.skip, options.zero_user);
         let without = (!left_out.elements.is_empty()).then(|| {
             let mut model = model.clone();
@@ -142,7 +142,7 @@ impl Scene {
             b.natural_sizes();
         }
         if c.errors.is_empty() {
-            Ok(b.scene)
+            Ok(Arc::new(b.scene))
         } else {
             Err(c.errors)
         }
@@ -399,7 +399,6 @@ impl<'m> Builder<'m> {
                 state,
                 coordinate: None,
                 held: false,
-                offset: 0.0,
             });
             let (joint, turn) = match motion.driven {
                 Driven::JointTranslation(j) => (j, false),

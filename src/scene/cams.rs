@@ -6,6 +6,7 @@
 
 use super::build::{Builder, active};
 use super::compile::Compiler;
+use super::configuration::{Configuration, Configured, ContactStart};
 use super::equations::Equations;
 use super::{ConstraintElement, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
@@ -32,10 +33,6 @@ pub struct Cam {
     pub between: (u32, u32),
     /// first place of its parameters in x
     pub state: usize,
-    /// its parameters where the states are zero
-    pub offset: [f64; 2],
-    /// the states say where it touches
-    pub begun: bool,
     /// where it is to touch first: a point in the coordinates of a marker, per curve
     pub start: Vec<Option<(Vec3<f64>, usize)>>,
     /// velocity along each curve at the start
@@ -158,8 +155,6 @@ impl Builder<'_> {
             curves: sides.iter().map(|s| s.curve).collect(),
             between,
             state,
-            offset: [0.0; 2],
-            begun: false,
             start,
             velocity: sides.iter().map(|s| s.velocity).collect(),
         });
@@ -189,41 +184,45 @@ fn not_coplanar(name: &str, what: String) -> Diagnostic {
         .help("the curves of a CVCV must lie in the x-y planes of IRM and JRM, which joints hold together")
 }
 
-/// Parameters of a cam from its states.
-fn parameters(cam: &Cam, x: &[f64]) -> [f64; 2] {
-    let mut s = cam.offset;
+/// Returns the parameters of a contact from its states.
+fn parameters(cam: &Cam, start: &ContactStart, x: &[f64]) -> [f64; 2] {
+    let mut s = start.offset;
     for (k, s) in s.iter_mut().enumerate().take(cam.contact.n_parameters()) {
         *s += x.get(cam.state + k).copied().unwrap_or(0.0);
     }
     s
 }
 
+/// Lets a contact begin with these parameters where its states are `x`.
+fn begin(cam: &Cam, start: &mut ContactStart, parameters: [f64; 2], x: &[f64]) {
+    for (k, s) in (parameters.iter().enumerate()).take(cam.contact.n_parameters()) {
+        start.offset[k] = s - x.get(cam.state + k).copied().unwrap_or(0.0);
+    }
+    start.begun = true;
+}
+
 /// Brings the parameters of all contacts to where the numbers of an instant have them.
-pub fn track(scene: &mut Scene, numbers: &[f64]) {
+pub fn track(scene: &Scene, configuration: &mut Configuration, numbers: &[f64]) {
     if scene.cams.is_empty() {
         return;
     }
     let x = numbers[scene.layout.x()].to_vec();
-    let at = Equations::<f64>::new(scene, numbers);
-    let found: Vec<[f64; 2]> = scene
-        .cams
-        .iter()
-        .map(|cam| {
+    let at = Equations::<f64>::new(scene.within(configuration), numbers);
+    let contacts = scene.cams.iter().zip(&configuration.contacts);
+    let found: Vec<[f64; 2]> = contacts
+        .map(|(cam, start)| {
             let (i, j) = (at.frame(cam.i), at.frame(cam.j));
-            let near = cam
-                .begun
-                .then(|| follow(&cam.contact, &i, &j, parameters(cam, &x)));
+            let own = parameters(cam, start, &x);
+            let near = start.begun.then(|| follow(&cam.contact, &i, &j, own));
             match near.flatten() {
                 Some(s) => s,
-                None => search(cam, &i, &j, &at).unwrap_or_else(|| parameters(cam, &x)),
+                None => search(cam, &i, &j, &at).unwrap_or(own),
             }
         })
         .collect();
-    for (cam, s) in scene.cams.iter_mut().zip(found) {
-        for (k, s) in s.iter().enumerate().take(cam.contact.n_parameters()) {
-            cam.offset[k] = s - x.get(cam.state + k).copied().unwrap_or(0.0);
-        }
-        cam.begun = true;
+    let contacts = scene.cams.iter().zip(&mut configuration.contacts);
+    for ((cam, start), s) in contacts.zip(found) {
+        begin(cam, start, s, &x);
     }
 }
 
@@ -237,7 +236,7 @@ pub struct Start {
 }
 
 /// All contacts that are asked to begin somewhere. ICM markers count where they are at this instant.
-pub fn starts(scene: &Scene, numbers: &[f64]) -> Vec<Start> {
+pub fn starts(scene: Configured<'_>, numbers: &[f64]) -> Vec<Start> {
     if scene
         .cams
         .iter()
@@ -267,17 +266,17 @@ pub fn starts(scene: &Scene, numbers: &[f64]) -> Vec<Start> {
 }
 
 /// Takes contacts to be where they are asked to begin; where one curve has no place, with its point next to that of the other.
-pub fn place(scene: &mut Scene, starts: &[Start], numbers: &[f64]) {
+pub fn place(scene: &Scene, configuration: &mut Configuration, starts: &[Start], numbers: &[f64]) {
     if starts.is_empty() {
         return;
     }
     let x = numbers[scene.layout.x()].to_vec();
-    let at = Equations::<f64>::new(scene, numbers);
+    let at = Equations::<f64>::new(scene.within(configuration), numbers);
     let found: Vec<[f64; 2]> = (starts.iter())
         .map(|start| {
             let cam = &scene.cams[start.cam];
             let (i, j) = (at.frame(cam.i), at.frame(cam.j));
-            let own = parameters(cam, &x);
+            let own = parameters(cam, &configuration.contacts[start.cam], &x);
             match (&cam.contact, start.given) {
                 (Contact::Curves(path_i, path_j), [Some(s), None]) => {
                     let ground = i.point(path_i.at(s, 0));
@@ -292,11 +291,8 @@ pub fn place(scene: &mut Scene, starts: &[Start], numbers: &[f64]) {
         })
         .collect();
     for (start, s) in starts.iter().zip(found) {
-        let cam = &mut scene.cams[start.cam];
-        for (k, s) in s.iter().enumerate().take(cam.contact.n_parameters()) {
-            cam.offset[k] = s - x.get(cam.state + k).copied().unwrap_or(0.0);
-        }
-        cam.begun = true;
+        let (c, contacts) = (start.cam, &mut configuration.contacts);
+        begin(&scene.cams[c], &mut contacts[c], s, &x);
     }
 }
 
@@ -411,7 +407,7 @@ pub struct Broken {
 }
 
 /// The first contact that is none. `until`: when the run was to end, for how far a curve is too short.
-pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Broken> {
+pub fn broken(scene: Configured<'_>, numbers: &[f64], until: Option<f64>) -> Option<Broken> {
     if scene.cams.is_empty() {
         return None;
     }
@@ -419,7 +415,8 @@ pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Brok
     let x = &numbers[scene.layout.x()];
     scene.cams.iter().enumerate().find_map(|(c, cam)| {
         let (i, j) = (at.frame(cam.i), at.frame(cam.j));
-        let s = cam.contact.refined(&i, &j, parameters(cam, x), 2);
+        let start = &scene.configuration.contacts[c];
+        let s = (cam.contact).refined(&i, &j, parameters(cam, start, x), 2);
         let element = cam.name();
         for (k, path) in cam.contact.paths().iter().enumerate() {
             let beyond = path.beyond(s[k]);
@@ -480,23 +477,4 @@ pub fn broken(scene: &Scene, numbers: &[f64], until: Option<f64>) -> Option<Brok
         }
         None
     })
-}
-
-impl Scene {
-    /// States of contacts and of motions that begin where they are take over what assembly has found for them.
-    pub fn begin_states(&mut self, x: &mut [f64]) {
-        for cam in &mut self.cams {
-            for k in 0..cam.contact.n_parameters() {
-                x[cam.state + k] += cam.offset[k];
-            }
-            cam.offset = [0.0; 2];
-        }
-        for motion in &mut self.motions {
-            if let Some(s) = motion.state {
-                x[s] += motion.offset;
-                motion.offset = 0.0;
-                motion.held = false;
-            }
-        }
-    }
 }

@@ -1,6 +1,5 @@
 //! Expressions of the model as programs: splines and arrays they name are found in the model.
 
-use super::Formula;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Profile;
 use crate::expr::ast::Dialect;
@@ -107,18 +106,5 @@ pub(super) fn compile(text: &str, bindings: &Bindings) -> Result<Compiled, Diagn
     Ok(Compiled {
         program: compiler.finish(&[value]),
         delays: delays.collect(),
-    })
-}
-
-/// A formula that is a number; `None` when it has no text because it is not finite.
-pub(super) fn constant(value: f64) -> Option<Formula> {
-    let text = format!("{value:e}");
-    let program = compile(&text, &Bindings::default()).ok()?.program;
-    Some(Formula {
-        name: "a constant".into(),
-        text,
-        program,
-        delayed: Vec::new(),
-        gradient: None,
     })
 }

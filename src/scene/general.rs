@@ -14,6 +14,7 @@
 
 use super::build::{Builder, active};
 use super::compile::Compiler;
+use super::configuration::Configuration;
 use super::equations::Equations;
 use super::reads::{Allowed, offence};
 use super::{ConstraintElement, Entry, Row, RowKind, Scene};
@@ -98,7 +99,8 @@ impl Builder<'_> {
         }
         let mut numbers = vec![0.0; scene.layout.len()];
         numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
-        let at = Equations::<f64>::new(scene, &numbers);
+        let undecided = Configuration::new(scene);
+        let at = Equations::<f64>::new(scene.within(&undecided), &numbers);
         let weights = super::programs::weights(scene);
         let sizes: Vec<Option<f64>> = (scene.rows.iter().enumerate())
             .map(|(r, row)| {

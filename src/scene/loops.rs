@@ -10,6 +10,7 @@
 //! of numbers, and whoever fills that row solves ρ = 0 by Newton's iteration.
 
 use super::Scene;
+use super::configuration::{Configuration, Configured};
 use super::equations::{Equations, Lack, Unsupported};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
@@ -68,8 +69,9 @@ pub(super) fn find(
     scene.loops = keys.iter().map(|k| unknown(scene, *k, guesses)).collect();
     let mut numbers = vec![0.0; scene.layout.len()];
     numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+    let undecided = Configuration::new(scene);
     loop {
-        let found = discover(scene, &numbers);
+        let found = discover(scene.within(&undecided), &numbers);
         if found.is_empty() {
             break;
         }
@@ -81,7 +83,7 @@ pub(super) fn find(
     if scene.loops.is_empty() {
         return Ok(());
     }
-    scene.loops_linear = linear(scene)?;
+    scene.loops_linear = linear(scene.within(&undecided))?;
     scene.layout.n_loops = if scene.loops_linear {
         0
     } else {
@@ -104,7 +106,7 @@ fn unknown(scene: &Scene, key: Key, guesses: &dyn Fn(&Key) -> f64) -> Unknown {
 }
 
 /// What is asked for too early when everything is asked for once.
-fn discover(scene: &Scene, numbers: &[f64]) -> Vec<Key> {
+fn discover(scene: Configured<'_>, numbers: &[f64]) -> Vec<Key> {
     let unknowns = vec![0.0; scene.loops.len()];
     let at = Equations::with_unknowns(scene, numbers, unknowns, true);
     at.discover();
@@ -123,7 +125,7 @@ fn inputs<'b>(scene: &Scene, builder: &'b RefCell<Builder>) -> Vec<Sym<'b>> {
 
 /// ρ with unknowns as inputs, and ∂ρ/∂z by rows.
 fn residuals<'b>(
-    scene: &Scene,
+    scene: Configured<'_>,
     numbers: &[Sym<'b>],
     builder: &'b RefCell<Builder>,
 ) -> (Vec<Sym<'b>>, Vec<Vec<Sym<'b>>>) {
@@ -154,9 +156,9 @@ fn residuals<'b>(
 }
 
 /// Whether ρ is linear in its unknowns.
-fn linear(scene: &Scene) -> Result<bool, Vec<Unsupported>> {
+fn linear(scene: Configured<'_>) -> Result<bool, Vec<Unsupported>> {
     let builder = RefCell::new(Builder::new(Folding::Structural));
-    let numbers = inputs(scene, &builder);
+    let numbers = inputs(&scene, &builder);
     let (_, jacobian) = residuals(scene, &numbers, &builder);
     let recorder = &mut *builder.borrow_mut();
     let mut lost = Vec::new();
@@ -185,7 +187,7 @@ fn linear(scene: &Scene) -> Result<bool, Vec<Unsupported>> {
 
 /// Solves linear loops while a program is being recorded: the values of the unknowns.
 pub(super) fn eliminated<'b>(
-    scene: &Scene,
+    scene: Configured<'_>,
     numbers: &[Sym<'b>],
     builder: &'b RefCell<Builder>,
 ) -> Vec<Sym<'b>> {
@@ -241,7 +243,7 @@ fn solve<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
 ///
 /// # Errors
 /// What the equations cannot supply.
-pub fn program(scene: &Scene) -> Result<Option<Program>, Vec<Unsupported>> {
+pub fn program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Unsupported>> {
     if scene.layout.n_loops == 0 {
         return Ok(None);
     }

@@ -8,6 +8,7 @@ pub mod build;
 pub mod cams;
 pub mod compile;
 mod compliance;
+pub mod configuration;
 pub mod contacts;
 mod couplers;
 pub mod equations;
@@ -198,9 +199,9 @@ pub enum RowKind {
 pub struct Sum {
     /// factors and displacements
     pub terms: Vec<(f64, Displacement)>,
-    /// what the sum is
+    /// what the sum is in the model; what it is in a mechanism says [`Configuration::sums`](configuration::Configuration::sums)
     pub constant: f64,
-    /// the constant is what the assembled configuration shows
+    /// assembly adds what the configuration shows
     pub held: bool,
     /// GEAR: the CV marker, and the I markers of the two geared bodies, on which the force of the row acts there along its z axis
     pub contact: Option<(usize, [usize; 2])>,
@@ -295,8 +296,6 @@ pub struct SceneMotion {
     pub coordinate: Option<usize>,
     /// a row given by its rate, without ICDISP: it begins where the assembled configuration is
     pub held: bool,
-    /// displacement where its state is zero
-    pub offset: f64,
 }
 
 /// A differential equation `ẋ = function`: of a DIFF, or a state of another element.
@@ -360,8 +359,6 @@ pub struct Scene {
     pub marker_of: BTreeMap<u32, usize>,
     /// constraint equations, those that depend on others included
     pub rows: Vec<Row>,
-    /// whether a row takes part (not when it depends on earlier ones); empty: all do
-    pub active: Vec<bool>,
     /// constraint elements
     pub constraints: Vec<ConstraintElement>,
     /// forces
@@ -394,8 +391,6 @@ pub struct Scene {
     pub requests: BTreeMap<u32, Vec<usize>>,
     /// numbers from outside, in the order of their places
     pub external_inputs: Vec<external_inputs::ExternalInput>,
-    /// what these are before the first step; empty: zeros   (n_external)
-    pub external_values: Vec<f64>,
     /// all expressions
     pub formulas: Vec<Formula>,
     /// of these, the ones asked for beside those of the model
@@ -406,8 +401,6 @@ pub struct Scene {
     pub left_out: left_out::LeftOut,
     /// angles whose turns are counted, in the order of their places in the layout
     pub counted: Vec<Counted>,
-    /// the values these angles have before the first step; empty: within half a turn   (n_turns)
-    pub turns: Vec<f64>,
     /// variables of joints, where somebody wants to see them
     pub joint_variables: Vec<JointVariable>,
     /// what functions read too early: unknowns of their own
@@ -424,12 +417,6 @@ pub struct Scene {
     pub initial_q: Vec<f64>,
     /// what was left out
     pub warnings: Vec<crate::diagnostic::Diagnostic>,
-    /// typical diagonal of `G M⁻¹ Gᵀ` over the rows that take part; empty: not known
-    pub usual: Vec<f64>,
-    /// inertia lent to freedoms that carry none, and taken back (see [`solve::accelerations`]); empty: none   (n_v)
-    pub padding: Vec<f64>,
-    /// eliminate freedoms link by link (long chains) rather than from the mass matrix (short ones)
-    pub articulated: bool,
     /// a typical length of the mechanism, for tolerances and scales
     pub length: f64,
     /// distance over which constraints are spread: an arm for comparing torques with forces
@@ -466,42 +453,6 @@ impl Scene {
             RowKind::Markers { law, motion: m, .. } => *m == Some(motion) && !law.is_length(),
             _ => false,
         })
-    }
-
-    /// The same scene with its motions standing still at these displacements.
-    #[must_use]
-    pub fn with_motions_at(&self, displacements: &[f64]) -> Scene {
-        let mut scene = self.clone();
-        for (motion, &value) in scene.motions.iter_mut().zip(displacements) {
-            if let Some(constant) = formula::constant(value) {
-                motion.level = Level::Displacement;
-                motion.formula = scene.formulas.len();
-                scene.formulas.push(constant);
-            }
-        }
-        scene
-    }
-
-    /// The same scene with motions beside its own that drive nothing yet and stand still at these displacements.
-    #[must_use]
-    pub fn with_further_motions_at(&self, displacements: &[f64]) -> Scene {
-        let mut scene = self.clone();
-        for &value in displacements {
-            let formula = scene.formulas.len();
-            scene
-                .formulas
-                .extend(formula::constant(value).or_else(|| formula::constant(0.0)));
-            scene.motions.push(SceneMotion {
-                id: 0,
-                level: Level::Displacement,
-                formula,
-                state: None,
-                coordinate: None,
-                held: false,
-                offset: 0.0,
-            });
-        }
-        scene
     }
 
     /// Where the results of a closure of the user's stand among the numbers from outside, when a formula is one of them: for a MOTION

@@ -1,6 +1,7 @@
 //! The equations of a scene as straight-line programs: run once over recording numbers, then as often as needed.
 
 use super::Scene;
+use super::configuration::Configured;
 use super::equations::{Equations, STATIC, Unsupported};
 use super::layout::Layout;
 use super::loops;
@@ -14,7 +15,7 @@ use std::cell::{Cell, RefCell};
 ///
 /// # Errors
 /// What the equations cannot supply.
-pub fn record<F>(scene: &Scene, f: F) -> Result<Program, Vec<Unsupported>>
+pub fn record<F>(scene: Configured<'_>, f: F) -> Result<Program, Vec<Unsupported>>
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
@@ -27,7 +28,7 @@ where
 }
 
 /// As [`record`]; what could not be computed is NaN in the program, and told.
-pub fn record_with_complaints<F>(scene: &Scene, f: F) -> (Program, Vec<Unsupported>)
+pub fn record_with_complaints<F>(scene: Configured<'_>, f: F) -> (Program, Vec<Unsupported>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
@@ -35,7 +36,7 @@ where
 }
 
 /// As [`record_with_complaints`], for programs that read `n_more` further numbers after those of the layout.
-pub fn record_more<F>(scene: &Scene, n_more: usize, f: F) -> (Program, Vec<Unsupported>)
+pub fn record_more<F>(scene: Configured<'_>, n_more: usize, f: F) -> (Program, Vec<Unsupported>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
 {
@@ -45,7 +46,7 @@ where
 }
 
 /// As [`record_with_complaints`], with velocities that are read at rest as well: what would change if it moved.
-pub fn record_moving<F>(scene: &Scene, f: F) -> Program
+pub fn record_moving<F>(scene: Configured<'_>, f: F) -> Program
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
 {
@@ -63,7 +64,7 @@ where
 /// Records what `f` computes, and what `end` makes of the values: a program for each of its lists. The unknowns of linear
 /// loops are eliminated, or, where `known`, read after the numbers of the layout. `moving`: velocities are not taken as zero at rest.
 fn recorded<F, E>(
-    scene: &Scene,
+    scene: Configured<'_>,
     n_more: usize,
     known: bool,
     moving: bool,
@@ -148,7 +149,7 @@ pub(crate) struct Timed {
 ///
 /// # Errors
 /// What the equations cannot supply.
-pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<Unsupported>> {
+pub(crate) fn timed(scene: Configured<'_>) -> Result<Timed, Vec<Unsupported>> {
     let linear = scene.loops_linear && !scene.loops.is_empty();
     let n_more = if linear { scene.loops.len() } else { 0 };
     let mut levels = Vec::new();
@@ -158,7 +159,7 @@ pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<Unsupported>> {
         n_more,
         linear,
         false,
-        |at, _| sources(at, scene),
+        |at, _| sources(at, &scene),
         |builder, values| {
             let breaks = builder.timed_breaks(&values, time);
             let (values, all) = breaks.into_iter().map(|b| (b.value, b.levels)).unzip();
@@ -177,7 +178,7 @@ pub(crate) fn timed(scene: &Scene) -> Result<Timed, Vec<Unsupported>> {
 ///
 /// # Errors
 /// What the equations cannot supply.
-pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<Unsupported>> {
+pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsupported>> {
     let linear = scene.loops_linear && !scene.loops.is_empty();
     let n_more = if linear { scene.loops.len() } else { 0 };
     // unknowns are known here, so that their elimination does not count as a switch
@@ -186,7 +187,7 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<Unsupported>> {
         n_more,
         linear,
         false,
-        |at, _| sources(at, scene),
+        |at, _| sources(at, &scene),
         |builder, values| vec![builder.switching(&values)],
     );
     if !complaints.is_empty() {
@@ -217,7 +218,7 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<Unsupported>> {
         false,
         |at, _| {
             let mut out = rate(at);
-            out.extend(sources(at, scene));
+            out.extend(sources(at, &scene));
             out
         },
         |builder, values| {
@@ -239,7 +240,7 @@ pub fn switching(scene: &Scene) -> Result<Option<Switching>, Vec<Unsupported>> {
 /// switch, after the layout's; `f` gives two lists, each makes a program. `None`: branches cannot be held. The switches are those of [`switching`], in
 /// their order, because the rates are recorded before anything else.
 pub fn held_with<F>(
-    scene: &Scene,
+    scene: Configured<'_>,
     switching: &Switching,
     n_more: usize,
     f: F,
@@ -258,7 +259,7 @@ where
         false,
         |at, more| {
             let mut out = rate(at);
-            out.extend(sources(at, scene));
+            out.extend(sources(at, &scene));
             let [first, second] = f(at, &more[..n_more]);
             n_first.set(first.len());
             n_all.set(first.len() + second.len());

@@ -11,6 +11,7 @@
 //! Source: Featherstone, chapters 6.5 and 8.
 
 use super::articulated::ArticulatedFactor;
+use super::configuration::Elimination;
 use crate::scalar::Scalar;
 
 /// `M = Lᵀ D L` of a forest.
@@ -120,48 +121,51 @@ impl<S: Scalar> MassFactor<S> {
     }
 }
 
-/// Accelerations and multipliers. `g[r]`: sparse row r of G; `gamma[r]` its right side; `f`: loads, overwritten by v̇.
+/// Solves for accelerations and multipliers: `M v̇ = f + Gᵀ λ` with `G v̇ = γ`.
 ///
-/// `usual`: typical diagonal of S, row by row. Returns λ and how well the rows determine it, with `M v̇ = f + Gᵀ λ`.
+/// `g[r]` is the sparse row r of G, `gamma[r]` its right side; `f` holds the loads and receives v̇.
+/// Returns λ and how well the rows determine it, measured against the usual pivots of `way`.
 ///
-/// `padding`: what the factored matrix has on its diagonal beyond M, where freedoms have no inertia that rows determine (a coupler without
-/// mass); empty: nothing. It is taken back by iteration, E = diag(padding):
+/// Where freedoms have no inertia although rows determine their motion (a coupler without mass), the
+/// factored matrix has the lent inertia of `way` on its diagonal beyond M. It is taken back by
+/// iteration, E = diag(lent inertia):
 ///
 /// ```text
 /// (M + E) v̇ₖ₊₁ = f + E v̇ₖ + Gᵀ λₖ₊₁        G v̇ₖ₊₁ = γ
 /// ```
 ///
-/// whose error shrinks by |E|/|M| over the directions that the rows leave free, [`LENT`] or less each time.
+/// whose error shrinks by |E|/|M| over the directions that the rows leave free, each time by the
+/// factor [`LENT_INERTIA`] or less.
 pub fn accelerations<S: Scalar>(
     m: &Factor<'_, S>,
     g: &[Vec<(usize, S)>],
     gamma: &[S],
     f: &mut [S],
-    usual: &[f64],
-    padding: &[f64],
+    way: &Elimination,
 ) -> Solution<S> {
     let loads = f.to_vec();
-    let mut solution = accelerations_once(m, g, gamma, f, usual);
-    if padding.iter().any(|&lent| lent > 0.0) {
-        for _ in 0..TAKEN_BACK {
-            let next = loads.iter().zip(padding).zip(f.iter());
+    let mut solution = accelerations_once(m, g, gamma, f, &way.usual_pivots);
+    if way.lent_inertia.iter().any(|&lent| lent > 0.0) {
+        for _ in 0..INERTIA_ITERATIONS {
+            let next = loads.iter().zip(&way.lent_inertia).zip(f.iter());
             let mut next: Vec<S> = next.map(|((&l, &lent), &v)| l + v.scale(lent)).collect();
-            solution = accelerations_once(m, g, gamma, &mut next, usual);
+            solution = accelerations_once(m, g, gamma, &mut next, &way.usual_pivots);
             f.copy_from_slice(&next);
         }
     }
     solution
 }
 
-/// What is lent to a freedom without inertia, as a part of the least inertia that some freedom has.
-pub const LENT: f64 = 1e-4;
+/// Inertia lent to a freedom that has none, over the least inertia of the others.
+pub const LENT_INERTIA: f64 = 1e-4;
 
-/// Iterations after which [`LENT`] has left no trace: LENT⁴ is rounding.
-const TAKEN_BACK: usize = 3;
+/// Iterations that take lent inertia back: after these only [`LENT_INERTIA`]⁴, which is rounding, is left.
+const INERTIA_ITERATIONS: usize = 3;
 
-/// Inertia to lend to the freedoms that have none, given the mass matrix as for [`MassFactor::new`] and a length that makes turns and slides
-/// comparable; empty where all have some   (n_v)
-pub fn padding(mut rows: Vec<Vec<(usize, f64)>>, turns: &[bool], length: f64) -> Vec<f64> {
+/// Returns the inertia to lend to each freedom that has none; nothing where all have some   (n_v or 0).
+///
+/// `rows` is the mass matrix as for [`MassFactor::new`]; `length` makes turns and slides comparable.
+pub fn lent_inertia(mut rows: Vec<Vec<(usize, f64)>>, turns: &[bool], length: f64) -> Vec<f64> {
     let n = rows.len();
     let unit = |k: usize| if turns[k] { length * length } else { 1.0 };
     let own: Vec<f64> = (0..n).map(|k| rows[k][0].1 / unit(k)).collect();
@@ -190,7 +194,7 @@ pub fn padding(mut rows: Vec<Vec<(usize, f64)>>, turns: &[bool], length: f64) ->
     let least = some.fold(f64::INFINITY, f64::min);
     let lent = |k: usize| match pivots[k] > 0.0 || least.is_infinite() {
         true => 0.0,
-        false => LENT * least * unit(k),
+        false => LENT_INERTIA * least * unit(k),
     };
     (0..n).map(lent).collect()
 }
@@ -265,8 +269,8 @@ pub struct Solution<S> {
     pub diagonal: Vec<S>,
 }
 
-/// Pivots smaller than this times what they usually are count as weak.
-pub const WEAK: f64 = 0.03;
+/// Pivots smaller than this times their usual size count as nearly singular.
+pub const NEAR_SINGULAR_PIVOT: f64 = 0.03;
 
 /// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ` in the given order;
 /// what depends on earlier rows gets the value zero. `reference`: what each pivot is compared with; empty:
@@ -352,7 +356,7 @@ mod tests {
         ];
         let m = Factor::Matrix(MassFactor::new(rows));
         let mut x = vec![1.0, 2.0, 3.0];
-        accelerations(&m, &[], &[], &mut x, &[], &[]);
+        accelerations(&m, &[], &[], &mut x, &Elimination::default());
         approx::assert_relative_eq!(5.0 * x[0] + x[1] - x[2], 1.0, max_relative = 1e-14);
         approx::assert_relative_eq!(x[0] + 2.0 * x[1], 2.0, max_relative = 1e-14);
         approx::assert_relative_eq!(-x[0] + 3.0 * x[2], 3.0, max_relative = 1e-14);

@@ -158,10 +158,8 @@ impl Small {
     fn at(system: &mut System) -> Result<Self, Vec<Diagnostic>> {
         let l = system.scene.layout;
         let n = l.n_v;
-        let scene = &system.scene;
-        let active: Vec<usize> = (0..scene.rows.len())
-            .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
-            .collect();
+        let scene = system.configured();
+        let active: Vec<usize> = scene.configuration.active_rows().collect();
         if active.is_empty() {
             let z = DMatrix::identity(n, n);
             let p = DMatrix::zeros(n, n);
@@ -248,7 +246,7 @@ pub fn linearize(
             }
         }
     }
-    let program = record(&system.scene, |at| {
+    let program = record(system.configured(), |at| {
         let mut out = at.rates();
         out.extend(watched.iter().map(|&f| at.formula(f)));
         out

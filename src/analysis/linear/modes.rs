@@ -129,7 +129,7 @@ struct PartMotion {
 
 impl PartMotion {
     fn of(system: &System, model: &Model, small: &Small) -> Self {
-        let scene = &system.scene;
+        let scene = system.configured();
         let l = scene.layout;
         let mut numbers = system.numbers.clone();
         let mut twists = |k: Option<usize>| -> Vec<f64> {

@@ -6,6 +6,7 @@ use crate::model::{Formula, Model, RequestKind};
 use crate::results::{Component, Entity, Run, Units};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::programs::record_with_complaints;
 use crate::space::{MarkerState, kinematic};
@@ -448,9 +449,11 @@ impl Columns {
     }
 
     /// The columns as a program of the scene, and what could not be supplied.
-    pub fn program(&self, scene: &Scene) -> (Program, Vec<Unsupported>) {
+    pub fn program(&self, scene: Configured<'_>) -> (Program, Vec<Unsupported>) {
         record_with_complaints(scene, |at| {
-            self.what.iter().map(|w| self.value(w, scene, at)).collect()
+            (self.what.iter())
+                .map(|w| self.value(w, &scene, at))
+                .collect()
         })
     }
 

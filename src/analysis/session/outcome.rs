@@ -98,9 +98,10 @@ impl Session {
         let mut program = program.clone();
         for (until, _, active) in &trajectory.selections {
             columns::append(&mut self.run, &program, &trajectory.rows[from..*until]);
-            let mut scene = system.scene.clone();
-            scene.active.clone_from(active);
-            (program, from) = (self.columns.program(&scene).0, *until);
+            let mut configuration = system.configuration.clone();
+            configuration.active.clone_from(active);
+            let there = system.scene.within(&configuration);
+            (program, from) = (self.columns.program(there).0, *until);
         }
         columns::append(&mut self.run, &program, &trajectory.rows[from..]);
         self.run.end();
@@ -119,12 +120,13 @@ impl Session {
             rows.filter(|r| *r.1).map(|r| row_name(r.0)).collect()
         };
         let mut told = Vec::new();
-        let mut scene = system.scene.clone();
-        scene.active = chosen;
+        let scene = &system.scene;
+        let mut configuration = system.configuration.clone();
+        configuration.active = chosen;
         let n = scene.layout.n_v as f64;
         // looking costs n³ per state
         if n.powi(3) * trajectory.weak.len() as f64 <= 1e9 {
-            for pass in ranks::passes(&scene, &trajectory.weak) {
+            for pass in ranks::passes(scene.within(&configuration), &trajectory.weak) {
                 told.push(results::RankChange {
                     time: pass.t,
                     what: "passes",
@@ -134,12 +136,12 @@ impl Session {
             }
         }
         for (_, t, active) in &trajectory.selections {
-            let before = names(&scene.active);
+            let before = names(&configuration.active);
             let rows = names(active)
                 .into_iter()
                 .filter(|r| !before.contains(r))
                 .collect();
-            scene.active.clone_from(active);
+            configuration.active.clone_from(active);
             told.push(results::RankChange {
                 time: *t,
                 what: "other rows",
@@ -225,7 +227,7 @@ impl Session {
         let scene = &system.scene;
         let n_rows = scene.rows.len();
         if self.account.is_none() {
-            let program = crate::scene::programs::record(scene, |at| {
+            let program = crate::scene::programs::record(system.configured(), |at| {
                 let [kinetic, potential] = at.energy();
                 let mut out = vec![kinetic, potential];
                 out.extend((0..n_rows).map(|r| at.row(r).value));
@@ -270,7 +272,7 @@ pub(super) fn counts(stats: &crate::numeric::Stats) -> Counts {
 
 /// Why a method stopped: the function that lost its value, the row that locks, or else what the method met.
 fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
-    let (scene, at) = (&system.scene, stop.t);
+    let (scene, at) = (system.configured(), stop.t);
     let may_lack_a_value = !matches!(stop.reason, Reason::TooManySteps | Reason::Projection(_));
     if may_lack_a_value && let Some(lost) = valueless::find(scene, stands) {
         return StopReason::Function { at, lost };
@@ -294,7 +296,7 @@ fn cause(system: &System, reason: Reason) -> (Cause, String) {
     let mut names = unknown_names(scene);
     // what a method for implicit equations sees after the unknowns
     let multipliers = system.implicit_size().saturating_sub(names.len());
-    let rows = (0..scene.rows.len()).filter(|&r| scene.active.get(r).copied().unwrap_or(true));
+    let rows = system.configuration.active_rows();
     let rows: Vec<String> = rows
         .map(|r| format!("multiplier of {}", row_name(&scene.rows[r])))
         .collect();

@@ -32,7 +32,7 @@ impl Session {
         let settings = self.integration_of(system, kind, span);
         self.log_begin(kind, &settings);
         let first = system.numbers.clone();
-        let chosen = system.scene.active.clone();
+        let chosen = system.configuration.active.clone();
         let (trajectory, seconds) = self.timed(system, kind, span, &settings, watch);
         // its results
         self.selected_rows(kind, program, system, &trajectory);
@@ -91,7 +91,7 @@ impl Session {
     ) -> (Trajectory, f64) {
         let outputs = span.output.times(span.start, span.end);
         let first = system.numbers.clone();
-        let chosen = system.scene.active.clone();
+        let chosen = system.configuration.active.clone();
         let mut seconds = Vec::new();
         let mut trajectory = Trajectory::default();
         for _ in 0..self.options.repeat.max(1) {

@@ -53,7 +53,7 @@ impl Session {
             self.show_start(&system, &assembly, &program);
         }
         // the analysis
-        let (active, start) = (system.scene.active.clone(), self.time());
+        let (active, start) = (system.configuration.active.clone(), self.time());
         let span = Span { start, end, output };
         let status = match analysis {
             Analysis::InitialConditions => {
@@ -64,7 +64,7 @@ impl Session {
             Analysis::Static => self.at_rest(&mut system, span, &program, watch),
             _ => self.over_time(&mut system, analysis, span, &program, watch),
         };
-        if system.scene.active != active {
+        if system.configuration.active != active {
             // reactions are others
             self.columns_program = None;
         }
@@ -110,7 +110,7 @@ impl Session {
         }
         let (l, numbers) = (system.scene.layout, &system.numbers);
         let (q, x) = (&numbers[l.q()], &numbers[l.x()]);
-        let massless = massless(&system.scene, &self.model, numbers[0], q, x);
+        let massless = massless(system.configured(), &self.model, numbers[0], q, x);
         if massless.is_empty() {
             Ok(())
         } else {
@@ -128,7 +128,7 @@ impl Session {
         if !matches!(analysis, Analysis::Kinematic | Analysis::Dynamic) {
             return Ok(());
         }
-        let breaks = drives::breaks(&system.scene, self.time(), end)?;
+        let breaks = drives::breaks(system.configured(), self.time(), end)?;
         let refused = drives::refused(&breaks);
         if !refused.is_empty() && !self.options.piecewise {
             return Err(refused);
@@ -170,7 +170,7 @@ impl Session {
         if let Some(program) = &self.columns_program {
             return Ok(program.clone());
         }
-        let (program, complaints) = self.columns.program(&system.scene);
+        let (program, complaints) = self.columns.program(system.configured());
         for complaint in complaints {
             if self.options.columns.contains(&complaint.asked_by) {
                 let refused = Diagnostic {

@@ -12,6 +12,7 @@ use crate::model::{Formula, Model, Orientation, Place};
 use crate::scene::Scene;
 use crate::scene::build::{self, unknown_names};
 use crate::scene::compile::orientation;
+use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::contacts::Shell;
 use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
@@ -127,7 +128,7 @@ impl Session {
             shells: self.shells(),
             ..build::Options::default()
         };
-        let mut scene = match Scene::compile(&self.model, &options) {
+        let compiled = match Scene::compile(&self.model, &options) {
             // a motion may read a number, but nothing from outside
             Err(_) if !options.changing.is_empty() => {
                 options.changing.clear();
@@ -137,11 +138,13 @@ impl Session {
         };
         // Commands may have changed what carries a part: then its place is no unknown of before, and is told by the part.
         let moved = (self.carried.as_ref())
-            .filter(|carried| has_new_unknowns(&scene, carried))
+            .filter(|carried| has_new_unknowns(&compiled, carried))
             .map(|carried| moved(&self.model, carried));
-        if let Some(moved) = &moved {
-            scene = Scene::compile(moved, &options)?;
-        }
+        let scene = match &moved {
+            Some(moved) => Scene::compile(moved, &options)?,
+            None => compiled,
+        };
+        let mut configuration = Configuration::new(&scene);
         let first = self.carried.is_none();
         let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
         let exchanged = if first && joints {
@@ -160,7 +163,6 @@ impl Session {
         }
         let mut q = scene.initial_q.clone();
         let mut v = None;
-        let mut turns = vec![0.0; l.n_turns];
         if let Some(carried) = &self.carried {
             let values: BTreeMap<&str, f64> = carried
                 .names
@@ -178,15 +180,15 @@ impl Session {
                     None => complete &= k >= l.n_q + l.n_v,
                 }
             }
-            for cam in &mut scene.cams {
+            for (cam, contact) in scene.cams.iter().zip(&mut configuration.contacts) {
                 let name = &names[l.n_q + l.n_v + cam.state];
-                cam.begun = values.contains_key(name.as_str());
+                contact.begun = values.contains_key(name.as_str());
             }
             if complete && !carried.at_rest {
                 v = Some(speeds);
             }
             if carried.turns.len() == l.n_turns {
-                turns.copy_from_slice(&carried.turns);
+                configuration.turns.copy_from_slice(&carried.turns);
             }
         } else {
             if mode != KINEMATIC && mode != STATIC {
@@ -196,14 +198,14 @@ impl Session {
                 self.initial_motion(&scene, m, motion.state, &q, &mut x);
             }
         }
-        scene.turns.clone_from(&turns);
-        scene.external_values = self.external(&scene, t, &q, &x)?;
+        configuration.external = self.external(scene.within(&configuration), t, &q, &x)?;
         let misaligned = if first {
             misalignment::misaligned(&scene, &self.model)
         } else {
             Vec::new()
         };
-        let placed = first && placement::settle(&scene, &self.model, t, &mut q, &x, joints);
+        let undecided = scene.within(&configuration);
+        let placed = first && placement::settle(undecided, &self.model, t, &mut q, &x, joints);
         // only what moves by itself has initial conditions
         let wishes = if first && mode != KINEMATIC && mode != STATIC {
             initial_conditions::collect(&scene, &self.model)
@@ -212,34 +214,34 @@ impl Session {
         };
         // where parts are too many to be weighed, or on curves, coordinates move as little as may be
         let starts = if first && !(placed && joints) {
-            initial_conditions::approach(&mut scene, &wishes, t, &mut q, &x)
+            initial_conditions::approach(&scene, &mut configuration, &wishes, t, &mut q, &x)
         } else {
             Vec::new()
         };
-        let mut assembly = assemble::positions(&mut scene, t, &mut q, &x)?;
-        let unmet = initial_conditions::unmet(&scene, &wishes, &starts, t, &q, &x);
+        let mut assembly = assemble::positions(&scene, &mut configuration, t, &mut q, &x)?;
+        let here = scene.within(&configuration);
+        let unmet = initial_conditions::unmet(here, &wishes, &starts, t, &q, &x);
         assembly.warnings.extend(unmet);
         assembly.warnings.splice(0..0, misaligned);
         assembly.warnings.extend(exchanged);
         if first {
-            let numbers = assemble::numbers(&scene, t, &q, &vec![0.0; l.n_v], &x);
-            let turned = misalignment::turned(&scene, &self.model, &numbers);
+            let numbers = assemble::numbers(here, t, &q, &vec![0.0; l.n_v], &x);
+            let turned = misalignment::turned(here, &self.model, &numbers);
             assembly.warnings.extend(turned);
-            assembly
-                .warnings
-                .extend(coincident::lines(&scene, &numbers)?);
+            assembly.warnings.extend(coincident::lines(here, &numbers)?);
         }
-        scene.begin_states(&mut x);
+        configuration.begin_states(&scene, &mut x);
         let v = match v {
             _ if mode == STATIC || mode == LINEAR && self.is_at_rest() => vec![0.0; l.n_v],
             Some(v) => v,
             None => {
                 let at_rest = self.carried.as_ref().is_some_and(|c| c.at_rest);
                 let given = moved.as_ref().filter(|_| !at_rest).unwrap_or(&self.model);
-                assemble::velocities(&scene, given, t, &q, &x)?
+                assemble::velocities(scene.within(&configuration), given, t, &q, &x)?
             }
         };
-        let mut system = System::with_hooks(scene, &self.hooks)?;
+        let turns = configuration.turns.clone();
+        let mut system = System::with_hooks(scene, configuration, &self.hooks)?;
         let past = self.carried.as_ref().map_or(&[][..], |c| &c.past);
         system.external.begin(t, past);
         let mut y = q;
@@ -294,7 +296,7 @@ impl Session {
     /// Numbers from outside where assembly begins: what sensors evaluated before, and what closures say of the configuration.
     pub(super) fn external(
         &self,
-        scene: &Scene,
+        scene: Configured<'_>,
         t: f64,
         q: &[f64],
         x: &[f64],
@@ -308,15 +310,15 @@ impl Session {
         for (place, input) in scene.external_inputs.iter().enumerate() {
             let sensor = scene.sensor_of(*input);
             let seen = sensor.and_then(|id| carried?.sensors.get(&id).copied());
-            let value = seen.or_else(|| samples::before(scene, *input, held));
+            let value = seen.or_else(|| samples::before(&scene, *input, held));
             numbers[first + place] = value.unwrap_or(0.0);
         }
-        self.set_constants(scene, &mut numbers);
+        self.set_constants(&scene, &mut numbers);
         if !scene.hooks.is_empty() {
             numbers[0] = t;
             numbers[l.q()].copy_from_slice(q);
             numbers[l.x()].copy_from_slice(x);
-            numbers[l.turns()].copy_from_slice(&scene.turns);
+            numbers[l.turns()].copy_from_slice(&scene.configuration.turns);
             let mut outside =
                 external_inputs::ExternalInputs::new(scene, &self.hooks).map_err(complaints)?;
             outside.evaluate(&mut numbers, true);
@@ -371,7 +373,7 @@ impl Session {
     }
 
     pub(super) fn keep(&mut self, system: &System, numbers: Vec<f64>) {
-        let at = Equations::new(&system.scene, &numbers);
+        let at = Equations::new(system.configured(), &numbers);
         let parts = system.scene.parts.iter().enumerate();
         let parts = parts
             .map(|(k, p)| (p.point_mass, p.id, at.part(k, false)))

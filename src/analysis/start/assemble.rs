@@ -12,6 +12,7 @@ use crate::model::Model;
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
 use crate::scene::cams;
+use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::programs::weights;
 use crate::scene::{RowKind, Scene, Source};
@@ -59,7 +60,7 @@ pub struct Assembly {
 
 /// What programs read, with these positions, velocities and states.
 pub(in crate::analysis) fn numbers(
-    scene: &Scene,
+    scene: Configured<'_>,
     t: f64,
     q: &[f64],
     v: &[f64],
@@ -70,34 +71,41 @@ pub(in crate::analysis) fn numbers(
     n.extend_from_slice(q);
     n.extend_from_slice(v);
     n.extend_from_slice(x);
-    n.extend_from_slice(&scene.turns);
+    n.extend_from_slice(&scene.configuration.turns);
     n.resize(scene.layout.external().start, 0.0);
-    n.extend_from_slice(&scene.external_values);
+    n.extend_from_slice(&scene.configuration.external);
     n.resize(scene.layout.len(), 0.0);
     n
 }
 
 /// Constants of sums of displacements that hold what the configuration shows; what is worth telling about them.
-fn hold(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) -> Vec<String> {
-    let (shown, _, _) = rows_at(scene, t, q, x);
+fn hold(
+    scene: &Scene,
+    configuration: &mut Configuration,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> Vec<String> {
+    let (shown, _, _) = rows_at(scene.within(configuration), t, q, x);
     let mut told = Vec::new();
-    begin_motions(scene, t, q, x);
-    for (row, &shown) in scene.rows.iter_mut().zip(&shown) {
-        let RowKind::Displacements(sum) = &mut row.kind else {
+    begin_motions(scene, configuration, t, q, x);
+    let constants = configuration.sums.iter_mut();
+    for ((row, constant), &shown) in scene.rows.iter().zip(constants).zip(&shown) {
+        let RowKind::Displacements(sum) = &row.kind else {
             continue;
         };
         if !sum.held {
             continue;
         }
-        sum.constant += shown;
+        *constant += shown;
         // rounding of what should be zero
-        if sum.constant.abs() < 1e-13 * sum.scale(scene.length) {
-            sum.constant = 0.0;
+        if constant.abs() < 1e-13 * sum.scale(scene.length) {
+            *constant = 0.0;
         }
-        if sum.constant != 0.0 && sum.contact.is_none() {
+        if *constant != 0.0 && sum.contact.is_none() {
             told.push(format!(
-                "{}: its displacements sum up to {:.6e} where they are assembled; that sum is held, not zero",
-                row.element, sum.constant
+                "{}: its displacements sum up to {constant:.6e} where they are assembled; that sum is held, not zero",
+                row.element
             ));
         }
     }
@@ -105,11 +113,9 @@ fn hold(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) -> Vec<String> {
 }
 
 /// Motions given by their rate, without ICDISP, begin where they are.
-fn begin_motions(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) {
-    let at = Equations::new(
-        scene,
-        &numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x),
-    );
+fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[f64], x: &[f64]) {
+    let here = scene.within(configuration);
+    let at = Equations::new(here, &numbers(here, t, q, &vec![0.0; scene.layout.n_v], x));
     let frame = |m: usize| {
         let state = at.marker(m);
         Frame {
@@ -118,38 +124,27 @@ fn begin_motions(scene: &mut Scene, t: f64, q: &[f64], x: &[f64]) {
         }
     };
     let mut found = Vec::new();
-    for row in &scene.rows {
+    for (r, row) in scene.rows.iter().enumerate() {
         if let RowKind::Markers {
             law,
             i,
             j,
             motion: Some(m),
         } = row.kind
-            && scene.motions[m].held
+            && here.is_held(r)
         {
             let begun = scene.motions[m].state.map_or(0.0, |s| x[s]);
             found.push((m, law.shown(&frame(i), &frame(j)) - begun));
         }
     }
     for (m, offset) in found {
-        scene.motions[m].offset = offset;
-    }
-}
-
-/// Whether a row takes what the configuration shows rather than asking anything of it.
-pub(in crate::analysis) fn is_held(scene: &Scene, r: usize) -> bool {
-    match &scene.rows[r].kind {
-        RowKind::Displacements(sum) => sum.held,
-        RowKind::Markers {
-            motion: Some(m), ..
-        } => scene.motions[*m].held,
-        _ => false,
+        configuration.motions[m].offset = offset;
     }
 }
 
 /// Values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
 pub fn rows_at(
-    scene: &Scene,
+    scene: Configured<'_>,
     t: f64,
     q: &[f64],
     x: &[f64],
@@ -224,33 +219,35 @@ pub(in crate::analysis) struct Closed {
 
 /// Moves `q` by the least changes that satisfy the rows, but for those that `ignored` names.
 pub(in crate::analysis) fn close(
-    scene: &mut Scene,
+    scene: &Scene,
+    configuration: &mut Configuration,
     t: f64,
     q: &mut [f64],
     x: &[f64],
-    ignored: impl Fn(&Scene, usize) -> bool,
+    ignored: impl Fn(Configured<'_>, usize) -> bool,
 ) -> Closed {
     let w = weights(scene);
     let mover = Mover::new(scene);
-    let worst = |scene: &Scene, g: &DVector<f64>| {
+    let worst = |g: &DVector<f64>| {
         (0..g.len())
             .map(|r| relative(scene, r, g[r]))
             .fold(0.0, f64::max)
     };
     // contacts on curves go along
-    let rows_at = |scene: &mut Scene, q: &[f64]| {
+    let rows_at = |configuration: &mut Configuration, q: &[f64]| {
         let still = vec![0.0; scene.layout.n_v];
-        let here = numbers(scene, t, q, &still, x);
-        cams::track(scene, &here);
-        let (mut g, mut gradient, drift) = rows_at(scene, t, q, x);
-        for r in (0..g.len()).filter(|&r| ignored(scene, r)) {
+        let here = numbers(scene.within(configuration), t, q, &still, x);
+        cams::track(scene, configuration, &here);
+        let configured = scene.within(configuration);
+        let (mut g, mut gradient, drift) = rows_at(configured, t, q, x);
+        for r in (0..g.len()).filter(|&r| ignored(configured, r)) {
             g[r] = 0.0;
             gradient.row_mut(r).fill(0.0);
         }
         (g, gradient, drift)
     };
-    let (mut g, mut gradient, _) = rows_at(scene, q);
-    let mut size = worst(scene, &g);
+    let (mut g, mut gradient, _) = rows_at(configuration, q);
+    let mut size = worst(&g);
     let mut iterations = 0;
     while size > 1e-13 && iterations < 100 {
         let step = least_change(&gradient, &w, &(-&g));
@@ -264,18 +261,18 @@ pub(in crate::analysis) fn close(
         while damping > 1e-6 {
             let mut trial = q.to_vec();
             mover.displace(&mut trial, (&step * damping).as_slice());
-            let contacts = scene.cams.clone();
-            let (g1, gradient1, _) = rows_at(scene, &trial);
+            let contacts = configuration.contacts.clone();
+            let (g1, gradient1, _) = rows_at(configuration, &trial);
             if g1.norm() < g.norm() {
                 q.copy_from_slice(&trial);
                 (g, gradient, better) = (g1, gradient1, true);
                 break;
             }
-            scene.cams = contacts;
+            configuration.contacts = contacts;
             damping *= 0.5;
         }
         iterations += 1;
-        size = worst(scene, &g);
+        size = worst(&g);
         if !better {
             break;
         }
@@ -292,7 +289,8 @@ pub(in crate::analysis) fn close(
 /// # Errors
 /// When the rows contradict each other: which, and by how much.
 pub fn positions(
-    scene: &mut Scene,
+    scene: &Scene,
+    configuration: &mut Configuration,
     t: f64,
     q: &mut [f64],
     x: &[f64],
@@ -300,10 +298,11 @@ pub fn positions(
     let mut found = Assembly::default();
     let start = q.to_vec();
     // all but the rows that will hold what the others leave
-    let closed = close(scene, t, q, x, is_held);
+    let closed = close(scene, configuration, t, q, x, |scene, r| scene.is_held(r));
     found.iterations = closed.iterations;
-    let reached = numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
-    if let Some(broken) = cams::broken(scene, &reached, None) {
+    let here = scene.within(configuration);
+    let reached = numbers(here, t, q, &vec![0.0; scene.layout.n_v], x);
+    if let Some(broken) = cams::broken(here, &reached, None) {
         return Err(vec![
             Diagnostic::error(broken.code, broken.sentence)
                 .element(broken.element)
@@ -311,22 +310,23 @@ pub fn positions(
         ]);
     }
     if !closed.size.is_finite() || closed.size > CLOSED {
-        return Err(contradictions(scene, &closed.g, &reached));
+        return Err(contradictions(here, &closed.g, &reached));
     }
     found.moved = q
         .iter()
         .zip(&start)
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
-    found.warnings = hold(scene, t, q, x);
-    let (_, gradient, _) = rows_at(scene, t, q, x);
+    found.warnings = hold(scene, configuration, t, q, x);
+    let here = scene.within(configuration);
+    let (_, gradient, _) = rows_at(here, t, q, x);
     let n = scene.layout.n_v;
     let (independent, dependent) = rank(scene, &gradient, &[]);
     found.freedom_here = n - independent.len();
     (found.freedom, found.redundant) = (found.freedom_here, dependent.clone());
     let mut active = independent;
     if !dependent.is_empty()
-        && let Some(around) = nearby::look(scene, t, q, x, &active)
+        && let Some(around) = nearby::look(here, t, q, x, &active)
     {
         // rows that depend on others here and nowhere else take part
         found.freedom = n - around.independent.len();
@@ -335,22 +335,22 @@ pub fn positions(
         found.place = Some(around.q);
     }
     found.dependent = dependent;
-    scene.active = (0..scene.rows.len()).map(|r| active.contains(&r)).collect();
+    configuration.active = (0..scene.rows.len()).map(|r| active.contains(&r)).collect();
     Ok(found)
 }
 
 /// The rows that do not hold, worst first: by how much, and in which direction.
-fn contradictions(scene: &Scene, g: &DVector<f64>, numbers: &[f64]) -> Vec<Diagnostic> {
+fn contradictions(scene: Configured<'_>, g: &DVector<f64>, numbers: &[f64]) -> Vec<Diagnostic> {
     let mut bad: Vec<usize> = (0..g.len())
-        .filter(|&r| relative(scene, r, g[r]) > CLOSED || !g[r].is_finite())
+        .filter(|&r| relative(&scene, r, g[r]) > CLOSED || !g[r].is_finite())
         .collect();
-    bad.sort_by(|&a, &b| relative(scene, b, g[b]).total_cmp(&relative(scene, a, g[a])));
+    bad.sort_by(|&a, &b| relative(&scene, b, g[b]).total_cmp(&relative(&scene, a, g[a])));
     let at = Equations::new(scene, numbers);
     bad.into_iter()
         .take(20)
         .map(|r| {
             let row = &scene.rows[r];
-            Diagnostic::error("assembly", format!("cannot be satisfied: {}", gap(scene, &at, r, g[r])))
+            Diagnostic::error("assembly", format!("cannot be satisfied: {}", gap(&scene, &at, r, g[r])))
                 .element(row.element.clone())
                 .help("move the parts nearer to where the joints want them, or remove a constraint that contradicts")
         })
@@ -447,10 +447,10 @@ pub fn rank(
 }
 
 /// Motions ask for a rate that a row forbids: what it would have to give way by, and which motions there are.
-fn prescribed_too_much(scene: &Scene, numbers: &[f64], r: usize, rate: f64) -> Diagnostic {
+fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f64) -> Diagnostic {
     let at = Equations::new(scene, numbers);
     let row = &scene.rows[r];
-    let direction = Direction::of_row(scene, &at, r);
+    let direction = Direction::of_row(&scene, &at, r);
     let way = direction.way();
     let rate = if direction.is_rotation() {
         format!("{} deg", short(rate.abs().to_degrees()))
@@ -479,7 +479,7 @@ fn prescribed_too_much(scene: &Scene, numbers: &[f64], r: usize, rate: f64) -> D
 /// # Errors
 /// When the motions ask for velocities that the rows forbid.
 pub fn velocities(
-    scene: &Scene,
+    scene: Configured<'_>,
     model: &Model,
     t: f64,
     q: &[f64],
@@ -534,7 +534,7 @@ pub fn velocities(
 
 /// The velocities nearest to the given ones that all rows permit   (n_v)
 pub(in crate::analysis) fn nearest_velocities(
-    scene: &Scene,
+    scene: Configured<'_>,
     t: f64,
     q: &[f64],
     x: &[f64],
@@ -543,7 +543,7 @@ pub(in crate::analysis) fn nearest_velocities(
     let (_, gradient, drift) = rows_at(scene, t, q, x);
     let given = DVector::from_column_slice(v);
     let missing = -(&gradient * &given + drift);
-    let change = least_change(&gradient, &weights(scene), &missing);
+    let change = least_change(&gradient, &weights(&scene), &missing);
     (given + change).iter().copied().collect()
 }
 
@@ -583,7 +583,7 @@ impl Level {
 }
 
 impl Wishes {
-    fn collect(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Self {
+    fn collect(scene: Configured<'_>, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Self {
         let n = scene.layout.n_v;
         // velocities are linear in v: one evaluation per coordinate, and one for what motions prescribe
         let mut columns: Vec<Vec<f64>> = Vec::with_capacity(n + 1);
@@ -594,7 +594,7 @@ impl Wishes {
                 v[k - 1] = 1.0;
             }
             let at = Equations::new(scene, &numbers(scene, t, q, &v, x));
-            let (values, wanted) = part_velocities(scene, model, &at);
+            let (values, wanted) = part_velocities(&scene, model, &at);
             let origin = columns.first();
             let column = match origin {
                 Some(zero) => values.iter().zip(zero).map(|(a, b)| a - b).collect(),

@@ -8,7 +8,7 @@
 //! force points: the model has to.
 
 use crate::diagnostic::Diagnostic;
-use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::forces::{ForceElement, ForceLaw};
 
@@ -19,7 +19,7 @@ const COINCIDENT: f64 = 1e-12;
 ///
 /// # Errors
 /// For forces that are not.
-pub fn lines(scene: &Scene, numbers: &[f64]) -> Result<Vec<String>, Vec<Diagnostic>> {
+pub fn lines(scene: Configured<'_>, numbers: &[f64]) -> Result<Vec<String>, Vec<Diagnostic>> {
     let at = Equations::new(scene, numbers);
     let (mut told, mut wrong) = (Vec::new(), Vec::new());
     for force in &scene.forces {

@@ -21,6 +21,7 @@ use crate::physics::coupler::Gauge;
 use crate::scalar::Scalar;
 use crate::scene::build::is_active;
 use crate::scene::cams::{self, Start};
+use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
 use crate::scene::programs::{record_with_complaints, weights};
 use crate::scene::{RowKind, Scene};
@@ -242,40 +243,40 @@ fn equations(
 /// Moves positions towards rows and wishes together; contacts that are asked to begin somewhere are taken to be there, and
 /// returned.
 pub fn approach(
-    scene: &mut Scene,
+    scene: &Scene,
+    configuration: &mut Configuration,
     wishes: &[Wish],
     t: f64,
     q: &mut [f64],
     x: &[f64],
 ) -> Vec<Start> {
-    let starts = cams::starts(
-        scene,
-        &assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x),
-    );
+    let here = scene.within(configuration);
+    let still = vec![0.0; scene.layout.n_v];
+    let starts = cams::starts(here, &assemble::numbers(here, t, q, &still, x));
     if wishes.is_empty() && starts.is_empty() || scene.layout.n_v == 0 {
         return starts;
     }
     let w = weights(scene);
     let mover = Mover::new(scene);
-    let still = vec![0.0; scene.layout.n_v];
-    let (quantities, _) = record_with_complaints(scene, |at| {
+    let (quantities, _) = record_with_complaints(here, |at| {
         wishes.iter().map(|w| w.quantity(scene, at)).collect()
     });
     // contacts that are asked to be somewhere are equations of their own
-    let asked = |scene: &Scene, r: usize| match scene.rows[r].kind {
+    let asked = |scene: Configured<'_>, r: usize| match scene.rows[r].kind {
         RowKind::Cam { cam, .. } => starts.iter().any(|s| s.cam == cam),
-        _ => assemble::is_held(scene, r),
+        _ => scene.is_held(r),
     };
     for _ in 0..ITERATIONS {
-        let here = assemble::numbers(scene, t, q, &still, x);
-        cams::track(scene, &here);
-        cams::place(scene, &starts, &here);
-        let (mut g, mut gradient, _) = rows_at(scene, t, q, x);
-        for r in (0..g.len()).filter(|&r| asked(scene, r)) {
+        let here = assemble::numbers(scene.within(configuration), t, q, &still, x);
+        cams::track(scene, configuration, &here);
+        cams::place(scene, configuration, &starts, &here);
+        let configured = scene.within(configuration);
+        let (mut g, mut gradient, _) = rows_at(configured, t, q, x);
+        for r in (0..g.len()).filter(|&r| asked(configured, r)) {
             g[r] = 0.0;
             gradient.row_mut(r).fill(0.0);
         }
-        let at = Equations::<f64>::new(scene, &here);
+        let at = Equations::<f64>::new(configured, &here);
         let places: Vec<(f64, Vec<(usize, f64)>)> = (starts.iter())
             .flat_map(|s| at.cam_start(s.cam, s.given))
             .filter(|(value, _)| value.is_finite())
@@ -303,14 +304,14 @@ pub fn approach(
         }
         mover.displace(q, (&step * (0.5 / longest).min(1.0)).as_slice());
     }
-    let reached = assemble::numbers(scene, t, q, &still, x);
-    cams::place(scene, &starts, &reached);
+    let reached = assemble::numbers(scene.within(configuration), t, q, &still, x);
+    cams::place(scene, configuration, &starts, &reached);
     starts
 }
 
 /// Wishes that an assembled configuration does not meet, in words.
 pub fn unmet(
-    scene: &Scene,
+    scene: Configured<'_>,
     wishes: &[Wish],
     starts: &[Start],
     t: f64,
@@ -320,7 +321,7 @@ pub fn unmet(
     let numbers = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
     let at = Equations::new(scene, &numbers);
     let told = wishes.iter().filter_map(|wish| {
-        let found = wish.quantity(scene, &at);
+        let found = wish.quantity(&scene, &at);
         let unit = if wish.angle { 1.0 } else { scene.length };
         let off = wish.residual(found);
         (off.abs() > MET * unit).then(|| {

@@ -7,6 +7,7 @@ use crate::physics::joint::Tie;
 use crate::physics::row::Law;
 use crate::scene::Scene;
 use crate::scene::compile::part_name;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::space::Vec3;
 
@@ -148,7 +149,7 @@ fn is_directed(tie: Tie) -> bool {
 }
 
 /// What assembly has turned round: parts that stand the other way than in the dataset, joints whose axes point against each other.
-pub fn turned(scene: &Scene, model: &Model, numbers: &[f64]) -> Vec<String> {
+pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<String> {
     let at = Equations::new(scene, numbers);
     let mut told = Vec::new();
     for (k, part) in scene.parts.iter().enumerate().filter(|p| !p.1.point_mass) {

@@ -6,6 +6,7 @@
 use crate::analysis::start::assemble::{self, CLOSED, Mover, Redundant};
 use crate::numeric::rank::Rank;
 use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
 
@@ -45,8 +46,8 @@ const STEPS: [(f64, bool); 9] = [
 /// Rank near a position, by the place among those tried where it is largest; `None`: no other position was found.
 ///
 /// `here`: rows that are independent at `q`; they are preferred.
-pub fn look(scene: &Scene, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Option<Around> {
-    let w = weights(scene);
+pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Option<Around> {
+    let w = weights(&scene);
     let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
     let rows = assemble::scaled_rows(&gradient, &w);
     let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
@@ -59,7 +60,7 @@ pub fn look(scene: &Scene, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Opti
     if free.is_empty() && values.is_empty() {
         return None;
     }
-    let mover = Mover::new(scene);
+    let mover = Mover::new(&scene);
     let mut draw = Draw(1);
     let mut best: Option<Around> = None;
     let mut seen = 0;
@@ -92,17 +93,17 @@ pub fn look(scene: &Scene, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Opti
         } else if !drives {
             continue;
         }
-        let mut there = scene.with_motions_at(&motions);
+        let mut there = scene.configuration.with_motions_at(&motions);
         let mut q1 = q.to_vec();
         mover.displace(&mut q1, &change);
-        let closed = assemble::close(&mut there, t, &mut q1, x, |_, _| false);
-        let far = distance(scene, &w, q, &q1);
+        let closed = assemble::close(&scene, &mut there, t, &mut q1, x, |_, _| false);
+        let far = distance(&scene, &w, q, &q1);
         let moved = far > 0.1 * step || drives && !motions.is_empty();
         if !(closed.size <= CLOSED && moved && far < 20.0 * step) {
             continue;
         }
-        let (_, gradient, _) = assemble::rows_at(&there, t, &q1, x);
-        let (independent, redundant) = assemble::rank(&there, &gradient, here);
+        let (_, gradient, _) = assemble::rows_at(scene.within(&there), t, &q1, x);
+        let (independent, redundant) = assemble::rank(&scene, &gradient, here);
         if best
             .as_ref()
             .is_none_or(|b| b.independent.len() < independent.len())

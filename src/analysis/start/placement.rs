@@ -13,9 +13,11 @@ use crate::analysis::start::assemble::{self, Mover};
 use crate::model::{JointKind, Model};
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
+use crate::scalar::{Jet, Scalar};
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
-use crate::scene::{Row, RowKind, Scene, Source};
+use crate::scene::{Scene, Source};
 use crate::space::{Mat3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
@@ -46,7 +48,7 @@ pub(in crate::analysis) fn initial_joints(scene: &Scene, model: &Model, q: &mut 
 /// Moves `q` to the positions nearest to the dataset. `joints`: IC of joints count. False: the mechanism is not one that is placed
 /// like this, or no step led anywhere.
 pub fn settle(
-    scene: &Scene,
+    scene: Configured<'_>,
     model: &Model,
     t: f64,
     q: &mut [f64],
@@ -58,21 +60,21 @@ pub fn settle(
     if l.n_v == 0 || l.n_v > LARGEST || !scene.cams.is_empty() {
         return false;
     }
-    let (asked, wanted) = asked(scene, model, joints);
-    let w = weights(scene);
-    let mover = Mover::new(scene);
+    let asked = Asked::of(&scene, model, joints);
+    let w = weights(&scene);
+    let mover = Mover::new(&scene);
     let mut here = q.to_vec();
     for k in 0..40 {
-        let Some((residual, slopes)) = wishes(scene, model, t, &here, x, (&asked, &wanted)) else {
+        let Some((residual, slopes)) = wishes(scene, model, t, &here, x, &asked) else {
             return false;
         };
         let (mut g, mut gradient, _) = assemble::rows_at(scene, t, &here, x);
-        for r in (0..g.len()).filter(|&r| assemble::is_held(scene, r)) {
+        for r in (0..g.len()).filter(|&r| scene.is_held(r)) {
             g[r] = 0.0;
             gradient.row_mut(r).fill(0.0);
         }
         let off = (0..g.len()).fold(0.0, |m: f64, r| {
-            m.max((g[r] / assemble::natural(scene, r)).abs())
+            m.max((g[r] / assemble::natural(&scene, r)).abs())
         });
         if k == 0 && off < 1e-9 && residual.amax() < 1e-9 {
             return true;
@@ -118,64 +120,63 @@ pub fn settle(
     true
 }
 
-/// The scene with a row for each IC of a joint that carries nothing, and coordinates with the values that are asked of them.
-fn asked(scene: &Scene, model: &Model, joints: bool) -> (Scene, Vec<(usize, f64)>) {
-    let mut asked = scene.clone();
-    asked.rows.clear();
-    let mut values: Vec<f64> = Vec::new();
-    let mut wanted = Vec::new();
-    if !joints {
-        return (asked, wanted);
-    }
-    let mut extra = Vec::new();
-    for element in scene.constraints.iter().filter(|c| c.keyword == "JOINT") {
-        let Some(joint) = model.joints.get(&element.id) else {
-            continue;
-        };
-        let has = match joint.kind {
-            JointKind::Revolute => [false, true],
-            JointKind::Translational => [true, false],
-            JointKind::Cylindrical => [true, true],
-            _ => [false, false],
-        };
-        let given = [joint.ic_translation[0], joint.ic_rotation[0]];
-        for (turn, value) in [false, true].into_iter().zip(given) {
-            let Some(value) = value.filter(|_| has[usize::from(turn)]) else {
+/// Initial displacements of joints, each as an equation of its own.
+#[derive(Default)]
+struct Asked {
+    /// of joints that carry a part: place in v of the coordinate, and its value   [rad, length]
+    coordinates: Vec<(usize, f64)>,
+    /// of joints that carry nothing: the law between markers I and J, and the displacement
+    rows: Vec<(Law, (usize, usize), f64)>,
+}
+
+impl Asked {
+    /// Collects the initial displacements of a model's joints; none without `joints`.
+    fn of(scene: &Scene, model: &Model, joints: bool) -> Self {
+        let mut asked = Self::default();
+        if !joints {
+            return asked;
+        }
+        for element in scene.constraints.iter().filter(|c| c.keyword == "JOINT") {
+            let Some(joint) = model.joints.get(&element.id) else {
                 continue;
             };
-            let own = scene
-                .coordinates
-                .iter()
-                .find(|c| c.joint == Some(element.id) && c.angular == turn);
-            match (own.map(|c| c.source), element.markers) {
-                (Some(Source::Free { v, .. }), _) => wanted.push((v, value)),
-                (None, Some((i, j))) => extra.push((i, j, turn, value)),
-                _ => {}
+            let has = match joint.kind {
+                JointKind::Revolute => [false, true],
+                JointKind::Translational => [true, false],
+                JointKind::Cylindrical => [true, true],
+                _ => [false, false],
+            };
+            let given = [joint.ic_translation[0], joint.ic_rotation[0]];
+            for (turn, value) in [false, true].into_iter().zip(given) {
+                let Some(value) = value.filter(|_| has[usize::from(turn)]) else {
+                    continue;
+                };
+                let own = scene
+                    .coordinates
+                    .iter()
+                    .find(|c| c.joint == Some(element.id) && c.angular == turn);
+                match (own.map(|c| c.source), element.markers) {
+                    (Some(Source::Free { v, .. }), _) => asked.coordinates.push((v, value)),
+                    (None, Some(markers)) => {
+                        let law = if turn { Law::Angle } else { Law::Along(2) };
+                        asked.rows.push((law, markers, value));
+                    }
+                    _ => {}
+                }
             }
         }
+        asked
     }
-    let first = asked.motions.len();
-    for (i, j, turn, value) in extra {
-        let law = if turn { Law::Angle } else { Law::Along(2) };
-        let motion = Some(first + values.len());
-        asked.rows.push(Row {
-            element: String::new(),
-            equation: law.name(),
-            kind: RowKind::Markers { law, i, j, motion },
-        });
-        values.push(value);
-    }
-    (asked.with_further_motions_at(&values), wanted)
 }
 
 /// How far parts and joints are from what is wished, weighted, and how that changes along each velocity; `None` when something is not finite.
 fn wishes(
-    scene: &Scene,
+    scene: Configured<'_>,
     model: &Model,
     t: f64,
     q: &[f64],
     x: &[f64],
-    (asked, wanted): (&Scene, &[(usize, f64)]),
+    asked: &Asked,
 ) -> Option<(DVector<f64>, DMatrix<f64>)> {
     let n = scene.layout.n_v;
     let at = |v: &[f64]| {
@@ -212,8 +213,7 @@ fn wishes(
         }
     }
     let parts = residual.len();
-    let (g, gradient, _) = assemble::rows_at(asked, t, q, x);
-    let rows = parts + wanted.len() + g.len();
+    let rows = parts + asked.coordinates.len() + asked.rows.len();
     let mut slopes = DMatrix::zeros(rows, n);
     let mut v = vec![0.0; n];
     for j in 0..n {
@@ -227,7 +227,7 @@ fn wishes(
         }
         v[j] = 0.0;
     }
-    for &(place, value) in wanted {
+    for &(place, value) in &asked.coordinates {
         let own = scene.coordinates.iter().find_map(|c| match c.source {
             Source::Free { q, v } if v == place => Some((q, c.angular)),
             _ => None,
@@ -237,12 +237,15 @@ fn wishes(
         residual.push(q[at] - value);
         weight.push(FIRM / if angular { 1.0 } else { scene.length });
     }
-    for r in 0..g.len() {
-        for j in 0..n {
-            slopes[(residual.len(), j)] = gradient[(r, j)];
+    let numbers = assemble::numbers(scene, t, q, &vec![0.0; n], x);
+    let here = Equations::new(scene, &numbers);
+    for &(law, markers, value) in &asked.rows {
+        let row = here.marker_row(law, markers, Some(Jet::constant(value)));
+        for (v, slope) in row.gradient {
+            slopes[(residual.len(), v)] += slope;
         }
-        residual.push(g[r]);
-        weight.push(FIRM / assemble::natural(asked, r));
+        residual.push(row.value);
+        weight.push(FIRM / if law.is_length() { scene.length } else { 1.0 });
     }
     let mut residual = DVector::from_vec(residual);
     for (r, w) in weight.iter().enumerate() {

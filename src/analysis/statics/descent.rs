@@ -275,11 +275,11 @@ impl Settler<'_> {
 
     /// Returns how large forces are, in the metric, whatever cancels.
     fn load_scale(&self, p: &Point) -> f64 {
-        let scene = &self.system.scene;
+        let scene = self.system.configured();
         let at = Equations::new(scene, &p.numbers);
         let scale = at.load_scale();
         let scale = if scale.is_finite() { scale } else { 0.0 };
-        scale / total_mass(scene).sqrt()
+        scale / total_mass(&scene).sqrt()
     }
 
     /// Returns what the last digits of the positions make of stiff forces, in each coordinate, as it is

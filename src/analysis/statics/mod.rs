@@ -158,10 +158,8 @@ pub fn settle(
 
 impl<'a> Settler<'a> {
     fn new(system: &'a mut System, settings: &'a Settings) -> Result<Self, NoEquilibrium> {
-        let scene = &system.scene;
-        let rows: Vec<usize> = (0..scene.rows.len())
-            .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
-            .collect();
+        let scene = system.configured();
+        let rows: Vec<usize> = scene.configuration.active_rows().collect();
         let states: Vec<usize> = (scene.differentials.iter())
             .filter(|d| !d.static_hold)
             .filter_map(|d| d.state)

@@ -151,7 +151,7 @@ impl Settler<'_> {
         let Some((_, c, f, force)) = worst else {
             return NoEquilibrium::Unbalanced(Imbalance::Unknown);
         };
-        let at = Equations::new(scene, &p.numbers);
+        let at = Equations::new(self.system.configured(), &p.numbers);
         let axis = at.freedom_axis(f);
         let way = axis.times(f64::signum(force));
         let part = (scene.parts.iter())

@@ -34,7 +34,7 @@ impl Settler<'_> {
         if out.iter().any(|x| !x.is_finite()) {
             return None;
         }
-        let scene = &self.system.scene;
+        let scene = self.system.configured();
         let at = Equations::new(scene, numbers);
         let mut gradient = DMatrix::zeros(m, n);
         for (k, &r) in self.rows.iter().enumerate() {
@@ -42,7 +42,7 @@ impl Settler<'_> {
                 gradient[(k, v)] += g;
             }
         }
-        let metric = Metric::new(scene, at.mass_rows())?;
+        let metric = Metric::new(&scene, at.mass_rows())?;
         let rows = Rows::new(gradient, &metric);
         let f = DVector::from_column_slice(&out[..n]);
         let state = DVector::from_column_slice(&out[n + m..]);

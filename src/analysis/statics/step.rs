@@ -121,7 +121,7 @@ impl Settler<'_> {
 
     /// How far the way to other numbers exceeds what bodies of a contact may go at once without coming through each other; at most 1 is permitted.
     fn through(&self, p: &Point, numbers: &[f64]) -> f64 {
-        let scene = &self.system.scene;
+        let scene = self.system.configured();
         if scene.thickness_bounds.is_empty() {
             return 0.0;
         }

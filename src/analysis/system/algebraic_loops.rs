@@ -10,7 +10,7 @@ use crate::analysis::system::slopes;
 use crate::expr::program::{Program, Work};
 use crate::numeric::dense::Lu;
 use crate::scalar::Dual;
-use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::loops;
 use std::ops::Range;
@@ -63,7 +63,7 @@ enum Simplified {
 
 impl AlgebraicLoops {
     /// Of a scene; `None` when it has no such unknowns.
-    pub fn new(scene: &Scene) -> Result<Option<Self>, Vec<Unsupported>> {
+    pub fn new(scene: Configured<'_>) -> Result<Option<Self>, Vec<Unsupported>> {
         let n = scene.layout.n_loops;
         let places = scene.layout.loops();
         Ok(loops::program(scene)?.map(|residual| Self {

@@ -17,7 +17,7 @@ use crate::numeric::{Failure, Method, Step};
 use crate::physics::contact::Question;
 use crate::physics::contact::curves::Curves;
 use crate::scalar::Dual;
-use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::{Lack, Unsupported};
 use crate::scene::external_inputs::{ExternalInput, HookKind, HookName};
 use crate::scene::layout::Layout;
@@ -278,7 +278,7 @@ impl ExternalInputs {
     ///
     /// # Errors
     /// What the equations cannot supply; closures that would read what depends on them.
-    pub fn new(scene: &Scene, hooks: &[Hook]) -> Result<Self, Vec<Unsupported>> {
+    pub fn new(scene: Configured<'_>, hooks: &[Hook]) -> Result<Self, Vec<Unsupported>> {
         let first = scene.layout.external().start;
         let mut this = Self {
             still: scene.layout.y().is_empty(),

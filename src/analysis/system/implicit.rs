@@ -21,6 +21,7 @@ use crate::diagnostic::Diagnostic;
 use crate::numeric::{Dae, Failure, Kind, Levels, Ode, Relation};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::{Switching, held_with, record, record_more};
 use written::Written;
@@ -93,7 +94,7 @@ impl Implicit {
     /// # Errors
     /// Functions that read what is solved for: their loops are solved beside explicit rates only.
     pub fn new(
-        scene: &Scene,
+        scene: Configured<'_>,
         formulation: Formulation,
         (outside, switching): (&ExternalInputs, Option<&Switching>),
     ) -> Result<Self, Vec<Diagnostic>> {
@@ -109,33 +110,31 @@ impl Implicit {
             .help("leave the method to the program, or ask for RADAU5")]);
         }
         let n = scene.layout.y().len();
-        let m = (0..scene.rows.len())
-            .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
-            .count();
+        let m = scene.configuration.active_rows().count();
         let levels = match formulation {
             Formulation::Index3 => 1,
             Formulation::Stabilized => 2,
         };
         let size = n + levels * m;
         let (program, complaints) = record_more(scene, n + levels * m, |at, more| {
-            residual(scene, at, more, formulation)
+            residual(&scene, at, more, formulation)
         });
         if !complaints.is_empty() {
             return Err(crate::analysis::system::complaints(complaints));
         }
-        let multipliers = record(scene, |at| multipliers_at(scene, at))
+        let multipliers = record(scene, |at| multipliers_at(&scene, at))
             .map_err(crate::analysis::system::complaints)?;
-        let free = Written::new(scene, program, multipliers, (n, size), outside);
+        let free = Written::new(&scene, program, multipliers, (n, size), outside);
         let held = switching.and_then(|switching| {
             let more = n + levels * m;
             let [residual, multipliers] = held_with(scene, switching, more, |at, more| {
                 [
-                    residual(scene, at, more, formulation),
-                    multipliers_at(scene, at),
+                    residual(&scene, at, more, formulation),
+                    multipliers_at(&scene, at),
                 ]
             })?;
             Some(Written::new(
-                scene,
+                &scene,
                 residual,
                 multipliers,
                 (n, size),
@@ -201,19 +200,19 @@ impl System {
             .is_none_or(|i| i.formulation != formulation)
         {
             let more = (&self.external, self.switching.as_ref());
-            let implicit = Implicit::new(&self.scene, formulation, more)?;
+            let implicit = Implicit::new(self.configured(), formulation, more)?;
             self.implicit = Some(Box::new(implicit));
         }
         Ok(())
     }
 
-    /// Writes the implicit equations of another scene, if there were any.
+    /// Writes the implicit equations again for another configuration, if there were any.
     ///
     /// # Errors
     /// Functions that read what is solved for.
     pub(in crate::analysis) fn renew_implicit(
         &mut self,
-        scene: &Scene,
+        scene: Configured<'_>,
     ) -> Result<(), Vec<Diagnostic>> {
         if let Some(implicit) = &self.implicit {
             let formulation = implicit.formulation;

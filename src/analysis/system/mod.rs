@@ -24,10 +24,11 @@ use crate::numeric::pattern::Pattern;
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scalar::{Dual, Scalar};
 use crate::scene::cams::{self, Broken, Cam};
+use crate::scene::configuration::{Configuration, Configured, Elimination};
 use crate::scene::equations::{Equations, KINEMATIC, STATIC, Unsupported};
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, Switching, record};
-use crate::scene::solve::{self, WEAK};
+use crate::scene::solve::{self, NEAR_SINGULAR_PIVOT};
 use crate::scene::{Scene, Source};
 
 use crate::analysis::start::assemble::{Mover, natural};
@@ -48,7 +49,9 @@ use tunnelling::ThicknessBounds;
 #[derive(Debug)]
 pub struct System {
     /// what is computed
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
+    /// what has been decided about it
+    pub configuration: Configuration,
     rate: Program,
     projection: Option<Program>,
     /// what violates the rows, and how fast, as parts of what counts as one
@@ -147,55 +150,60 @@ pub fn complaints(what: Vec<Unsupported>) -> Vec<Diagnostic> {
     what.iter().map(Unsupported::error).collect()
 }
 
-/// The rate by whichever elimination takes fewer operations; deep forests are not tried the quadratic way.
-fn shortest_rate(scene: &mut Scene) -> Result<Program, Vec<Diagnostic>> {
-    let depth = scene.depth();
-    scene.articulated = true;
-    let articulated = rate_program(scene)?;
-    if depth > 40 {
+/// Chooses the elimination that takes fewer operations and records the rate with it; deep forests are
+/// not tried the quadratic way.
+fn shortest_rate(
+    scene: &Scene,
+    configuration: &mut Configuration,
+) -> Result<Program, Vec<Diagnostic>> {
+    configuration.elimination.articulated = true;
+    let articulated = rate_program(scene.within(configuration))?;
+    if scene.depth() > 40 {
         return Ok(articulated);
     }
-    scene.articulated = false;
-    let matrix = rate_program(scene)?;
+    configuration.elimination.articulated = false;
+    let matrix = rate_program(scene.within(configuration))?;
     if matrix.n_operations() <= articulated.n_operations() {
         return Ok(matrix);
     }
-    scene.articulated = true;
+    configuration.elimination.articulated = true;
     Ok(articulated)
 }
 
-/// Freedoms without inertia that rows determine.
-fn lend_inertia(scene: &mut Scene) {
-    scene.padding = Vec::new();
+/// Returns the inertia to lend to freedoms that have none although rows determine their motion
+/// (n_v; empty: none).
+fn lent_inertia(scene: Configured<'_>) -> Vec<f64> {
     if scene.rows.is_empty() || scene.mode == KINEMATIC || scene.mode == STATIC {
-        return;
+        return Vec::new();
     }
     let mut numbers = vec![0.0; scene.layout.len()];
     numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
     let rows = Equations::new(scene, &numbers).mass_rows();
     let free = scene.freedoms.iter().filter(|f| f.v.is_some());
     let turns: Vec<bool> = free.map(|f| f.turn).collect();
-    scene.padding = solve::padding(rows, &turns, scene.length);
+    solve::lent_inertia(rows, &turns, scene.length)
 }
 
-/// What the diagonal of `G M⁻¹ Gᵀ` is in an ordinary position: a pivot much below that is weak.
-fn usual_pivots(scene: &mut Scene) {
+/// Returns the diagonal of `G M⁻¹ Gᵀ` at the positions `q`, against which pivots are measured
+/// (n_active).
+fn usual_pivots(scene: Configured<'_>, q: &[f64]) -> Vec<f64> {
     if scene.rows.is_empty() {
-        return;
+        return Vec::new();
     }
     let mut numbers = vec![0.0; scene.layout.len()];
-    numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+    numbers[scene.layout.q()].copy_from_slice(q);
     // contacts on curves are sought there
-    let mut there = scene.clone();
-    there.cams.iter_mut().for_each(|c| c.begun = false);
-    cams::track(&mut there, &numbers);
-    let at = Equations::new(&there, &numbers);
+    let mut there = scene.configuration.clone();
+    there.elimination.usual_pivots.clear();
+    there.contacts.iter_mut().for_each(|c| c.begun = false);
+    cams::track(scene.scene, &mut there, &numbers);
+    let at = Equations::new(scene.within(&there), &numbers);
     let diagonal = at.solved().diagonal.clone();
     // rows that happen to vanish there are taken to be like the others
     let largest = diagonal
         .iter()
         .fold(0.0, |m: f64, &d| if d.is_finite() { m.max(d) } else { m });
-    scene.usual = diagonal
+    diagonal
         .iter()
         .map(|&d| {
             if d > 0.01 * largest {
@@ -204,7 +212,7 @@ fn usual_pivots(scene: &mut Scene) {
                 0.01 * largest
             }
         })
-        .collect();
+        .collect()
 }
 
 /// Places in x of the contacts on curves, in their order.
@@ -214,18 +222,19 @@ fn contact_states(scene: &Scene) -> Vec<usize> {
 }
 
 /// The least changes onto the rows; `None` when none takes part.
-fn projection_program(scene: &Scene) -> Result<Option<Program>, Vec<Diagnostic>> {
-    if !(0..scene.rows.len()).any(|r| scene.active.get(r).copied().unwrap_or(true)) {
+fn projection_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
+    if scene.configuration.active_rows().next().is_none() {
         return Ok(None);
     }
-    let program = record(scene, |at| programs::projection(scene, at, at.velocities()));
+    let program = record(scene, |at| {
+        programs::projection(&scene, at, at.velocities())
+    });
     program.map(Some).map_err(complaints)
 }
 
 /// What violates the rows that take part, and its rate; `None` when none does.
-fn violation_program(scene: &Scene) -> Result<Option<Program>, Vec<Diagnostic>> {
-    let active = |r: &usize| scene.active.get(*r).copied().unwrap_or(true);
-    let active: Vec<usize> = (0..scene.rows.len()).filter(active).collect();
+fn violation_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
+    let active: Vec<usize> = scene.configuration.active_rows().collect();
     if active.is_empty() {
         return Ok(None);
     }
@@ -235,7 +244,7 @@ fn violation_program(scene: &Scene) -> Result<Option<Program>, Vec<Diagnostic>> 
             let row = at.row(r);
             let along = row.gradient.iter();
             let rate = along.fold(row.drift, |s, &(k, g)| s + g * v[k]);
-            let one = 1.0 / natural(scene, r);
+            let one = 1.0 / natural(&scene, r);
             [row.value.scale(one), rate.scale(one)]
         };
         active.iter().flat_map(both).collect()
@@ -244,8 +253,8 @@ fn violation_program(scene: &Scene) -> Result<Option<Program>, Vec<Diagnostic>> 
 }
 
 /// Rows that are left out without being zero whatever happens, and the program of their values.
-fn left_out(scene: &Scene) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnostic>> {
-    let idle = |r: &usize| !scene.active.get(*r).copied().unwrap_or(true);
+fn left_out(scene: Configured<'_>) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnostic>> {
+    let idle = |r: &usize| !scene.configuration.active[*r];
     let idle: Vec<usize> = (0..scene.rows.len()).filter(idle).collect();
     if idle.is_empty() {
         return Ok(None);
@@ -263,7 +272,7 @@ fn left_out(scene: &Scene) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnost
 
 // a function item would be of one lifetime
 #[allow(clippy::redundant_closure)]
-fn rate_program(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
+fn rate_program(scene: Configured<'_>) -> Result<Program, Vec<Diagnostic>> {
     record(scene, |at| programs::rate(at)).map_err(complaints)
 }
 
@@ -286,36 +295,46 @@ impl System {
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub fn new(scene: Scene) -> Result<Self, Vec<Diagnostic>> {
-        Self::with_hooks(scene, &[])
+    pub fn new(scene: Arc<Scene>, configuration: Configuration) -> Result<Self, Vec<Diagnostic>> {
+        Self::with_hooks(scene, configuration, &[])
     }
 
     /// As [`System::new`], with the closures that the scene's hooks refer to.
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub fn with_hooks(mut scene: Scene, hooks: &[Hook]) -> Result<Self, Vec<Diagnostic>> {
-        lend_inertia(&mut scene);
-        usual_pivots(&mut scene);
-        let rate = shortest_rate(&mut scene)?;
-        let projection = projection_program(&scene)?;
-        let violation = violation_program(&scene)?;
-        let left_out = left_out(&scene)?;
-        let switching = programs::switching(&scene).map_err(complaints)?;
-        let pulses = Pulses::new(&scene)?;
+    pub fn with_hooks(
+        scene: Arc<Scene>,
+        mut configuration: Configuration,
+        hooks: &[Hook],
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let lent_inertia = lent_inertia(scene.within(&configuration));
+        configuration.elimination = Elimination {
+            lent_inertia,
+            ..Elimination::default()
+        };
+        configuration.elimination.usual_pivots =
+            usual_pivots(scene.within(&configuration), &scene.initial_q);
+        let rate = shortest_rate(&scene, &mut configuration)?;
+        let here = scene.within(&configuration);
+        let projection = projection_program(here)?;
+        let violation = violation_program(here)?;
+        let left_out = left_out(here)?;
+        let switching = programs::switching(here).map_err(complaints)?;
+        let pulses = Pulses::new(here)?;
         let n_switches = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
-        let unknowns = AlgebraicLoops::new(&scene).map_err(complaints)?;
-        let external = ExternalInputs::new(&scene, hooks).map_err(complaints)?;
-        let sensors = Sensors::new(&scene).map_err(complaints)?;
-        let samples = Samples::new(&scene).map_err(complaints)?;
+        let unknowns = AlgebraicLoops::new(here).map_err(complaints)?;
+        let external = ExternalInputs::new(here, hooks).map_err(complaints)?;
+        let sensors = Sensors::new(here).map_err(complaints)?;
+        let samples = Samples::new(here).map_err(complaints)?;
         let thickness_bounds =
-            ThicknessBounds::new(&scene, scene.layout.y().len()).map_err(complaints)?;
-        let time_events = TimeEvents::new(&scene).map_err(complaints)?;
+            ThicknessBounds::new(here, scene.layout.y().len()).map_err(complaints)?;
+        let time_events = TimeEvents::new(here).map_err(complaints)?;
         let counted = if scene.counted.is_empty() {
             None
         } else {
             let counted = &scene.counted;
-            let program = record(&scene, |at| {
+            let program = record(here, |at| {
                 counted.iter().map(|&angle| at.counted(angle)).collect()
             });
             Some(program.map_err(complaints)?)
@@ -326,7 +345,10 @@ impl System {
         for (z, u) in numbers[l.loops()].iter_mut().zip(&scene.loops) {
             *z = u.guess;
         }
-        for (x, value) in numbers[l.external()].iter_mut().zip(&scene.external_values) {
+        for (x, value) in numbers[l.external()]
+            .iter_mut()
+            .zip(&configuration.external)
+        {
             *x = *value;
         }
         Ok(Self {
@@ -379,7 +401,13 @@ impl System {
             stage: Vec::with_capacity(l.y().len()),
             mover,
             scene,
+            configuration,
         })
+    }
+
+    /// Returns the scene in its present configuration.
+    pub fn configured(&self) -> Configured<'_> {
+        self.scene.within(&self.configuration)
     }
 
     /// Number of operations of one evaluation of the rate.
@@ -403,7 +431,7 @@ impl System {
             return None;
         }
         self.set(t, y);
-        cams::broken(&self.scene, &self.numbers, Some(until))
+        cams::broken(self.configured(), &self.numbers, Some(until))
     }
 
     /// How many switching functions there are.
@@ -544,31 +572,33 @@ impl System {
     /// # Errors
     /// Functions that the equations cannot supply.
     pub fn reselect(&mut self, active: Vec<bool>) -> Result<(), Vec<Diagnostic>> {
-        let mut scene = self.scene.clone();
-        scene.active = active;
-        // what is usual is seen where others are chosen
-        scene.initial_q = self.numbers[scene.layout.q()].to_vec();
-        scene.usual.clear();
-        usual_pivots(&mut scene);
-        scene.initial_q.clone_from(&self.scene.initial_q);
-        self.rate = shortest_rate(&mut scene)?;
-        self.projection = projection_program(&scene)?;
+        let scene = Arc::clone(&self.scene);
+        let mut configuration = self.configuration.clone();
+        configuration.active = active;
+        // Pivot sizes are measured where other rows are chosen.
+        configuration.elimination.usual_pivots = usual_pivots(
+            scene.within(&configuration),
+            &self.numbers[scene.layout.q()],
+        );
+        self.rate = shortest_rate(&scene, &mut configuration)?;
+        let here = scene.within(&configuration);
+        self.projection = projection_program(here)?;
         self.thickness_bounds =
-            ThicknessBounds::new(&scene, scene.layout.y().len()).map_err(complaints)?;
-        self.violation = violation_program(&scene)?;
+            ThicknessBounds::new(here, scene.layout.y().len()).map_err(complaints)?;
+        self.violation = violation_program(here)?;
         let n_violations = self.violation.as_ref().map_or(0, Program::n_outputs);
         self.violations.resize(n_violations, 0.0);
         self.clean = false;
-        self.left_out = left_out(&scene)?;
-        self.switching = programs::switching(&scene).map_err(complaints)?;
+        self.left_out = left_out(here)?;
+        self.switching = programs::switching(here).map_err(complaints)?;
         let n_switches = self.n_switches();
         self.sides.resize(n_switches, 0.0);
         self.slide([]);
         (self.gradients, self.pattern) = ([None, None], None);
-        self.renew_implicit(&scene)?;
-        self.unknowns = AlgebraicLoops::new(&scene).map_err(complaints)?;
+        self.renew_implicit(here)?;
+        self.unknowns = AlgebraicLoops::new(here).map_err(complaints)?;
         self.was_weak = false;
-        self.scene = scene;
+        self.configuration = configuration;
         Ok(())
     }
 
@@ -727,7 +757,7 @@ impl Ode for System {
         }
         let n = ydot.len();
         self.run_rate();
-        if self.rates[n] < WEAK && self.projection.is_some() {
+        if self.rates[n] < NEAR_SINGULAR_PIVOT && self.projection.is_some() {
             (self.was_weak, self.weak_seen) = (true, true);
             // near a position where rows become dependent, what violates them is magnified by 1/σ: evaluate on the rows where that matters
             let strength = self.rates[n].max(0.0);
@@ -841,7 +871,7 @@ impl Ode for System {
     }
 
     fn place_step(&mut self, t: f64, h: f64, gap: [f64; 2]) -> Option<f64> {
-        let harmful = (HARMFUL / self.precision).min(WEAK);
+        let harmful = (HARMFUL / self.precision).min(NEAR_SINGULAR_PIVOT);
         self.singular_steps.place(t, h, gap, harmful)
     }
 

@@ -14,6 +14,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
 use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 use std::collections::BTreeSet;
@@ -43,9 +44,9 @@ impl Pulses {
     ///
     /// # Errors
     /// Functions that cannot be written down.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
         let timed: Vec<usize> = (0..scene.formulas.len())
-            .filter(|&f| acts(scene, f))
+            .filter(|&f| acts(&scene, f))
             .collect();
         if timed.is_empty() {
             return Ok(Self::default());

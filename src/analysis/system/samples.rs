@@ -13,6 +13,7 @@ use crate::analysis::system::external_inputs::Law;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::programs::record;
@@ -62,7 +63,7 @@ impl Samples {
     ///
     /// # Errors
     /// What the equations cannot supply.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<Unsupported>> {
+    pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
         let first = scene.layout.external().start;
         let mut all = Vec::new();
         for s in &scene.samplers {

@@ -11,7 +11,7 @@
 use crate::analysis::system::System;
 use crate::expr::program::{Program, Work};
 use crate::model::Comparison;
-use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::{ExternalInput, SceneSensor};
 use crate::scene::programs::record;
@@ -49,7 +49,7 @@ impl Sensors {
     ///
     /// # Errors
     /// What the equations cannot supply.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<Unsupported>> {
+    pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
         let n = scene.sensors.len();
         if n == 0 {
             return Ok(Self::default());

@@ -15,7 +15,7 @@
 
 use crate::expr::program::{Levels, Program, Work};
 use crate::scalar::Interval;
-use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::Layout;
 use crate::scene::programs;
@@ -64,7 +64,7 @@ impl TimeEvents {
     ///
     /// # Errors
     /// What the equations cannot supply.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<Unsupported>> {
+    pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
         let programs::Timed { values, levels } = programs::timed(scene)?;
         if levels.is_empty() {
             return Ok(Self::default());

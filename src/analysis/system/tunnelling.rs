@@ -3,6 +3,7 @@
 use crate::expr::program::{Program, Work};
 use crate::numeric::event::SAMPLES;
 use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::programs::record;
 
@@ -22,7 +23,7 @@ impl ThicknessBounds {
     ///
     /// # Errors
     /// Accelerations that depend on themselves and cannot be recorded.
-    pub fn new(scene: &Scene, n: usize) -> Result<Self, Vec<Unsupported>> {
+    pub fn new(scene: Configured<'_>, n: usize) -> Result<Self, Vec<Unsupported>> {
         if scene.thickness_bounds.is_empty() {
             return Ok(Self::default());
         }

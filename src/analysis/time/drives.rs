@@ -10,7 +10,7 @@ use crate::expr::program::Input;
 use crate::expr::smoothness::{Breakpoint, smoothness};
 use crate::model::Level;
 use crate::results::Jump;
-use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 
@@ -47,7 +47,7 @@ const TOLD: usize = 5;
 ///
 /// # Errors
 /// Functions that cannot be evaluated.
-pub fn breaks(scene: &Scene, start: f64, end: f64) -> Result<Vec<Break>, Vec<Diagnostic>> {
+pub fn breaks(scene: Configured<'_>, start: f64, end: f64) -> Result<Vec<Break>, Vec<Diagnostic>> {
     let mut found = Vec::new();
     if scene.motions.is_empty() || end.partial_cmp(&start) != Some(std::cmp::Ordering::Greater) {
         return Ok(found);

@@ -123,7 +123,7 @@ impl Tracer<'_> {
         {
             // the rows that take part leave two ways here; all rows together one
             let mut numbers = system.numbers_at(t, trial);
-            if !ranks::repair(&system.scene, &mut numbers) {
+            if !ranks::repair(system.configured(), &mut numbers) {
                 let recoverable = true;
                 return Err(Failure { what, recoverable });
             }
@@ -152,7 +152,7 @@ impl Tracer<'_> {
         self.t = next;
         let numbers = system.numbers_at(next, &self.y);
         if system.watches_rows()
-            && let Some(active) = ranks::better_rows(&system.scene, &numbers)
+            && let Some(active) = ranks::better_rows(system.configured(), &numbers)
         {
             let chosen = (out.rows.len(), next, active.clone());
             system.numbers.copy_from_slice(&numbers);

@@ -91,7 +91,7 @@ impl Leg<'_> {
         let l = self.system.scene.layout;
         let t = method.t();
         let mut numbers = self.system.numbers_at(t, method.y());
-        if !ranks::repair(&self.system.scene, &mut numbers) {
+        if !ranks::repair(self.system.configured(), &mut numbers) {
             let what = Failure {
                 what: row,
                 recoverable: false,
@@ -110,7 +110,8 @@ impl Leg<'_> {
         let l = self.system.scene.layout;
         self.system.numbers[0] = t;
         self.system.numbers[l.y()].copy_from_slice(&y[..l.y().len()]);
-        let Some(active) = ranks::better_rows(&self.system.scene, &self.system.numbers) else {
+        let Some(active) = ranks::better_rows(self.system.configured(), &self.system.numbers)
+        else {
             return false;
         };
         let chosen = (self.out.rows.len(), t, active.clone());

@@ -6,6 +6,7 @@
 
 use crate::analysis::start::assemble::{self, DEPENDENT, Mover};
 use crate::expr::program::{Program, Work};
+use crate::scene::configuration::Configured;
 use crate::scene::equations::row_name;
 use crate::scene::programs::{record, weights};
 use crate::scene::{Scene, Source};
@@ -46,10 +47,8 @@ pub fn states_kept(n_v: usize) -> f64 {
 }
 
 /// Rows that take part.
-fn active(scene: &Scene) -> Vec<usize> {
-    (0..scene.rows.len())
-        .filter(|&r| scene.active.get(r).copied().unwrap_or(true))
-        .collect()
+fn active(scene: Configured<'_>) -> Vec<usize> {
+    scene.configuration.active_rows().collect()
 }
 
 /// Gradients of the rows of a scene, recorded once and evaluated often.
@@ -64,7 +63,7 @@ struct Gradients {
 }
 
 impl Gradients {
-    fn of(scene: &Scene) -> Option<Self> {
+    fn of(scene: Configured<'_>) -> Option<Self> {
         let mut places = Vec::new();
         let program = record(scene, |at| {
             let mut values = Vec::new();
@@ -80,9 +79,9 @@ impl Gradients {
             program: program.ok()?,
             places,
             work: RefCell::default(),
-            columns: weights(scene).iter().map(|w| w.sqrt()).collect(),
+            columns: weights(&scene).iter().map(|w| w.sqrt()).collect(),
             rows: (0..scene.rows.len())
-                .map(|r| assemble::natural(scene, r))
+                .map(|r| assemble::natural(&scene, r))
                 .collect(),
         })
     }
@@ -101,12 +100,12 @@ impl Gradients {
 }
 
 /// All rows at one place, as [`Gradients::at`] gives them.
-fn gradients(scene: &Scene, numbers: &[f64]) -> Vec<Vec<f64>> {
+fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
     let l = scene.layout;
     let (_, gradient, _) = assemble::rows_at(scene, numbers[0], &numbers[l.q()], &numbers[l.x()]);
-    let mut all = assemble::scaled_rows(&gradient, &weights(scene));
+    let mut all = assemble::scaled_rows(&gradient, &weights(&scene));
     for (r, row) in all.iter_mut().enumerate() {
-        let one = assemble::natural(scene, r);
+        let one = assemble::natural(&scene, r);
         row.iter_mut().for_each(|x| *x /= one);
     }
     all
@@ -175,7 +174,7 @@ fn margin(all: &[Vec<f64>], rows: &[usize], usual: &[f64]) -> f64 {
 
 /// The rows to keep from here on, when those kept so far have become dependent though the mechanism has not, or a row that was left out no longer
 /// follows from them; `None`: they may stay.
-pub fn better_rows(scene: &Scene, numbers: &[f64]) -> Option<Vec<bool>> {
+pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Option<Vec<bool>> {
     let kept = active(scene);
     let all = gradients(scene, numbers);
     let own = kept.iter().map(|&r| all[r].clone()).collect();
@@ -189,13 +188,13 @@ pub fn better_rows(scene: &Scene, numbers: &[f64]) -> Option<Vec<bool>> {
 }
 
 /// Moves a state onto all rows, also those that were left out, where that is possible with a small change.
-pub fn repair(scene: &Scene, numbers: &mut [f64]) -> bool {
+pub fn repair(scene: Configured<'_>, numbers: &mut [f64]) -> bool {
     let l = scene.layout;
     let t = numbers[0];
     let x = numbers[l.x()].to_vec();
     let mut q = numbers[l.q()].to_vec();
-    let mut own = scene.clone();
-    let closed = assemble::close(&mut own, t, &mut q, &x, |_, _| false);
+    let mut own = scene.configuration.clone();
+    let closed = assemble::close(&scene, &mut own, t, &mut q, &x, |_, _| false);
     if closed.size.is_nan() || closed.size > assemble::CLOSED {
         return false;
     }
@@ -206,7 +205,7 @@ pub fn repair(scene: &Scene, numbers: &mut [f64]) -> bool {
 }
 
 /// Positions between accepted states at which rows become dependent. `states`: numbers of states in order; `None` separates what does not follow on.
-pub fn passes(scene: &Scene, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
+pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
     let rows = active(scene);
     let mut found = Vec::new();
     let Some(gradients) = Gradients::of(scene).filter(|_| !rows.is_empty()) else {
@@ -281,9 +280,15 @@ pub fn passes(scene: &Scene, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
 }
 
 /// The state at a part `s` of the way between two others: positions cubic in time, closed onto `rows`.
-fn between(scene: &Scene, a: &[f64], b: &[f64], s: f64, rows: Option<&[usize]>) -> Vec<f64> {
+fn between(
+    scene: Configured<'_>,
+    a: &[f64],
+    b: &[f64],
+    s: f64,
+    rows: Option<&[usize]>,
+) -> Vec<f64> {
     let l = scene.layout;
-    let mover = Mover::new(scene);
+    let mover = Mover::new(&scene);
     let h = b[0] - a[0];
     let rate = |n: &[f64]| {
         let mut rate = vec![0.0; l.n_q];
@@ -305,15 +310,17 @@ fn between(scene: &Scene, a: &[f64], b: &[f64], s: f64, rows: Option<&[usize]>) 
     mover.normalize(&mut q);
     if let Some(rows) = rows {
         let x = n[l.x()].to_vec();
-        let mut own = scene.clone();
-        assemble::close(&mut own, n[0], &mut q, &x, |_, r| !rows.contains(&r));
+        let mut own = scene.configuration.clone();
+        assemble::close(&scene, &mut own, n[0], &mut q, &x, |_, r| {
+            !rows.contains(&r)
+        });
     }
     n[l.q()].copy_from_slice(&q);
     n
 }
 
 /// States so close to each other that no angle changes much between them.
-fn refined(scene: &Scene, run: &[&Vec<f64>], rows: &[usize]) -> Vec<Vec<f64>> {
+fn refined(scene: Configured<'_>, run: &[&Vec<f64>], rows: &[usize]) -> Vec<Vec<f64>> {
     let l = scene.layout;
     let turning: Vec<usize> = (scene.coordinates.iter().zip(&scene.freedoms))
         .filter(|(c, _)| c.angular)
@@ -341,7 +348,7 @@ fn refined(scene: &Scene, run: &[&Vec<f64>], rows: &[usize]) -> Vec<Vec<f64>> {
 
 /// The state between two others with the smallest margin, by golden sections.
 fn least_between(
-    scene: &Scene,
+    scene: Configured<'_>,
     gradients: &Gradients,
     (a, b): (&[f64], &[f64]),
     rows: &[usize],
@@ -400,9 +407,9 @@ fn golden(
 }
 
 /// What a position at which rows are dependent is.
-fn pass(scene: &Scene, numbers: &[f64], rows: &[usize], usual: &[f64]) -> Pass {
+fn pass(scene: Configured<'_>, numbers: &[f64], rows: &[usize], usual: &[f64]) -> Pass {
     let all = gradients(scene, numbers);
-    let (unit, touched) = weakest(scene, &all, rows, usual).map_or_else(
+    let (unit, touched) = weakest(&scene, &all, rows, usual).map_or_else(
         || (Vec::new(), vec![true; scene.layout.n_v]),
         |w| (w.unit, w.touched),
     );
@@ -415,7 +422,7 @@ fn pass(scene: &Scene, numbers: &[f64], rows: &[usize], usual: &[f64]) -> Pass {
             .map(|k| row_name(&scene.rows[rows[k]]))
             .into_iter()
             .collect(),
-        place: place(scene, numbers, &touched),
+        place: place(&scene, numbers, &touched),
     }
 }
 
@@ -474,7 +481,7 @@ pub struct Lock {
 }
 
 /// Whether a mechanism is (nearly) locked at a state: rows are nearly dependent there, and what drives asks for what they forbid.
-pub fn locked(scene: &Scene, numbers: &[f64]) -> Option<Lock> {
+pub fn locked(scene: Configured<'_>, numbers: &[f64]) -> Option<Lock> {
     let l = scene.layout;
     let rows = active(scene);
     let (t, q, x) = (numbers[0], &numbers[l.q()], &numbers[l.x()]);
@@ -486,7 +493,7 @@ pub fn locked(scene: &Scene, numbers: &[f64]) -> Option<Lock> {
         return None;
     }
     let usual = vec![longest; scene.rows.len()];
-    let weakest = weakest(scene, &all, &rows, &usual)?;
+    let weakest = weakest(&scene, &all, &rows, &usual)?;
     if weakest.size > NEARLY {
         return None;
     }
@@ -499,14 +506,18 @@ pub fn locked(scene: &Scene, numbers: &[f64]) -> Option<Lock> {
         .collect();
     let along = |g: &nalgebra::DVector<f64>| -> f64 {
         (0..m)
-            .map(|i| u[i] * g[rows[i]] / assemble::natural(scene, rows[i]))
+            .map(|i| u[i] * g[rows[i]] / assemble::natural(&scene, rows[i]))
             .sum()
     };
-    let (still, _, _) = assemble::rows_at(&scene.with_motions_at(&values), t, q, x);
+    let at_motions = |displacements: &[f64]| {
+        let there = scene.configuration.with_motions_at(displacements);
+        assemble::rows_at(scene.within(&there), t, q, x)
+    };
+    let (still, _, _) = at_motions(&values);
     let push = |k: usize| {
         let mut other = values.clone();
         other[k] += 1e-6;
-        let (g, _, _) = assemble::rows_at(&scene.with_motions_at(&other), t, q, x);
+        let (g, _, _) = at_motions(&other);
         ((along(&g) - along(&still)) / 1e-6 * at.prescribed(k).first).abs()
     };
     let pushes: Vec<f64> = (0..values.len()).map(push).collect();
@@ -517,7 +528,7 @@ pub fn locked(scene: &Scene, numbers: &[f64]) -> Option<Lock> {
     Some(Lock {
         row: row_name(&scene.rows[rows[worst]]),
         motion,
-        place: place(scene, numbers, &weakest.touched),
+        place: place(&scene, numbers, &weakest.touched),
     })
 }
 

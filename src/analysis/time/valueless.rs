@@ -9,7 +9,7 @@ use crate::expr::ast::{Ast, BinaryOp, Callee, Node, NodeIx};
 use crate::expr::functions::Function;
 use crate::expr::program::{Input, Work};
 use crate::expr::walk;
-use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use std::fmt;
@@ -66,7 +66,7 @@ impl fmt::Display for Valueless {
 }
 
 /// Finds the function that has no value at the numbers of the last state or just after it; `None`: all have values that stay bounded.
-pub fn find(scene: &Scene, numbers: &[f64]) -> Option<Valueless> {
+pub fn find(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
     let rates = Equations::new(scene, numbers).rates();
     let unit = numbers[Layout::TIME].abs().max(1.0);
     let then = |later: f64| {
@@ -89,7 +89,7 @@ pub fn find(scene: &Scene, numbers: &[f64]) -> Option<Valueless> {
 }
 
 /// Finds the first operation that divides by what is nearly zero now, but not then.
-fn pole(scene: &Scene, now: &[f64], then: &[f64]) -> Option<Valueless> {
+fn pole(scene: Configured<'_>, now: &[f64], then: &[f64]) -> Option<Valueless> {
     let [at_now, at_then] = [now, then].map(|numbers| Equations::new(scene, numbers));
     scene.formulas.iter().find_map(|f| {
         let expr = Expr::parse(&f.text).ok()?;
@@ -135,7 +135,7 @@ fn divisor(ast: &Ast, ix: NodeIx, values: &[Option<f64>]) -> Option<f64> {
     }
 }
 
-fn there(scene: &Scene, numbers: &[f64]) -> Option<Valueless> {
+fn there(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
     let at = Equations::new(scene, numbers);
     scene.formulas.iter().find_map(|f| {
         let inputs = f.program.inputs();

@@ -7,8 +7,8 @@ use super::numbers_at;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::model::{JointKind, PrimitiveKind};
 use crate::physics::joint::Tie;
+use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
-use crate::scene::{Row, RowKind, Scene};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -82,7 +82,7 @@ impl fmt::Display for Advice {
 }
 
 /// Finds advice for each element with rows that depend on others wherever one looks.
-pub(super) fn advice(scene: &Scene, numbers: &[f64], assembly: &Assembly) -> Vec<Advice> {
+pub(super) fn advice(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly) -> Vec<Advice> {
     let mut of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for r in assembly.redundant.iter().map(|r| r.row) {
         if let Some(c) = scene.constraints.iter().position(|c| c.rows.contains(&r)) {
@@ -114,52 +114,33 @@ pub(super) fn advice(scene: &Scene, numbers: &[f64], assembly: &Assembly) -> Vec
 }
 
 /// Whether a tie can stand in the place of an element.
-fn fits(scene: &Scene, numbers: &[f64], assembly: &Assembly, c: usize, tie: Tie) -> bool {
+fn fits(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, c: usize, tie: Tie) -> bool {
     let element = &scene.constraints[c];
-    let Some((i, j)) = element.markers else {
+    let Some((changed, configuration)) = scene.with_tie(c, tie) else {
         return false;
     };
-    let mut changed = scene.clone();
-    let rows: Vec<Row> = tie
-        .rows()
-        .into_iter()
-        .map(|law| Row {
-            element: String::new(),
-            equation: law.name(),
-            kind: RowKind::Markers {
-                law,
-                i,
-                j,
-                motion: None,
-            },
-        })
-        .collect();
-    let own = element.rows.start..element.rows.start + rows.len();
-    changed.rows.splice(element.rows.clone(), rows);
-    changed.active.clear();
+    let own = element.rows.start..element.rows.start + tie.rows().len();
     let target = scene.layout.n_v - assembly.freedom;
-    let holds = |scene: &Scene, numbers: &[f64]| {
-        let at = Equations::new(scene, numbers);
-        own.clone().all(|r| {
-            let one = match &scene.rows[r].kind {
-                RowKind::Markers { law, .. } if law.is_length() => scene.length,
-                _ => 1.0,
-            };
-            at.row(r).value.abs() < 1e-8 * one
-        })
+    let holds = |configuration: &Configuration, numbers: &[f64]| {
+        let at = Equations::new(changed.within(configuration), numbers);
+        (own.clone()).all(|r| at.row(r).value.abs() < 1e-8 * assemble::natural(&changed, r))
     };
-    let ranked = |scene: &Scene, numbers: &[f64]| {
-        let l = scene.layout;
-        let (_, gradient, _) =
-            assemble::rows_at(scene, numbers[0], &numbers[l.q()], &numbers[l.x()]);
-        let (independent, dependent) = assemble::rank(scene, &gradient, &[]);
+    let ranked = |configuration: &Configuration, numbers: &[f64]| {
+        let l = changed.layout;
+        let (_, gradient, _) = assemble::rows_at(
+            changed.within(configuration),
+            numbers[0],
+            &numbers[l.q()],
+            &numbers[l.x()],
+        );
+        let (independent, dependent) = assemble::rank(&changed, &gradient, &[]);
         independent.len() == target && !dependent.iter().any(|d| own.contains(&d.row))
     };
     match &assembly.place {
         Some(place) => {
-            let (there, far) = numbers_at(&changed, place);
-            holds(&changed, numbers) && holds(&there, &far) && ranked(&there, &far)
+            let (there, far) = numbers_at(changed.within(&configuration), place);
+            holds(&configuration, numbers) && holds(&there, &far) && ranked(&there, &far)
         }
-        None => holds(&changed, numbers) && ranked(&changed, numbers),
+        None => holds(&configuration, numbers) && ranked(&configuration, numbers),
     }
 }

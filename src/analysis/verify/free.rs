@@ -8,6 +8,7 @@ use crate::analysis::start::quantity::point;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
 use crate::scene::compile::part_name;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
 use crate::scene::{Scene, Source};
@@ -42,8 +43,14 @@ pub struct Free {
 }
 
 /// All free directions at a position.
-pub(super) fn motions(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Vec<Free> {
-    let w = weights(scene);
+pub(super) fn motions(
+    scene: Configured<'_>,
+    model: &Model,
+    t: f64,
+    q: &[f64],
+    x: &[f64],
+) -> Vec<Free> {
+    let w = weights(&scene);
     let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
     let rows = assemble::scaled_rows(&gradient, &w);
     let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
@@ -59,7 +66,7 @@ pub(super) fn motions(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]
         (0..scene.parts.len())
             .map(|k| {
                 let state = at.part(k, false);
-                (centre(scene, model, k, &state), state)
+                (centre(&scene, model, k, &state), state)
             })
             .collect()
     };
@@ -88,7 +95,7 @@ pub(super) fn motions(scene: &Scene, model: &Model, t: f64, q: &[f64], x: &[f64]
                 .into_iter()
                 .map(|(k, p, state, angular, linear, _)| Moving {
                     part: part_name(scene.parts[k].point_mass, scene.parts[k].id),
-                    words: how(scene, p, &state, angular, linear),
+                    words: how(&scene, p, &state, angular, linear),
                     angular: angular.0,
                     linear: linear.0,
                     at: p.0,

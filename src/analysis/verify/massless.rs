@@ -14,6 +14,7 @@ use crate::analysis::start::assemble;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Model, Part};
 use crate::scene::Scene;
+use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::space::Vec3;
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -36,13 +37,13 @@ pub(crate) fn possible(scene: &Scene, model: &Model) -> bool {
 
 /// An error for each free direction at a position that moves no mass.
 pub(crate) fn massless(
-    scene: &Scene,
+    scene: Configured<'_>,
     model: &Model,
     t: f64,
     q: &[f64],
     x: &[f64],
 ) -> Vec<Diagnostic> {
-    if !possible(scene, model) {
+    if !possible(&scene, model) {
         return Vec::new();
     }
     let found = free::motions(scene, model, t, q, x);
@@ -113,7 +114,7 @@ pub(crate) fn massless(
 }
 
 /// Angular velocity and velocity of every link, in its own axes, about its origin.
-fn twists(scene: &Scene, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<[Vec3<f64>; 2]> {
+fn twists(scene: Configured<'_>, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec<[Vec3<f64>; 2]> {
     let numbers = assemble::numbers(scene, t, q, v, x);
     let at = Equations::new(scene, &numbers);
     at.links().iter().map(|l| [l.w, l.v]).collect()

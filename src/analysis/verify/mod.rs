@@ -26,6 +26,7 @@ use crate::model::{Formula, Level, Model};
 use crate::physics::joint::Tie;
 use crate::scene::Scene;
 use crate::scene::build::Options;
+use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
 use crate::scene::left_out::{Unknown, unknown_constraints};
 use std::collections::{BTreeMap, BTreeSet};
@@ -258,7 +259,8 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     };
     let counted = counted(&model);
     leave_out_unknown(&mut model, &mut warnings);
-    let mut scene = Scene::compile(&model, &options)?;
+    let scene = Scene::compile(&model, &options)?;
+    let mut configuration = Configuration::new(&scene);
     for d in &scene.warnings {
         let element = d.element.clone().unwrap_or_default();
         warnings.push(format!("{element} {}", d.message));
@@ -285,34 +287,36 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         .extend(misalignment::misaligned(&scene, &model));
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
-    let starts = if placement::settle(&scene, &model, 0.0, &mut q, &x, true) {
+    let undecided = scene.within(&configuration);
+    let starts = if placement::settle(undecided, &model, 0.0, &mut q, &x, true) {
         Vec::new()
     } else {
-        initial_conditions::approach(&mut scene, &[], 0.0, &mut q, &x)
+        initial_conditions::approach(&scene, &mut configuration, &[], 0.0, &mut q, &x)
     };
-    let assembly = match assemble::positions(&mut scene, 0.0, &mut q, &x) {
+    let assembly = match assemble::positions(&scene, &mut configuration, 0.0, &mut q, &x) {
         Ok(assembly) => assembly,
         Err(contradictions) => {
             found.inconsistent = contradictions;
             return Ok(found);
         }
     };
-    if let Err(contradictions) = assemble::velocities(&scene, &model, 0.0, &q, &x) {
+    let scene = scene.within(&configuration);
+    if let Err(contradictions) = assemble::velocities(scene, &model, 0.0, &q, &x) {
         found.inconsistent = contradictions;
     }
     found.assembly = (assembly.iterations, assembly.moved);
     found.freedom = Some(assembly.freedom_here);
     found.freedom_nearby = Some(assembly.freedom);
     found.warnings.extend(assembly.warnings.iter().cloned());
-    let unmet = initial_conditions::unmet(&scene, &[], &starts, 0.0, &q, &x);
+    let unmet = initial_conditions::unmet(scene, &[], &starts, 0.0, &q, &x);
     found.warnings.extend(unmet);
-    let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
-    let turned = misalignment::turned(&scene, &model, &numbers);
+    let numbers = assemble::numbers(scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
+    let turned = misalignment::turned(scene, &model, &numbers);
     found.warnings.extend(turned);
-    explain(&scene, &numbers, &assembly, &mut found);
-    found.free = free::motions(&scene, &model, 0.0, &q, &x);
-    found.advice = advice::advice(&scene, &numbers, &assembly);
-    let massless = massless::massless(&scene, &model, 0.0, &q, &x);
+    explain(scene, &numbers, &assembly, &mut found);
+    found.free = free::motions(scene, &model, 0.0, &q, &x);
+    found.advice = advice::advice(scene, &numbers, &assembly);
+    let massless = massless::massless(scene, &model, 0.0, &q, &x);
     let dynamic = massless.iter().map(|d| {
         let element = d.element.as_deref().unwrap_or("the model");
         format!("{element}: {}; a dynamic simulation needs it", d.message)
@@ -347,7 +351,7 @@ pub(super) fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
 }
 
 /// Dependent rows in words, and the reactions they leave open.
-fn explain(scene: &Scene, numbers: &[f64], assembly: &Assembly, found: &mut Verification) {
+fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &mut Verification) {
     let at = Equations::new(scene, numbers);
     let permanent: Vec<usize> = assembly.redundant.iter().map(|r| r.row).collect();
     let extra = assembly.dependent.len().saturating_sub(permanent.len());
@@ -397,7 +401,7 @@ fn explain(scene: &Scene, numbers: &[f64], assembly: &Assembly, found: &mut Veri
         found.dependent.push(Dependent {
             row: d.name.clone(),
             element: row.element.clone(),
-            direction: Direction::of_row(scene, &at, d.row),
+            direction: Direction::of_row(&scene, &at, d.row),
             fixed_by,
             combination: (d.combination.iter())
                 .map(|&(r, f)| (row_name(&scene.rows[r]), f))
@@ -419,10 +423,11 @@ fn explain(scene: &Scene, numbers: &[f64], assembly: &Assembly, found: &mut Veri
     }
 }
 
-/// What the numbers of a place nearby are.
-fn numbers_at(scene: &Scene, place: &Place) -> (Scene, Vec<f64>) {
-    let there = scene.with_motions_at(&place.motions);
-    let l = there.layout;
-    let numbers = assemble::numbers(&there, 0.0, &place.q, &vec![0.0; l.n_v], &vec![0.0; l.n_x]);
+/// Returns the configuration and the numbers of a place nearby.
+fn numbers_at(scene: Configured<'_>, place: &Place) -> (Configuration, Vec<f64>) {
+    let there = scene.configuration.with_motions_at(&place.motions);
+    let l = scene.layout;
+    let (v, x) = (vec![0.0; l.n_v], vec![0.0; l.n_x]);
+    let numbers = assemble::numbers(scene.within(&there), 0.0, &place.q, &v, &x);
     (there, numbers)
 }

@@ -1,12 +1,13 @@
 //! What becomes of a model when it is compiled: what carries what, the unknowns, the rows, what is left out, and how much there is to compute.
 
-use crate::analysis::start::assemble;
+use crate::analysis::start::{assemble, initial_conditions, misalignment, placement};
 use crate::analysis::system::System;
 use crate::analysis::verify::start;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scene::build::{Options, unknown_names};
 use crate::scene::compile::part_name;
+use crate::scene::configuration::Configuration;
 use crate::scene::equations::row_name;
 use crate::scene::{Scene, Source};
 
@@ -77,9 +78,10 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         skip: FORCES.map(str::to_string).into_iter().collect(),
         ..Options::default()
     };
-    let mut scene = Scene::compile(model, &options)?;
+    let scene = Scene::compile(model, &options)?;
+    let mut configuration = Configuration::new(&scene);
     let mut out = Outline {
-        warnings: crate::analysis::start::misalignment::misaligned(&scene, model),
+        warnings: misalignment::misaligned(&scene, model),
         ..Outline::default()
     };
     for d in &scene.warnings {
@@ -91,13 +93,14 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     }
     let mut q = scene.initial_q.clone();
     let x = start(&scene, model, &mut q);
-    if !crate::analysis::start::placement::settle(&scene, model, 0.0, &mut q, &x, true) {
-        crate::analysis::start::initial_conditions::approach(&mut scene, &[], 0.0, &mut q, &x);
+    if !placement::settle(scene.within(&configuration), model, 0.0, &mut q, &x, true) {
+        initial_conditions::approach(&scene, &mut configuration, &[], 0.0, &mut q, &x);
     }
-    let assembly = assemble::positions(&mut scene, 0.0, &mut q, &x)?;
+    let assembly = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &x)?;
+    let here = scene.within(&configuration);
     out.warnings.extend(assembly.warnings.iter().cloned());
-    let numbers = assemble::numbers(&scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
-    let turned = crate::analysis::start::misalignment::turned(&scene, model, &numbers);
+    let numbers = assemble::numbers(here, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
+    let turned = misalignment::turned(here, model, &numbers);
     out.warnings.extend(turned);
     for r in &assembly.redundant {
         let on: Vec<String> = (r.combination.iter().take(4))
@@ -110,12 +113,11 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         };
         out.left_out.push(format!("{} {words}", r.name));
     }
-    out.rows = (0..scene.rows.len())
-        .filter(|&r| scene.active[r])
+    out.rows = (configuration.active_rows())
         .map(|r| row_name(&scene.rows[r]))
         .collect();
     forest(&scene, &mut out);
-    let v = assemble::velocities(&scene, model, 0.0, &q, &x)?;
+    let v = assemble::velocities(here, model, 0.0, &q, &x)?;
     let names = unknown_names(&scene);
     out.unknowns = names
         .into_iter()
@@ -127,13 +129,13 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
             Source::Free { .. } => None,
         })
         .collect();
-    let system = System::new(scene)?;
+    let system = System::new(scene, configuration)?;
     out.operations = (
         system.operations(),
         system.projection_operations().unwrap_or(0),
     );
     out.switches = system.n_switches();
-    out.elimination = if system.scene.articulated {
+    out.elimination = if system.configuration.elimination.articulated {
         "articulated bodies"
     } else {
         "mass matrix"

@@ -13,7 +13,7 @@ use crate::space::{Mat3, Vec3};
 impl<S: Scalar> Equations<'_, S> {
     /// Whether a row takes part (it does not where it depends on earlier ones).
     pub fn is_active(&self, r: usize) -> bool {
-        self.scene.active.get(r).copied().unwrap_or(true)
+        self.configuration.active[r]
     }
 
     /// Accelerations, multipliers and reactions.
@@ -91,13 +91,12 @@ impl<S: Scalar> Equations<'_, S> {
             .collect();
         let g: Vec<Vec<(usize, S)>> = rows.iter().map(|(_, row)| row.gradient.clone()).collect();
         let gamma: Vec<S> = rows.iter().map(|(_, row)| row.gamma).collect();
+        let way = &self.configuration.elimination;
         let multipliers = if scene.mode == STATIC {
             self.supporting(&g, &mut f)
         } else {
             match self.mass_factor() {
-                Some(factor) => {
-                    accelerations(&factor, &g, &gamma, &mut f, &scene.usual, &scene.padding)
-                }
+                Some(factor) => accelerations(&factor, &g, &gamma, &mut f, way),
                 None => self.determined(&wrenches, &g, &gamma, &mut f),
             }
         };
@@ -135,12 +134,12 @@ impl<S: Scalar> Equations<'_, S> {
         if self.scene.mode == KINEMATIC || self.scene.mode == STATIC {
             return None;
         }
-        let padding = &self.scene.padding;
-        Some(if self.scene.articulated && padding.is_empty() {
+        let way = &self.configuration.elimination;
+        Some(if way.articulated && way.lent_inertia.is_empty() {
             Factor::Articulated(ArticulatedFactor::new(self.scene, &self.links))
         } else {
             let mut rows = self.mass_rows();
-            for (row, &lent) in rows.iter_mut().zip(padding) {
+            for (row, &lent) in rows.iter_mut().zip(&way.lent_inertia) {
                 row[0].1 += S::constant(lent);
             }
             Factor::Matrix(MassFactor::new(rows))

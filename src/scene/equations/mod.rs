@@ -24,6 +24,7 @@ pub use rows::{RowValue, row_name};
 pub use undetermined_reactions::Share;
 pub use unsupported::{Lack, Unsupported};
 
+use super::configuration::{Configuration, Configured};
 use super::external_inputs::ExternalInput;
 use super::layout::Layout;
 use super::loops::Key;
@@ -46,6 +47,7 @@ pub const STATIC: f64 = 5.0;
 /// One instant of a scene.
 pub struct Equations<'s, S: Scalar> {
     scene: &'s Scene,
+    configuration: &'s Configuration,
     t: S,
     q: Vec<S>,
     v: Vec<S>,
@@ -77,21 +79,26 @@ pub struct Equations<'s, S: Scalar> {
 
 impl<'s, S: Scalar> Equations<'s, S> {
     /// From the flat row of numbers that [`Layout`] describes.
-    pub fn new(scene: &'s Scene, numbers: &[S]) -> Self {
+    pub fn new(scene: Configured<'s>, numbers: &[S]) -> Self {
         let loops = numbers[scene.layout.loops()].to_vec();
         Self::with_unknowns(scene, numbers, loops, false)
     }
 
     /// As [`Equations::new`], with values for the unknowns of algebraic loops; or to find out which these are.
     pub(in crate::scene) fn with_unknowns(
-        scene: &'s Scene,
+        scene: Configured<'s>,
         numbers: &[S],
         loops: Vec<S>,
         discovering: bool,
     ) -> Self {
+        let Configured {
+            scene,
+            configuration,
+        } = scene;
         let l = &scene.layout;
         let mut this = Self {
             scene,
+            configuration,
             t: numbers[Layout::TIME],
             q: numbers[l.q()].to_vec(),
             v: numbers[l.v()].to_vec(),
@@ -168,13 +175,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     fn drive_in_time(&self, m: usize) -> Jet<S> {
         let motion = &self.scene.motions[m];
+        let start = &self.configuration.motions[m];
+        if let Some(displacement) = start.stands_at {
+            return Jet::constant(displacement);
+        }
         let f = match self.scene.computed(motion.formula) {
             // a closure of the user's tells its derivatives
             Some(p) => Jet::new(self.external[p], self.external[p + 1], self.external[p + 2]),
             None => self.in_time(motion.formula, 2, &mut Vec::new()),
         };
         let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
-        let offset = S::constant(motion.offset);
+        let offset = S::constant(start.offset);
         match motion.level {
             Level::Displacement => f,
             Level::Velocity => Jet::new(state(0) + offset, f.value, f.first),
@@ -187,8 +198,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         self.driven[motion]
     }
 
-    /// The function of a motion, whatever its level.
+    /// The function of a motion, whatever its level; of one that stands still, its displacement.
     pub fn motion_function(&self, m: usize) -> S {
+        if let Some(displacement) = self.configuration.motions[m].stands_at {
+            return S::constant(displacement);
+        }
         let formula = self.scene.motions[m].formula;
         self.in_time(formula, 0, &mut Vec::new()).value
     }

@@ -2,6 +2,7 @@
 
 use super::Equations;
 use crate::physics::action::Action;
+use crate::physics::row::Law;
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::scene::{Counted, Displacement, Row, RowKind, Source, Sum};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
@@ -12,31 +13,42 @@ impl<S: Scalar> Equations<'_, S> {
         match &self.scene.rows[r].kind {
             RowKind::Markers { law, i, j, motion } => {
                 let drive = motion.map(|m| self.driven[m]);
-                let (I, J) = (self.marker(*i), self.marker(*j));
-                // gradient: duals along the twists of I (0–5: rotation, translation) and J (6–11)
-                let seeded = law.value(
-                    &seed::<12, S>(&I, 0),
-                    &seed::<12, S>(&J, 6),
-                    drive.map(|d| Dual {
-                        re: d.value,
-                        eps: [S::zero(); 12],
-                    }),
-                );
-                let actions = vec![(*i, twist(&seeded, 0)), (*j, twist(&seeded, 6))];
-                // rates: jets in time along the motion with v̇ = 0
-                let rates = law.value(&moving(&I), &moving(&J), drive);
-                let gradient = self.gradient_of(&actions);
-                RowValue {
-                    value: seeded.re,
-                    drift: rates.first - self.along(&gradient),
-                    gradient,
-                    gamma: -rates.second,
-                    actions,
-                }
+                self.marker_row(*law, (*i, *j), drive)
             }
-            RowKind::Displacements(sum) => self.sum_row(sum),
+            RowKind::Displacements(sum) => self.sum_row(sum, self.configuration.sums[r]),
             RowKind::Formula { formula, .. } => self.formula_row(*formula),
             RowKind::Cam { cam, component } => self.cam_row(*cam, *component),
+        }
+    }
+
+    /// Returns the row that a law between markers I and J is, driven or not; it need not stand
+    /// among the rows of the scene.
+    pub fn marker_row(
+        &self,
+        law: Law,
+        (i, j): (usize, usize),
+        drive: Option<Jet<S>>,
+    ) -> RowValue<S> {
+        let (I, J) = (self.marker(i), self.marker(j));
+        // gradient: duals along the twists of I (0–5: rotation, translation) and J (6–11)
+        let seeded = law.value(
+            &seed::<12, S>(&I, 0),
+            &seed::<12, S>(&J, 6),
+            drive.map(|d| Dual {
+                re: d.value,
+                eps: [S::zero(); 12],
+            }),
+        );
+        let actions = vec![(i, twist(&seeded, 0)), (j, twist(&seeded, 6))];
+        // rates: jets in time along the motion with v̇ = 0
+        let rates = law.value(&moving(&I), &moving(&J), drive);
+        let gradient = self.gradient_of(&actions);
+        RowValue {
+            value: seeded.re,
+            drift: rates.first - self.along(&gradient),
+            gradient,
+            gamma: -rates.second,
+            actions,
         }
     }
 
@@ -58,8 +70,8 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// A sum of displacements: each a sum of coordinates where it can be, else by duals along twists and jets in time.
-    pub(super) fn sum_row(&self, sum: &Sum) -> RowValue<S> {
-        let mut value = S::constant(-sum.constant);
+    pub(super) fn sum_row(&self, sum: &Sum, constant: f64) -> RowValue<S> {
+        let mut value = S::constant(-constant);
         let (mut drift, mut second) = (S::zero(), S::zero());
         let mut gradient: Vec<(usize, S)> = Vec::new();
         let mut actions = Vec::with_capacity(2 * sum.terms.len());

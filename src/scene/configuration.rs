@@ -1,0 +1,189 @@
+//! The configuration: everything that is decided about a scene after it has been compiled.
+//!
+//! A [`Scene`] never changes. Assembly finds which rows take part, where contacts begin and which
+//! constants hold what is shown; a session supplies what earlier simulations left; a system chooses
+//! how accelerations are eliminated. All of that stands here, beside the scene, and the equations
+//! read both.
+
+use super::{Row, RowKind, Scene};
+use crate::physics::joint::Tie;
+use crate::physics::row::Law;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// Decisions about a scene, made by assembly, by sessions and by systems.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Configuration {
+    /// Whether each row takes part; a row that depends on others does not. Assembly chooses, and
+    /// systems choose again where the rank changes.   (n_rows)
+    pub active: Vec<bool>,
+    /// The value that each sum of displacements keeps; zero for rows that are no sums. Assembly
+    /// adds what the configuration shows where the sum is held.   (n_rows)   [rad, length]
+    pub sums: Vec<f64>,
+    /// Where motions begin. Assembly fills it.   (n_motions)
+    pub motions: Vec<MotionStart>,
+    /// Where contacts on curves begin. Assembly follows them.   (n_cams)
+    pub contacts: Vec<ContactStart>,
+    /// Counted angles before the first step. A session carries them on.   (n_turns)   [rad]
+    pub turns: Vec<f64>,
+    /// External inputs before the first step. A session supplies them.   (n_external)
+    pub external: Vec<f64>,
+    /// How accelerations and multipliers are found. A system chooses.
+    pub elimination: Elimination,
+}
+
+/// The beginning of a MOTION.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MotionStart {
+    /// Displacement where its state is zero.   [rad, length]
+    pub offset: f64,
+    /// The state says where it is; assembly has no say any more.
+    pub begun: bool,
+    /// The displacement at which it stands still in place of following its function.
+    pub stands_at: Option<f64>,
+}
+
+/// The beginning of a contact on curves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactStart {
+    /// Parameters on its curves where its states are zero; −1 … 1 is a whole curve.
+    pub offset: [f64; 2],
+    /// States and offset say where it touches; before that the whole curve is searched.
+    pub begun: bool,
+}
+
+/// The way in which accelerations and multipliers are found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Elimination {
+    /// Freedoms are eliminated link by link (long chains) rather than from the mass matrix (short ones).
+    pub articulated: bool,
+    /// The usual diagonal of `G M⁻¹ Gᵀ`, by active rows; empty: not known.   (n_active)
+    pub usual_pivots: Vec<f64>,
+    /// Inertia lent to freedoms that have none, and taken back by
+    /// [`accelerations`](super::solve::accelerations); empty: none is lent.   (n_v)   [mass, inertia]
+    pub lent_inertia: Vec<f64>,
+}
+
+impl Configuration {
+    /// Returns the configuration of a scene of which nothing is decided yet: all rows take part,
+    /// sums have the constants of the model, nothing has begun.
+    pub fn new(scene: &Scene) -> Self {
+        let constant = |row: &Row| match &row.kind {
+            RowKind::Displacements(sum) => sum.constant,
+            RowKind::Markers { .. } | RowKind::Formula { .. } | RowKind::Cam { .. } => 0.0,
+        };
+        Self {
+            active: vec![true; scene.rows.len()],
+            sums: scene.rows.iter().map(constant).collect(),
+            motions: vec![MotionStart::default(); scene.motions.len()],
+            contacts: vec![ContactStart::default(); scene.cams.len()],
+            turns: vec![0.0; scene.layout.n_turns],
+            external: vec![0.0; scene.layout.n_external],
+            elimination: Elimination::default(),
+        }
+    }
+
+    /// Returns the same configuration with motions that stand still at these displacements; a
+    /// displacement that is not finite leaves its motion as it is.
+    #[must_use]
+    pub fn with_motions_at(&self, displacements: &[f64]) -> Self {
+        let mut there = self.clone();
+        for (motion, &value) in there.motions.iter_mut().zip(displacements) {
+            if value.is_finite() {
+                motion.stands_at = Some(value);
+            }
+        }
+        there
+    }
+
+    /// Returns the rows that take part, in their order.
+    pub fn active_rows(&self) -> impl Iterator<Item = usize> {
+        let rows = self.active.iter().enumerate();
+        rows.filter(|(_, active)| **active).map(|(r, _)| r)
+    }
+
+    /// Hands what assembly has found for contacts, and for motions that begin where they are, over
+    /// to their states `x`.
+    pub fn begin_states(&mut self, scene: &Scene, x: &mut [f64]) {
+        for (cam, contact) in scene.cams.iter().zip(&mut self.contacts) {
+            for k in 0..cam.contact.n_parameters() {
+                x[cam.state + k] += contact.offset[k];
+            }
+            contact.offset = [0.0; 2];
+        }
+        for (motion, start) in scene.motions.iter().zip(&mut self.motions) {
+            if let Some(s) = motion.state {
+                x[s] += start.offset;
+                start.offset = 0.0;
+                start.begun = true;
+            }
+        }
+    }
+}
+
+/// A scene in a configuration: everything that equations are written for.
+#[derive(Clone, Copy, Debug)]
+pub struct Configured<'s> {
+    /// the constant part
+    pub scene: &'s Scene,
+    /// the decided part
+    pub configuration: &'s Configuration,
+}
+
+impl Deref for Configured<'_> {
+    type Target = Scene;
+
+    fn deref(&self) -> &Scene {
+        self.scene
+    }
+}
+
+impl Scene {
+    /// Returns the scene in a configuration.
+    pub fn within<'s>(&'s self, configuration: &'s Configuration) -> Configured<'s> {
+        Configured {
+            scene: self,
+            configuration,
+        }
+    }
+}
+
+impl Configured<'_> {
+    /// Returns a scene in which the rows of constraint element `c` are those of a tie between its
+    /// markers, with its configuration, in which all rows take part. `None`: the element has no
+    /// markers. Only the rows are those of the other tie: what carries the parts stays as it is.
+    pub fn with_tie(&self, c: usize, tie: Tie) -> Option<(Arc<Scene>, Configuration)> {
+        let element = &self.scene.constraints[c];
+        let (i, j) = element.markers?;
+        let (mut scene, mut configuration) = (self.scene.clone(), self.configuration.clone());
+        let row = |law: Law| Row {
+            element: String::new(),
+            equation: law.name(),
+            kind: RowKind::Markers {
+                law,
+                i,
+                j,
+                motion: None,
+            },
+        };
+        let rows: Vec<Row> = tie.rows().into_iter().map(row).collect();
+        let constants = vec![0.0; rows.len()];
+        configuration.sums.splice(element.rows.clone(), constants);
+        scene.rows.splice(element.rows.clone(), rows);
+        configuration.active = vec![true; scene.rows.len()];
+        Some((Arc::new(scene), configuration))
+    }
+
+    /// Returns whether a row takes what the configuration shows rather than asking anything of it.
+    pub fn is_held(&self, r: usize) -> bool {
+        match &self.scene.rows[r].kind {
+            RowKind::Displacements(sum) => sum.held,
+            RowKind::Markers {
+                motion: Some(m), ..
+            } => self.scene.motions[*m].held && !self.configuration.motions[*m].begun,
+            RowKind::Markers { motion: None, .. }
+            | RowKind::Formula { .. }
+            | RowKind::Cam { .. } => false,
+        }
+    }
+}

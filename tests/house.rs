@@ -1,0 +1,70 @@
+//! The house rules that the compiler cannot see, checked on the text of the sources.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Returns all Rust files below a folder, sorted by path.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a readable folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Returns whether a line assigns to a field of something named `scene`.
+fn assigns_to_scene(line: &str) -> bool {
+    line.match_indices("scene.").any(|(at, found)| {
+        let path = |c: char| c.is_alphanumeric() || "_.[]()*".contains(c);
+        let rest = line[at + found.len()..].trim_start_matches(path);
+        let rest = rest.trim_start();
+        let rest = rest.trim_start_matches(['+', '-', '*', '/', '|', '&']);
+        rest.starts_with('=') && !rest.starts_with("==") && !rest.starts_with("=>")
+    })
+}
+
+/// Ways to a scene that could be changed: it is shared as `Arc<Scene>`, and decisions about it
+/// stand in its `Configuration`.
+const CHANGEABLE: [&str; 8] = [
+    "&mut Scene",
+    "&mut scene.",
+    "mut scene: Scene",
+    "Scene::default()",
+    "(*scene).clone()",
+    "Scene::clone(",
+    "Arc::make_mut(",
+    "Arc::get_mut(",
+];
+
+#[test]
+fn a_scene_is_changed_nowhere_but_where_it_is_compiled() {
+    assert!(assigns_to_scene("        self.scene.rows[r].scale = 1.0;"));
+    assert!(assigns_to_scene("scene.layout.n_x += 2;"));
+    assert!(!assigns_to_scene("if scene.mode == STATIC {"));
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut offences = Vec::new();
+    for path in sources(&src) {
+        if path.starts_with(src.join("scene")) {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("a readable source");
+        for (k, line) in text.lines().enumerate() {
+            let way = CHANGEABLE.iter().any(|way| {
+                let after = line.split(way).nth(1).and_then(|rest| rest.chars().next());
+                // `&mut SceneSensor` is another type
+                line.contains(way)
+                    && !after.is_some_and(|c| way.ends_with("Scene") && c.is_alphanumeric())
+            });
+            if way || assigns_to_scene(line) {
+                offences.push(format!("{}:{}: {}", path.display(), k + 1, line.trim()));
+            }
+        }
+    }
+    assert!(offences.is_empty(), "{}", offences.join("\n"));
+}
