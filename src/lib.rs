@@ -15,11 +15,10 @@ pub mod space;
 // floor 2
 #[cfg(feature = "solver")]
 pub mod model;
-#[cfg(feature = "solver")]
-pub mod physics;
 // floor 3
 #[cfg(feature = "solver")]
 pub mod dataset;
+pub mod physics;
 // floor 4
 #[cfg(feature = "solver")]
 pub mod scene;

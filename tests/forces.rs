@@ -8,9 +8,9 @@ use cognate::expr::measures::Measure;
 use cognate::model::Model;
 use cognate::physics::beam::Section;
 use cognate::physics::field::Field;
+use cognate::physics::kinematic::kinematic;
 use cognate::results::Status;
 use cognate::scalar::{Dual, Scalar};
-use cognate::space::kinematic::kinematic;
 use cognate::space::{MarkerState, Mat3, Vec3, rotation};
 
 fn solve(text: &str, columns: &[&str], analysis: Analysis, end: f64) -> Session {

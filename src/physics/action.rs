@@ -1,51 +1,53 @@
-//! What an element does to its I marker, and the laws of two markers that need nothing but their states.
+//! The action of an element on its I marker, and the laws of two markers that need nothing but
+//! their states.
 //!
-//! Every element acts on the part of I at the origin of I; the part that reacts gets the opposite force *at the same
-//! point* and the opposite torque. About J's own origin that is `T_J = −T_I − (p_I − p_J) × F_I`, which is the transfer
-//! moment of bushings and beams and no moment at all for a force along the line I–J.
+//! Every element acts on the part of I at the origin of I; the part of J gets the opposite force
+//! *at the same point* and the opposite torque. About J's own origin that is
+//! `T_J = −T_I − (p_I − p_J) × F_I`: the transfer moment of bushings and beams, and no moment at
+//! all for a force along the line I–J.
 
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 
-/// Force and torque on I about I's origin, ground axes.
+/// A force and a torque on I about I's origin, in ground axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Action<S> {
-    /// force
+    /// force, in ground axes
     pub force: Vec3<S>,
-    /// torque about the origin of I
+    /// torque about the origin of I, in ground axes
     pub torque: Vec3<S>,
 }
 
 impl<S: Scalar> Action<S> {
-    /// Nothing.
+    /// Returns no force and no torque.
     pub fn zero() -> Self {
         Self {
             force: Vec3::zero(),
             torque: Vec3::zero(),
         }
     }
-    /// So many times as much.
+    /// Returns the action multiplied by `factor`.
     pub fn times(&self, factor: S) -> Self {
         Self {
             force: self.force.times(factor),
             torque: self.torque.times(factor),
         }
     }
-    /// The reaction, about J's origin.
+    /// Returns the reaction, about J's origin.
     pub fn reaction(&self, p_GI: Vec3<S>, p_GJ: Vec3<S>) -> Self {
         Self {
             force: -self.force,
             torque: -self.torque - (p_GI - p_GJ).cross(self.force),
         }
     }
-    /// The same action, about `b` instead of `a`.
+    /// Returns the same action about `b` instead of `a`, both in ground.
     pub fn about(&self, a: Vec3<S>, b: Vec3<S>) -> Self {
         Self {
             force: self.force,
             torque: self.torque + (a - b).cross(self.force),
         }
     }
-    /// The sum with another action on the same marker.
+    /// Returns the sum with another action on the same marker.
     pub fn plus(&self, b: &Self) -> Self {
         Self {
             force: self.force + b.force,
@@ -54,7 +56,8 @@ impl<S: Scalar> Action<S> {
     }
 }
 
-/// Unit vector from J to I; zero where they coincide, with derivative zero there.
+/// Returns the unit vector from J to I and the distance; the vector and its derivative are zero
+/// where they coincide.
 pub fn line_of_sight<S: Scalar>(i: &MarkerState<S>, j: &MarkerState<S>) -> (Vec3<S>, S) {
     let d = i.p_GM - j.p_GM;
     let n2 = d.norm2();
@@ -64,7 +67,8 @@ pub fn line_of_sight<S: Scalar>(i: &MarkerState<S>, j: &MarkerState<S>) -> (Vec3
     (d.times(factor), S::select(zero, S::zero(), length))
 }
 
-/// SFORCE: `magnitude` along the line of sight (TRANSLATION), along z_J (ACTIONONLY), or as a torque about z_J (ROTATION).
+/// Returns the action of a SFORCE: `magnitude` along the line of sight (TRANSLATION), along z_J
+/// (ACTIONONLY), or as a torque about z_J (ROTATION).
 pub fn single_force<S: Scalar>(
     rotational: bool,
     action_only: bool,
@@ -89,7 +93,7 @@ pub fn single_force<S: Scalar>(
     }
 }
 
-/// VFORCE, VTORQUE, GFORCE: components along the axes of RM.
+/// Returns the action of a VFORCE, VTORQUE or GFORCE: components along the axes of RM.
 pub fn vector_force<S: Scalar>(rm: &MarkerState<S>, force: [S; 3], torque: [S; 3]) -> Action<S> {
     Action {
         force: rm.R_GM.apply(Vec3(force)),

@@ -1,6 +1,8 @@
-//! BEAM: the stiffness of a slender straight beam with uniform section between two markers: the element of Timoshenko.
+//! BEAM: the stiffness of a slender straight beam with uniform section between two markers
+//! (Timoshenko's element).
 //!
-//! J is the root, I the tip; x of J runs along the undeflected beam, so that I is at (L, 0, 0) there.
+//! J is the root, I the tip; x of J runs along the undeflected beam, so that I is at (L, 0, 0)
+//! there.
 //!
 //! | parameter | symbol | keyword | unit | default |
 //! |---|---|---|---|---|
@@ -19,29 +21,31 @@
 //! K₅₅ = (4 + P_z) E I_yy/(L (1 + P_z))    K₆₆ = (4 + P_y) E I_zz/(L (1 + P_y))
 //! ```
 //!
-//! These are the rows of the tip; what the root feels follows from equilibrium, which yields the other half of the 12 × 12
-//! matrix. Deflections and rotations of the tip against the root must be small. FORMULATION=STRING and NONLINEAR, which
-//! stiffen under tension, are not solved: the linear law stands for them, with a warning.
+//! These are the rows of the tip; the forces at the root follow from equilibrium, which yields the
+//! other half of the 12 × 12 matrix. Deflections and rotations of the tip against the root must be
+//! small. FORMULATION=STRING and NONLINEAR, which stiffen under tension, are not solved: the linear
+//! law stands for them, with a warning.
 
-/// What the matrix is made of.
+/// The section, length and material of a beam.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
-    /// L
+    /// L, in length units
     pub length: f64,
-    /// A
+    /// A, in length²
     pub area: f64,
-    /// Jₓ, I_yy, I_zz
+    /// Jₓ, I_yy, I_zz, in length⁴
     pub second_moments: [f64; 3],
-    /// a_y, a_z
+    /// a_y, a_z, pure numbers
     pub shear: [f64; 2],
-    /// E
+    /// E, in force/length²
     pub youngs_modulus: f64,
-    /// G
+    /// G, in force/length²
     pub shear_modulus: f64,
 }
 
 impl Section {
-    /// K by rows: forces and torques at the tip from its displacements, in the axes of the root.
+    /// Returns K by rows: forces and torques at the tip from its displacements, in the axes of the
+    /// root.
     pub fn stiffness(&self) -> [[f64; 6]; 6] {
         let (l, e, g) = (self.length, self.youngs_modulus, self.shear_modulus);
         let [jx, iyy, izz] = self.second_moments;

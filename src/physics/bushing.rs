@@ -8,16 +8,16 @@
 //!
 //! ```text
 //! F = −K x − C ẋ + F₀         x: I from J in J axes;  ẋ its rate as J sees it
-//! T = −Kₜ (a, b, c) − Cₜ ω + T₀   a, b, c = AX, AY, AZ of I in J;  ω angular velocity of I against J
+//! T = −Kₜ (a, b, c) − Cₜ ω + T₀   a, b, c: AX, AY, AZ of I in J;  ω: angular velocity of I in J
 //! ```
 //!
-//! Two of the three angles must stay small for (a, b, c) to mean what one expects.
+//! Two of the three angles must stay small: only then are a, b, c rotations about the axes of J.
 
 use super::action::Action;
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 
-/// Its numbers: three translations, three rotations.
+/// The parameters of a bushing: three for translations, three for rotations.
 #[derive(Clone, Copy, Debug)]
 pub struct Bushing {
     /// K, Kₜ
@@ -28,7 +28,7 @@ pub struct Bushing {
     pub preload: [f64; 6],
 }
 
-/// Displacement and velocity of I against J in J axes: x, y, z, a, b, c and their rates.
+/// Returns displacement and velocity of I against J in J axes: x, y, z, a, b, c and their rates.
 pub fn deformation<S: Scalar>(
     i: &MarkerState<S>,
     j: &MarkerState<S>,
@@ -37,7 +37,7 @@ pub fn deformation<S: Scalar>(
     let R_JG = j.R_GM.transpose();
     let d = i.p_GM - j.p_GM;
     let x = R_JG.apply(d);
-    // the rate that an observer on J sees
+    // the rate that an observer on J measures
     let rate = R_JG.apply(i.v_GM - j.v_GM - j.w_GM.cross(d));
     let w = R_JG.apply(i.w_GM - j.w_GM);
     (
@@ -46,7 +46,7 @@ pub fn deformation<S: Scalar>(
     )
 }
 
-/// The action on I of six components given in J axes.
+/// Returns the action on I of six components given in J axes.
 pub fn in_axes_of<S: Scalar>(j: &MarkerState<S>, f: [S; 6]) -> Action<S> {
     Action {
         force: j.R_GM.apply(Vec3([f[0], f[1], f[2]])),
@@ -55,7 +55,7 @@ pub fn in_axes_of<S: Scalar>(j: &MarkerState<S>, f: [S; 6]) -> Action<S> {
 }
 
 impl Bushing {
-    /// On I. `angles`: AX, AY, AZ of I in J.
+    /// Returns the action on I. `angles`: AX, AY, AZ of I in J, in rad.
     pub fn action<S: Scalar>(
         &self,
         i: &MarkerState<S>,

@@ -1,48 +1,54 @@
-//! Points on curves and curves on curves: PTCV and CVCV as equations between two marker frames.
+//! PTCV and CVCV: a point on a curve and a curve on a curve, as equations between two marker
+//! frames.
 //!
-//! A curve `c(s)` is given in the coordinates of its marker. Where the contact is on it, its parameter s, follows from the frames: it is
-//! found by Newton's iteration from a value near, over whatever number the frames are made of, so that derivatives are those of the
-//! implicit function. With `c' = dc/ds`, `p` the point in the coordinates of the curve, and for two curves `D = P_I − P_J`, tangents T:
+//! A curve `c(s)` is given in the coordinates of its marker. The parameter s of the contact follows
+//! from the frames: it is found by Newton's iteration from a nearby value, over the number type of
+//! the frames, so that derivatives are those of the implicit function. With `c' = dc/ds`, `p` the
+//! point in the coordinates of the curve, and for two curves `D = P_I − P_J`, tangents T:
 //!
 //! ```text
 //! PTCV    0 = (p − c) · c'                           s: the point of the curve next to I     (1)
 //!         n₁ · (p − c) = 0,  n₂ · (p − c) = 0        n₁ ∥ c' × r,  n₂ = c'/|c'| × n₁         (2)
 //! CVCV    0 = D · T_I,   0 = (T_I × T_J) · z_I       s_I, s_J: tangents are parallel         (3)
 //!         D · n = 0,  D · z_I = 0                    n = z_I × T_I/|T_I|                     (4)
-//! floating markers: x = T/|T|, y of PTCV away from the centre of curvature (5), of CVCV z × x with the z of its curve (6)
-//! asked to be at s₀:  PTCV  p − c(s₀) = 0 (7),  CVCV  D = 0 with parallel tangents (8)
+//! floating markers: x = T/|T|;  y of PTCV away from the centre of curvature                  (5)
+//!                   of CVCV z × x with the z of its curve                                    (6)
+//! contact placed at s₀:   PTCV  p − c(s₀) = 0                                                (7)
+//!                         CVCV  D = 0 with parallel tangents                                 (8)
 //! ```
 //!
-//! r is a fixed direction that no tangent of the curve comes near (z for a curve in the x–y plane), so that the normals are smooth all
-//! along. What (2) and (4) exert has no part along the curve: contact without friction. An open curve goes on straight beyond its ends, so that a step
-//! that overshoots has a value; a run does not keep it. The parameter of a closed curve counts its turns.
+//! r is a fixed direction that no tangent of the curve comes near (z for a curve in the x–y plane),
+//! so that the normals are smooth all along. The forces of (2) and (4) have no part along the
+//! curve: contact without friction. An open curve is extended straight beyond its ends, so that a
+//! step that overshoots has a value; a run does not keep such a step. The parameter of a closed
+//! curve counts its turns.
 
 use crate::expr::interpolation::Curve;
 use crate::scalar::{Scalar, Table};
 use crate::space::{Frame, Mat3, Vec3};
 use std::sync::Arc;
 
-/// A curve that can be followed beyond its ends.
+/// A curve with its extension beyond its ends.
 #[derive(Clone, Debug)]
 pub struct Path {
     /// x, y, z over the parameter, from −1 to 1 and beyond
     tables: [Arc<dyn Table>; 3],
-    /// it returns to its beginning
+    /// whether it returns to its beginning
     pub closed: bool,
-    /// parameters between which it is a polynomial
+    /// parameters between which it is one polynomial
     pub knots: Vec<f64>,
     /// r: no tangent comes near this direction
     away: Vec3<f64>,
-    /// length of the polygon through its samples
+    /// length of the polygon through its samples, in length units
     pub length: f64,
-    /// largest |z|
+    /// largest |z|, in length units
     pub height: f64,
 }
 
-/// Pieces into which a curve is divided where it is searched.
+/// Pieces into which a curve is divided for searches.
 pub const SAMPLES: usize = 256;
 
-/// Goes on straight beyond −1 and 1.
+/// A table extended straight beyond −1 and 1.
 #[derive(Debug)]
 struct Straight(Arc<dyn Table>);
 
@@ -60,7 +66,7 @@ impl Table for Straight {
     }
 }
 
-/// Repeats itself with period 2.
+/// A table repeated with period 2.
 #[derive(Debug)]
 struct Around(Arc<dyn Table>);
 
@@ -71,7 +77,7 @@ impl Table for Around {
 }
 
 impl Path {
-    /// The curve with what lies beyond its ends.
+    /// Builds the path of a curve, with its extension beyond its ends.
     pub fn new(curve: &Curve) -> Self {
         let closed = curve.is_closed();
         let beyond = |t: &Arc<dyn Table>| -> Arc<dyn Table> {
@@ -96,7 +102,8 @@ impl Path {
         path
     }
 
-    /// Of some directions the one that stays farthest from all tangents; z where that is good enough.
+    /// Returns, of 200 directions, the one that stays farthest from all tangents; z where that is
+    /// good enough.
     fn far_from_tangents(&self) -> Vec3<f64> {
         let tangents: Vec<Vec3<f64>> = samples()
             .map(|s| self.at(s, 1))
@@ -112,7 +119,7 @@ impl Path {
         if best.0 > 0.5 {
             return z;
         }
-        // equally spread over half a sphere: a spiral with the golden angle
+        // spread evenly over half a sphere: a spiral with the golden angle
         for k in 0..200 {
             let height = (f64::from(k) + 0.5) / 200.0;
             let (sin, cos) = (f64::from(k) * 2.399_963_229_728_653).sin_cos();
@@ -126,12 +133,14 @@ impl Path {
         best.1
     }
 
-    /// The derivative of some order with respect to the parameter, in the coordinates of the curve.
+    /// Returns the derivative of some order with respect to the parameter, in the coordinates of
+    /// the curve.
     pub fn at<S: Scalar>(&self, s: S, order: u32) -> Vec3<S> {
         Vec3([0, 1, 2].map(|k| s.lookup(&self.tables[k], order)))
     }
 
-    /// How far beyond an end of an open curve a parameter is, as a length; not positive: it is on the curve.
+    /// Returns the length by which a parameter lies beyond an end of an open curve; zero or
+    /// negative on the curve.
     pub fn beyond(&self, s: f64) -> f64 {
         if self.closed {
             return f64::NEG_INFINITY;
@@ -141,7 +150,7 @@ impl Path {
         (s.abs() - 1.0) * tangent.norm()
     }
 
-    /// The parameter of the sample nearest to a point in the coordinates of the curve.
+    /// Returns the parameter of the sample nearest to a point in the coordinates of the curve.
     pub fn nearest(&self, p: Vec3<f64>) -> f64 {
         let distance = |s: f64| (self.at(s, 0) - p).norm2();
         samples()
@@ -149,7 +158,8 @@ impl Path {
             .unwrap_or(0.0)
     }
 
-    /// The parameter of the point nearest to `p`, on an open curve one of its own.
+    /// Returns the parameter of the point nearest to `p`; on an open curve that point is between
+    /// its ends.
     pub fn foot(&self, p: Vec3<f64>) -> f64 {
         let start = self.nearest(p);
         let mut s = start;
@@ -162,37 +172,37 @@ impl Path {
                 break;
             }
         }
-        // it is no farther than between the samples beside the nearest
+        // the solution lies between the samples beside the nearest one
         let near = (s - start).abs() <= 2.0 / SAMPLES as f64;
         let s = if near { s } else { start };
         if self.closed { s } else { s.clamp(-1.0, 1.0) }
     }
 }
 
-/// Parameters at which a curve is looked at.
+/// Iterates over the parameters of the samples.
 pub fn samples() -> impl Iterator<Item = f64> {
     (0..=SAMPLES).map(|k| 2.0 * k as f64 / SAMPLES as f64 - 1.0)
 }
 
-/// What touches what.
+/// The two sides of a contact.
 #[derive(Clone, Debug)]
 pub enum Contact {
-    /// PTCV: the origin of I is on a curve of J
+    /// PTCV: the origin of I lies on a curve of J
     Point(Path),
     /// CVCV: a curve of I and a curve of J have a common tangent
     Curves(Path, Path),
 }
 
-/// Names of the rows of either.
+/// Names of the two rows, of PTCV and of CVCV.
 pub const ROWS: [[&str; 2]; 2] = [["across 1", "across 2"], ["gap", "out of plane"]];
 
 impl Contact {
-    /// How many parameters it has.
+    /// Returns the number of parameters.
     pub fn n_parameters(&self) -> usize {
         self.paths().len()
     }
 
-    /// Its curves: that of I first where there are two.
+    /// Returns the curves; that of I first where there are two.
     pub fn paths(&self) -> Vec<&Path> {
         match self {
             Contact::Point(path) => vec![path],
@@ -200,7 +210,8 @@ impl Contact {
         }
     }
 
-    /// What must vanish for the parameters to be those of the contact (1), (3), and its derivatives along them.
+    /// Evaluates the conditions that determine the parameters of the contact (1), (3), and their
+    /// derivatives with respect to the parameters.
     fn conditions<S: Scalar>(
         &self,
         i: &Frame<S>,
@@ -233,7 +244,7 @@ impl Contact {
         }
     }
 
-    /// Parameters after some steps of Newton's iteration.
+    /// Returns the parameters after some steps of Newton's iteration.
     pub fn refined<S: Scalar>(
         &self,
         i: &Frame<S>,
@@ -255,7 +266,8 @@ impl Contact {
         s
     }
 
-    /// How far the conditions are from holding, as a pure number: 0 where the parameters are those of the contact.
+    /// Returns the violation of the conditions as a pure number: 0 at the parameters of the
+    /// contact.
     pub fn missing(&self, i: &Frame<f64>, j: &Frame<f64>, s: [f64; 2]) -> f64 {
         let ([f, g], _) = self.conditions(i, j, s);
         let size = |path: &Path, s: f64| path.at::<f64>(s, 1).norm().max(f64::MIN_POSITIVE);
@@ -269,7 +281,7 @@ impl Contact {
         }
     }
 
-    /// What the rows say at given parameters (2), (4).
+    /// Evaluates the rows (2), (4) at given parameters, as lengths.
     pub fn gaps<S: Scalar>(&self, i: &Frame<S>, j: &Frame<S>, s: [S; 2]) -> [S; 2] {
         match self {
             Contact::Point(path) => {
@@ -290,9 +302,10 @@ impl Contact {
         }
     }
 
-    /// The floating marker of a curve: origin where it touches, x along the tangent (5)(6).
+    /// Returns the frame of the floating marker of a curve: origin at the contact, x along the
+    /// tangent (5), (6).
     ///
-    /// `side`: which of [`Contact::paths`].
+    /// `side`: index in [`Contact::paths`].
     pub fn floating<S: Scalar>(
         &self,
         side: usize,
@@ -314,7 +327,7 @@ impl Contact {
                 let bend: Vec3<S> = path.at(s, 2);
                 let inward = bend - x.times(bend.dot(x));
                 let (n2, t2) = (inward.norm2(), t.norm2());
-                // curvature · length: there is no centre of curvature on a straight piece
+                // curvature · length; a straight piece has no centre of curvature
                 let straight = (n2.scale(path.length * path.length)).le((t2 * t2).scale(1e-18));
                 let beside = t.cross(Vec3::constant(path.away));
                 unit(Vec3(std::array::from_fn(|k| {
@@ -329,9 +342,10 @@ impl Contact {
         }
     }
 
-    /// What must vanish for the contact to be at places given: per curve a parameter, or `None` where it is free (7)(8).
+    /// Evaluates the conditions (7), (8) for the contact to be at given parameters: one per curve,
+    /// or `None` where the place on that curve is free.
     ///
-    /// `near`: parameters of curves whose place is free, near the point next to that of the other.
+    /// `near`: a guess of the parameters of curves whose place is free.
     pub fn placed<S: Scalar>(
         &self,
         i: &Frame<S>,
@@ -348,7 +362,7 @@ impl Contact {
             Contact::Curves(path_i, path_j) => {
                 let z = i.rotation.column(2);
                 let mut s = [0, 1].map(|k| S::constant(given[k].unwrap_or(near[k])));
-                // a curve without a place touches with the point next to that of the other
+                // a curve whose place is free touches with its point next to the other curve's
                 for _ in 0..2 {
                     let [p_i, t_i, b_i] = in_ground(path_i, i, s[0]);
                     let [p_j, t_j, b_j] = in_ground(path_j, j, s[1]);
@@ -372,7 +386,7 @@ impl Contact {
         }
     }
 
-    /// Where it touches, in ground.
+    /// Returns the point of contact, in ground.
     pub fn place<S: Scalar>(&self, i: &Frame<S>, j: &Frame<S>, s: [S; 2]) -> Vec3<S> {
         match self {
             Contact::Point(path) => j.point(path.at(s[0], 0)),
@@ -381,7 +395,7 @@ impl Contact {
     }
 }
 
-/// Place, first and second derivative of a curve, in ground axes.
+/// Returns place, first and second derivative of a curve, in ground axes.
 fn in_ground<S: Scalar>(path: &Path, marker: &Frame<S>, s: S) -> [Vec3<S>; 3] {
     let turned = |order: u32| marker.rotation.apply(path.at(s, order));
     [marker.position + turned(0), turned(1), turned(2)]

@@ -1,7 +1,7 @@
 //! Equations between displacements: COUPLER, GEAR, SCREW, RACKPIN.
 //!
-//! Each says that a weighted sum of displacements keeps its value. A displacement is a distance or an angle of a marker I
-//! against a marker J, with `d = p_I − p_J`:
+//! Each equation keeps a weighted sum of displacements constant. A displacement is a distance or an
+//! angle of a marker I against a marker J, with `d = p_I − p_J`:
 //!
 //! ```text
 //! Distance    d · z_J                                            (1)
@@ -14,41 +14,46 @@
 //!             aₖ = (z_Jk × (p_c − p_Jk)) · z_c,   bₖ = z_Jk · z_c
 //! ```
 //!
-//! *Signs*: a positive PITCH is a right-hand thread. A positive PD puts the pinion's centre on the +y_J side of the pitch
-//! line: turning by +θ about x_J it rolls by +PD/2 θ along z_J. In (6) the two geared bodies have, seen from their carrier, the same velocity at
-//! the origin of CV along its z axis; CV between the axes makes them turn oppositely, CV outside makes an internal gear.
+//! *Signs*: a positive PITCH is a right-hand thread. A positive PD puts the pinion's centre on the
+//! +y_J side of the pitch line: turning by +θ about x_J it rolls by +PD/2 θ along z_J. In (6) the
+//! two geared bodies have, in the frame of their carrier, the same velocity at the origin of CV
+//! along its z axis; CV between the axes makes them turn oppositely, CV outside makes an internal
+//! gear.
 //!
-//! *Constant*: the manuals write zero; a marker set anywhere along an axis is only usable with a constant. c is therefore what the
-//! assembled configuration shows, and a SCREW, RACKPIN or COUPLER whose c is not zero is reported. [`Options::strict`] takes zero.
+//! *Constant*: the manuals write zero, but a marker may be set anywhere along an axis only if the
+//! constant is not zero. c is therefore taken from the assembled configuration, and a SCREW,
+//! RACKPIN or COUPLER whose c is not zero is reported. [`Options::strict`] takes zero.
 //!
-//! *Reactions*: a coupler turns or pushes I of each joint along its axis and J oppositely. Of a gear pair (pressure angle zero) the
-//! force acts at CV along z_c on the first body and oppositely on the second; it loads the bearings as the teeth would.
+//! *Reactions*: a coupler turns or pushes I of each joint along its axis and J oppositely. The
+//! force of a gear pair (pressure angle zero) acts at CV along z_c on the first body and oppositely
+//! on the second; it loads the bearings as the teeth would. force acts at CV along z_c on the first
+//! body and oppositely on the second; it loads the bearings as the teeth would.
 //!
 //! [`Options::strict`]: crate::scene::build::Options::strict
 
 use crate::scalar::Scalar;
 use crate::space::{Frame, Vec3};
 
-/// What a displacement measures.
+/// The quantity that a displacement measures; lengths in model units, angles in rad, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Gauge {
-    /// along z of J (1)
+    /// distance along z of J (1)
     Distance,
-    /// of x of I about an axis of J, 0 x, 1 y, 2 z (2)
+    /// angle of x of I about an axis of J: 0 x, 1 y, 2 z (2)
     Angle(usize),
-    /// along x (0) or y (1) of J: a variable of PLANAR
+    /// distance along x (0) or y (1) of J, as PLANAR has them
     Across(usize),
-    /// turn about a pin of a universal joint
+    /// angle about a pin of a universal joint
     Pin {
-        /// HOOKE (pins x of I and y of J), else UNIVERSAL (pins z of I and z of J)
+        /// HOOKE (pins x of I and y of J) rather than UNIVERSAL (pins z of I and z of J)
         hooke: bool,
-        /// the pin of I, about which it turns after that of J
+        /// the pin of I rather than that of J
         second: bool,
     },
 }
 
 impl Gauge {
-    /// The displacement; an angle as its principal value.
+    /// Evaluates the displacement; an angle as its principal value.
     pub fn value<S: Scalar>(self, i: &Frame<S>, j: &Frame<S>) -> S {
         match self {
             Gauge::Distance => (i.position - j.position).dot(j.rotation.column(2)),
@@ -73,7 +78,7 @@ impl Gauge {
         }
     }
 
-    /// Whether it is an angle.
+    /// Returns whether the displacement is an angle.
     pub fn is_angle(self) -> bool {
         matches!(self, Gauge::Angle(_) | Gauge::Pin { .. })
     }
@@ -84,14 +89,15 @@ impl Gauge {
 pub struct GearedJoint {
     /// frame of J in the carrier
     pub j: Frame<f64>,
-    /// turns about z_J
+    /// whether it turns about z_J
     pub turns: bool,
-    /// slides along z_J
+    /// whether it slides along z_J
     pub slides: bool,
 }
 
-/// Factors a (of the angle) and b (of the distance) of (6) for one joint; `None`: CV does not take part in its motion,
-/// because its z axis is square to what the body can do there.
+/// Returns the factors a (of the angle) and b (of the distance) of (6) for one joint, or `None` if
+/// CV does not take part in its motion because its z axis is perpendicular to every motion of the
+/// body there.
 pub fn gear_factors(joint: &GearedJoint, cv: &Frame<f64>) -> Option<[f64; 2]> {
     let (axis, line) = (joint.j.rotation.column(2), cv.rotation.column(2));
     let arm: Vec3<f64> = cv.position - joint.j.position;

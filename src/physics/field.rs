@@ -1,4 +1,5 @@
-//! FIELD: a linear law between the six displacements of two markers and six forces, by full matrices, in the axes of J.
+//! FIELD: a linear law by full matrices between the six displacements of two markers and six
+//! forces, in the axes of J.
 //!
 //! | parameter | symbol | keyword | unit | default |
 //! |---|---|---|---|---|
@@ -11,16 +12,17 @@
 //! (F, T) = −K (x − x₀) − C (ẋ, ω) + F₀      x: x, y, z, a, b, c of I from J, as in a bushing
 //! ```
 //!
-//! It acts on I; J's part feels the opposite at the same point, so that about J's own origin a moment `−d × F` is added. BEAM
-//! is a FIELD whose matrix comes from a slender beam. The law conserves energy where K is symmetric and the rotations
-//! are small or about one axis: a, b, c are angles whose rates are the components of ω only then.
+//! The action is on I; J's part feels the opposite at the same point, so that about J's own origin
+//! a moment `−d × F` is added. BEAM is a FIELD whose matrix comes from a slender beam. The law
+//! conserves energy where K is symmetric and the rotations are small or about one axis: only then
+//! are the components of ω the rates of a, b, c.
 
 use super::action::Action;
 use super::bushing::{deformation, in_axes_of};
 use crate::scalar::Scalar;
 use crate::space::MarkerState;
 
-/// Its numbers.
+/// The parameters of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// K by rows
@@ -33,13 +35,13 @@ pub struct Field {
     pub preload: [f64; 6],
 }
 
-/// A 6 × 6 matrix from 36 numbers by columns.
+/// Builds a 6 × 6 matrix from 36 numbers by columns.
 pub fn by_columns(numbers: &[f64]) -> Option<[[f64; 6]; 6]> {
     (numbers.len() == 36)
         .then(|| std::array::from_fn(|r| std::array::from_fn(|c| numbers[6 * c + r])))
 }
 
-/// A symmetric 6 × 6 matrix from the 21 numbers of its lower triangle by rows.
+/// Builds a symmetric 6 × 6 matrix from the 21 numbers of its lower triangle by rows.
 pub fn by_lower_triangle(numbers: &[f64]) -> Option<[[f64; 6]; 6]> {
     let at = |r: usize, c: usize| {
         let (r, c) = (r.max(c), r.min(c));
@@ -48,19 +50,19 @@ pub fn by_lower_triangle(numbers: &[f64]) -> Option<[[f64; 6]; 6]> {
     (numbers.len() == 21).then(|| std::array::from_fn(|r| std::array::from_fn(|c| at(r, c))))
 }
 
-/// A matrix times a number.
+/// Multiplies a matrix by a number.
 pub fn scaled(matrix: &[[f64; 6]; 6], factor: f64) -> [[f64; 6]; 6] {
     matrix.map(|row| row.map(|x| x * factor))
 }
 
-/// `−Σ row · x`, without the entries that are zero.
+/// Returns `−Σ row · x`, without the entries that are zero.
 pub fn resisting<S: Scalar>(row: &[f64], x: &[S]) -> S {
     let entries = row.iter().zip(x).filter(|(k, _)| **k != 0.0);
     entries.fold(S::zero(), |sum, (&k, &x)| sum - x.scale(k))
 }
 
 impl Field {
-    /// On I. `angles`: AX, AY, AZ of I in J.
+    /// Returns the action on I. `angles`: AX, AY, AZ of I in J, in rad.
     pub fn action<S: Scalar>(
         &self,
         i: &MarkerState<S>,

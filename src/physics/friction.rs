@@ -1,4 +1,5 @@
-//! FRICTION in a joint: what the reactions press together resists the motion that the joint leaves free.
+//! FRICTION in a joint: the reaction of the joint presses surfaces together, and these resist the
+//! motion that the joint leaves free.
 //!
 //! | parameter | symbol | keyword | unit | default |
 //! |---|---|---|---|---|
@@ -10,35 +11,36 @@
 //! | overlap | s | INITIAL_OVERLAP, OVERLAP_DELTA | length | 1000 |
 //! | preloads | F₀, T₀ | FRICTION_FORCE_PRELOAD, FRICTION_TORQUE_PRELOAD | force, torque | 0 |
 //!
-//! With the reaction of the joint on I, in the axes of J: F_a along the joint's axis, F_r across it, M_b its moment across the
-//! axis, M_t about it; v the speed at which surfaces slip:
+//! With the reaction of the joint on I, in the axes of J: F_a along the joint's axis, F_r across
+//! it, M_b its moment across the axis, M_t about it; v the speed at which surfaces slip:
 //!
 //! ```text
 //! revolute        T = −µ(v) (R_n |F_a| + R_p F_r + R_p M_b/R_b) − T₀            v = R_p ω
 //! translational   F = −µ(v) (F_r + M_b/s + |M_t|/R_t) − F₀                      v = ż
-//! cylindrical     both, along the slip (ż, R_p ω): N = F_r + M_b/s presses      v = |(ż, R_p ω)|
+//! cylindrical     both, along the slip (ż, R_p ω), pressed by N = F_r + M_b/s   v = |(ż, R_p ω)|
 //! spherical       T = −µ(v) R_p |F| − T₀                                        v = R_p |ω|
 //! universal       about each pin as in a revolute joint, with the force across and along that pin
 //! ```
 //!
-//! What is approximate: µ(v) is smooth, µ_s STEP(v, −v_s, −1, v_s, 1) up to v_s, then a step to µ_d at 1.5 v_s. Within v_s Adams
-//! lets the surfaces creep like a spring up to MAX_STICTION_DEFORMATION; here they creep like a damper, so that nothing
-//! sticks for ever and at rest (in statics) there is no friction. Preloads resist with their whole size beyond v_s. The
-//! moment of a universal joint's reaction, which is about its third axis, bends neither pin.
+//! Approximations: µ(v) is smooth, µ_s STEP(v, −v_s, −1, v_s, 1) up to v_s, then a step to µ_d at
+//! 1.5 v_s. Within v_s Adams lets the surfaces creep like a spring up to MAX_STICTION_DEFORMATION;
+//! here they creep like a damper, so that nothing sticks for ever, and at rest (in statics) there
+//! is no friction. Preloads resist with their full size beyond v_s. The moment of a universal
+//! joint's reaction, which is about its third axis, bends neither pin.
 
 use super::action::Action;
 use super::contact::law::Coulomb;
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 
-/// Which joint.
+/// The kind of joint, as friction distinguishes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// turns about z of J
     Revolute,
     /// slides along z of J
     Translational,
-    /// both
+    /// slides along z of J and turns about it
     Cylindrical,
     /// turns about any axis
     Spherical,
@@ -51,25 +53,25 @@ pub enum Kind {
     },
 }
 
-/// How the overlap of a sliding joint changes with its displacement.
+/// The change of the overlap of a sliding joint with its displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlap {
-    /// not
+    /// it stays the same
     Constant,
-    /// it grows
+    /// it grows with the displacement
     Increases,
-    /// it shrinks
+    /// it shrinks with the displacement
     Decreases,
 }
 
-/// Its numbers.
+/// The parameters of a friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
-    /// which joint
+    /// kind of joint
     pub kind: Kind,
     /// µ(v)
     pub law: Coulomb,
-    /// what is taken of the reaction: forces, bending moments, torsional moments
+    /// parts of the reaction that count: forces, bending moments, torsional moments
     pub takes: [bool; 3],
     /// F₀
     pub force_preload: f64,
@@ -83,16 +85,16 @@ pub struct Friction {
     pub radius: f64,
     /// R_t
     pub reaction_arm: f64,
-    /// s at displacement 0
+    /// s at displacement 0, in length units
     pub overlap: f64,
-    /// how s changes
+    /// change of s with the displacement
     pub overlap_change: Overlap,
 }
 
-/// What slips, and what that does: for the measure FRICTION too.
+/// The friction of a joint and the slip it resists; the measure FRICTION reads both.
 #[derive(Clone, Copy, Debug)]
 pub struct Slip<S> {
-    /// what it does to I
+    /// action on I
     pub action: Action<S>,
     /// velocity at which I slides against J, ground axes
     pub velocity: Vec3<S>,
@@ -100,7 +102,7 @@ pub struct Slip<S> {
     pub spin: Vec3<S>,
 }
 
-/// Length of a vector; its derivative is 0 where it vanishes.
+/// Returns the length of a vector; its derivative is 0 where it vanishes.
 fn size<S: Scalar>(v: Vec3<S>) -> S {
     let n2 = v.norm2();
     let zero = n2.le(S::zero());
@@ -108,7 +110,7 @@ fn size<S: Scalar>(v: Vec3<S>) -> S {
 }
 
 impl Friction {
-    /// Whether forces and moments of the reaction are read.
+    /// Returns whether forces, and whether moments, of the reaction are read.
     pub fn reads(&self) -> [bool; 2] {
         let [forces, bending, torsion] = self.takes;
         let bends = matches!(
@@ -119,7 +121,7 @@ impl Friction {
         [forces, bending && bends || torsion && twists]
     }
 
-    /// µ(v)/v, and the same for a coefficient 1 on both sides of the step.
+    /// Returns µ(v)/v, and the same with a coefficient of 1 on both sides of the step.
     fn per_speed<S: Scalar>(&self, speed2: S) -> [S; 2] {
         let whole = Coulomb {
             mu_static: 1.0,
@@ -129,7 +131,8 @@ impl Friction {
         [self.law.per_speed(speed2), whole.per_speed(speed2)]
     }
 
-    /// About a pin: torque for the angular rate ω, with the reaction's force and moment, all along and across the axis.
+    /// Returns the torque about a pin at the angular rate ω, from the reaction's force and moment
+    /// along and across the axis.
     fn about_pin<S: Scalar>(&self, axis: Vec3<S>, rate: S, force: Vec3<S>, moment: Vec3<S>) -> S {
         let along = force.dot(axis);
         let across = size(force - axis.times(along));
@@ -143,7 +146,7 @@ impl Friction {
         -(mu * pressed + whole.scale(self.torque_preload)) * rate.scale(r)
     }
 
-    /// On I, from the joint's reaction on I about its origin, ground axes.
+    /// Returns friction and slip, from the joint's reaction on I about its origin, in ground axes.
     pub fn slip<S: Scalar>(
         &self,
         i: &MarkerState<S>,
@@ -207,7 +210,7 @@ impl Friction {
         }
     }
 
-    /// s at a displacement; never less than a thousandth of what it is at first.
+    /// Returns s at a displacement; never less than a thousandth of its initial value.
     fn overlapping<S: Scalar>(&self, displacement: S) -> S {
         let s = S::constant(self.overlap);
         let s = match self.overlap_change {

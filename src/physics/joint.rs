@@ -1,8 +1,9 @@
-//! TABLE of joints: what a joint lets move, and what it forbids.
+//! The TABLE of joints: the motions that a joint leaves free, and those that it forbids.
 //!
-//! Two columns say the same thing twice. *Motions*: the joint as a chain of primitives from the J marker to the I marker,
-//! for a joint that carries a part of the forest. *Rows*: the joint as scalar equations between the two marker frames,
-//! for a joint that closes a loop. A property test moves every joint by random motions and finds its rows zero.
+//! Two columns describe the same joint. *Motions*: the joint as a chain of primitives from the J
+//! marker to the I marker, for a joint that carries a part of the forest. *Rows*: the joint as
+//! scalar equations between the two marker frames, for a joint that closes a loop. A property test
+//! moves every joint by random motions and finds its rows zero.
 
 use super::coupler::Gauge;
 use super::row::Law;
@@ -18,11 +19,11 @@ pub enum Motion {
     Turn(usize),
     /// any rotation, as a unit quaternion with the angular velocity in the turned axes
     Ball,
-    /// a quarter turn about x that does not change: brings the pins of a universal joint to z
+    /// a constant quarter turn about x, which brings the pins of a universal joint to z
     QuarterX,
 }
 
-/// What ties two markers together.
+/// A tie between two markers: a joint or a primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tie {
     /// JOINT
@@ -42,7 +43,8 @@ const ALIGNED: [Law; 3] = [Dot(2, 0), Dot(2, 1), Dot(0, 1)];
 const COINCIDENT: [Law; 3] = [Offset(0), Offset(1), Offset(2)];
 
 impl Tie {
-    /// The chain from J to I; `None` when the tie is a row between bodies that other joints carry.
+    /// Returns the chain from J to I, or `None` when the tie is a row between bodies that other
+    /// joints carry.
     pub fn motions(self) -> Option<&'static [Motion]> {
         use JointKind as J;
         use PrimitiveKind as P;
@@ -66,7 +68,7 @@ impl Tie {
         })
     }
 
-    /// The equations between the marker frames.
+    /// Returns the equations between the marker frames.
     ///
     /// SCREW and RACKPIN are equations between displacements; they have none of this kind.
     pub fn rows(self) -> Vec<Law> {
@@ -93,7 +95,7 @@ impl Tie {
         }
     }
 
-    /// How many freedoms it removes between two bodies.
+    /// Returns the number of freedoms that it removes between two bodies.
     pub fn removes(self) -> usize {
         match self {
             Tie::Joint(JointKind::Rackpin | JointKind::Screw) => 1,
@@ -102,8 +104,9 @@ impl Tie {
     }
 }
 
-/// Variables of a joint: names, and what they measure of I against J; lengths along axes of J, angles right-handed in rad, turns
-/// counted. Joints in space have none that would be numbers of their own (SPHERICAL, CONVEL), FIXED none at all.
+/// Returns the variables of a joint: names, and the displacements of I against J that they measure.
+/// Lengths are along axes of J, angles right-handed in rad, turns counted. SPHERICAL and CONVEL
+/// have no displacements that are single numbers, FIXED has none at all.
 pub fn variables(kind: JointKind) -> &'static [(&'static str, Gauge)] {
     const DISTANCE: (&str, Gauge) = ("DISTANCE", Gauge::Distance);
     const ANGLE: (&str, Gauge) = ("ANGLE", Gauge::Angle(2));
@@ -131,7 +134,7 @@ pub fn variables(kind: JointKind) -> &'static [(&'static str, Gauge)] {
 }
 
 impl Motion {
-    /// Number of velocity coordinates.
+    /// Returns the number of velocity coordinates.
     pub fn freedoms(self) -> usize {
         match self {
             Slide(_) | Turn(_) => 1,
@@ -141,7 +144,7 @@ impl Motion {
     }
 }
 
-/// The constant rotation of [`Motion::QuarterX`].
+/// Returns the constant rotation of [`Motion::QuarterX`].
 pub fn quarter_x() -> Mat3<f64> {
     rotation::snapped(&rotation::about_axis(0, std::f64::consts::FRAC_PI_2))
 }

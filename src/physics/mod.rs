@@ -1,5 +1,5 @@
-//! Laws of single elements: joints, rows, forces. One law, one file; each knows marker frames only and could not tell
-//! which coordinates lie behind them.
+//! Laws of single elements: joints, rows, forces. One law, one file. A law sees frames and
+//! velocities of markers only, never the coordinates behind them.
 
 pub mod action;
 pub mod beam;
@@ -9,7 +9,9 @@ pub mod contact;
 pub mod coupler;
 pub mod field;
 pub mod friction;
+#[cfg(feature = "solver")]
 pub mod joint;
+pub mod kinematic;
 pub mod nodal_force;
 pub mod row;
 pub mod spring_damper;

@@ -1,4 +1,5 @@
-//! NFORCE: the linear law of a FIELD between the displacements of many markers, all measured from one marker J in its axes.
+//! NFORCE: the linear law of a FIELD for the displacements of many markers, all measured from one
+//! marker J in its axes.
 //!
 //! | parameter | symbol | keyword | unit | default |
 //! |---|---|---|---|---|
@@ -11,7 +12,7 @@
 //! (F₁, T₁ … Fₙ, Tₙ) = −K (x − x₀) − C ẋ + F₀      x: x, y, z, a, b, c of each I marker from J
 //! ```
 //!
-//! Each of the I markers gets its six components; J's part feels what balances them all.
+//! Each of the I markers gets its six components; J's part gets the reaction to all of them.
 
 use super::action::Action;
 use super::bushing::in_axes_of;
@@ -19,7 +20,7 @@ use super::field::resisting;
 use crate::scalar::Scalar;
 use crate::space::MarkerState;
 
-/// Its numbers, for n markers.
+/// The parameters of an NFORCE with n markers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodalForce {
     /// K by rows   (6n rows of 6n)
@@ -33,7 +34,8 @@ pub struct NodalForce {
 }
 
 impl NodalForce {
-    /// On the marker at `place` among the I markers, from the displacements of all of them and their rates   (6n each).
+    /// Returns the action on the I marker at index `place`, from the displacements of all of them
+    /// and their rates   (6n each).
     pub fn action<S: Scalar>(
         &self,
         place: usize,

@@ -1,20 +1,21 @@
 //! The few scalar constraint equations that all constraints are made of.
 //!
-//! Each is a formula of the frames of two markers I and J, generic over the number. Its gradient (the wrench of a unit
-//! multiplier) comes from evaluating it over duals along the twists of the two markers, its rate and the term γ of
-//! `G v̇ = γ` from evaluating it over jets in time. With `d = p_I − p_J`:
+//! Each is a formula of the frames of two markers I and J, generic over the scalar. Its gradient
+//! (the wrench of a unit multiplier) comes from evaluating it over duals along the twists of the
+//! two markers, its rate and the term γ of `G v̇ = γ` from evaluating it over jets in time. With
+//! `d = p_I − p_J`:
 //!
 //! ```text
 //! Offset(k)      d · e_k                     e_k: ground axis
 //! Along(k)       d · axis_k(J)
 //! Dot(a, b)      axis_a(I) · axis_b(J)
 //! EqualDots      x_I · y_J − y_I · x_J
-//! Angle          x_I · (cos f y_J − sin f x_J) = sin(θ − f),  θ the angle about z_J, f a given function
+//! Angle          x_I · (cos f y_J − sin f x_J) = sin(θ − f),  θ the angle about z_J, f given
 //! BodyAngle(k)   β_k − f for k = 0, 1, 2: body-fixed 1-2-3 angles, R_JI = Rx(β₁) Ry(β₂) Rz(β₃)
 //! ```
 //!
-//! `BodyAngle` is written as sin(β − f) too, with the common factor cos β₂ left in for β₁ and β₃, so that nothing is
-//! singular but the angles themselves (β₂ = ±90°).
+//! `BodyAngle` is written as sin(β − f) too, with the common factor cos β₂ left in for β₁ and β₃,
+//! so that nothing is singular but the angles themselves (β₂ = ±90°).
 
 use crate::scalar::Scalar;
 use crate::space::Frame;
@@ -28,16 +29,17 @@ pub enum Law {
     Along(usize),
     /// an axis of I is perpendicular to an axis of J
     Dot(usize, usize),
-    /// constant velocity
+    /// rotations about two axes are equal: the constant-velocity joint
     EqualDots,
-    /// the angle of I about z of J is what `drive` says
+    /// the angle of I about z of J equals `drive`
     Angle,
-    /// a body 1-2-3 angle of I in J (0, 1, 2) is what `drive` says
+    /// a body 1-2-3 angle of I in J (0, 1, 2) equals `drive`
     BodyAngle(usize),
 }
 
 impl Law {
-    /// What must vanish. `drive` is the prescribed value of a MOTION: subtracted from a length, the angle of [`Law::Angle`].
+    /// Evaluates the equation; it holds at zero. `drive` is the prescribed value of a MOTION:
+    /// subtracted from a length, the angle of [`Law::Angle`].
     pub fn value<S: Scalar>(self, i: &Frame<S>, j: &Frame<S>, drive: Option<S>) -> S {
         let length = |x: S| drive.map_or(x, |f| x - f);
         match self {
@@ -73,7 +75,7 @@ impl Law {
         }
     }
 
-    /// The value of `drive` at which a driven law holds; an angle as its principal value.
+    /// Returns the value of `drive` at which a driven law holds; an angle as its principal value.
     pub fn shown(self, i: &Frame<f64>, j: &Frame<f64>) -> f64 {
         let at = |drive: f64| self.value(i, j, Some(drive));
         if self.is_length() {
@@ -84,7 +86,7 @@ impl Law {
         }
     }
 
-    /// The name Adams gives such an equation, for example `Zi.Xj`.
+    /// Returns the name that Adams gives the equation, for example `Zi.Xj`.
     pub fn name(self) -> String {
         let axis = |k: usize| ["X", "Y", "Z"][k];
         match self {
@@ -97,7 +99,7 @@ impl Law {
         }
     }
 
-    /// Whether the value is a length (or else a pure number).
+    /// Returns whether the value is a length (or else a pure number).
     pub fn is_length(self) -> bool {
         matches!(self, Law::Offset(_) | Law::Along(_))
     }

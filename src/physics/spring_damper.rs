@@ -8,20 +8,21 @@
 //! | preload | f₀ | FORCE, TORQUE | force, torque | 0 |
 //!
 //! ```text
-//! translation   F = −c ḋ − k (d − l₀) + f₀      on I along the unit vector from J to I; d their distance
-//! rotation      T = −c θ̇ − k (θ − l₀) + f₀      on I about z_J; θ the angle of I about z_J, turns counted
+//! translation   F = −c ḋ − k (d − l₀) + f₀    on I along the unit vector from J to I; d: distance
+//! rotation      T = −c θ̇ − k (θ − l₀) + f₀    on I about z_J; θ: its angle about z_J, turns counted
 //! ```
 //!
-//! Singular where I and J coincide in translation: the direction, and with it the force, is zero there.
+//! Singular where I and J coincide in translation: the direction, and with it the force, is zero
+//! there.
 
 use super::action::{Action, line_of_sight};
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 
-/// Its numbers.
+/// The parameters of a spring–damper.
 #[derive(Clone, Copy, Debug)]
 pub struct SpringDamper {
-    /// about z_J rather than along the line
+    /// whether it acts about z_J rather than along the line
     pub rotational: bool,
     /// k
     pub stiffness: f64,
@@ -40,7 +41,8 @@ impl SpringDamper {
             - (x - S::constant(self.free)).scale(self.stiffness)
     }
 
-    /// On I. `angle`: of I about z_J with its turns, used by the rotational one.
+    /// Returns the action on I. `angle`: of I about z_J with its turns, in rad, for the rotational
+    /// one.
     pub fn action<S: Scalar>(
         &self,
         i: &MarkerState<S>,

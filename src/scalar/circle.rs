@@ -1,33 +1,37 @@
 //! Sine and cosine of plain numbers.
 //!
-//! Our own, because a mechanism asks for little else: the library of the system takes four times as long (it saves and restores the
-//! rounding mode at each call), and its last bits differ from one system to the next. Here they are the same everywhere.
+//! Our own, because a mechanism evaluates little else: the library of the system takes four times
+//! as long (it saves and restores the rounding mode at each call), and its last bits differ from
+//! one system to the next. Here they are the same everywhere.
 //!
 //! ```text
-//! x = n π/2 + r + ρ,  |r| ≤ π/4         π/2 in three parts, of which two times n are exact; ρ: what r lacks
+//! x = n π/2 + r + ρ,  |r| ≤ π/4     π/2 in three parts, whose products with n are exact for two;
+//!                                   ρ: the part of the remainder that r cannot hold
 //! sin(r + ρ) = r + (r z S(z) + ρ (1 − z/2))         z = r²
 //! cos(r + ρ) = 1 − z/2 + (z² C(z) − r ρ)
 //! ```
 //!
-//! S and C are minimax polynomials, off by 3e-18 and 5e-20 of the result. Results are off by 0.8 units of the last digit at most, and are
-//! relative to the result also where it is nearly zero: `|x| ≤` [`FARTHEST`] keeps n small enough for that. Beyond it the library answers.
+//! S and C are minimax polynomials, with relative errors of 3e-18 and 5e-20. Results are off by at
+//! most 0.8 units in the last place, even where they are nearly zero: `|x| ≤` [`LARGEST_REDUCED`]
+//! keeps n small enough for that. Beyond it the library of the system answers.
 
 use std::f64::consts::FRAC_2_PI;
 
-/// Largest angle that is reduced here: n has thirteen bits, and r all digits even at the doubles nearest to multiples of π/2.
-const FARTHEST: f64 = 12_000.0;
+/// Largest angle, in rad, that is reduced here: n has thirteen bits, and r all its digits even at
+/// the doubles nearest to multiples of π/2.
+const LARGEST_REDUCED: f64 = 12_000.0;
 
-/// A number that pushes all digits behind the point out: the sum ends with the bits of the whole part.
-const WHOLE: f64 = 6_755_399_441_055_744.0;
+/// 1.5 · 2⁵²: added to a number it rounds it to a whole one, whose bits end the sum.
+const ROUND_TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// π/2: 33 bits, the next 33, the rest.
-const QUARTER: [f64; 3] = [
+/// π/2 in three parts: 33 bits, the next 33, the rest.
+const HALF_PI_PARTS: [f64; 3] = [
     1.570_796_326_734_125_6,
     6.077_100_506_303_966e-11,
     2.022_266_248_795_950_6e-21,
 ];
 
-/// (sin r/r − 1)/z over z
+/// Coefficients of S: (sin r/r − 1)/z over z.
 const S: [f64; 6] = [
     -0.166_666_666_666_666_32,
     0.008_333_333_333_322_41,
@@ -37,7 +41,7 @@ const S: [f64; 6] = [
     1.589_678_607_597_384_3e-10,
 ];
 
-/// (cos r − 1 + z/2)/z² over z
+/// Coefficients of C: (cos r − 1 + z/2)/z² over z.
 const C: [f64; 6] = [
     0.041_666_666_666_666_6,
     -0.001_388_888_888_887_412,
@@ -47,13 +51,17 @@ const C: [f64; 6] = [
     -1.135_964_125_505_546_6e-11,
 ];
 
-/// Below this the sine is its angle, signed zeros included.
-const SMALL: f64 = 1e-8;
+/// Angle, in rad, below which the sine is the angle itself, signed zeros included.
+const SINE_IS_ANGLE: f64 = 1e-8;
 
-/// Sine and cosine of an angle in radians.
+/// Returns sine and cosine of an angle in radians.
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    if x.abs() <= FARTHEST { near(x) } else { far(x) }
+    if x.abs() <= LARGEST_REDUCED {
+        near(x)
+    } else {
+        far(x)
+    }
 }
 
 #[cold]
@@ -61,11 +69,12 @@ fn far(x: f64) -> (f64, f64) {
     f64::sin_cos(x)
 }
 
-/// Sines and cosines of several angles: side by side where all are near, to the same bits.
+/// Returns sines and cosines of several angles, in parallel where all are small enough, with the
+/// same bits.
 #[inline(always)]
 pub fn of_several<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
-    if x.iter().all(|x| x.abs() <= FARTHEST) {
+    if x.iter().all(|x| x.abs() <= LARGEST_REDUCED) {
         for k in 0..N {
             (sines[k], cosines[k]) = near(x[k]);
         }
@@ -77,13 +86,13 @@ pub fn of_several<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
-/// Without any branch, so that several run side by side.
+/// Reduces and evaluates without any branch, so that several angles run in parallel.
 #[inline(always)]
 fn near(x: f64) -> (f64, f64) {
-    let shifted = x * FRAC_2_PI + WHOLE;
-    let n = shifted - WHOLE;
-    let [first, second, rest] = QUARTER;
-    // exact; the difference with what its rounding loses
+    let shifted = x * FRAC_2_PI + ROUND_TO_WHOLE;
+    let n = shifted - ROUND_TO_WHOLE;
+    let [first, second, rest] = HALF_PI_PARTS;
+    // the product with the first part is exact; the other differences keep their rounding errors
     let (a, b) = (x - n * first, n * second);
     let difference = a - b;
     let part = difference - a;
@@ -100,9 +109,9 @@ fn near(x: f64) -> (f64, f64) {
     let c = (C[0] + z * C[1]) + z2 * ((C[2] + z * C[3]) + z2 * (C[4] + z * C[5]));
     let most = 1.0 - half;
     let cosine = most + (((1.0 - most) - half) + (z2 * c - r * rho));
-    let sine = if x.abs() < SMALL { x } else { sine };
+    let sine = if x.abs() < SINE_IS_ANGLE { x } else { sine };
 
-    // quarter turns: exchanged where odd, signs by the second bit
+    // quarter turns: exchange sine and cosine where odd, set signs by the second bit
     let quarters = shifted.to_bits();
     let odd = 0u64.wrapping_sub(quarters & 1);
     let (sine, cosine) = (sine.to_bits(), cosine.to_bits());

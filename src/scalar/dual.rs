@@ -4,7 +4,8 @@ use super::{Mask, Scalar, elementary_functions, operators};
 
 /// `re + Σ eps[k] εₖ` with εᵢ εⱼ = 0: a value and `N` partial derivatives.
 ///
-/// Generic over the number it is made of, so that a dual of jets or of recorded nodes is the same code.
+/// Generic over its components, so that a dual of jets or of recorded nodes needs no code of its
+/// own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<const N: usize, S = f64> {
     /// value
@@ -14,7 +15,7 @@ pub struct Dual<const N: usize, S = f64> {
 }
 
 impl<const N: usize, S: Scalar> Dual<N, S> {
-    /// The number that varies along direction `k` with slope one.
+    /// Creates the variable of direction `k`: slope one along it, zero along the others.
     #[inline(always)]
     pub fn variable(re: S, k: usize) -> Self {
         let mut eps = [S::zero(); N];
@@ -32,7 +33,7 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
     }
     #[inline(always)]
     fn map2(self, other: Self, re: S, f: impl Fn(S, S) -> S) -> Self {
-        // loops, not functions of arrays: those are not always compiled in place
+        // loops, not functions of arrays: those are not always inlined
         let mut eps = self.eps;
         for (x, y) in eps.iter_mut().zip(other.eps) {
             *x = f(*x, y);

@@ -1,29 +1,31 @@
-//! A number that is the germ of a function on one side of a point: what the function is like just beside it.
+//! The germ of a function on one side of a point: its behaviour just beside that point.
 //!
 //! ```text
 //! f(t₀ ± τ) = Σ cₑ τᵉ + O(τᵇ)      τ > 0 small
 //! ```
 //!
-//! Exponents need not be whole: `p**1.5` at p = 0 is `τ^1.5`, and `1/p` is `τ⁻¹`. Comparisons are decided by the leading term
-//! of the difference: just beside a switching point it is known which side is taken. So any formula gives its one-sided limits
-//! and derivatives by running once, and two runs, to the left and to the right, tell what jumps, exactly.
+//! Exponents need not be integers: `p**1.5` at p = 0 is `τ^1.5`, and `1/p` is `τ⁻¹`. Comparisons
+//! are decided by the leading term of the difference: just beside a switching point it is known
+//! which side is taken. So any formula gives its one-sided limits and derivatives by running once,
+//! and two runs, to the left and to the right, determine its jumps exactly.
 //!
-//! Every coefficient carries an estimate of its rounding error; one that is not larger counts as zero.
+//! Every coefficient carries an estimate of its rounding error; one that is not clearly larger
+//! counts as zero.
 
 use super::{Scalar, Table};
 use std::sync::Arc;
 
-/// Derivatives below this order are known.
+/// Number of derivatives that are known, the value included.
 pub const ORDERS: usize = 6;
 
-/// Terms from here on are dropped.
-const END: f64 = ORDERS as f64;
-/// Most terms.
-const MOST: usize = 24;
-/// Exponents closer than this are equal.
-const SAME: f64 = 1e-9;
-/// A coefficient that is not larger than so many times its estimated error is zero.
-const SURELY: f64 = 16.0;
+/// Exponent from which on terms are dropped.
+const END_EXPONENT: f64 = ORDERS as f64;
+/// Most terms of a germ.
+const MOST_TERMS: usize = 24;
+/// Difference below which two exponents are equal.
+const SAME_EXPONENT: f64 = 1e-9;
+/// Ratio of a coefficient to its estimated rounding error up to which it counts as zero.
+const SIGNIFICANT_RATIO: f64 = 16.0;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Term {
@@ -37,18 +39,18 @@ struct Term {
 #[derive(Clone, Copy, Debug)]
 pub struct Germ {
     len: usize,
-    /// by increasing exponent
-    terms: [Term; MOST],
-    /// all terms with exponents below this one are known; −∞ where there is no function
+    /// terms by increasing exponent; the first `n` count
+    terms: [Term; MOST_TERMS],
+    /// exponent below which all terms are known; −∞ where there is no function
     below: f64,
 }
 
 impl Germ {
-    /// Nothing is known: there is no value.
+    /// Returns the germ of no function: nothing is known of it.
     fn undefined() -> Self {
         Self {
             len: 0,
-            terms: [Term::default(); MOST],
+            terms: [Term::default(); MOST_TERMS],
             below: f64::NEG_INFINITY,
         }
     }
@@ -69,14 +71,14 @@ impl Germ {
         germ
     }
 
-    /// The line through `at` with this slope in τ: what a variable is just beside a point.
+    /// Returns the line through `at` with this slope in τ: a variable just beside a point.
     pub fn line(at: f64, slope: f64) -> Self {
         let mut germ = Self::of_term(0.0, at, at.abs() * f64::EPSILON);
         germ.push(1.0, slope, 0.0);
         germ
     }
 
-    /// Whether there is a function at all, finite or not.
+    /// Returns whether there is a function at all, finite or not.
     pub fn is_defined(&self) -> bool {
         0.0 < self.below
     }
@@ -87,25 +89,25 @@ impl Germ {
 
     /// Adds a term.
     fn push(&mut self, exponent: f64, coefficient: f64, noise: f64) {
-        if exponent >= END - SAME {
-            self.below = self.below.min(END);
+        if exponent >= END_EXPONENT - SAME_EXPONENT {
+            self.below = self.below.min(END_EXPONENT);
             return;
         }
         let at = self
             .terms()
-            .partition_point(|t| t.exponent < exponent - SAME);
-        if at < self.len && (self.terms[at].exponent - exponent).abs() <= SAME {
+            .partition_point(|t| t.exponent < exponent - SAME_EXPONENT);
+        if at < self.len && (self.terms[at].exponent - exponent).abs() <= SAME_EXPONENT {
             let term = &mut self.terms[at];
             let sum = term.coefficient + coefficient;
             term.noise += noise + sum.abs() * f64::EPSILON;
             term.coefficient = sum;
             return;
         }
-        if at >= MOST {
+        if at >= MOST_TERMS {
             self.below = self.below.min(exponent);
             return;
         }
-        if self.len == MOST {
+        if self.len == MOST_TERMS {
             self.len -= 1;
             self.below = self.below.min(self.terms[self.len].exponent);
         }
@@ -118,32 +120,34 @@ impl Germ {
         self.len += 1;
     }
 
-    /// Noise becomes zero; terms that are not known any more go.
+    /// Sets insignificant coefficients to zero and drops terms that are no longer known.
     fn settled(mut self) -> Self {
         let below = self.below;
-        self.len = self.terms().partition_point(|t| t.exponent < below - SAME);
+        self.len = self
+            .terms()
+            .partition_point(|t| t.exponent < below - SAME_EXPONENT);
         for term in &mut self.terms[..self.len] {
             if !term.coefficient.is_finite() || !term.noise.is_finite() {
                 return Self::undefined();
             }
-            if term.coefficient.abs() <= SURELY * term.noise {
+            if term.coefficient.abs() <= SIGNIFICANT_RATIO * term.noise {
                 term.coefficient = 0.0;
             }
         }
         self
     }
 
-    /// The first term that is not zero.
+    /// Returns the first term that is not zero.
     fn leading(&self) -> Option<Term> {
         self.terms().iter().copied().find(|t| t.coefficient != 0.0)
     }
 
-    /// Exponent of the leading term, or where the unknown begins.
+    /// Returns the exponent of the leading term, or the one from which nothing is known.
     fn lead(&self) -> f64 {
         self.leading().map_or(self.below, |t| t.exponent)
     }
 
-    /// Sign just beside the point; `None` where there is no function.
+    /// Returns the sign just beside the point, or `None` where there is no function.
     fn sign(&self) -> Option<f64> {
         if self.below == f64::NEG_INFINITY {
             return None;
@@ -151,35 +155,36 @@ impl Germ {
         Some(self.leading().map_or(0.0, |t| t.coefficient.signum()))
     }
 
-    /// Coefficient and noise of τ⁰.
+    /// Returns coefficient and rounding error of τ⁰.
     fn constant_term(&self) -> (f64, f64) {
         self.terms()
             .iter()
-            .find(|t| t.exponent.abs() <= SAME)
+            .find(|t| t.exponent.abs() <= SAME_EXPONENT)
             .map_or((0.0, 0.0), |t| (t.coefficient, t.noise))
     }
 
-    /// The limit at the point: infinite at a pole, NaN where there is no function.
+    /// Returns the limit at the point: infinite at a pole, NaN where there is no function.
     pub fn limit(&self) -> f64 {
         self.derivative_at(0).0
     }
 
-    /// One-sided derivative of order `k` with respect to τ, and an estimate of its rounding error. Infinite where it grows without
-    /// bound, NaN where it is not known.
+    /// Returns the one-sided derivative of order `k` with respect to τ, and an estimate of its
+    /// rounding error. The derivative is infinite where it grows without bound, NaN where it is not
+    /// known.
     pub fn derivative_at(&self, k: usize) -> (f64, f64) {
         let order = k as f64;
         let mut found = (0.0, 0.0);
         let falling = |e: f64| (0..k).map(|j| e - j as f64).product::<f64>();
         for term in self.terms() {
-            let whole = (term.exponent - term.exponent.round()).abs() <= SAME;
-            if (term.exponent - order).abs() <= SAME {
+            let whole = (term.exponent - term.exponent.round()).abs() <= SAME_EXPONENT;
+            if (term.exponent - order).abs() <= SAME_EXPONENT {
                 found = (
                     term.coefficient * falling(order),
                     term.noise * falling(order),
                 );
             } else if term.exponent < order
                 && term.coefficient != 0.0
-                && (!whole || term.exponent < -SAME)
+                && (!whole || term.exponent < -SAME_EXPONENT)
             {
                 return (
                     (term.coefficient * falling(term.exponent)) * f64::INFINITY,
@@ -187,7 +192,7 @@ impl Germ {
                 );
             }
         }
-        if order >= self.below - SAME {
+        if order >= self.below - SAME_EXPONENT {
             return (f64::NAN, 0.0);
         }
         found
@@ -228,8 +233,8 @@ impl Germ {
             term.exponent += by;
         }
         self.below += by;
-        if self.below.is_nan() || self.below > END && self.below.is_finite() {
-            self.below = END;
+        if self.below.is_nan() || self.below > END_EXPONENT && self.below.is_finite() {
+            self.below = END_EXPONENT;
         }
         self.settled()
     }
@@ -245,16 +250,17 @@ impl Germ {
         self.settled()
     }
 
-    /// `Σ fₖ rᵏ` with `r` = this without its limit; `f` yields the Taylor coefficients at the limit.
+    /// Returns `Σ fₖ rᵏ` with `r` = this germ without its limit; `f(k, limit)` yields the Taylor
+    /// coefficients.
     fn compose(self, f: impl Fn(usize, f64) -> f64) -> Self {
-        if !self.is_defined() || self.lead() < -SAME {
+        if !self.is_defined() || self.lead() < -SAME_EXPONENT {
             return Self::undefined();
         }
         let (at, noise) = self.constant_term();
         let mut r = self;
         if let Some(t) = r.terms[..r.len]
             .iter_mut()
-            .find(|t| t.exponent.abs() <= SAME)
+            .find(|t| t.exponent.abs() <= SAME_EXPONENT)
         {
             t.coefficient = 0.0;
         }
@@ -270,7 +276,7 @@ impl Germ {
         }
         // terms of rᵏ begin at k·lead
         let lead = r.lead();
-        let last = ((END / lead).ceil() as usize).clamp(1, 2 * ORDERS);
+        let last = ((END_EXPONENT / lead).ceil() as usize).clamp(1, 2 * ORDERS);
         let mut sum = term(last);
         for k in (0..last).rev() {
             sum = sum.product(r).sum(term(k), 1.0);
@@ -279,7 +285,7 @@ impl Germ {
         sum.settled()
     }
 
-    /// Power with a constant exponent; a negative base needs a whole one.
+    /// Returns the power with a constant exponent; a negative base needs an integer one.
     fn power(self, e: f64) -> Self {
         let Some(sign) = self.sign() else {
             return Self::undefined();
@@ -304,8 +310,8 @@ impl Germ {
         let (c, alpha) = (first.coefficient, first.exponent);
         let mut u = self;
         for t in &mut u.terms[..u.len] {
-            // what lies before the leading term is noise
-            if t.exponent <= alpha + SAME {
+            // everything before the leading term is rounding
+            if t.exponent <= alpha + SAME_EXPONENT {
                 (t.coefficient, t.noise) = (0.0, 0.0);
             }
         }
@@ -313,7 +319,7 @@ impl Germ {
         let one = Self::of_term(0.0, 1.0, 0.0);
         let (mut sum, mut term, mut k) = (one, one, 0.0);
         let lead = u.lead();
-        while u.leading().is_some() && k < 2.0 * END && k * lead < END {
+        while u.leading().is_some() && k < 2.0 * END_EXPONENT && k * lead < END_EXPONENT {
             term = term.product(u).scaled((e - k) / (k + 1.0));
             sum = sum.sum(term, 1.0);
             k += 1.0;
@@ -324,7 +330,7 @@ impl Germ {
         let complete = e == k && e > 0.0 || u.leading().is_none();
         sum.below = sum.below.min(u.below);
         if !complete {
-            sum.below = sum.below.min((k + 1.0) * lead).min(END);
+            sum.below = sum.below.min((k + 1.0) * lead).min(END_EXPONENT);
         }
         let outer = c.powf(e);
         let mut result = sum.scaled(outer);
@@ -338,7 +344,11 @@ impl Germ {
     fn derivative(self) -> Self {
         let mut germ = Self::zero_germ();
         germ.below = self.below - 1.0;
-        for t in self.terms().iter().filter(|t| t.exponent.abs() > SAME) {
+        for t in self
+            .terms()
+            .iter()
+            .filter(|t| t.exponent.abs() > SAME_EXPONENT)
+        {
             germ.push(
                 t.exponent - 1.0,
                 t.coefficient * t.exponent,
@@ -348,26 +358,26 @@ impl Germ {
         germ.settled()
     }
 
-    /// The function with this derivative and limit.
+    /// Returns the function with this derivative and this limit.
     fn integral(self, limit: f64, noise: f64) -> Self {
         let mut germ = Self::of_term(0.0, limit, noise + limit.abs() * f64::EPSILON);
         germ.below = germ.below.min(self.below + 1.0);
         for t in self.terms() {
             let e = t.exponent + 1.0;
-            if t.coefficient != 0.0 && e.abs() <= SAME {
-                // a logarithm
+            if t.coefficient != 0.0 && e.abs() <= SAME_EXPONENT {
+                // the integral of τ⁻¹ is a logarithm, which is no germ
                 return Self::undefined();
             }
-            if t.coefficient != 0.0 || e.abs() > SAME {
+            if t.coefficient != 0.0 || e.abs() > SAME_EXPONENT {
                 germ.push(e, t.coefficient / e, t.noise / e.abs());
             }
         }
         germ.settled()
     }
 
-    /// A function by its value at the limit and its derivative as a formula.
+    /// Returns a function from its value at the limit and its derivative as a formula.
     fn through_derivative(self, value: impl Fn(f64) -> f64, slope: impl Fn(Self) -> Self) -> Self {
-        if !self.is_defined() || self.lead() < -SAME {
+        if !self.is_defined() || self.lead() < -SAME_EXPONENT {
             return Self::undefined();
         }
         let (at, noise) = self.constant_term();
@@ -384,30 +394,31 @@ impl Germ {
         slope(self).product(rate).integral(value(at), noise)
     }
 
-    /// Whether the absolute value is at most 1 beside the point.
+    /// Returns whether the absolute value is at most 1 beside the point.
     fn is_cosine(self) -> bool {
         (Self::one() - self * self).sign().is_some_and(|s| s >= 0.0)
     }
 
-    /// The limit as a whole number, if it is one as far as known, and the sign of what is left.
+    /// Returns the limit rounded to an integer, and, if the limit is an integer as far as known,
+    /// the sign of the rest.
     fn whole(&self) -> (f64, Option<f64>) {
         let (c, noise) = self.constant_term();
         let n = c.round();
-        if (c - n).abs() > (SURELY * noise).max(4.0 * f64::EPSILON * c.abs()) {
+        if (c - n).abs() > (SIGNIFICANT_RATIO * noise).max(4.0 * f64::EPSILON * c.abs()) {
             return (c, None);
         }
         let mut rest = *self;
         for t in &mut rest.terms[..rest.len] {
-            if t.exponent.abs() <= SAME {
+            if t.exponent.abs() <= SAME_EXPONENT {
                 t.coefficient = 0.0;
             }
         }
         (n, Some(rest.sign().unwrap_or(0.0)))
     }
 
-    /// A rounding: `of` for what is not whole, `beside` for just beside a whole number.
+    /// Rounds: by `of` where the limit is not an integer, by `beside` just beside an integer.
     fn rounded(self, of: impl Fn(f64) -> f64, beside: impl Fn(f64, f64) -> f64) -> Self {
-        if !self.is_defined() || self.lead() < -SAME {
+        if !self.is_defined() || self.lead() < -SAME_EXPONENT {
             return Self::undefined();
         }
         let value = match self.whole() {
@@ -463,7 +474,7 @@ fn factorial(k: usize) -> f64 {
     (1..=k).map(|j| j as f64).product()
 }
 
-/// The `k`-th of four derivatives that come again and again.
+/// Returns the `k`-th of four derivatives that repeat in turn.
 fn turning(k: usize, four: [f64; 4]) -> f64 {
     four[k % 4] / factorial(k)
 }
@@ -483,7 +494,7 @@ impl Scalar for Germ {
             && self
                 .terms()
                 .iter()
-                .all(|t| t.coefficient == 0.0 || t.exponent.abs() <= SAME);
+                .all(|t| t.coefficient == 0.0 || t.exponent.abs() <= SAME_EXPONENT);
         constant.then(|| self.constant_term().0)
     }
     fn lt(self, other: Self) -> bool {
@@ -540,7 +551,7 @@ impl Scalar for Germ {
         let lead = y.lead().min(x.lead());
         let part = |g: &Self| {
             g.leading()
-                .filter(|t| t.exponent <= lead + SAME)
+                .filter(|t| t.exponent <= lead + SAME_EXPONENT)
                 .map_or(0.0, |t| t.coefficient)
         };
         let (y0, x0) = (part(&y), part(&x));
@@ -622,18 +633,20 @@ impl Scalar for Germ {
         self - (self / other).trunc() * other
     }
     fn lookup(self, table: &Arc<dyn Table>, order: u32) -> Self {
-        if !self.is_defined() || self.lead() < -SAME {
+        if !self.is_defined() || self.lead() < -SAME_EXPONENT {
             return Self::undefined();
         }
         let (x, noise) = self.constant_term();
         let knots = table.knots();
         let right = knots.partition_point(|&k| k < x);
-        let near = |k: &&f64| (x - **k).abs() <= (SURELY * noise).max(4.0 * f64::EPSILON * x.abs());
+        let near = |k: &&f64| {
+            (x - **k).abs() <= (SIGNIFICANT_RATIO * noise).max(4.0 * f64::EPSILON * x.abs())
+        };
         let around = &knots[right.saturating_sub(1)..(right + 1).min(knots.len())];
         let x = around.iter().find(near).copied().unwrap_or(x);
         let mut rest = self;
         for t in &mut rest.terms[..rest.len] {
-            if t.exponent.abs() <= SAME {
+            if t.exponent.abs() <= SAME_EXPONENT {
                 t.coefficient = 0.0;
             }
         }

@@ -1,14 +1,16 @@
-//! A number that is only known to lie between two others.
+//! An interval: a number that is only known to lie between two bounds.
 //!
 //! ```text
 //! f([a, b]) ⊇ { f(x) : a ≤ x ≤ b }
 //! ```
 //!
-//! Evaluating a formula over an interval of its argument bounds all its values there: what is not zero in the bound is zero nowhere in the
-//! interval. The bound is as wide as the true range, or wider where an argument is used twice; it shrinks with the interval. Roundings are not
-//! followed: a bound may miss the last place.
+//! Evaluating a formula over an interval of its argument bounds all its values there: where the
+//! bound excludes zero the formula has no root. The bound is as wide as the true range, or wider
+//! where an argument is used twice; it shrinks with the interval. Rounding errors are not included:
+//! a bound may be off in the last place.
 //!
-//! Outside a domain there is no value: the part of an argument inside it counts, and where there is none the result is NaN.
+//! Outside the domain of a function there is no value: only the part of an argument inside the
+//! domain counts, and where there is none the result is NaN.
 //!
 //! Source: Moore, Kearfott, Cloud, Introduction to Interval Analysis, SIAM 2009, chapters 2 and 5.
 
@@ -16,7 +18,7 @@ use super::{Mask, Scalar, Table, operators};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// All numbers from `lo` to `hi`; both NaN: none.
+/// All numbers from `lo` to `hi`; both are NaN where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// least
@@ -32,7 +34,7 @@ pub enum Answer {
     Yes,
     /// true nowhere
     No,
-    /// true in some places, as far as is known
+    /// true in some places, or not decided by the bounds
     Perhaps,
 }
 
@@ -66,18 +68,18 @@ impl Mask for Answer {
 }
 
 impl Interval {
-    /// No value.
+    /// The interval of no value.
     const NONE: Self = Self {
         lo: f64::NAN,
         hi: f64::NAN,
     };
-    /// Any value.
+    /// The interval of all values.
     const ANY: Self = Self {
         lo: f64::NEG_INFINITY,
         hi: f64::INFINITY,
     };
 
-    /// All numbers between two, in any order.
+    /// Returns the interval between two numbers, in any order.
     pub fn between(a: f64, b: f64) -> Self {
         if a.is_nan() || b.is_nan() {
             return Self::ANY;
@@ -92,7 +94,7 @@ impl Interval {
         self.lo.is_nan()
     }
 
-    /// The least interval around both.
+    /// Returns the smallest interval around both.
     fn hull(self, other: Self) -> Self {
         // `min` and `max` drop NaN
         Self {
@@ -101,7 +103,7 @@ impl Interval {
         }
     }
 
-    /// Image under a function that grows, or falls, everywhere.
+    /// Returns the image under a monotonic function.
     fn monotone(self, f: impl Fn(f64) -> f64) -> Self {
         if self.is_none() {
             return self;
@@ -109,7 +111,7 @@ impl Interval {
         Self::between(f(self.lo), f(self.hi))
     }
 
-    /// Values at all corners of the rectangle of two intervals.
+    /// Returns the interval of the values at all corners of the rectangle of two intervals.
     fn corners(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         if self.is_none() || other.is_none() {
             return Self::NONE;
@@ -118,7 +120,7 @@ impl Interval {
         a.hull(b)
     }
 
-    /// The part inside a domain.
+    /// Returns the part inside a domain.
     fn inside(self, lo: f64, hi: f64) -> Self {
         if self.is_none() || self.hi < lo || hi < self.lo {
             return Self::NONE;
@@ -133,7 +135,8 @@ impl Interval {
         self.lo <= x && x <= self.hi
     }
 
-    /// Image under a wave between −1 and 1 that has its crests at `crest` + 2πk and its troughs half a turn further.
+    /// Returns the image under a wave between −1 and 1 that has its crests at `crest` + 2πk and its
+    /// troughs half a turn further.
     fn wave(self, crest: f64, f: impl Fn(f64) -> f64) -> Self {
         if self.is_none() {
             return self;
@@ -143,7 +146,7 @@ impl Interval {
             return Self::between(-1.0, 1.0);
         }
         let mut image = self.monotone(f);
-        // whether a whole number of turns from `at` lies inside
+        // whether `at` plus a whole number of turns lies inside
         let reaches = |at: f64| ((self.lo - at) / TAU).ceil() * TAU + at <= self.hi;
         if reaches(crest) {
             image.hi = 1.0;
@@ -293,7 +296,7 @@ impl Scalar for Interval {
     }
     fn powi(self, n: i32) -> Self {
         if n < 0 {
-            // not −n, which the least number has not
+            // not −n, which the smallest integer does not have
             return Self::one() / (self.powi(-(n + 1)) * self);
         }
         let base = if n % 2 == 0 { self.abs() } else { self };
@@ -332,7 +335,7 @@ impl Scalar for Interval {
         if times.known().is_some_and(f64::is_finite) {
             return self.corners(b, |x, m| x % m);
         }
-        // smaller than the divisor, and no larger than the number, with its sign
+        // smaller than the divisor and no larger than the number, with its sign
         let most = b.lo.abs().max(b.hi.abs());
         Self::between(self.lo.min(0.0).max(-most), self.hi.max(0.0).min(most))
     }

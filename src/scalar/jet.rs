@@ -16,7 +16,7 @@ pub struct Jet<S = f64> {
 }
 
 impl<S: Scalar> Jet<S> {
-    /// The variable itself: slope one, no curvature.
+    /// Creates the variable itself: slope one, no curvature.
     #[inline(always)]
     pub fn variable(value: S) -> Self {
         Self {
@@ -25,7 +25,7 @@ impl<S: Scalar> Jet<S> {
             second: S::zero(),
         }
     }
-    /// From a value and its two derivatives.
+    /// Creates a jet from a value and its two derivatives.
     #[inline(always)]
     pub fn new(value: S, first: S, second: S) -> Self {
         Self {

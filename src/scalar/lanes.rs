@@ -1,4 +1,4 @@
-//! Several samples of one number, evaluated side by side.
+//! A batch: several samples of one number, evaluated side by side.
 
 use super::circle;
 use super::{Mask, Scalar, operators};
@@ -69,7 +69,7 @@ impl<const N: usize> Lanes<N> {
 
 operators!([const N: usize] Lanes<N>);
 
-/// Functions of one number that each lane computes for itself.
+/// Implements functions of one number lane by lane.
 macro_rules! lane_by_lane {
     ($($name:ident)*) => { $(
         #[inline(always)]

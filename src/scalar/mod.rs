@@ -1,11 +1,13 @@
-//! Numbers that physics is written in.
+//! The numbers that formulas are written in.
 //!
-//! Every formula of the crate is generic over [`Scalar`]: a plain `f64` gives the value, a [`Dual`] the derivatives,
-//! a [`Jet`] the rates in time, [`Lanes`] a batch of samples, a [`Germ`] what
-//! the formula is like just beside a point. There is no second copy of a formula to keep in step.
+//! Every formula of the crate is generic over [`Scalar`]: a plain `f64` gives the value, a [`Dual`]
+//! the derivatives, a [`Jet`] the rates in time, [`Lanes`] a batch of samples, an [`Interval`]
+//! bounds, a [`Germ`] the behaviour just beside a point. There is no second copy of a formula to
+//! keep in step.
 //!
-//! A formula that has cases asks for a [`Mask`] and selects; it never looks at the number. So the same lines run where
-//! a "number" is many samples at once, or a node of a program that is being recorded.
+//! A formula with cases compares, which gives a [`Mask`], and selects; it never inspects the
+//! number. So the same lines run where a "number" is many samples at once, or a node of a program
+//! that is being recorded.
 
 mod circle;
 mod dual;
@@ -25,15 +27,15 @@ pub use power::Exponent;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// The answer to a comparison: one truth value, one per lane, or a recorded condition.
+/// The result of a comparison: one truth value, one per lane, or a recorded condition.
 pub trait Mask: Copy + Debug {
-    /// True where both are.
+    /// Returns true where both are true.
     fn and(self, other: Self) -> Self;
-    /// True where either is.
+    /// Returns true where either is true.
     fn or(self, other: Self) -> Self;
-    /// True where this is not.
+    /// Returns true where this is false.
     fn not(self) -> Self;
-    /// The answer, when it is the same everywhere and known now.
+    /// Returns the truth value, if it is the same everywhere and known now.
     fn known(self) -> Option<bool>;
 }
 
@@ -52,27 +54,27 @@ impl Mask for bool {
     }
 }
 
-/// A table that a number can be looked up in: a curve through data with its derivatives.
+/// A table in which a number can be looked up: a curve through data, with its derivatives.
 ///
-/// `Scalar::lookup` asks for `order` 0 and, for derivatives, for the next higher orders.
+/// [`Scalar::lookup`] asks for `order` 0 and, for derivatives, for the next higher orders.
 pub trait Table: Debug + Send + Sync {
-    /// The `order`-th derivative at `x`.
+    /// Returns the `order`-th derivative at `x`.
     fn at(&self, x: f64, order: u32) -> f64;
-    /// Where pieces meet, increasing.
+    /// Returns the places where pieces meet, increasing.
     fn knots(&self) -> &[f64] {
         &[]
     }
-    /// The `order`-th derivative at `x` of the piece just above or below it.
+    /// Returns the `order`-th derivative at `x` of the piece just above or below it.
     fn beside(&self, x: f64, above: bool, order: u32) -> f64 {
         let _ = above;
         self.at(x, order)
     }
 }
 
-/// A number: `f64`, or something that carries more than a value and obeys the same rules.
+/// A number: `f64`, or a type that carries more than a value and obeys the same rules.
 ///
-/// Comparisons look at the value part only. `sqrt`, `ln` and the like follow IEEE: outside their domain the value is NaN,
-/// never a panic.
+/// Comparisons depend on the value part only. `sqrt`, `ln` and the like follow IEEE: outside their
+/// domain the value is NaN, never a panic.
 pub trait Scalar:
     Copy
     + Debug
@@ -84,38 +86,41 @@ pub trait Scalar:
     + AddAssign
     + SubAssign
 {
-    /// What a comparison yields.
+    /// The result of a comparison.
     type Mask: Mask;
 
-    /// A number that depends on nothing.
+    /// Creates a number that depends on nothing.
     fn constant(x: f64) -> Self;
-    /// Zero.
+    /// Returns zero.
     #[inline(always)]
     fn zero() -> Self {
         Self::constant(0.0)
     }
-    /// One.
+    /// Returns one.
     #[inline(always)]
     fn one() -> Self {
         Self::constant(1.0)
     }
-    /// The number, when it is a constant and known now. Physics may leave out what is a known zero.
+    /// Returns the number if it is a constant known now. Formulas may leave out terms that are
+    /// known to be zero.
     fn known(&self) -> Option<f64>;
-    /// Whether the number is known to be zero, with all its derivatives.
+    /// Returns whether the number is known to be zero, with all its derivatives.
     #[inline(always)]
     fn is_known_zero(&self) -> bool {
         self.known() == Some(0.0)
     }
 
-    /// `self < other`
+    /// Compares `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`
+    /// Compares `self <= other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// `self == other`
+    /// Compares `self == other`.
     fn same(self, other: Self) -> Self::Mask;
-    /// `yes` where the mask is true, `no` elsewhere. Both have been evaluated; the other one is dropped, NaN included.
+    /// Returns `yes` where the mask is true, `no` elsewhere. Both have been evaluated; the other
+    /// one is dropped, NaN included.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// As [`Scalar::select`], evaluating only what is needed where the answer is the same everywhere.
+    /// Selects like [`Scalar::select`], but evaluates only one side where the mask is the same
+    /// everywhere.
     #[inline(always)]
     fn choose(mask: Self::Mask, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
         match mask.known() {
@@ -125,78 +130,79 @@ pub trait Scalar:
         }
     }
 
-    /// Product with a plain number.
+    /// Multiplies by a plain number.
     #[inline(always)]
     fn scale(self, factor: f64) -> Self {
         self * Self::constant(factor)
     }
-    /// Square.
+    /// Returns the square.
     #[inline(always)]
     fn square(self) -> Self {
         self * self
     }
-    /// 1/x
+    /// Returns 1/x.
     #[inline(always)]
     fn recip(self) -> Self {
         Self::one() / self
     }
-    /// Square root.
+    /// Returns the square root.
     fn sqrt(self) -> Self;
-    /// Sine, of radians.
+    /// Returns the sine of an angle in radians.
     fn sin(self) -> Self;
-    /// Cosine, of radians.
+    /// Returns the cosine of an angle in radians.
     fn cos(self) -> Self;
-    /// Sine and cosine together.
+    /// Returns sine and cosine of an angle in radians.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         (self.sin(), self.cos())
     }
-    /// Tangent, of radians.
+    /// Returns the tangent of an angle in radians.
     fn tan(self) -> Self;
-    /// Arc sine.
+    /// Returns the arc sine, in radians.
     fn asin(self) -> Self;
-    /// Arc cosine.
+    /// Returns the arc cosine, in radians.
     fn acos(self) -> Self;
-    /// Arc tangent.
+    /// Returns the arc tangent, in radians.
     fn atan(self) -> Self;
-    /// Angle of the point (x, y) = (`other`, `self`).
+    /// Returns the angle of the point (x, y) = (`other`, `self`), in radians.
     fn atan2(self, other: Self) -> Self;
-    /// Hyperbolic sine.
+    /// Returns the hyperbolic sine.
     fn sinh(self) -> Self;
-    /// Hyperbolic cosine.
+    /// Returns the hyperbolic cosine.
     fn cosh(self) -> Self;
-    /// Hyperbolic tangent.
+    /// Returns the hyperbolic tangent.
     fn tanh(self) -> Self;
-    /// Exponential.
+    /// Returns the exponential.
     fn exp(self) -> Self;
-    /// Natural logarithm.
+    /// Returns the natural logarithm.
     fn ln(self) -> Self;
-    /// Decimal logarithm.
+    /// Returns the decimal logarithm.
     fn log10(self) -> Self;
-    /// Power with a whole exponent.
+    /// Returns the power with an integer exponent.
     fn powi(self, n: i32) -> Self;
-    /// Power with any exponent. A negative base needs an exponent that is integral by value; its derivative drops the
-    /// term of the exponent where the exponent does not vary.
+    /// Returns the power with any exponent. A negative base needs an exponent that is an integer by
+    /// value; its derivative drops the term of the exponent where the exponent does not vary.
     fn powf(self, exponent: Self) -> Self;
-    /// Absolute value; derivative 0 at 0.
+    /// Returns the absolute value; derivative 0 at 0.
     fn abs(self) -> Self;
-    /// Toward zero; derivative 0.
+    /// Rounds toward zero; derivative 0.
     fn trunc(self) -> Self;
-    /// Nearest, halves away from zero; derivative 0.
+    /// Rounds to the nearest integer, halves away from zero; derivative 0.
     fn round(self) -> Self;
-    /// Downward; derivative 0.
+    /// Rounds down; derivative 0.
     fn floor(self) -> Self;
-    /// Exact remainder with the sign of `self` (FORTRAN MOD); derivative 1, −trunc(self/other).
+    /// Returns the exact remainder with the sign of `self` (FORTRAN MOD); derivatives 1 and
+    /// −trunc(self/other).
     fn rem(self, other: Self) -> Self;
-    /// Value of a table at this number.
+    /// Returns the `order`-th derivative of a table at this number.
     fn lookup(self, table: &std::sync::Arc<dyn Table>, order: u32) -> Self;
 
-    /// The larger; the first on a tie.
+    /// Returns the larger; the first on a tie.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.lt(other), other, self)
     }
-    /// The smaller; the first on a tie.
+    /// Returns the smaller; the first on a tie.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(other.lt(self), other, self)
@@ -323,7 +329,8 @@ impl Scalar for f64 {
     }
 }
 
-/// Implements the operators of a number type that carries a value and some derivative parts, from five functions.
+/// Implements the operators of a number type that carries a value and derivative parts, from five
+/// functions.
 macro_rules! operators {
     ([$($generics:tt)*] $type:ty) => {
         impl<$($generics)*> std::ops::Add for $type {
@@ -377,9 +384,10 @@ macro_rules! operators {
 }
 use operators;
 
-/// The elementary functions of a number type from one chain rule: `chain(f, f′, f″)` at the value part.
+/// Implements the elementary functions of a number type from one chain rule: `chain(f, f′, f″)` at
+/// the value part.
 ///
-/// The derivatives stand here once, for every type that carries derivatives.
+/// The derivatives are written here once, for every type that carries derivatives.
 macro_rules! elementary_functions {
     ($S:ty) => {
         #[inline]
@@ -509,8 +517,8 @@ macro_rules! elementary_functions {
         }
         #[inline]
         fn atan2(self, other: Self) -> Self {
-            // dφ = (x dy − y dx)/(x² + y²): the derivative parts of atan2 are those of atan of whichever quotient is
-            // well conditioned there; the value is the four-quadrant one.
+            // dφ = (x dy − y dx)/(x² + y²): the derivative parts of atan2 are those of atan of the
+            // quotient that is well conditioned there; the value is the four-quadrant one.
             let (y, x) = (self.value_part(), other.value_part());
             let steep = x.abs().lt(y.abs());
             let mut result =
@@ -536,7 +544,7 @@ macro_rules! elementary_functions {
                 if b.known().is_some_and(|b| {
                     $crate::scalar::Exponent::of(b) == $crate::scalar::Exponent::Other
                 }) {
-                    // a power that costs is not computed again: aᵇ⁻¹ = aᵇ/a, except at a = 0
+                    // reuse the power, which is expensive: aᵇ⁻¹ = aᵇ/a, except at a = 0
                     let at_zero = a.same(zero);
                     let d1 = <$S>::choose(at_zero, || b * a.powf(b - one), || b * (value / a));
                     return self.chain(value, d1, || {

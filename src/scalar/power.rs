@@ -1,8 +1,9 @@
-//! Powers of plain numbers by one rule, whoever computes them.
+//! Powers of plain numbers, by one rule for all engines.
 //!
-//! Small whole exponents are products, and half-integral ones a product and a square root: three to ten times faster than
-//! the general power and as exact. The rule looks at the value of the exponent, not at where it comes from, so that a
-//! compiled program, which knows a constant exponent beforehand, yields the same bits as everything else.
+//! Small integer exponents are products, and half-integral ones a product and a square root: three
+//! to ten times faster than the general power and as exact. The rule depends on the value of the
+//! exponent, not on its origin, so that a compiled program, which knows a constant exponent
+//! beforehand, yields the same bits as everything else.
 
 /// The kind of an exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,13 +17,14 @@ pub enum Exponent {
 }
 
 impl Exponent {
-    /// Whole exponents up to this magnitude are products: the rounding errors of as many factors stay below 4e-15.
-    const MOST: f64 = 32.0;
+    /// Largest magnitude of an integer exponent that becomes a product: the rounding errors of as
+    /// many factors stay below 4e-15.
+    const LARGEST_PRODUCT: f64 = 32.0;
 
-    /// The kind of this exponent.
+    /// Classifies an exponent.
     #[inline]
     pub fn of(exponent: f64) -> Exponent {
-        if exponent.abs() > Self::MOST || exponent.is_nan() {
+        if exponent.abs() > Self::LARGEST_PRODUCT || exponent.is_nan() {
             return Exponent::Other;
         }
         // `as` truncates in one instruction; `trunc` is a call on old processors
@@ -38,7 +40,7 @@ impl Exponent {
     }
 }
 
-/// `x` to a whole power, by repeated squaring; a negative one is the reciprocal.
+/// Returns `x` to an integer power, by repeated squaring; a negative one is the reciprocal.
 #[inline]
 pub(super) fn whole(x: f64, n: i32) -> f64 {
     let mut rest = n.unsigned_abs();
@@ -57,7 +59,7 @@ pub(super) fn whole(x: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / product } else { product }
 }
 
-/// `x` to any power.
+/// Returns `x` to any power.
 #[inline]
 pub(super) fn real(x: f64, exponent: f64) -> f64 {
     match Exponent::of(exponent) {

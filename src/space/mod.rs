@@ -1,9 +1,9 @@
-//! Where things are and how they move: vectors, rotations, frames, twists, inertia.
+//! Position and motion in space: vectors, rotations, frames.
 //!
 //! All generic over [`Scalar`]. Names follow the monogram notation: `p_JI_K` is the position of I
-//! from J expressed in K, `R_GP` turns vectors of P into vectors of G, `w_GP` is the angular velocity of P in G.
+//! from J expressed in K, `R_GP` turns vectors of P into vectors of G, `w_GP` is the angular
+//! velocity of P in G. Lengths are in model units, angles in rad.
 
-pub mod kinematic;
 pub mod rotation;
 mod vector;
 
@@ -11,7 +11,7 @@ pub use vector::{Frame, Mat3, Vec3};
 
 use crate::scalar::Scalar;
 
-/// Everything a measure can ask of a marker: pose, velocity and acceleration, all in ground and in ground axes.
+/// The state of a marker: pose, velocity and acceleration, all in ground and in ground axes.
 #[derive(Clone, Copy, Debug)]
 #[allow(non_snake_case)]
 pub struct MarkerState<S> {
@@ -30,7 +30,7 @@ pub struct MarkerState<S> {
 }
 
 impl<S: Scalar> MarkerState<S> {
-    /// Ground itself: at the origin, aligned, at rest.
+    /// Returns the state of ground itself: at the origin, aligned, at rest.
     pub fn ground() -> Self {
         Self {
             R_GM: Mat3::identity(),

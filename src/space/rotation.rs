@@ -1,11 +1,11 @@
-//! What angles mean. The only file that knows Euler sequences and quaternions.
+//! Rotations from angles and quaternions. The only file that knows Euler sequences and quaternions.
 //!
 //! 3-1-3 angles (PSI, THETA, PHI) are body-fixed: `R = Rz(ψ) Rx(θ) Rz(φ)`. Angles are radians.
 
 use super::{Mat3, Vec3};
 use crate::scalar::Scalar;
 
-/// Rotation by `angle` about axis `k` (0 x, 1 y, 2 z), right-handed.
+/// Returns the rotation by `angle` about axis `k` (0 x, 1 y, 2 z), right-handed.
 #[inline(always)]
 pub fn about_axis<S: Scalar>(k: usize, angle: S) -> Mat3<S> {
     let (s, c) = angle.sin_cos();
@@ -19,12 +19,13 @@ pub fn about_axis<S: Scalar>(k: usize, angle: S) -> Mat3<S> {
     m
 }
 
-/// `R = Rz(ψ) Rx(θ) Rz(φ)`
+/// Returns `R = Rz(ψ) Rx(θ) Rz(φ)`.
 pub fn from_313<S: Scalar>(psi: S, theta: S, phi: S) -> Mat3<S> {
     about_axis(2, psi) * about_axis(0, theta) * about_axis(2, phi)
 }
 
-/// The frame with z along `z` and x in the half plane of `x`; `None` when they are parallel or zero.
+/// Returns the frame with z along `z` and x in the half plane of `x`, or `None` when they are
+/// parallel or zero.
 pub fn from_z_and_x(z: Vec3<f64>, x: Vec3<f64>) -> Option<Mat3<f64>> {
     let unit = |v: Vec3<f64>| {
         let n = v.norm();
@@ -39,7 +40,8 @@ pub fn from_z_and_x(z: Vec3<f64>, x: Vec3<f64>) -> Option<Mat3<f64>> {
     Some(Mat3::from_columns(y.cross(z), y, z))
 }
 
-/// The rotation matrix of the quaternion (w, x, y, z), which is scaled to unit length here: `R = R(q/|q|)`.
+/// Returns the rotation matrix of the quaternion (w, x, y, z), scaled to unit length:
+/// `R = R(q/|q|)`.
 pub fn from_quaternion<S: Scalar>(q: [S; 4]) -> Mat3<S> {
     let [w, x, y, z] = q;
     let n = w * w + x * x + y * y + z * z;
@@ -64,7 +66,8 @@ pub fn from_quaternion<S: Scalar>(q: [S; 4]) -> Mat3<S> {
     ])
 }
 
-/// The rate of a quaternion for the angular velocity `w_B` in body axes: `q̇ = ½ q ∘ (0, ω)`.
+/// Returns the rate of a quaternion for the angular velocity `w_B` in body axes:
+/// `q̇ = ½ q ∘ (0, ω)`.
 pub fn quaternion_rate<S: Scalar>(q: [S; 4], w: Vec3<S>) -> [S; 4] {
     let [a, x, y, z] = q;
     let [p, r, s] = w.0;
@@ -76,7 +79,8 @@ pub fn quaternion_rate<S: Scalar>(q: [S; 4], w: Vec3<S>) -> [S; 4] {
     ]
 }
 
-/// The unit quaternion (w, x, y, z) of a rotation matrix, w ≥ 0 (Shepperd's choice of the largest pivot).
+/// Returns the unit quaternion (w, x, y, z) of a rotation matrix, w ≥ 0 (Shepperd's choice of the
+/// largest pivot).
 pub fn to_quaternion(r: &Mat3<f64>) -> [f64; 4] {
     let m = &r.0;
     let trace = m[0][0] + m[1][1] + m[2][2];
@@ -110,10 +114,10 @@ pub fn to_quaternion(r: &Mat3<f64>) -> [f64; 4] {
     q.map(|x| sign * x / n)
 }
 
-/// Sets entries that rounding kept from being 0, 1 or −1 to what they were meant to be.
+/// Rounds the entries that differ from 0, 1 or −1 by rounding only.
 ///
-/// `90D` in a dataset gives a cosine of 6e-17; a zero there lets whole products be left out of a scene. The change is of
-/// the size of one rounding error.
+/// `90D` in a dataset gives a cosine of 6e-17; a zero there lets whole products be left out of a
+/// scene. The change is of the size of one rounding error.
 pub fn snapped(r: &Mat3<f64>) -> Mat3<f64> {
     Mat3(r.0.map(|row| {
         row.map(|x| {

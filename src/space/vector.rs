@@ -8,34 +8,34 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 pub struct Vec3<S>(pub [S; 3]);
 
 impl<S: Scalar> Vec3<S> {
-    /// From components.
+    /// Creates a vector from its components.
     #[inline(always)]
     pub fn new(x: S, y: S, z: S) -> Self {
         Self([x, y, z])
     }
-    /// The zero vector.
+    /// Returns the zero vector.
     #[inline(always)]
     pub fn zero() -> Self {
         Self([S::zero(); 3])
     }
-    /// The unit vector of axis `k` (0 x, 1 y, 2 z).
+    /// Returns the unit vector of axis `k` (0 x, 1 y, 2 z).
     #[inline(always)]
     pub fn axis(k: usize) -> Self {
         Self(std::array::from_fn(|i| {
             if i == k { S::one() } else { S::zero() }
         }))
     }
-    /// A constant vector.
+    /// Converts a constant vector.
     #[inline(always)]
     pub fn constant(v: Vec3<f64>) -> Self {
         Self(v.0.map(S::constant))
     }
-    /// Scalar product.
+    /// Returns the scalar product.
     #[inline(always)]
     pub fn dot(self, b: Self) -> S {
         self.0[0] * b.0[0] + self.0[1] * b.0[1] + self.0[2] * b.0[2]
     }
-    /// Vector product.
+    /// Returns the vector product.
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
         let (a, b) = (self.0, b.0);
@@ -45,17 +45,17 @@ impl<S: Scalar> Vec3<S> {
             a[0] * b[1] - a[1] * b[0],
         ])
     }
-    /// Product with a number.
+    /// Multiplies by a number.
     #[inline(always)]
     pub fn times(self, s: S) -> Self {
         Self(self.0.map(|x| x * s))
     }
-    /// Squared length.
+    /// Returns the squared length.
     #[inline(always)]
     pub fn norm2(self) -> S {
         self.dot(self)
     }
-    /// Length.
+    /// Returns the length.
     #[inline(always)]
     pub fn norm(self) -> S {
         self.norm2().sqrt()
@@ -107,67 +107,67 @@ impl<S: Scalar> Default for Vec3<S> {
 pub struct Mat3<S>(pub [[S; 3]; 3]);
 
 impl<S: Scalar> Mat3<S> {
-    /// The unit matrix.
+    /// Returns the unit matrix.
     #[inline(always)]
     pub fn identity() -> Self {
         Self::diagonal(S::one(), S::one(), S::one())
     }
-    /// The zero matrix.
+    /// Returns the zero matrix.
     #[inline(always)]
     pub fn zero() -> Self {
         Self([[S::zero(); 3]; 3])
     }
-    /// A diagonal matrix.
+    /// Returns a diagonal matrix.
     #[inline(always)]
     pub fn diagonal(x: S, y: S, z: S) -> Self {
         let o = S::zero();
         Self([[x, o, o], [o, y, o], [o, o, z]])
     }
-    /// From columns.
+    /// Creates a matrix from its columns.
     #[inline(always)]
     pub fn from_columns(x: Vec3<S>, y: Vec3<S>, z: Vec3<S>) -> Self {
         Self(std::array::from_fn(|i| [x.0[i], y.0[i], z.0[i]]))
     }
-    /// A constant matrix.
+    /// Converts a constant matrix.
     #[inline(always)]
     pub fn constant(m: Mat3<f64>) -> Self {
         Self(m.0.map(|r| r.map(S::constant)))
     }
-    /// Column `k`: for a rotation `R_GM`, axis `k` of M in G.
+    /// Returns column `k`: for a rotation `R_GM`, axis `k` of M in G.
     #[inline(always)]
     pub fn column(&self, k: usize) -> Vec3<S> {
         Vec3([self.0[0][k], self.0[1][k], self.0[2][k]])
     }
-    /// Row `k`.
+    /// Returns row `k`.
     #[inline(always)]
     pub fn row(&self, k: usize) -> Vec3<S> {
         Vec3(self.0[k])
     }
-    /// The transpose; for a rotation, the inverse.
+    /// Returns the transpose; for a rotation, the inverse.
     #[inline(always)]
     pub fn transpose(&self) -> Self {
         Self(std::array::from_fn(|i| {
             std::array::from_fn(|j| self.0[j][i])
         }))
     }
-    /// `self · v`
+    /// Returns `self · v`.
     #[inline(always)]
     pub fn apply(&self, v: Vec3<S>) -> Vec3<S> {
         Vec3(std::array::from_fn(|i| self.row(i).dot(v)))
     }
-    /// `selfᵀ · v`
+    /// Returns `selfᵀ · v`.
     #[inline(always)]
     pub fn apply_transposed(&self, v: Vec3<S>) -> Vec3<S> {
         Vec3(std::array::from_fn(|i| self.column(i).dot(v)))
     }
-    /// The matrix of the cross product: `cross_matrix(a) b = a × b`.
+    /// Returns the matrix of the cross product: `cross_matrix(a) b = a × b`.
     #[inline(always)]
     pub fn cross_matrix(a: Vec3<S>) -> Self {
         let [x, y, z] = a.0;
         let o = S::zero();
         Self([[o, -z, y], [z, o, -x], [-y, x, o]])
     }
-    /// Product with a number.
+    /// Multiplies by a number.
     #[inline(always)]
     pub fn times(&self, s: S) -> Self {
         Self(self.0.map(|r| r.map(|x| x * s)))
@@ -212,21 +212,21 @@ pub struct Frame<S> {
 }
 
 impl<S: Scalar> Frame<S> {
-    /// Aligned with the reference, at its origin.
+    /// Returns the frame aligned with the reference, at its origin.
     pub fn identity() -> Self {
         Self {
             rotation: Mat3::identity(),
             position: Vec3::zero(),
         }
     }
-    /// A constant frame.
+    /// Converts a constant frame.
     pub fn constant(f: Frame<f64>) -> Self {
         Self {
             rotation: Mat3::constant(f.rotation),
             position: Vec3::constant(f.position),
         }
     }
-    /// `X_GP · X_PM = X_GM`
+    /// Composes `X_GP · X_PM = X_GM`.
     #[inline(always)]
     pub fn compose(&self, inner: &Self) -> Self {
         Self {
@@ -234,14 +234,14 @@ impl<S: Scalar> Frame<S> {
             position: self.point(inner.position),
         }
     }
-    /// The pose of G in M.
+    /// Returns the pose of G in M.
     pub fn inverse(&self) -> Self {
         Self {
             rotation: self.rotation.transpose(),
             position: -self.rotation.apply_transposed(self.position),
         }
     }
-    /// A point of M, expressed in G.
+    /// Returns a point of M, expressed in G.
     #[inline(always)]
     pub fn point(&self, p: Vec3<S>) -> Vec3<S> {
         self.position + self.rotation.apply(p)

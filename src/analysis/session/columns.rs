@@ -3,13 +3,14 @@
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
 use crate::model::{Formula, Model, RequestKind};
+use crate::physics::kinematic;
 use crate::results::{Component, Entity, Run, Units};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::programs::record_with_complaints;
-use crate::space::{MarkerState, kinematic};
+use crate::space::MarkerState;
 
 /// What a column shows.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,16 +1,18 @@
-//! A ball against a solid: how far its centre is from the surface, negative inside.
+//! A ball against a solid: the signed distance of its centre from the surface, negative inside.
 //!
-//! Each formula gives the signed distance of a point and the outward direction of the nearest surface there. Outside of a
-//! corner or an edge that is the direction from the nearest point of the solid; inside it is the normal of the nearest face.
+//! Each formula gives the distance of a point and the outward direction of the nearest surface
+//! there. Outside of a corner or an edge that is the direction from the nearest point of the solid;
+//! inside it is the normal of the nearest face.
 
 use super::{Solid, Touch};
 use crate::scalar::{Mask, Scalar};
 use crate::space::{MarkerState, Vec3};
 
-/// Distances below this part of a solid's size count as none: the direction is that of the face.
-const NOTHING: f64 = 1e-12;
+/// Distance, as a part of a solid's size, below which it counts as none: the direction is that of
+/// the face.
+const ZERO_DISTANCE: f64 = 1e-12;
 
-/// The touch of a ball of I with a solid of J.
+/// Returns the touch of a ball of I with a solid of J.
 pub(super) fn touch<S: Scalar>(
     radius: f64,
     i: &MarkerState<S>,
@@ -31,7 +33,8 @@ pub(super) fn touch<S: Scalar>(
     }
 }
 
-/// Signed distance of a point from a solid's surface, and the direction in which it grows.
+/// Returns the signed distance of a point from a solid's surface, and the direction in which it
+/// grows.
 pub fn distance<S: Scalar>(solid: &Solid, p: Vec3<S>) -> (S, Vec3<S>) {
     match solid {
         Solid::Ball { radius } => {
@@ -45,22 +48,22 @@ pub fn distance<S: Scalar>(solid: &Solid, p: Vec3<S>) -> (S, Vec3<S>) {
             let (rho, radial) = radial(p, *ring);
             let across = rho - S::constant(*ring);
             let size2 = across.square() + p.0[2].square();
-            let none = size2.le(S::constant((NOTHING * tube).powi(2)));
+            let none = size2.le(S::constant((ZERO_DISTANCE * tube).powi(2)));
             let size = S::select(none, S::one(), size2).sqrt();
             let up = S::select(none, S::one(), p.0[2] / size);
             let out = S::select(none, S::zero(), across / size);
             let d = S::select(none, S::zero(), size) - S::constant(*tube);
             (d, Vec3([radial[0] * out, radial[1] * out, up]))
         }
-        // no formula: never asked for
+        // these have no formula, and no caller asks for them
         Solid::Ellipsoid { .. } | Solid::Hull(_) => (S::constant(f64::NAN), Vec3::zero()),
     }
 }
 
-/// Distance from the origin and its direction; z at the origin itself.
+/// Returns the distance from the origin and its direction; z at the origin itself.
 fn from_origin<S: Scalar>(p: Vec3<S>, size: f64) -> (S, Vec3<S>) {
     let n2 = p.norm2();
-    let none = n2.le(S::constant((NOTHING * size).powi(2)));
+    let none = n2.le(S::constant((ZERO_DISTANCE * size).powi(2)));
     let length = S::select(none, S::one(), n2).sqrt();
     let part = |k: usize| {
         let fallback = if k == 2 { S::one() } else { S::zero() };
@@ -72,17 +75,17 @@ fn from_origin<S: Scalar>(p: Vec3<S>, size: f64) -> (S, Vec3<S>) {
     )
 }
 
-/// Distance from the z axis and the direction across it; x on the axis itself.
+/// Returns the distance from the z axis and the direction across it; x on the axis itself.
 pub(super) fn radial<S: Scalar>(p: Vec3<S>, size: f64) -> (S, [S; 2]) {
     let n2 = p.0[0].square() + p.0[1].square();
-    let none = n2.le(S::constant((NOTHING * size).powi(2)));
+    let none = n2.le(S::constant((ZERO_DISTANCE * size).powi(2)));
     let rho = S::select(none, S::one(), n2).sqrt();
     let x = S::select(none, S::one(), p.0[0] / rho);
     let y = S::select(none, S::zero(), p.0[1] / rho);
     (S::select(none, S::zero(), rho), [x, y])
 }
 
-/// How far a coordinate is beyond its bounds, with sign.
+/// Returns the signed distance of a coordinate beyond its bounds.
 fn beyond<S: Scalar>(x: S, [low, high]: [Option<f64>; 2]) -> S {
     let mut out = S::zero();
     if let Some(low) = low {
@@ -101,7 +104,7 @@ fn plane<S: Scalar>(x: [Option<f64>; 2], y: [Option<f64>; 2], p: Vec3<S>) -> (S,
     if x == [None; 2] && y == [None; 2] {
         return (z, Vec3::axis(2));
     }
-    // above the rectangle the plane counts, beside it its edge
+    // above the rectangle the plane is nearest, beside it an edge
     let (dx, dy) = (beyond(p.0[0], x), beyond(p.0[1], y));
     let aside2 = dx.square() + dy.square();
     let above = aside2.le(S::zero());
@@ -116,7 +119,7 @@ fn cuboid<S: Scalar>(low: &[f64; 3], high: &[f64; 3], p: Vec3<S>) -> (S, Vec3<S>
     let out = Vec3([0, 1, 2].map(|k| beyond(p.0[k], [Some(low[k]), Some(high[k])])));
     let out2 = out.norm2();
     let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-    let inside = out2.le(S::constant((NOTHING * size).powi(2)));
+    let inside = out2.le(S::constant((ZERO_DISTANCE * size).powi(2)));
     let length = S::select(inside, S::one(), out2).sqrt();
     // inside: the nearest of the six faces
     let mut nearest = S::constant(f64::NEG_INFINITY);
@@ -140,7 +143,8 @@ fn cuboid<S: Scalar>(low: &[f64; 3], high: &[f64; 3], p: Vec3<S>) -> (S, Vec3<S>
     (S::select(inside, nearest, length), Vec3(direction))
 }
 
-/// In the half plane (ρ, z) a frustum is a polygon of three edges: bottom, side, top.
+/// Measures in the half plane (ρ, z), where a frustum is a polygon of three edges: bottom, side,
+/// top.
 fn frustum<S: Scalar>(z: [f64; 2], r: [f64; 2], p: Vec3<S>) -> (S, Vec3<S>) {
     let c = S::constant;
     let size = r[0].max(r[1]).max(z[1] - z[0]);
@@ -191,7 +195,9 @@ fn frustum<S: Scalar>(z: [f64; 2], r: [f64; 2], p: Vec3<S>) -> (S, Vec3<S>) {
             d[k] = S::select(nearer, other[k], d[k]);
         }
     }
-    let inside = inner.le(S::zero()).or(d2.le(c((NOTHING * size).powi(2))));
+    let inside = inner
+        .le(S::zero())
+        .or(d2.le(c((ZERO_DISTANCE * size).powi(2))));
     let length = S::select(inside, S::one(), d2).sqrt();
     let direction = [0, 1].map(|k| S::select(inside, face[k], d[k] / length));
     let normal = Vec3([

@@ -1,23 +1,28 @@
-//! Where two outlines touch: all places at which one reaches deepest into the other, each a touch of its own.
+//! The touches of two outlines: all places at which one is deepest in the other.
 //!
-//! All is looked at in the plane of J. With D = P_I − P_J, tangents t, outward normals n, curvature κ (positive where it bulges), gap g:
+//! Everything is expressed in the plane of J. With D = P_I − P_J, tangents t, outward normals n,
+//! curvature κ (positive where the side bulges), gap g:
 //!
 //! ```text
-//! smooth sides    D · t_I = 0,   t_I × t_J = 0,   n_I · n_J < 0,   g = D · n_J                    (1)
-//!                 κ_I + κ_J + g κ_I κ_J > 0: the two curve away from each other                   (2)
-//! corner of I     the point of J nearest to it, g = (P − P_J) · n_J                               (3)
-//! corner of J     the same, the other way round
+//! smooth sides    D · t_I = 0,   t_I × t_J = 0,   n_I · n_J < 0,   g = D · n_J                (1)
+//!                 κ_I + κ_J + g κ_I κ_J > 0: the two curve away from each other               (2)
+//! corner of I     the point of J nearest to it, g = (P − P_J) · n_J                           (3)
+//! corner of J     the same with I and J exchanged
 //! ```
 //!
-//! (1) is solved by Newton's iteration from each pair of cells that can hold a solution; circles about cells and directions of their normals
-//! exclude nearly all others at the level of whole pieces. Where (2) fails the sides lie in each other, as two straight ones do: then
-//! their corners touch. A corner counts where the normal lies between those of its sides, and where straight sides face each other a little
-//! farther, with a share that fades, so that a box stands on both its lower corners. Touches that are near each other share what one would do.
+//! (1) is solved by Newton's iteration from each pair of cells that can hold a solution; circles
+//! about cells and directions of their normals exclude nearly all others at the level of whole
+//! pieces. Where (2) fails the sides fit into each other, as two straight ones do: then their
+//! corners touch. A corner counts where the normal lies between those of its sides, and where
+//! straight sides face each other a little farther, with a share that fades, so that a box stands
+//! on both its lower corners. Touches that are near each other share the force of one.
 //!
-//! A solid is no deeper than `DEPTH` of the smaller outline: what is deeper comes from the other side. The line between the two points must not
-//! cross either outline elsewhere: then it is another solid's turn. Two touches of smooth sides that grow together, as those of a rounded edge do that
-//! comes to lie in a hollow of its own radius, end as one: they share by the wall between them, as the lows of a wire do (`wire.rs`), so that
-//! the force of one of them does not end at once.
+//! A solid is no deeper than [`SOLID_DEPTH`] of the smaller outline: anything deeper comes from the
+//! other side. The line between the two points must not cross either outline elsewhere: then it
+//! belongs to another touch. Two touches of smooth sides that merge, as those of a rounded edge do
+//! that comes to lie in a hollow of its own radius, end as one: they share by the barrier between
+//! them, as the nearest points of a wire do (`wire/`), so that the force of one of them does not
+//! end at once.
 
 use super::outline::{Corner, Flat, Node, Outline, Spot};
 use super::outline::{along, cross, dot, length, minus, wrapped};
@@ -25,33 +30,35 @@ use super::{TOUCH_NUMBERS, TOUCHES};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Depth of a solid, as a part of the radius of the circle about the smaller outline; gaps that are larger are not looked at either.
-pub(super) const DEPTH: f64 = 0.5;
-/// Corners beside a straight side touch another straight side up to this angle beyond its normal.
-const BESIDE: f64 = 0.35;
-/// Relative curvature, as a part of the reciprocal size, below which sides lie in each other.
-const FLAT: f64 = 1e-9;
-/// Touches nearer than this part of the smaller outline share.
-const NEIGHBOURS: f64 = 0.02;
-/// Touches nearer than this part of it are one.
-const SAME: f64 = 1e-9;
-/// Parts of the way between two touches at whose ends is looked for a wall.
-const WALL: u32 = 12;
-/// Outlines farther apart than this many times their size are left alone.
-const FAR: f64 = 1e6;
-/// Most pairs of pieces that are looked at in one question.
-const PATIENCE: usize = 1_000_000;
+/// Depth of a solid, as a part of the radius of the circle about the smaller outline; larger gaps
+/// are not searched either.
+pub(super) const SOLID_DEPTH: f64 = 0.5;
+/// Angle beyond its normal, in rad, up to which a corner beside a straight side touches another
+/// straight side.
+const CORNER_FADE_ANGLE: f64 = 0.35;
+/// Relative curvature, times the size, below which sides fit into each other.
+const FITTING_CURVATURE: f64 = 1e-9;
+/// Distance, as a part of the smaller outline, below which touches share.
+const SHARING_DISTANCE: f64 = 0.02;
+/// Distance, as a part of the smaller outline, below which touches are one.
+const SAME_DISTANCE: f64 = 1e-9;
+/// Parts into which the way between two touches is divided to find the barrier between them.
+const BARRIER_PARTS: u32 = 12;
+/// Distance, as a multiple of their size, above which outlines are not searched.
+const SEARCH_DISTANCE: f64 = 1e6;
+/// Most pairs of pieces that one search examines.
+const MOST_PAIRS: usize = 1_000_000;
 
-/// The question for a pair of outlines.
+/// The search for the touches of a pair of outlines.
 #[derive(Debug)]
 pub struct Curves {
     i: Arc<Outline>,
     j: Arc<Outline>,
-    /// radius of the smaller
+    /// radius of the smaller outline, in length units
     size: f64,
 }
 
-/// I's plane seen from J's.
+/// The position of I's plane relative to J's.
 #[derive(Clone, Copy)]
 struct Pose {
     at: Flat,
@@ -69,11 +76,11 @@ impl Pose {
     fn point(&self, p: Flat) -> Flat {
         along(self.turned(p), 1.0, self.at)
     }
-    /// A vector of J's plane in I's.
+    /// Turns a vector of J's plane into I's.
     fn back(&self, v: Flat) -> Flat {
         [dot(self.x, v), dot(self.y, v)]
     }
-    /// The direction of a vector of I's plane.
+    /// Turns the direction (an angle, in rad) of a vector of I's plane into J's.
     fn direction(&self, angle: f64) -> f64 {
         let (sin, cos) = angle.sin_cos();
         let v = self.turned([cos, sin]);
@@ -89,7 +96,7 @@ impl Pose {
     }
 }
 
-/// A touch in J's plane.
+/// A touch, expressed in J's plane.
 #[derive(Clone, Copy, Debug)]
 struct Found {
     on_i: Flat,
@@ -98,28 +105,28 @@ struct Found {
     normal: Flat,
     depth: f64,
     weight: f64,
-    /// parameter of I's outline, of a touch of smooth sides
+    /// parameter of I's outline, for a touch of smooth sides
     smooth: Option<f64>,
 }
 
 impl Curves {
-    /// For the outlines of I and J; `None`: both are points.
+    /// Prepares for the outlines of I and J; `None` if both are points.
     pub fn new(i: Arc<Outline>, j: Arc<Outline>) -> Option<Self> {
         let sizes = [&i, &j].into_iter().filter(|o| !o.is_point());
         let size = sizes.map(|o| o.size).fold(f64::INFINITY, f64::min);
         size.is_finite().then_some(Self { i, j, size })
     }
 
-    /// The touches for a pose of I's marker in J's, its position and the three columns of its axes, as [`super::found`] reads
-    /// them   (TOUCHES × TOUCH_NUMBERS).
+    /// Writes the touches for a pose of I's marker in J's, its position and the three columns of
+    /// its axes, in the form that [`super::found`] reads   (TOUCHES × TOUCH_NUMBERS).
     pub fn ask(&self, pose: &[f64], out: &mut [f64]) {
         super::nothing(out);
-        let reach = FAR * (self.i.size + self.j.size);
+        let reach = SEARCH_DISTANCE * (self.i.size + self.j.size);
         if pose.len() != 12 || !pose.iter().all(|x| x.abs() <= reach.max(2.0)) {
             return;
         }
         let (x, y) = ([pose[3], pose[4]], [pose[6], pose[7]]);
-        // planes that stand on each other have no touch
+        // planes perpendicular to each other have no touch
         if cross(x, y).abs() < 0.5 {
             return;
         }
@@ -127,7 +134,8 @@ impl Curves {
         let pose = Pose { at, x, y };
         let mut found = self.touches(&pose);
         found.truncate(TOUCHES);
-        // in an order that two equally deep touches do not exchange: what reads them is differentiated
+        // in an order that two equally deep touches do not exchange, since the result is
+        // differentiated
         let place = |f: &Found| f.on_j[0] + 0.618 * f.on_j[1];
         found.sort_by(|a, b| place(a).total_cmp(&place(b)));
         for (touch, f) in out.chunks_mut(TOUCH_NUMBERS).zip(&found) {
@@ -149,13 +157,13 @@ impl Curves {
         }
     }
 
-    /// All touches, the deepest first, with their shares.
+    /// Returns all touches, the deepest first, with their shares.
     fn touches(&self, pose: &Pose) -> Vec<Found> {
         let mut all = Vec::new();
         self.smooth(pose, &mut all);
-        let limit = DEPTH * self.size;
-        let near = NEIGHBOURS * self.size;
-        // what is nearest to one corner is near to the next one
+        let limit = SOLID_DEPTH * self.size;
+        let near = SHARING_DISTANCE * self.size;
+        // the nearest point to one corner is close to that of the next one
         let mut hint = None;
         for corner in self.i.corners.iter().filter(|c| c.convex) {
             let p = pose.point(corner.at);
@@ -220,12 +228,12 @@ impl Curves {
         self.shared(pose, all)
     }
 
-    /// Touches of smooth sides, where (1) and (2) hold.
+    /// Collects the touches of smooth sides, where (1) and (2) hold.
     fn smooth(&self, pose: &Pose, all: &mut Vec<Found>) {
         let (Some(root_i), Some(root_j)) = (self.i.root(), self.j.root()) else {
             return;
         };
-        let reach = DEPTH * self.size;
+        let reach = SOLID_DEPTH * self.size;
         let mirrored = cross(pose.x, pose.y) < 0.0;
         let turn = pose.x[1].atan2(pose.x[0]);
         let towards = |n: &Node| {
@@ -239,7 +247,7 @@ impl Curves {
         let mut seen = 0;
         while let Some((a, b)) = waiting.pop() {
             seen += 1;
-            if seen > PATIENCE {
+            if seen > MOST_PAIRS {
                 break;
             }
             let (i, j) = (&self.i.nodes[a], &self.j.nodes[b]);
@@ -256,7 +264,7 @@ impl Curves {
             if distance > radii + reach {
                 continue;
             }
-            // what lies between them is along both normals
+            // the vector between them is along both normals
             let aside = |angle: f64, spread: f64| {
                 let (sin, cos) = angle.sin_cos();
                 spread < 1.5 && cross(between, [cos, sin]).abs() > radii + distance * spread.sin()
@@ -281,7 +289,7 @@ impl Curves {
         }
     }
 
-    /// The touch of two cells, by Newton's iteration.
+    /// Solves for the touch of two cells by Newton's iteration.
     fn common_normal(&self, pose: &Pose, cell_i: usize, cell_j: usize) -> Option<Found> {
         let [ci, cj] = [&self.i.cells[cell_i], &self.j.cells[cell_j]];
         let width = [ci.s[1] - ci.s[0], cj.s[1] - cj.s[0]];
@@ -304,7 +312,8 @@ impl Curves {
             if !(da.is_finite() && db.is_finite()) {
                 return None;
             }
-            // the curves go on beyond their cells only as far as their polynomials are of use
+            // the curves are extended beyond their cells only as far as their polynomials are
+            // usable
             a = keep(a - da, ci.s, width[0]);
             b = keep(b - db, cj.s, width[1]);
             if done {
@@ -325,8 +334,8 @@ impl Curves {
         let apart = k + l + gap * k * l;
         if dot(p.normal, q.normal) >= 0.0
             || apart.is_nan()
-            || apart <= FLAT / self.size
-            || gap.abs() > DEPTH * self.size
+            || apart <= FITTING_CURVATURE / self.size
+            || gap.abs() > SOLID_DEPTH * self.size
         {
             return None;
         }
@@ -349,7 +358,8 @@ impl Curves {
         })
     }
 
-    /// Touches of smooth sides with a wall between them that is lower than they are deep share.
+    /// Divides between touches of smooth sides with a barrier between them that is lower than they
+    /// are deep.
     fn grow_together(&self, pose: &Pose, found: &mut [Found]) {
         let mut along: Vec<(f64, usize)> = (0..found.len())
             .filter(|&k| found[k].depth > 0.0)
@@ -365,7 +375,7 @@ impl Curves {
         };
         for k in 0..pairs {
             let ((a, i), (mut b, j)) = (along[k], along[(k + 1) % n]);
-            // once around is 2; of the two ways the shorter one
+            // once around is 2; the shorter of the two ways
             if self.i.closed && b - a > 1.0 {
                 b -= 2.0;
             } else if self.i.closed && b < a - 1.0 {
@@ -378,10 +388,10 @@ impl Curves {
             };
             let (ground, base) = (-found[high].depth, -found[low].depth);
             let mut wall = ground;
-            for step in 1..WALL {
-                let s = a + (b - a) * f64::from(step) / f64::from(WALL);
+            for step in 1..BARRIER_PARTS {
+                let s = a + (b - a) * f64::from(step) / f64::from(BARRIER_PARTS);
                 let p = pose.point(self.i.spot(s).at);
-                let foot = nearest(&self.j, p, DEPTH * self.size, None);
+                let foot = nearest(&self.j, p, SOLID_DEPTH * self.size, None);
                 wall = wall.max(foot.map_or(0.0, |foot| -foot.depth));
                 if wall >= 0.0 {
                     break;
@@ -395,11 +405,12 @@ impl Curves {
         }
     }
 
-    /// One of each, with shares; the deepest first, at most [`TOUCHES`].
+    /// Unites touches at the same place and sets shares; returns the deepest first, at most
+    /// [`TOUCHES`].
     fn shared(&self, pose: &Pose, mut all: Vec<Found>) -> Vec<Found> {
         all.retain(|f| f.weight > 0.0 && f.depth.is_finite());
         all.sort_by(|a, b| b.depth.total_cmp(&a.depth));
-        let near = SAME * self.size;
+        let near = SAME_DISTANCE * self.size;
         let mut found: Vec<Found> = Vec::new();
         for f in all {
             let same = |other: &Found| {
@@ -409,18 +420,19 @@ impl Curves {
             if !found.iter().any(same) {
                 found.push(f);
             }
-            // what is not as deep is hardly ever as many
+            // touches less deep than these hardly ever number as many
             if found.len() == 2 * TOUCHES {
                 break;
             }
         }
         self.grow_together(pose, &mut found);
-        let reach = NEIGHBOURS * self.size;
+        let reach = SHARING_DISTANCE * self.size;
         let crowd = |f: &Found| -> f64 {
             let part = |other: &Found| {
                 let near = 1.0 - (length(minus(other.on_j, f.on_j)) / reach).powi(2);
                 let alike = dot(other.normal, f.normal).max(0.0);
-                // one that is less deep takes less away, and nothing while it is above
+                // a shallower touch takes less from the others, and nothing while it is above the
+                // surface
                 let deep = if f.depth > 0.0 {
                     (other.depth / f.depth).clamp(0.0, 1.0)
                 } else {
@@ -439,7 +451,8 @@ impl Curves {
     }
 }
 
-/// How much a corner takes part in a touch along an outward direction, with a side that is straight or not.
+/// Returns the share of a corner in a touch along an outward direction, with a side that is
+/// straight or not.
 fn share(
     corner: &Corner,
     is_point: bool,
@@ -455,9 +468,9 @@ fn share(
     if beyond <= 0.0 {
         return 1.0;
     }
-    // a curved side touches by itself; 1e-9 is for rounding where it hands over
+    // a curved side touches by itself; 1e-9 is for rounding at its end
     let lies = straight && corner.straight[usize::from(offset > 0.0)];
-    let allowed = if lies { BESIDE } else { 1e-9 };
+    let allowed = if lies { CORNER_FADE_ANGLE } else { 1e-9 };
     (1.0 - (beyond / allowed).powi(2)).max(0.0).powi(2)
 }
 
@@ -466,9 +479,9 @@ struct Foot {
     at: Flat,
     /// outward
     normal: Flat,
-    /// how deep the other point is below it
+    /// depth of the other point below it, in length units
     depth: f64,
-    /// it lies on a straight side
+    /// whether it lies on a straight side
     straight: bool,
 }
 
@@ -583,7 +596,8 @@ mod tests {
 
     #[test]
     fn two_touches_that_grow_together_leave_no_jump() {
-        // an ellipse of half axes 1 and 0.6 in a round hole of radius 1.2: its blunt side, of radius 1.67, touches twice, 0.12 and 0.19 deep where the one ends
+        // an ellipse of half axes 1 and 0.6 in a round hole of radius 1.2: its blunt side, of
+        // radius 1.67, touches twice, 0.12 and 0.19 deep where the one ends
         let points: Vec<[f64; 3]> = (0..=200)
             .map(|k| {
                 let (sin, cos) = (TAU * f64::from(k % 200) / 200.0).sin_cos();

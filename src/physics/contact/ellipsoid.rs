@@ -1,17 +1,20 @@
-//! How far a point is from an ellipsoid.
+//! The distance of a point from an ellipsoid.
 //!
-//! The foot x of a point p is where p − x is along the normal there. With semi-axes a, the least of them e, and u ≥ 0:
+//! The foot x of a point p is the point of the surface where p − x is along the normal. With
+//! semi-axes a, the smallest of them e, and u ≥ 0:
 //!
 //! ```text
 //! x_k = a_k² p_k / (u + a_k² − e²)           Σ (a_k p_k / (u + a_k² − e²))² = 1          (1)
 //! ```
 //!
-//! (1) falls in u and is convex, so that Newton's iteration climbs to its root from the left; u > e²: the point is outside. Where p has no part along the least axis (1)
-//! may have no root; then u = 0, and the foot is above the middle.
+//! The left side of (1) decreases in u and is convex, so that Newton's iteration climbs to the root
+//! from the left; u > e² means that the point is outside. Where p has no component along the
+//! shortest axis (1) may have no root; then u = 0, and the foot is above the middle.
 
 use crate::space::Vec3;
 
-/// Signed distance of a point from the surface, negative inside, and the outward normal at its foot.
+/// Returns the signed distance of a point from the surface, negative inside, and the outward normal
+/// at its foot.
 pub(super) fn distance(semi: [f64; 3], p: Vec3<f64>) -> (f64, Vec3<f64>) {
     let size = semi.into_iter().fold(0.0, f64::max);
     let a = semi.map(|x| x / size);
@@ -28,11 +31,11 @@ pub(super) fn distance(semi: [f64; 3], p: Vec3<f64>) -> (f64, Vec3<f64>) {
         })
     };
     let excess = |u: f64| parts(u).iter().map(|x| x * x).sum::<f64>() - 1.0;
-    // one part alone is 1 here, so that the sum is no less
+    // one term alone is 1 at this u, so that the sum is no less
     let mut u = (0..3).map(|k| a[k] * y[k] - more[k]).fold(0.0, f64::max);
     let mut x;
     if u == 0.0 && excess(0.0) <= 0.0 {
-        // as far as the other axes tell, and the rest along the least
+        // as far as the other axes tell, and the rest along the shortest
         x = [0, 1, 2].map(|k| {
             if more[k] > 0.0 {
                 a[k] * (a[k] * y[k] / more[k])
@@ -115,7 +118,8 @@ mod tests {
         close([1.5, 0.0, 0.0], 1.0);
         close([0.0, 0.0, -3.2], 2.0);
         close([0.0, -2.0, 0.0], 0.0);
-        // within the evolute: y = b² c/(b² − a²), the foot of a symmetric pair: d² = a² (1 − c²/(b² − a²))
+        // within the evolute: y = b² c/(b² − a²), the foot of a symmetric pair: d² = a² (1 − c²/(b²
+        // − a²))
         let c = 0.7f64;
         close([0.0, c, 0.0], -0.5 * (1.0 - c * c / 3.75).sqrt());
         // a point on a sphere's axis

@@ -1,22 +1,23 @@
-//! How large a body of a contact is and how thin: a step must not carry one through the other between two looks.
+//! The size and the thickness of a body of a contact: a step must not carry one through the other
+//! between two evaluations.
 
 use super::Solid;
-use super::curves::DEPTH;
+use super::curves::SOLID_DEPTH;
 use super::outline::Outline;
 
-/// A ball about a body, and the least way through it.
+/// A ball about a body, and the thickness of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// centre of the ball, in the frame of the marker
     pub centre: [f64; 3],
-    /// its radius
+    /// radius of the ball
     pub radius: f64,
-    /// least thickness, any way through
+    /// smallest thickness in any direction
     pub thickness: f64,
 }
 
 impl Extent {
-    /// Of a box from corner to corner.
+    /// Returns the extent of a box from corner to corner.
     fn between(low: [f64; 3], high: [f64; 3]) -> Self {
         let size = [0, 1, 2].map(|k| high[k] - low[k]);
         Self {
@@ -26,7 +27,8 @@ impl Extent {
         }
     }
 
-    /// Of a solid; `None`: a plane, through which nothing comes however deep it is.
+    /// Returns the extent of a solid, or `None` for a plane: nothing passes through it however deep
+    /// it is.
     pub fn of(solid: &Solid) -> Option<Self> {
         Some(match solid {
             Solid::Plane { .. } => return None,
@@ -53,18 +55,20 @@ impl Extent {
         })
     }
 
-    /// Of an outline. The solid behind it is as deep as its pair looks for touches: as the smaller one of both is; a point is not looked into.
+    /// Returns the extent of an outline. Its solid is as deep as its pair searches for touches,
+    /// which depends on the smaller one of both; a point has no thickness.
     pub fn of_outline(outline: &Outline) -> Self {
         let centre = outline.middle();
         Self {
             centre: [centre[0], centre[1], 0.0],
             radius: outline.size,
-            thickness: DEPTH * outline.size,
+            thickness: SOLID_DEPTH * outline.size,
         }
     }
 
-    /// The way on which two bodies overlap, at least, when one goes through the other: both solids, or both outlines. What has no thickness is taken
-    /// for a thousandth of the smaller one's radius.
+    /// Returns the shortest way on which two bodies, both solids or both `outlines`, overlap when
+    /// one goes through the other. A body without thickness counts with a thousandth of the smaller
+    /// one's radius.
     pub fn overlap(&self, other: &Self, outlines: bool) -> f64 {
         let both = [self, other];
         let least = |all: [f64; 2]| {

@@ -1,6 +1,7 @@
 //! The laws of a contact: a force along the normal, and friction across it.
 //!
-//! With g the depth, ġ its rate, v the velocity of I's solid against J's at the touch, v_t its part across the normal n:
+//! With g the depth, ġ its rate, v the velocity of I's solid against J's at the touch, v_t its part
+//! across the normal n:
 //!
 //! ```text
 //! IMPACT     N = max(0, k gᵉ + STEP(g, 0, 0, d, c) ġ)                                   g > 0
@@ -10,10 +11,11 @@
 //!                   STEP(v, v_s, µ_s, v_d, µ_d)        v_s < v < v_d,   µ_d beyond
 //! ```
 //!
-//! POISSON: the spring of compression is r² times softer in restitution, so that the impulse of restitution is r times that of
-//! compression (Poisson's hypothesis) and a single impact leaves with r times the speed it came with. v₀, a small speed,
-//! makes it smooth. Adams documents a law of its own with the same two numbers, of which the details are not public:
-//! forces within the impact are approximate, what follows from it is not.
+//! POISSON: the spring of compression is r² times softer in restitution, so that the impulse of
+//! restitution is r times that of compression (Poisson's hypothesis) and a single impact leaves
+//! with r times the speed it came with. v₀, a small speed, makes it smooth. Adams documents a law
+//! of its own with the same two parameters, whose details are not public: the forces during the
+//! impact are approximate, the motion after it is not.
 //!
 //! Friction is smooth: below v_s it is a steep damper, so that what should stick creeps.
 
@@ -22,7 +24,7 @@ use crate::expr::functions::step::{cubic, step};
 use crate::scalar::Scalar;
 use crate::space::Vec3;
 
-/// The force along the normal.
+/// The law of the force along the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normal {
     /// IMPACT
@@ -47,7 +49,7 @@ pub enum Normal {
     },
 }
 
-/// Coulomb's law, made smooth.
+/// Coulomb's law of friction, made smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coulomb {
     /// µ_s
@@ -60,17 +62,17 @@ pub struct Coulomb {
     pub friction_velocity: f64,
 }
 
-/// Both.
+/// The law of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    /// along the normal
+    /// force along the normal
     pub normal: Normal,
-    /// across it
+    /// friction across it
     pub friction: Option<Coulomb>,
 }
 
 impl Normal {
-    /// N
+    /// Returns N at a depth and its rate.
     pub fn force<S: Scalar>(&self, depth: S, rate: S) -> S {
         let c = S::constant;
         match *self {
@@ -96,7 +98,7 @@ impl Normal {
                 smoothing: v,
             } => {
                 let touching = S::zero().lt(depth);
-                // while apart no branch of the rate matters
+                // while the solids are apart no branch of the rate matters
                 let rate = S::select(touching, rate, S::zero());
                 let factor = step(rate, c(-v), c(r * r), c(v), S::one(), cubic);
                 S::select(touching, depth.scale(penalty) * factor, S::zero())
@@ -106,7 +108,7 @@ impl Normal {
 }
 
 impl Coulomb {
-    /// µ(v)/v, a smooth function of v².
+    /// Returns µ(v)/v, a smooth function of v².
     pub fn per_speed<S: Scalar>(&self, speed2: S) -> S {
         let (vs, vd) = (self.stiction_velocity, self.friction_velocity);
         // STEP(v, −v_s, −µ_s, v_s, µ_s) = µ_s (3 s − s³)/2 with s = v/v_s
@@ -131,7 +133,7 @@ impl Coulomb {
 }
 
 impl Law {
-    /// The force on I's solid at a touch.
+    /// Returns the force on I's solid at a touch, in ground axes.
     pub fn force<S: Scalar>(&self, depth: S, normal: Vec3<S>, velocity: Vec3<S>) -> Vec3<S> {
         let along = velocity.dot(normal);
         let n = self.normal.force(depth, -along);
@@ -140,7 +142,7 @@ impl Law {
             None => force,
             Some(coulomb) => {
                 let slip = velocity - normal.times(along);
-                // while apart no branch of the slip matters
+                // while the solids are apart no branch of the slip matters
                 let speed2 = S::select(S::zero().lt(depth), slip.norm2(), S::zero());
                 force - slip.times(coulomb.per_speed(speed2) * n)
             }

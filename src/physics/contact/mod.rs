@@ -1,24 +1,25 @@
-//! CONTACT: where two solids touch (a file per kind of question), and what they do to each other there (`law.rs`).
+//! CONTACT: the places where two solids touch (one file per kind of pair), and the forces there
+//! (`law.rs`).
 //!
-//! Solids stand in the frame of one marker each. What is found is a list of [`Touch`]es of fixed length, whether they touch
-//! or not: whoever records the equations needs the same operations everywhere, and the law gives no force where the depth
-//! is negative. All of it is a formula of the two frames, so that derivatives and the instant of first touch come by
-//! themselves.
+//! Each solid stands in the frame of one marker. The result is a list of [`Touch`]es of fixed
+//! length, whether the solids touch or not: the recorded equations need the same operations
+//! everywhere, and the law gives no force where the depth is negative. All of it is a formula of
+//! the two frames, so that derivatives and the instant of first touch need no code of their own.
 //!
 //! | pair | points |
 //! |---|---|
 //! | ball – ball, plane, box, cylinder, frustum, torus | 1, from the distance of the centre (`ball.rs`) |
 //! | plane – box, hull | the corners (`plane.rs`) |
-//! | plane – cylinder, frustum | on each rim the deepest point and those a quarter and half a turn further |
+//! | plane – cylinder, frustum | on each rim the deepest point, and those ¼ and ½ turn further |
 //! | plane – torus | the same four of its ring |
 //! | plane – ellipsoid | 1, the deepest |
 //! | point | a ball without radius |
-//! | torus – box, cylinder, frustum, ellipsoid, hull, torus | where the ring is nearest, and 12 places of it that are always looked at (`wire.rs`) |
+//! | torus – every solid but a ball or a plane | nearest points and 12 fixed points of its ring (`wire/`) |
 //! | curve, circle, arc – solid | the same of a wire without thickness |
 //! | point – ellipsoid, hull | 1, from its distance (`ellipsoid.rs`) |
-//! | curve, circle, arc, point with each other, in a plane | up to 8, where one reaches deepest into the other (`outline.rs`, `curves.rs`) |
-//! | box, cylinder, frustum, ellipsoid, hull with each other | up to 8, found by queries (`query/`, feature `geometry`) |
-//! | plane – plane, point – point | none: what has no end or no size meets nothing |
+//! | curve, circle, arc, point with each other | up to 8, in a plane (`outline.rs`, `curves.rs`) |
+//! | other convex solids with each other | up to 8, by parry (`query/`, feature `geometry`) |
+//! | plane – plane, point – point | none |
 
 pub mod ball;
 pub mod curves;
@@ -38,7 +39,7 @@ pub use law::Law;
 use outline::Outline;
 use std::sync::Arc;
 
-/// What is asked for the touches of a pair that no formula finds.
+/// A search for the touches of a pair that has no formula.
 #[derive(Clone, Debug)]
 pub enum Question {
     /// two convex solids
@@ -50,14 +51,15 @@ pub enum Question {
 }
 
 impl Question {
-    /// Whether it depends on one of the twelve numbers of a pose: what lies in a plane knows nothing of z.
+    /// Returns whether the search depends on this one of the twelve numbers of a pose: outlines in
+    /// a plane do not depend on z.
     pub fn reads(&self, number: usize) -> bool {
         match self {
             Question::Outlines(_) => number < 9 && number % 3 < 2,
             Question::Solids(_) | Question::Wire(_) => true,
         }
     }
-    /// How many touches it finds at most.
+    /// Returns the largest number of touches that it finds.
     pub fn touches(&self) -> usize {
         match self {
             Question::Solids(_) | Question::Outlines(_) => TOUCHES,
@@ -112,7 +114,7 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// Whether it is convex and of finite size, so that queries can be made for it.
+    /// Returns whether it is convex and of finite size, so that parry can be asked about it.
     pub fn can_be_queried(&self) -> bool {
         match self {
             Solid::Ball { radius } => *radius > 0.0,
@@ -123,7 +125,7 @@ impl Solid {
             Solid::Plane { .. } | Solid::Torus { .. } => false,
         }
     }
-    /// What it is called.
+    /// Returns the word for it in messages.
     pub fn name(&self) -> &'static str {
         match self {
             Solid::Ball { radius } if *radius == 0.0 => "point",
@@ -142,23 +144,24 @@ impl Solid {
 /// A place where two solids touch, or come nearest.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch<S> {
-    /// how far they overlap; negative: they do not touch
+    /// overlap, in length units; negative: they do not touch
     pub depth: S,
     /// unit vector from J's solid into I's, ground axes
     pub normal: Vec3<S>,
-    /// where they act on each other, in ground
+    /// point at which they act on each other, in ground
     pub point: Vec3<S>,
-    /// part of the law's force that acts here: 1, less where several points stand for one place
+    /// part of the law's force that acts here: 1, or less where several points stand for one place
     pub share: S,
 }
 
-/// Most touches that a query between two solids or two outlines finds.
+/// Largest number of touches between two solids or two outlines.
 pub const TOUCHES: usize = 8;
-/// Numbers of one: its point on I's solid and on J's, each in the frame of its marker, the direction from J's solid to I's in
-/// the frame of J's marker, what is taken off the depth (of touches that are not there), its share.
+/// Numbers per touch that a search returns: the points on I's and on J's solid, each in the frame
+/// of its marker, the direction from J's solid to I's in the frame of J's marker, a subtraction
+/// from the depth (for touches that are not there), and the share.
 pub const TOUCH_NUMBERS: usize = 11;
 
-/// Numbers of touches that are not there: no share, and a gap.
+/// Writes the numbers of touches that are not there: no share, and a gap.
 fn nothing(out: &mut [f64]) {
     for touch in out.chunks_mut(TOUCH_NUMBERS) {
         touch.fill(0.0);
@@ -166,7 +169,8 @@ fn nothing(out: &mut [f64]) {
     }
 }
 
-/// The touches that a query found, as formulas of the two frames: the points stay on their solids.
+/// Turns the numbers of a search into touches, as formulas of the two frames: the points stay on
+/// their solids.
 pub fn found<S: Scalar>(numbers: &[S], i: &MarkerState<S>, j: &MarkerState<S>) -> Vec<Touch<S>> {
     let one = |touch: &[S]| {
         let vector = |k: usize| Vec3([touch[k], touch[k + 1], touch[k + 2]]);
@@ -184,7 +188,7 @@ pub fn found<S: Scalar>(numbers: &[S], i: &MarkerState<S>, j: &MarkerState<S>) -
 }
 
 impl<S: Scalar> Touch<S> {
-    /// The same, seen from the other solid.
+    /// Returns the same touch with I and J exchanged.
     fn turned(self) -> Self {
         Self {
             normal: -self.normal,
@@ -193,33 +197,33 @@ impl<S: Scalar> Touch<S> {
     }
 }
 
-/// Which formula finds the touches of a pair.
+/// The formula for the touches of a pair.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pair {
     /// a ball on I or, `turned`, on J, and a solid
     Ball {
-        /// of the ball
+        /// radius of the ball
         radius: f64,
-        /// the other
+        /// the other solid
         solid: Solid,
-        /// the ball is J's
+        /// whether the ball is J's
         turned: bool,
     },
     /// a solid on I or, `turned`, on J, and a plane
     Plane {
-        /// on the plane
+        /// the solid on the plane
         solid: Solid,
-        /// bounds of the plane
+        /// bounds of the plane along x
         x: [Option<f64>; 2],
-        /// bounds of the plane
+        /// bounds of the plane along y
         y: [Option<f64>; 2],
-        /// the solid is J's
+        /// whether the solid is J's
         turned: bool,
     },
 }
 
 impl Pair {
-    /// The formula for two solids; `None`: there is none.
+    /// Returns the formula for two solids, or `None` if there is none.
     pub fn of(i: &Solid, j: &Solid) -> Option<Pair> {
         let ball = |radius: f64, solid: &Solid, turned: bool| {
             let known = !matches!(solid, Solid::Ellipsoid { .. } | Solid::Hull(_));
@@ -247,7 +251,7 @@ impl Pair {
         }
     }
 
-    /// Where the solids of I and J touch.
+    /// Returns the touches of the solids of I and J.
     pub fn touches<S: Scalar>(&self, i: &MarkerState<S>, j: &MarkerState<S>) -> Vec<Touch<S>> {
         match self {
             Pair::Ball {
@@ -270,7 +274,7 @@ impl Pair {
     }
 }
 
-/// What the touches do to I, about its origin.
+/// Returns the action of the touches on I, about its origin.
 pub fn action<S: Scalar>(
     touches: &[Touch<S>],
     law: &Law,

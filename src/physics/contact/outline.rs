@@ -1,15 +1,17 @@
 //! An outline: a plane curve as the rim of a solid, divided into cells so that it can be searched.
 //!
-//! The curve `c(s)` lies in the x–y plane of its marker. Its outside is to the left of the way along it, `n = z × t`, so that
-//! a profile drawn towards +x is the ground of what is above; a closed curve has its outside outside, whichever way it is drawn. IFLIP
-//! and JFLIP turn the outside over: a closed curve becomes a hole. (Adams does not say in public which side is the default of
-//! an open curve; this is the y axis of the floating markers of CVCV.)
+//! The curve `c(s)` lies in the x–y plane of its marker. Its outside is to the left of its
+//! direction, `n = z × t`, so that a profile drawn towards +x is the ground below a solid; a closed
+//! curve has its outside outside, whichever way it is drawn. IFLIP and JFLIP reverse the outside: a
+//! closed curve becomes a hole. (The default side of an open curve is not public; this one is the y
+//! axis of the floating markers of CVCV.)
 //!
-//! - A **cell** lies between two parameters, within one polynomial, and turns by no more than `TURN`.
-//! - A **corner** is where the tangent jumps, or an open curve ends: a point that touches with every normal between those of its sides.
-//!   Behind an end the outside goes round by a quarter turn.
-//! - Cells hang in a binary **tree**; each node knows a circle about its cells and the directions of their normals.
-
+//! - A **cell** lies between two parameters, within one polynomial, and turns by at most
+//!   [`CELL_TURN`].
+//! - A **corner** is a jump of the tangent, or an end of an open curve: a point that touches with
+//!   every normal between those of its sides. Behind an end the outside turns by a quarter turn.
+//! - Cells are the leaves of a binary **tree**; each node has a circle about its cells and the
+//!   range of the directions of their normals.
 use super::super::cam::Path;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -17,12 +19,12 @@ use std::ops::Range;
 /// A vector in the plane.
 pub type Flat = [f64; 2];
 
-/// Largest change of direction within a cell.
-const TURN: f64 = 0.12;
-/// Cells of a whole curve, at least and at most.
+/// Largest change of direction within a cell, in rad.
+const CELL_TURN: f64 = 0.12;
+/// Number of cells of a whole curve, from the least to the most.
 const CELLS: Range<usize> = 64..65_536;
-/// A tangent that jumps by less does not.
-const SMOOTH: f64 = 1e-5;
+/// Jump of the tangent, in rad, below which it counts as smooth.
+const SMOOTH_JUMP: f64 = 1e-5;
 
 pub(super) fn dot(a: Flat, b: Flat) -> f64 {
     a[0] * b[0] + a[1] * b[1]
@@ -33,15 +35,15 @@ pub(super) fn cross(a: Flat, b: Flat) -> f64 {
 pub(super) fn minus(a: Flat, b: Flat) -> Flat {
     [a[0] - b[0], a[1] - b[1]]
 }
-/// a + k b
+/// Returns a + k b.
 pub(super) fn along(a: Flat, k: f64, b: Flat) -> Flat {
     [a[0] + k * b[0], a[1] + k * b[1]]
 }
 pub(super) fn length(a: Flat) -> f64 {
-    // hypot, which minds overflow, costs five times as much
+    // hypot, which avoids overflow, takes five times as long
     dot(a, a).sqrt()
 }
-/// An angle between −π and π.
+/// Wraps an angle to between −π and π.
 pub(super) fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
@@ -51,14 +53,15 @@ pub(super) fn wrapped(angle: f64) -> f64 {
 pub enum Rim {
     /// a CURVE
     Path(Box<Path>),
-    /// a circle about the origin, or an arc of it: radius, angle that it covers from x on
+    /// a circle about the origin, or an arc of it: radius, and the angle that it covers from x on,
+    /// in rad
     Circle(f64, f64),
-    /// nothing but its origin
+    /// the origin alone
     Point,
 }
 
 impl Rim {
-    /// The derivative of some order with respect to the parameter.
+    /// Returns the derivative of some order with respect to the parameter.
     pub(super) fn at(&self, s: f64, order: u32) -> Flat {
         match self {
             Rim::Path(path) => {
@@ -84,7 +87,7 @@ impl Rim {
             Rim::Point => false,
         }
     }
-    /// Parameters between which it is smooth, from end to end.
+    /// Returns the parameters between which it is smooth, from end to end.
     pub(super) fn knots(&self) -> Vec<f64> {
         match self {
             Rim::Path(path) => path.knots.clone(),
@@ -101,56 +104,58 @@ pub(super) struct Cell {
     pub s: [f64; 2],
     /// points at its ends
     pub ends: [Flat; 2],
-    /// it is straight
+    /// whether it is straight
     pub straight: bool,
     /// corners at its ends: indices in [`Outline::corners`]
     pub corner: [Option<usize>; 2],
 }
 
-/// Where the tangent jumps, or an open curve ends.
+/// A jump of the tangent, or an end of an open curve.
 #[derive(Clone, Debug)]
 pub(super) struct Corner {
-    /// where it is
+    /// the point
     pub at: Flat,
-    /// directions of the normals of the side before it and after it
+    /// directions of the normals of the sides before and after it, in rad
     pub normals: [f64; 2],
-    /// outside turns away from it, or it is an end
+    /// whether outside turns away from it, or it is an end
     pub convex: bool,
-    /// the side before, after it is straight
+    /// whether the sides before and after it are straight
     pub straight: [bool; 2],
 }
 
-/// Cells next to each other.
+/// A node of the tree: adjacent cells.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     pub cells: Range<usize>,
-    /// centre and radius of a circle about them
+    /// centre of a circle about the cells
     pub centre: Flat,
+    /// radius of that circle, in length units
     pub radius: f64,
-    /// middle direction of their normals, and how far they deviate from it
+    /// middle direction of their normals, in rad
     pub normal: f64,
+    /// largest deviation from that direction, in rad
     pub spread: f64,
-    /// all are straight
+    /// whether all cells are straight
     pub straight: bool,
-    /// its halves; none of a cell
+    /// the two child nodes; none of a single cell
     pub halves: Option<[usize; 2]>,
 }
 
-/// A plane curve that can be touched.
+/// A plane curve as the rim of a solid.
 #[derive(Clone, Debug)]
 pub struct Outline {
     rim: Rim,
-    /// +1: outside is to the left of the way along it
+    /// +1 if outside is to the left of its direction, else −1
     side: f64,
     pub(super) cells: Vec<Cell>,
     pub(super) corners: Vec<Corner>,
-    /// the last is the root
+    /// nodes of the tree; the last is the root
     pub(super) nodes: Vec<Node>,
-    /// it returns to its beginning
+    /// whether it returns to its beginning
     pub(super) closed: bool,
-    /// its solid lies within it
+    /// whether its solid lies within it
     encloses: bool,
-    /// radius of the circle about it
+    /// radius of the circle about it, in length units
     pub size: f64,
 }
 
@@ -164,14 +169,15 @@ pub(super) struct Spot {
 }
 
 impl Spot {
-    /// Curvature; positive where it bulges outwards.
+    /// Returns the curvature; positive where the outline bulges outwards.
     pub fn curvature(&self) -> f64 {
         -dot(self.bend, self.normal) / dot(self.tangent, self.tangent)
     }
 }
 
 impl Outline {
-    /// Of a rim; `flipped`: with its outside inside. `None`: it has no length.
+    /// Builds the outline of a rim; `flipped` puts its outside inside. `None` if the rim has no
+    /// length.
     pub fn new(rim: Rim, flipped: bool) -> Option<Self> {
         let closed = rim.is_closed();
         let mut this = Self {
@@ -209,7 +215,7 @@ impl Outline {
         let leaves: Vec<usize> = (0..this.cells.len()).map(|c| this.leaf(c)).collect();
         this.tree(&leaves);
         let root = this.nodes.last()?;
-        // circles about circles are larger than what is in them
+        // circles about circles are larger than needed
         let ends = this.cells.iter().flat_map(|c| c.ends);
         let sizes = ends.map(|end| length(minus(end, root.centre)));
         this.size = sizes.fold(0.0, f64::max);
@@ -220,7 +226,7 @@ impl Outline {
         &self.rim
     }
 
-    /// Whether it is a point.
+    /// Returns whether it is a point.
     pub fn is_point(&self) -> bool {
         self.cells.is_empty()
     }
@@ -235,20 +241,20 @@ impl Outline {
         }
     }
 
-    /// The outward normal across a tangent.
+    /// Returns the outward normal to a tangent.
     pub(super) fn normal(&self, tangent: Flat) -> Flat {
         let k = self.side / length(tangent);
         [-tangent[1] * k, tangent[0] * k]
     }
 
-    /// The direction of the normal at a parameter of a cell.
+    /// Returns the direction of the normal at a part of a cell, in rad.
     fn direction(&self, cell: usize, part: f64) -> f64 {
         let [a, b] = self.cells[cell].s;
         let n = self.normal(self.rim.at(a + (b - a) * part, 1));
         n[1].atan2(n[0])
     }
 
-    /// Cells that turn little, each within a polynomial.
+    /// Divides the curve into cells that turn little, each within a polynomial.
     fn divide(&mut self) {
         let knots = self.rim.knots();
         let mut points = Vec::new();
@@ -269,8 +275,8 @@ impl Outline {
                 .map(|d| wrapped(d[1] - d[0]).abs())
                 .sum();
             let share = (b - a) / 2.0 * CELLS.start as f64;
-            let n = (turn / TURN).max(share).ceil();
-            // a tangent that is no number has no cells
+            let n = (turn / CELL_TURN).max(share).ceil();
+            // a tangent that is not a number yields no cells
             let n = if n.is_finite() {
                 (n as usize).clamp(1, CELLS.start * 8)
             } else {
@@ -317,7 +323,7 @@ impl Outline {
                     let normals = [self.direction(b, 1.0 - 1e-7), self.direction(a, 1e-7)];
                     let jump = wrapped(normals[1] - normals[0]);
                     // with the outside on the left a turn to the right is convex
-                    (jump.abs() > SMOOTH).then(|| Corner {
+                    (jump.abs() > SMOOTH_JUMP).then(|| Corner {
                         at: self.cells[a].ends[0],
                         normals,
                         convex: jump * self.side < 0.0,
@@ -357,12 +363,12 @@ impl Outline {
         }
     }
 
-    /// Centre of the circle about it.
+    /// Returns the centre of the circle about it.
     pub fn middle(&self) -> Flat {
         self.nodes.last().map_or([0.0; 2], |root| root.centre)
     }
 
-    /// The node of a cell.
+    /// Adds the node of a cell; returns its index.
     fn leaf(&mut self, cell: usize) -> usize {
         let c = &self.cells[cell];
         let (s, straight) = (c.s, c.straight);
@@ -386,7 +392,7 @@ impl Outline {
         self.nodes.len() - 1
     }
 
-    /// The node above some leaves.
+    /// Adds the nodes above some leaves; returns the index of the topmost.
     fn tree(&mut self, leaves: &[usize]) -> usize {
         if let [only] = leaves {
             return *only;
@@ -405,7 +411,7 @@ impl Outline {
             a.centre
         };
         let turn = wrapped(b.normal - a.normal);
-        // from the lowest direction to the highest, seen from a
+        // from the lowest direction to the highest, relative to a
         let low = (-a.spread).min(turn - b.spread);
         let high = a.spread.max(turn + b.spread);
         let node = Node {
@@ -425,8 +431,8 @@ impl Outline {
         self.nodes.len().checked_sub(1)
     }
 
-    /// Whether a point may be in the solid, or near it: no farther than `near` from a solid that lies within its outline, than `limit`
-    /// from any other.
+    /// Returns whether a point may be in the solid, or close to it: within `near` of a solid inside
+    /// its outline, within `limit` of any other.
     pub(super) fn may_hold(&self, p: Flat, near: f64, limit: f64) -> bool {
         let margin = if self.encloses { near } else { limit };
         self.nodes
@@ -434,7 +440,7 @@ impl Outline {
             .is_some_and(|root| length(minus(p, root.centre)) <= root.radius + margin)
     }
 
-    /// The parameter of the point of a cell that is nearest to `p`, and that point.
+    /// Returns the parameter of the point of a cell that is nearest to `p`, and that point.
     fn nearest_of(&self, cell: usize, p: Flat) -> (f64, Flat) {
         let c = &self.cells[cell];
         let ([a, b], ends) = (c.s, c.ends);
@@ -449,7 +455,7 @@ impl Outline {
             let [c, t, bend] = [0, 1, 2].map(|k| self.rim.at(s, k));
             let d = minus(p, c);
             let slope = dot(t, t) - dot(d, bend);
-            // beyond the centre of curvature the way is that of the straight line
+            // beyond the centre of curvature the slope is that of a straight line
             let slope = if slope > 0.0 { slope } else { dot(t, t) };
             let next = (s + dot(d, t) / slope).clamp(a, b);
             let step = next - s;
@@ -461,14 +467,15 @@ impl Outline {
         (s, self.rim.at(s, 0))
     }
 
-    /// The nearest point to `p` within some distance: its cell, its parameter, where it is. `hint`: a place of the outline that may be near.
+    /// Finds the point nearest to `p` within some distance: its cell, its parameter, and the point.
+    /// `hint`: a point of the outline that may be close.
     pub(super) fn nearest(
         &self,
         p: Flat,
         within: f64,
         hint: Option<Flat>,
     ) -> Option<(usize, f64, Flat)> {
-        // no farther than any known place of the outline, which rounding must not exclude
+        // no farther than any known point of the outline, which rounding must not exclude
         let known = |at: Flat| length(minus(p, at)) * (1.0 + 1e-12) + f64::MIN_POSITIVE;
         let mut best = (hint.map_or(within, |at| known(at).min(within)), None);
         let mut waiting = Vec::with_capacity(64);
@@ -486,7 +493,7 @@ impl Outline {
                 Some([a, b]) => {
                     let far =
                         |k: usize| length(minus(p, self.nodes[k].centre)) - self.nodes[k].radius;
-                    // the nearer half is looked at first
+                    // the nearer half is examined first
                     waiting.extend(if far(a) < far(b) { [b, a] } else { [a, b] });
                 }
                 None => {
@@ -502,7 +509,8 @@ impl Outline {
         best.1
     }
 
-    /// Whether the straight line from `p` to `q` crosses a cell that is not next to `own`.
+    /// Returns whether the straight line from `p` to `q` crosses a cell that is not adjacent to
+    /// `own`.
     pub(super) fn is_crossed(&self, p: Flat, q: Flat, own: usize) -> bool {
         let way = minus(q, p);
         let size2 = dot(way, way);

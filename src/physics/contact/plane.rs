@@ -1,8 +1,9 @@
 //! A solid on a plane: the points of the solid that can be deepest.
 //!
-//! Corners stay where they are. On a rim the deepest point moves: it lies where the plane's normal, laid into the plane
-//! of the rim, points down; the points a quarter and half a turn further hold a solid that stands flat. The four together
-//! depend on nothing but the tilt, also where the tilt vanishes and the deepest point is any.
+//! Corners are fixed. On a rim the deepest point moves: it lies where the plane's normal, projected
+//! into the plane of the rim, points down; the points a quarter and half a turn further support a
+//! solid that stands flat. The four together depend on nothing but the tilt, even where the tilt
+//! vanishes and any point is the deepest.
 
 use super::ball::radial;
 use super::{Solid, Touch};
@@ -11,7 +12,7 @@ use crate::space::{MarkerState, Vec3};
 
 type Bounds = [Option<f64>; 2];
 
-/// The touches of a solid of I with a plane of J, whose outside is along its z.
+/// Returns the touches of a solid of I with a plane of J, whose outside is along its z.
 pub(super) fn touches<S: Scalar>(
     solid: &Solid,
     i: &MarkerState<S>,
@@ -19,7 +20,7 @@ pub(super) fn touches<S: Scalar>(
     j: &MarkerState<S>,
 ) -> Vec<Touch<S>> {
     let normal = j.R_GM.column(2);
-    // the way down, in the solid's axes
+    // the direction down, in the solid's axes
     let down = i.R_GM.apply_transposed(-normal);
     let mut out = Vec::new();
     for local in candidates(solid, down) {
@@ -53,7 +54,7 @@ pub(super) fn touches<S: Scalar>(
     out
 }
 
-/// Points of a solid, in its frame, that can be deepest along `down`.
+/// Returns the points of a solid, in its frame, that can be deepest along `down`.
 pub fn candidates<S: Scalar>(solid: &Solid, down: Vec3<S>) -> Vec<Vec3<S>> {
     let c = S::constant;
     match solid {
@@ -94,7 +95,7 @@ pub fn candidates<S: Scalar>(solid: &Solid, down: Vec3<S>) -> Vec<Vec3<S>> {
     }
 }
 
-/// The deepest point of a circle about z, and those a quarter and half a turn further.
+/// Returns the deepest point of a circle about z, and those a quarter and half a turn further.
 fn rim<S: Scalar>(radius: f64, z: f64, down: Vec3<S>) -> Vec<Vec3<S>> {
     if radius == 0.0 {
         return vec![Vec3([S::zero(), S::zero(), S::constant(z)])];

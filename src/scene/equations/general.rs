@@ -12,9 +12,10 @@ use super::{Equations, RowValue};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Work};
 use crate::physics::action::Action;
+use crate::physics::kinematic;
 use crate::scalar::{Jet, Scalar};
 use crate::scene::{Counted, Entry};
-use crate::space::{Frame, MarkerState, kinematic};
+use crate::space::{Frame, MarkerState};
 
 /// Most markers that one measure reads.
 const MARKERS: usize = 3;

@@ -3,10 +3,10 @@
 use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure, orientation_components};
 use crate::expr::program::Input;
+use crate::physics::kinematic;
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
 use crate::scene::{Counted, Entry, sweep};
-use crate::space::kinematic;
 
 impl<S: Scalar> Equations<'_, S> {
     /// Value of a measure.

@@ -1,4 +1,4 @@
-//! A convex solid as queries ask it: its farthest point in a direction, and the face that looks there.
+//! A convex solid as searches use it: its farthest point in a direction, and the face there.
 
 use super::super::Solid;
 use super::flat::Flat;
@@ -7,34 +7,34 @@ use crate::space::Vec3;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::SupportMap;
 
-/// Points of a rim; every sixth is a corner.
-pub const RIM: usize = 24;
+/// Points that represent a rim; every sixth is a corner.
+pub const RIM_POINTS: usize = 24;
 
-/// A solid as it is asked.
+/// A convex solid, prepared for searches.
 #[derive(Debug)]
 pub struct Body {
     pub(super) solid: Solid,
-    /// its smallest and largest extent, roughly
+    /// smallest and largest extent, approximately
     pub(super) size: [f64; 2],
-    /// middle of its extents
+    /// middle of its extents, in its frame
     pub(super) middle: Vector,
-    /// of a hull
+    /// the polytope of a hull
     hull: Option<Polytope>,
 }
 
-/// The side of a solid that looks in some direction: a polygon, a line or a point.
+/// The side of a solid that faces some direction: a polygon, a line or a point.
 pub(super) struct Face {
     pub outline: Vec<Vector>,
-    /// which corners of its solid these are: the same whichever face they are seen in
+    /// numbers of the corners, the same in whichever face of the solid they are
     pub ids: Vec<usize>,
-    /// every how many-th point of the outline is a corner
+    /// distance of corners among the points of the outline: 1 if each is one
     pub stride: usize,
-    /// outwards; of polygons only
+    /// outward normal; of polygons only
     pub normal: Option<Vector>,
 }
 
 impl Face {
-    /// Its outline on the plane of two axes.
+    /// Projects the outline onto the plane of two axes.
     pub fn laid(&self, e: Vector, f: Vector) -> Vec<Flat> {
         let outline = self.outline.iter();
         outline.map(|p| [p.dot(e), p.dot(f)]).collect()
@@ -45,7 +45,7 @@ pub(super) fn vector(p: [f64; 3]) -> Vector {
     Vector::new(p[0], p[1], p[2])
 }
 
-/// Unit vector across z, x where there is none.
+/// Returns cosine and sine of the azimuth about z; (1, 0) where there is none.
 fn azimuth(dir: Vector) -> (f64, f64) {
     let across = dir.x.hypot(dir.y);
     // a face that looks along z has no direction of its own
@@ -57,7 +57,7 @@ fn azimuth(dir: Vector) -> (f64, f64) {
 }
 
 impl Body {
-    /// `None`: it is no convex solid of finite size.
+    /// Prepares a solid; `None` if it is not convex or not of finite size.
     pub fn new(solid: &Solid) -> Option<Self> {
         let mut hull = None;
         let mut middle = Vector::ZERO;
@@ -97,7 +97,8 @@ impl Body {
         })
     }
 
-    /// Signed distance of a point from a hull, negative inside, and the direction in which it grows; of other solids no number.
+    /// Returns the signed distance of a point from a hull, negative inside, and the direction in
+    /// which it grows; NaN for other solids.
     pub fn distance(&self, p: Vec3<f64>) -> (f64, Vec3<f64>) {
         let (d, n) = match &self.hull {
             Some(hull) => hull.distance(vector(p.0), self.size[1]),
@@ -106,13 +107,14 @@ impl Body {
         (d, Vec3([n.x, n.y, n.z]))
     }
 
-    /// Outward normals of its faces, where these are not along its axes.
+    /// Iterates over the outward normals of its faces, except those along its axes.
     pub(super) fn normals(&self) -> impl Iterator<Item = Vector> + '_ {
         let sides = self.hull.iter().flat_map(|hull| &hull.sides);
         sides.map(|side| side.normal)
     }
 
-    /// The edge, or the line on a curved side, that comes nearest to being the farthest in a direction; none of what is round all about.
+    /// Returns the edge, or the line on a curved side, that comes nearest to being the farthest in
+    /// a direction; none for a solid that is round in all directions.
     pub(super) fn edge(&self, dir: Vector) -> Option<[Vector; 2]> {
         match &self.solid {
             Solid::Box { low, high } => {
@@ -136,84 +138,11 @@ impl Body {
         }
     }
 
-    /// The face that looks along a unit vector.
+    /// Returns the face that looks along a unit vector.
     pub(super) fn face(&self, dir: Vector) -> Face {
-        let one = |p: Vector| Face {
-            outline: vec![p],
-            ids: vec![0],
-            stride: 1,
-            normal: None,
-        };
         match &self.solid {
-            Solid::Box { low, high } => {
-                let size = dir.abs();
-                let axis = if size.x >= size.y && size.x >= size.z {
-                    0
-                } else if size.y >= size.z {
-                    1
-                } else {
-                    2
-                };
-                let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-                let up = dir[axis] >= 0.0;
-                let corner = |ka: bool, kb: bool| {
-                    let mut p = Vector::ZERO;
-                    p[axis] = if up { high } else { low }[axis];
-                    p[a] = if ka { high } else { low }[a];
-                    p[b] = if kb { high } else { low }[b];
-                    p
-                };
-                let mut normal = Vector::ZERO;
-                normal[axis] = if up { 1.0 } else { -1.0 };
-                Face {
-                    outline: vec![
-                        corner(false, false),
-                        corner(true, false),
-                        corner(true, true),
-                        corner(false, true),
-                    ],
-                    ids: [(false, false), (true, false), (true, true), (false, true)]
-                        .map(|(ka, kb)| {
-                            usize::from(up) << axis | usize::from(ka) << a | usize::from(kb) << b
-                        })
-                        .to_vec(),
-                    stride: 1,
-                    normal: Some(normal),
-                }
-            }
-            Solid::Frustum { z, radius } => {
-                let (c, s) = azimuth(dir);
-                let (up, out) = (dir.z, dir.x * c + dir.y * s);
-                let (height, taper) = (z[1] - z[0], radius[0] - radius[1]);
-                let side = (out * height + up * taper) / height.hypot(taper);
-                if side >= up.abs() {
-                    let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
-                    return Face {
-                        outline: vec![at(0), at(1)],
-                        ids: vec![0, RIM],
-                        stride: 1,
-                        normal: None,
-                    };
-                }
-                let end = usize::from(up > 0.0);
-                if radius[end] == 0.0 {
-                    return one(Vector::new(0.0, 0.0, z[end]));
-                }
-                let rim = (0..RIM).map(|k| {
-                    let (sk, ck) = (std::f64::consts::TAU * k as f64 / RIM as f64).sin_cos();
-                    Vector::new(
-                        radius[end] * (c * ck - s * sk),
-                        radius[end] * (s * ck + c * sk),
-                        z[end],
-                    )
-                });
-                Face {
-                    outline: rim.collect(),
-                    ids: (0..RIM).map(|k| k + RIM * end).collect(),
-                    stride: RIM / 4,
-                    normal: Some(Vector::new(0.0, 0.0, up.signum())),
-                }
-            }
+            Solid::Box { low, high } => Face::of_box(low, high, dir),
+            Solid::Frustum { z, radius } => Face::of_frustum(z, radius, dir),
             Solid::Hull(_) => match self.hull.as_ref().and_then(|h| Some((h, h.side(dir)?))) {
                 Some((hull, side)) => Face {
                     outline: side.ids.iter().map(|&k| hull.corners[k]).collect(),
@@ -221,20 +150,103 @@ impl Body {
                     stride: 1,
                     normal: Some(side.normal),
                 },
-                None => one(Vector::ZERO),
+                None => Face::of_point(Vector::ZERO),
             },
-            _ => one(self.local_support_point(dir)),
+            Solid::Ball { .. }
+            | Solid::Ellipsoid { .. }
+            | Solid::Plane { .. }
+            | Solid::Torus { .. } => Face::of_point(self.local_support_point(dir)),
         }
     }
 }
 
-/// Least and largest.
+impl Face {
+    /// Returns the face of a single point.
+    fn of_point(p: Vector) -> Face {
+        Face {
+            outline: vec![p],
+            ids: vec![0],
+            stride: 1,
+            normal: None,
+        }
+    }
+
+    /// Returns the rectangle of a box between two corners that looks along `dir`.
+    fn of_box(low: &[f64; 3], high: &[f64; 3], dir: Vector) -> Face {
+        let size = dir.abs();
+        let axis = if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        };
+        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+        let up = dir[axis] >= 0.0;
+        let corner = |(ka, kb): (bool, bool)| {
+            let mut p = Vector::ZERO;
+            p[axis] = if up { high } else { low }[axis];
+            p[a] = if ka { high } else { low }[a];
+            p[b] = if kb { high } else { low }[b];
+            p
+        };
+        let id = |(ka, kb): (bool, bool)| {
+            usize::from(up) << axis | usize::from(ka) << a | usize::from(kb) << b
+        };
+        let corners = [(false, false), (true, false), (true, true), (false, true)];
+        let mut normal = Vector::ZERO;
+        normal[axis] = if up { 1.0 } else { -1.0 };
+        Face {
+            outline: corners.map(corner).to_vec(),
+            ids: corners.map(id).to_vec(),
+            stride: 1,
+            normal: Some(normal),
+        }
+    }
+
+    /// Returns the line on the side of a frustum, or its end, that looks along `dir`.
+    fn of_frustum(z: &[f64; 2], radius: &[f64; 2], dir: Vector) -> Face {
+        let (c, s) = azimuth(dir);
+        let (up, out) = (dir.z, dir.x * c + dir.y * s);
+        let (height, taper) = (z[1] - z[0], radius[0] - radius[1]);
+        let side = (out * height + up * taper) / height.hypot(taper);
+        if side >= up.abs() {
+            let at = |end: usize| Vector::new(radius[end] * c, radius[end] * s, z[end]);
+            return Face {
+                outline: vec![at(0), at(1)],
+                ids: vec![0, RIM_POINTS],
+                stride: 1,
+                normal: None,
+            };
+        }
+        let end = usize::from(up > 0.0);
+        if radius[end] == 0.0 {
+            return Face::of_point(Vector::new(0.0, 0.0, z[end]));
+        }
+        let rim = (0..RIM_POINTS).map(|k| {
+            let (sk, ck) = (std::f64::consts::TAU * k as f64 / RIM_POINTS as f64).sin_cos();
+            Vector::new(
+                radius[end] * (c * ck - s * sk),
+                radius[end] * (s * ck + c * sk),
+                z[end],
+            )
+        });
+        Face {
+            outline: rim.collect(),
+            ids: (0..RIM_POINTS).map(|k| k + RIM_POINTS * end).collect(),
+            stride: RIM_POINTS / 4,
+            normal: Some(Vector::new(0.0, 0.0, up.signum())),
+        }
+    }
+}
+
+/// Returns the smallest and the largest.
 fn extremes(x: [f64; 3]) -> [f64; 2] {
     [x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2])]
 }
 
 impl SupportMap for Body {
-    /// The farthest point along a direction.
+    /// Returns the farthest point along a direction.
     fn local_support_point(&self, dir: Vector) -> Vector {
         match &self.solid {
             Solid::Ball { radius } => dir.normalize_or(Vector::X) * *radius,

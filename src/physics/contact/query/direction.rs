@@ -1,18 +1,20 @@
 //! The direction from one solid to another in which they overlap least.
 //!
-//! s(n) = n · (a(−n) − b(n)) is the gap along n, with a, b the farthest points of I's and J's solid; the direction is where it is largest.
+//! s(n) = n · (a(−n) − b(n)) is the gap along n, with a, b the farthest points of I's and J's
+//! solid; the direction maximizes the gap.
 //!
-//! Where the solids are apart the algorithm of Gilbert, Johnson and Keerthi (parry) finds it. Where they touch or overlap it
-//! is climbed to: from the most promising of the axes of both solids I's solid is moved along n until a small gap is there, and the
-//! direction of that gap is better:
+//! Where the solids are apart the algorithm of Gilbert, Johnson and Keerthi (parry) finds it. Where
+//! they touch or overlap the gap is climbed: from the most promising of the axes of both solids,
+//! I's solid is moved along n until there is a small gap, and the direction of that gap is better:
 //!
 //! ```text
-//! n' = argmax s(m) − h (1 − m · n)      h: how far it was moved                         s(n') ≥ s(n)
+//! n' = argmax s(m) − h (1 − m · n)      h: length of the move                         s(n') ≥ s(n)
 //! ```
 //!
-//! That direction is good to some thousandths, as the algorithm stops at a part in 1e7 of the distance. The features that look at each other make it exact:
-//! faces have their normals, two edges their product, an edge and a curved side or two curved sides a few steps of Newton's iteration.
-//! Whichever has the largest gap is taken, so that no wrong guess can do harm.
+//! That direction is good to some thousandths, as the algorithm stops at a part in 1e7 of the
+//! distance. The features that face each other make it exact: faces have their normals, two edges
+//! their product, an edge and a curved side or two curved sides a few steps of Newton's iteration.
+//! The one with the largest gap is taken, so that a wrong guess does no harm.
 
 use super::super::Solid;
 use super::Query;
@@ -22,17 +24,17 @@ use parry3d_f64::query::gjk::{self, CsoPoint, GJKResult, VoronoiSimplex};
 use parry3d_f64::query::sat;
 use parry3d_f64::shape::{Cuboid, SupportMap};
 
-/// Gap to which overlapping solids are moved, as a part of the smaller extents.
-const MARGIN: f64 = 1e-2;
-/// Directions from which is climbed, at most.
-const STARTS: usize = 3;
-/// Steps of each climb, at most.
-const CLIMB: usize = 12;
-/// A step of a direction that is larger leads to another place.
-const STRIDE: f64 = 0.1;
+/// Gap to which overlapping solids are moved apart, as a part of the smaller extents.
+const SEPARATED_GAP: f64 = 1e-2;
+/// Most directions from which the gap is climbed.
+const MOST_STARTS: usize = 3;
+/// Most steps of each climb.
+const MOST_CLIMB_STEPS: usize = 12;
+/// Change of a direction, in rad, above which an iteration has left its feature.
+const LARGEST_STEP: f64 = 0.1;
 
 impl Query {
-    /// I's farthest point against n and J's along it, in J's frame.
+    /// Returns I's farthest point against n and J's along it, in J's frame.
     fn farthest(&self, pose: &Pose, n: Vector) -> (Vector, Vector) {
         (
             self.i.support_point(pose, -n),
@@ -40,13 +42,13 @@ impl Query {
         )
     }
 
-    /// The gap along a direction.
+    /// Returns the gap along a direction.
     fn gap(&self, pose: &Pose, n: Vector) -> f64 {
         let (a, b) = self.farthest(pose, n);
         (a - b).dot(n)
     }
 
-    /// The direction from J's solid to I's, in J's frame.
+    /// Returns the direction from J's solid to I's in which they overlap least, in J's frame.
     pub(super) fn direction(&self, pose: &Pose) -> Option<Vector> {
         let n = match (&self.i.solid, &self.j.solid) {
             (Solid::Box { low: li, high: hi }, Solid::Box { low: lj, high: hj }) => {
@@ -83,7 +85,7 @@ impl Query {
         best.1.is_finite().then_some(best.1)
     }
 
-    /// The direction of the nearest points of solids that are apart.
+    /// Returns the direction between the nearest points of solids that are apart.
     fn apart(&self, pose: &Pose) -> Option<Vector> {
         let start = pose.translation.try_normalize().unwrap_or(Vector::Z);
         let mut simplex = VoronoiSimplex::new();
@@ -94,11 +96,11 @@ impl Query {
         }
     }
 
-    /// The direction, to some thousandths.
+    /// Returns the direction to within some thousandths.
     fn roughly(&self, pose: &Pose) -> Option<Vector> {
         let small = self.i.size[0].min(self.j.size[0]);
         if let Some(n) = self.apart(pose)
-            && self.gap(pose, n) > 1e-3 * MARGIN * small
+            && self.gap(pose, n) > 1e-3 * SEPARATED_GAP * small
         {
             return Some(n);
         }
@@ -129,12 +131,12 @@ impl Query {
         }
         starts.retain(|s| s.0.is_finite());
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
-        starts.truncate(STARTS);
+        starts.truncate(MOST_STARTS);
         let climbed = starts.into_iter().map(|(gap, n)| {
             let mut best = (gap, n);
-            for _ in 0..CLIMB {
+            for _ in 0..MOST_CLIMB_STEPS {
                 let (gap, n) = best;
-                let away = n * (MARGIN * small - gap);
+                let away = n * (SEPARATED_GAP * small - gap);
                 let moved = Pose::from_parts(pose.translation + away, pose.rotation);
                 let Some(m) = self.apart(&moved) else { break };
                 let better = self.gap(pose, m);
@@ -149,13 +151,14 @@ impl Query {
         best.map(|(_, n)| n)
     }
 
-    /// From the middle of J's solid to that of I's.
+    /// Returns the direction from the middle of J's solid to that of I's.
     fn middle(&self, pose: &Pose) -> Vector {
         pose.transform_point(self.i.middle) - self.j.middle
     }
 }
 
-/// The direction along which two points that depend on it lie behind each other, by Newton's iteration across it.
+/// Finds the direction along which two points that depend on it are in line, by Newton's iteration
+/// across it.
 fn points(n: Vector, between: impl Fn(Vector) -> Vector) -> Option<Vector> {
     let (e, f) = n.any_orthonormal_pair();
     let at = |u: f64, v: f64| (n + e * u + f * v).normalize();
@@ -178,7 +181,7 @@ fn points(n: Vector, between: impl Fn(Vector) -> Vector) -> Option<Vector> {
         let det = g[0] * k[1] - g[1] * k[0];
         let (du, dv) = ((x * k[1] - y * k[0]) / det, (y * g[0] - x * g[1]) / det);
         (u, v) = (u - du, v - dv);
-        if (u + v).is_nan() || u.hypot(v) > STRIDE {
+        if (u + v).is_nan() || u.hypot(v) > LARGEST_STEP {
             return None;
         }
         if du.abs() + dv.abs() < 1e-15 {
@@ -188,7 +191,8 @@ fn points(n: Vector, between: impl Fn(Vector) -> Vector) -> Option<Vector> {
     Some(at(u, v))
 }
 
-/// The direction square to an edge of I's solid along which a point of J's lies below it, by secants.
+/// Finds the direction perpendicular to an edge of I's solid along which a point of J's lies below
+/// it, by secants.
 fn edge_and_point(
     n: Vector,
     edge: impl Fn(Vector) -> Option<[Vector; 2]>,
@@ -200,7 +204,7 @@ fn edge_and_point(
         (q - p).try_normalize()
     };
     let start = across(n, along(n)?)?;
-    if (start - n).length() > STRIDE {
+    if (start - n).length() > LARGEST_STEP {
         return None;
     }
     let at = |angle: f64| {
@@ -226,7 +230,7 @@ fn edge_and_point(
         if !next.is_finite() {
             break;
         }
-        if next.abs() > STRIDE {
+        if next.abs() > LARGEST_STEP {
             return None;
         }
         (a, fa) = (b, fb);
@@ -239,7 +243,7 @@ fn edge_and_point(
     at(b)
 }
 
-/// The direction square to an edge of each.
+/// Returns the direction perpendicular to an edge of each.
 fn edges(
     n: Vector,
     i: impl Fn(Vector) -> Option<[Vector; 2]>,
@@ -249,7 +253,7 @@ fn edges(
     for _ in 0..6 {
         let ([p, q], [r, s]) = (i(m)?, j(m)?);
         let square = (q - p).normalize().cross((s - r).normalize());
-        // edges along each other have no product
+        // parallel edges have no product
         if square.length() < 1e-3 {
             return None;
         }
@@ -260,10 +264,11 @@ fn edges(
             break;
         }
     }
-    ((m - n).length() < STRIDE).then_some(m)
+    ((m - n).length() < LARGEST_STEP).then_some(m)
 }
 
-/// The direction from box J to box I, in J's frame, in which they overlap least: lower and upper corners.
+/// Returns the direction from box J to box I, in J's frame, in which they overlap least, from lower
+/// and upper corners.
 fn boxes(pose: &Pose, i: (Vector, Vector), j: (Vector, Vector)) -> Vector {
     let cuboid =
         |(low, high): (Vector, Vector)| (Cuboid::new((high - low) * 0.5), (high + low) * 0.5);

@@ -1,16 +1,16 @@
-//! Polygons, lines and points in a plane: where they cross, what lies within them, which of their points are nearest.
+//! Geometry in a plane: intersections of lines, points within polygons, nearest points of outlines.
 
-/// A point laid onto the plane across n.
+/// A point projected onto the plane perpendicular to n.
 pub(super) type Flat = [f64; 2];
 
-/// Lines at a smaller angle (its sine) lie along each other.
-const PARALLEL: f64 = 1e-6;
+/// Sine of the angle between two lines below which they are parallel.
+const PARALLEL_SINE: f64 = 1e-6;
 
 pub(super) fn distance(p: Flat, q: Flat) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
 }
 
-/// The point of a line that is nearest to another.
+/// Returns the point of the line from `p` to `q` that is nearest to `at`.
 pub(super) fn foot(at: Flat, p: Flat, q: Flat) -> Flat {
     let along = [q[0] - p[0], q[1] - p[1]];
     let length2 = along[0] * along[0] + along[1] * along[1];
@@ -23,7 +23,7 @@ pub(super) fn foot(at: Flat, p: Flat, q: Flat) -> Flat {
     [p[0] + u * along[0], p[1] + u * along[1]]
 }
 
-/// The nearest points of two outlines, the same twice where they cross.
+/// Returns the nearest points of two outlines, the same twice where they cross.
 pub(super) fn nearest(i: &[Flat], j: &[Flat]) -> Option<[Flat; 2]> {
     for (p, q) in edges(i) {
         for (r, s) in edges(j) {
@@ -46,12 +46,12 @@ pub(super) fn nearest(i: &[Flat], j: &[Flat]) -> Option<[Flat; 2]> {
         .min_by(|a, b| apart(a).total_cmp(&apart(b)))
 }
 
-/// Twice the area of the triangle p, q, r.
+/// Returns twice the area of the triangle p, q, r.
 fn area(p: Flat, q: Flat, r: Flat) -> f64 {
     (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 }
 
-/// Edges of an outline.
+/// Iterates over the edges of an outline.
 pub(super) fn edges(outline: &[Flat]) -> impl Iterator<Item = (Flat, Flat)> + '_ {
     let n = if outline.len() > 2 {
         outline.len()
@@ -61,7 +61,7 @@ pub(super) fn edges(outline: &[Flat]) -> impl Iterator<Item = (Flat, Flat)> + '_
     (0..n).map(move |k| (outline[k], outline[(k + 1) % outline.len()]))
 }
 
-/// Whether a point lies within an outline, or within `near` of it.
+/// Returns whether a point lies within an outline, or within `near` of it.
 pub(super) fn is_within(p: Flat, outline: &[Flat], near: f64) -> bool {
     match *outline {
         [] => false,
@@ -90,13 +90,13 @@ pub(super) fn is_within(p: Flat, outline: &[Flat], near: f64) -> bool {
     }
 }
 
-/// Where two lines cross, and the sine of the angle between them.
+/// Returns the intersection of two lines, and the sine of the angle between them.
 pub(super) fn crossing(p: Flat, q: Flat, r: Flat, s: Flat) -> Option<(Flat, f64)> {
     let (d, g) = ([q[0] - p[0], q[1] - p[1]], [s[0] - r[0], s[1] - r[1]]);
     let cross = d[0] * g[1] - d[1] * g[0];
     let sine = cross.abs() / (d[0].hypot(d[1]) * g[0].hypot(g[1]));
-    // lines along each other have their corners instead
-    if sine.is_nan() || sine < PARALLEL {
+    // parallel lines touch at their corners instead
+    if sine.is_nan() || sine < PARALLEL_SINE {
         return None;
     }
     let apart = [r[0] - p[0], r[1] - p[1]];

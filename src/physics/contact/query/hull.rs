@@ -1,31 +1,34 @@
 //! The corners of the convex hull of many points, few enough for contacts.
 //!
-//! 1. The farthest points in many directions, none of which is along an axis or across a face: these are corners, and of what is bounded by
-//!    few faces all of them. Points within a face are none.
-//! 2. The hull of these (parry), and for each of its faces the point that is farthest outside: it joins them, until none is outside or there
-//!    are [`MOST`]. What then still stands out is told.
+//! 1. The farthest points in many directions, none of which is along an axis or perpendicular to a
+//!    likely face: these are corners, and all of them where few faces bound the solid. Points
+//!    within a face are not corners.
+//! 2. The hull of these (parry), and for each of its faces the point farthest outside: it is added,
+//!    until no point is outside or there are [`MOST_CORNERS`]. The distance that then still stands
+//!    out is reported.
 
 use super::body::vector;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::ConvexPolyhedron;
 
 /// Most corners of a hull.
-pub const MOST: usize = 160;
-/// Directions in which farthest points are sought first.
-const DIRECTIONS: usize = 64;
-/// Points that stand out less than this part of the extent are on the hull: single precision, in which such files are written.
-const FLUSH: f64 = 1e-6;
+pub const MOST_CORNERS: usize = 160;
+/// Number of directions in which farthest points are sought first.
+const FIRST_DIRECTIONS: usize = 64;
+/// Distance outside, as a part of the extent, below which points are on the hull: the single
+/// precision of shell files.
+const ON_HULL: f64 = 1e-6;
 
 /// Corners of a convex hull.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Corners {
-    /// in the coordinates of the points
+    /// corners, in the coordinates of the points
     pub corners: Vec<[f64; 3]>,
-    /// how far some point lies outside the hull of these corners
+    /// largest distance of a point outside the hull of these corners
     pub outside: f64,
 }
 
-/// The corners of the hull of points; `None`: they span no volume.
+/// Finds the corners of the convex hull of points; `None` if they span no volume.
 pub fn corners(points: &[[f64; 3]]) -> Option<Corners> {
     let all: Vec<Vector> = points.iter().map(|&p| vector(p)).collect();
     let (mut low, mut high) = (*all.first()?, *all.first()?);
@@ -50,7 +53,7 @@ pub fn corners(points: &[[f64; 3]]) -> Option<Corners> {
                 .partial_cmp(&all[b].to_array())
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
-        chosen.dedup_by(|a, b| (all[*a] - all[*b]).length() <= FLUSH * extent);
+        chosen.dedup_by(|a, b| (all[*a] - all[*b]).length() <= ON_HULL * extent);
         let corners: Vec<Vector> = chosen.iter().map(|&k| all[k]).collect();
         if corners.len() < 4 {
             return None;
@@ -64,20 +67,20 @@ pub fn corners(points: &[[f64; 3]]) -> Option<Corners> {
                 .get(face.first_vertex_or_edge as usize)?;
             let height = hull.points()[first as usize].dot(face.normal);
             let thickness = corners.iter().map(|p| height - p.dot(face.normal));
-            if thickness.fold(0.0, f64::max) <= FLUSH * extent {
+            if thickness.fold(0.0, f64::max) <= ON_HULL * extent {
                 return None;
             }
             let k = farthest(face.normal);
             let beyond = all[k].dot(face.normal) - height;
             outside = outside.max(beyond);
-            if beyond > FLUSH * extent {
+            if beyond > ON_HULL * extent {
                 more.push(k);
             }
         }
         more.sort_unstable();
         more.dedup();
         more.retain(|k| !chosen.contains(k));
-        more.truncate(MOST.saturating_sub(chosen.len()));
+        more.truncate(MOST_CORNERS.saturating_sub(chosen.len()));
         if more.is_empty() {
             let corners = corners.iter().map(|p| p.to_array()).collect();
             return Some(Corners { corners, outside });
@@ -86,14 +89,15 @@ pub fn corners(points: &[[f64; 3]]) -> Option<Corners> {
     }
 }
 
-/// Unit vectors spread over the sphere, turned so that none is along what things are usually built along.
+/// Iterates over unit vectors spread over the sphere, turned away from the axes along which things
+/// are usually built.
 fn directions() -> impl Iterator<Item = Vector> {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-    (0..DIRECTIONS).map(move |k| {
-        let z = 1.0 - (2.0 * k as f64 + 1.0) / DIRECTIONS as f64;
+    (0..FIRST_DIRECTIONS).map(move |k| {
+        let z = 1.0 - (2.0 * k as f64 + 1.0) / FIRST_DIRECTIONS as f64;
         let r = (1.0 - z * z).sqrt();
         let (s, c) = (golden * k as f64 + 0.1234).sin_cos();
-        // about x, by an angle of no meaning
+        // about x, by an arbitrary angle
         let (x, y) = (r * c, r * s);
         let (sa, ca) = 0.377_f64.sin_cos();
         Vector::new(x, y * ca - z * sa, y * sa + z * ca)
@@ -133,8 +137,9 @@ mod tests {
             })
             .collect();
         let found = corners(&points).expect("a volume");
-        assert!(found.corners.len() <= MOST);
-        // a sphere of 160 corners: facets stand off by about 2/160 of the radius, and less than five times that
+        assert!(found.corners.len() <= MOST_CORNERS);
+        // a sphere of 160 corners: facets stand off by about 2/160 of the radius, and less than
+        // five times that
         assert!(
             found.outside > 1e-3 && found.outside < 0.06,
             "{}",

@@ -1,17 +1,20 @@
-//! Where two convex solids touch for which there is no formula: box, cylinder, frustum, ellipsoid, hull, ball against each other.
+//! The touches of two convex solids without a formula: box, cylinder, frustum, ellipsoid, hull,
+//! ball with each other.
 //!
-//! 1. **Direction** (`direction.rs`). The direction n from J's solid to I's in which they overlap least: for two boxes among the
-//!    normals of faces and the products of edges, else by the algorithm of Gilbert, Johnson and Keerthi (parry), made exact by the features
-//!    that look at each other.
+//! 1. **Direction** (`direction.rs`). The direction n from J's solid to I's in which they overlap
+//!    least: for two boxes among the normals of faces and the products of edges, else by the
+//!    algorithm of Gilbert, Johnson and Keerthi (parry), made exact by the features that face each
+//!    other.
+//! 2. **Points** (`points.rs`). The face of each solid that looks at the other is projected along n
+//!    onto a plane: the points are the corners of each that lie within the other, and the
+//!    intersections of their outlines. The two faces give the depth at each point. A rim is a
+//!    circle of [`RIM_POINTS`] points with four corners, one of them the deepest; the side of a
+//!    cylinder is a line.
+//! 3. **Shares.** Points that are near each other share the force of one, so that the force does
+//!    not jump where a corner of the overlap becomes two.
 //!
-//! 2. **Points** (`points.rs`). The face of each solid that looks at the other is laid along n onto a plane: the points are the corners of
-//!    each that lie within the other, and where their outlines cross. At each the two faces say how deep it is. A rim is a
-//!    circle of [`RIM`] points with four corners, one of them the deepest; the side of a cylinder is a line.
-//! 3. **Shares.** Points that are near each other share what one point would do, so that the force does not jump
-//!    where a corner of the overlap becomes two.
-//!
-//! Forces, damping and friction are those of every contact (`law.rs`). The points themselves jump where other faces come to look at each
-//! other, and the force with them, if they are deep by then.
+//! Forces, damping and friction are those of every contact (`law.rs`). The points themselves jump
+//! where other faces come to face each other, and the force with them, if they are deep by then.
 
 mod body;
 mod direction;
@@ -22,13 +25,13 @@ mod polytope;
 
 use super::{Solid, TOUCH_NUMBERS};
 pub(super) use body::Body;
-pub use body::RIM;
+pub use body::RIM_POINTS;
 use parry3d_f64::math::{Matrix, Pose, Rotation, Vector};
 
-/// Solids farther apart than this many times their size are left alone.
-const FAR: f64 = 1e6;
+/// Distance, as a multiple of their size, above which solids are not searched.
+const SEARCH_DISTANCE: f64 = 1e6;
 
-/// The question for a pair of solids.
+/// The search for the touches of a pair of solids.
 #[derive(Debug)]
 pub struct Query {
     i: Body,
@@ -36,7 +39,8 @@ pub struct Query {
 }
 
 impl Query {
-    /// For the solids of I and J; `None`: one of them is no convex solid of finite size.
+    /// Prepares for the solids of I and J; `None` if one of them is not convex or not of finite
+    /// size.
     pub fn new(i: &Solid, j: &Solid) -> Option<Self> {
         Some(Self {
             i: Body::new(i)?,
@@ -44,11 +48,11 @@ impl Query {
         })
     }
 
-    /// The touches for a pose of I's marker in J's, its position and the three columns of its axes, as [`super::found`] reads
-    /// them   (TOUCHES × TOUCH_NUMBERS).
+    /// Writes the touches for a pose of I's marker in J's, its position and the three columns of
+    /// its axes, in the form that [`super::found`] reads   (TOUCHES × TOUCH_NUMBERS).
     pub fn ask(&self, pose: &[f64], out: &mut [f64]) {
         super::nothing(out);
-        let reach = FAR * (self.i.size[1] + self.j.size[1]);
+        let reach = SEARCH_DISTANCE * (self.i.size[1] + self.j.size[1]);
         if pose.len() != 12 || !pose.iter().all(|x| x.abs() <= reach.max(2.0)) {
             return;
         }

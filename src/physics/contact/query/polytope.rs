@@ -1,16 +1,18 @@
-//! A convex hull as queries ask it: its farthest corner, the face that looks somewhere, how far a point is from it.
+//! A convex hull as searches use it: its farthest corner, the face in a direction, the distance of
+//! a point from it.
 //!
-//! On a convex polytope a corner with no neighbour that is farther is the farthest, so that it is climbed to, from the farthest of a few directions.
+//! On a convex polytope a corner without a farther neighbour is the farthest. So the search climbs
+//! from corner to corner, beginning at the farthest of a few directions.
 
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::ConvexPolyhedron;
 
-/// A side of it.
+/// A face of a polytope.
 #[derive(Debug)]
 pub(super) struct Side {
-    /// outwards
+    /// outward normal
     pub normal: Vector,
-    /// which corners, around it
+    /// its corners, in order around it
     pub ids: Vec<usize>,
 }
 
@@ -19,13 +21,13 @@ pub(super) struct Side {
 pub(super) struct Polytope {
     pub corners: Vec<Vector>,
     pub sides: Vec<Side>,
-    /// corners that share an edge with each
+    /// for each corner, those that share an edge with it
     beside: Vec<Vec<usize>>,
     /// the farthest corner along each vector of −1, 0, 1
     farthest: [usize; 27],
 }
 
-/// A direction as one of 27.
+/// Rounds a direction to one of 27.
 fn coarse(dir: Vector) -> usize {
     let part = 0.4 * dir.abs().max_element();
     let digit = |x: f64| {
@@ -35,7 +37,7 @@ fn coarse(dir: Vector) -> usize {
 }
 
 impl Polytope {
-    /// Of points; `None`: they span no volume.
+    /// Builds the hull of points; `None` if they span no volume.
     pub fn new(points: &[Vector]) -> Option<Self> {
         let hull = ConvexPolyhedron::from_convex_hull(points)?;
         let sides = hull.faces().iter().map(|face| {
@@ -67,14 +69,14 @@ impl Polytope {
             let digit = |n: usize| (k / n % 3) as f64 - 1.0;
             let dir = Vector::new(digit(9), digit(3), digit(1));
             let along = |&a: &usize| this.corners[a].dot(dir);
-            // points that parry found within have no sides
+            // points that parry found within have no faces
             let real = (0..this.corners.len()).filter(|&a| !this.beside[a].is_empty());
             this.farthest[k] = real.max_by(|a, b| along(a).total_cmp(&along(b)))?;
         }
         Some(this)
     }
 
-    /// Which corner is the farthest in a direction.
+    /// Returns the farthest corner in a direction.
     pub fn support(&self, dir: Vector) -> usize {
         let mut best = self.farthest[coarse(dir)];
         let mut height = self.corners[best].dot(dir);
@@ -93,7 +95,8 @@ impl Polytope {
         }
     }
 
-    /// The edge at the farthest corner that leads away least.
+    /// Returns, of the edges at the farthest corner, the one that stays farthest along the
+    /// direction.
     pub fn edge(&self, dir: Vector) -> Option<[Vector; 2]> {
         let corner = self.support(dir);
         let along = |&k: &usize| self.corners[k].dot(dir);
@@ -102,14 +105,15 @@ impl Polytope {
         Some([self.corners[corner], self.corners[other]])
     }
 
-    /// The side that looks along a direction most.
+    /// Returns the face whose normal is closest to a direction.
     pub fn side(&self, dir: Vector) -> Option<&Side> {
         let along = |side: &&Side| side.normal.dot(dir);
         let sides = self.sides.iter();
         sides.max_by(|a, b| along(a).total_cmp(&along(b)))
     }
 
-    /// Signed distance of a point, negative inside, and the direction in which it grows; `size`: of the whole.
+    /// Returns the signed distance of a point, negative inside, and the direction in which it
+    /// grows; `size`: of the whole polytope.
     pub fn distance(&self, p: Vector, size: f64) -> (f64, Vector) {
         let above = |side: &Side| (p - self.corners[side.ids[0]]).dot(side.normal);
         let mut best = (f64::NEG_INFINITY, Vector::ZERO);
@@ -124,7 +128,7 @@ impl Polytope {
         }
         let nearer =
             |a: &Vector, b: &Vector| a.distance_squared(p).total_cmp(&b.distance_squared(p));
-        // the foot lies on a side that can be seen: above it, or on an edge
+        // the foot lies on a face that is visible from the point: inside it, or on an edge
         let seen = self.sides.iter().filter(|side| above(side) > 0.0);
         let feet = seen.filter_map(|side| {
             let corners = side.ids.iter().map(|&k| self.corners[k]);

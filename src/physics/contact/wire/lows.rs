@@ -1,25 +1,32 @@
-//! Where a wire is nearest to a solid: the places of least distance d(s), found between stations by secants and bisection.
+//! The nearest points of a wire to a solid: local minima of the distance d(s), found between
+//! stations by secants and bisection.
 //!
-//! Two of them that grow together end as one: they share by the height B of the wall between them and the difference Δ of what they stand on,
+//! Two minima that merge end as one: they share by the height B of the barrier between them and the
+//! difference Δ of their distances,
 //!
 //! ```text
-//! u = Δ/(Δ + B),   c = 1 − B/depth ∈ [0, 1]       the higher one  1 − c (1 + u)/2,   the lower one  1 − c (1 − u)/2
+//! u = Δ/(Δ + B),   c = 1 − B/depth ∈ [0, 1]
+//! share of the higher one  1 − c (1 + u)/2,   of the lower one  1 − c (1 − u)/2
 //! ```
 //!
-//! so that one vanishes without a force where the wall does, and two that meet halfway are half a touch each. With q the mean of d'² on both sides
-//! a low is q²/(q² + `LEVEL`²) of a touch: the end of what lies along a solid is no place of its own.
+//! so that one vanishes without a force where the barrier does, and two that meet halfway are half
+//! a touch each. With q the mean of d'² on both sides a minimum has the share q²/(q² +
+//! [`LEVEL_SLOPE_SQUARED`]²): the end of a stretch that lies along a solid is not a touch of its
+//! own.
 
 use super::{ANCHORS, Wire, both};
 use crate::space::Vec3;
 
-/// Places of least distance.
+/// Most nearest points of a wire.
 pub(super) const LOWS: usize = 4;
-/// Differences of distance that count as none, as a part of the size: a low is the middle of what is as low.
-const FLAT: f64 = 1e-9;
-/// Mean square of d' on one side of a low below which the wire lies along the solid there.
-const LEVEL: f64 = 1e-7;
+/// Difference of distance, as a part of the size, that counts as none: a minimum is the middle of a
+/// level stretch.
+const EQUAL_DISTANCE: f64 = 1e-9;
+/// Mean square of d' (a pure number) on one side of a minimum below which the wire lies along the
+/// solid there.
+const LEVEL_SLOPE_SQUARED: f64 = 1e-7;
 
-/// A place of least distance.
+/// A local minimum of the distance.
 #[derive(Clone, Copy)]
 pub(super) struct Low {
     pub station: usize,
@@ -29,7 +36,8 @@ pub(super) struct Low {
 }
 
 impl Wire {
-    /// How much a low is one: less where the wire lies along the solid on one of its sides.
+    /// Returns the share of a minimum for its sharpness: less than 1 where the wire lies along the
+    /// solid on one of its sides.
     pub(super) fn sharpness(&self, d: &[f64], station: usize) -> f64 {
         let n = d.len();
         let ways = n.div_ceil(ANCHORS);
@@ -43,10 +51,11 @@ impl Wire {
             self.inclined(d, station, after),
             self.inclined(d, station + n - before, before),
         );
-        1.0 / (1.0 + (LEVEL / q).powi(2))
+        1.0 / (1.0 + (LEVEL_SLOPE_SQUARED / q).powi(2))
     }
 
-    /// Where the wire is nearest, the deepest [`LOWS`] in the order of the wire, with the shares of those that grow together.
+    /// Finds the nearest points, the deepest [`LOWS`] in the order of the wire, with shares for
+    /// those that merge.
     pub(super) fn lows(
         &self,
         d: &[f64],
@@ -54,14 +63,14 @@ impl Wire {
         slope: &dyn Fn(f64) -> f64,
     ) -> Vec<Low> {
         let n = d.len();
-        let flat = FLAT * self.size;
+        let flat = EQUAL_DISTANCE * self.size;
         let mut lows = Vec::new();
         for k in 0..n {
             let before = (k > 0 || self.closed).then(|| d[(k + n - 1) % n]);
             if before.is_some_and(|before| before <= d[k] + flat) {
                 continue;
             }
-            // as far as it is level
+            // as far as the distance is level
             let mut last = k;
             let mut after = None;
             while last + 1 < n || self.closed && last + 1 < k + n {
@@ -82,7 +91,8 @@ impl Wire {
             let way = self.stations[(k + n - 1) % n]
                 .way
                 .max(self.stations[last % n].way);
-            // one that is off wherever between the stations its place is is not looked at any closer: the way is hardly longer than a straight line
+            // skip a minimum that cannot touch wherever it lies between the stations: the way along
+            // the wire is hardly longer than a straight line
             if d[k] - self.tube <= 1.5 * way {
                 let at = |s: f64| distance(self.at(s));
                 let s = root(slope, begins, ends);
@@ -110,19 +120,19 @@ impl Wire {
         lows
     }
 
-    /// The parameter of a station, counted on around a closed wire.
+    /// Returns the parameter of a station, counted on around a closed wire.
     fn parameter(&self, k: usize) -> f64 {
         let n = self.stations.len();
         // once around is 2
         self.stations[k % n].s + 2.0 * (k / n) as f64
     }
 
-    /// Lows with a wall between them that is lower than they are deep share.
+    /// Divides between minima with a barrier between them that is lower than they are deep.
     fn share(&self, d: &[f64], lows: &mut [Low]) {
         let (n, m) = (d.len(), lows.len());
         let pairs = match (m, self.closed) {
             (0 | 1, _) => 0,
-            // there and back are two walls, of which the lower one counts
+            // there are two ways around, and the lower barrier counts
             (2, true) => 1,
             (_, true) => m,
             (_, false) => m - 1,
@@ -152,7 +162,8 @@ impl Wire {
     }
 }
 
-/// Where a function that is not positive at `a` and not negative at `b` vanishes: secants, halved where these stay on one side.
+/// Finds the root of a function that is not positive at `a` and not negative at `b`: by secants, or
+/// bisection where these stay on one side.
 fn root(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     let (mut fa, mut fb) = (f(a), f(b));
     for _ in 0..100 {

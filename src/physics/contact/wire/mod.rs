@@ -1,21 +1,28 @@
-//! A wire against a solid: a ball whose centre may be anywhere on a plane curve. A torus is the wire of its ring, a circle, an arc or a curve
-//! a wire without thickness, a point one without length.
+//! A wire against a solid: a ball whose centre may be anywhere on a plane curve. A torus is the
+//! wire of its ring; a circle, an arc or a curve is a wire without thickness, a point one without
+//! length.
 //!
-//! With d(s) the distance of the curve from the solid and n its direction (`ball.rs`, `ellipsoid.rs`), t the tangent, r the radius of the wire:
+//! With d(s) the distance of the curve from the solid and n its direction (`ball.rs`,
+//! `ellipsoid.rs`), t the tangent, r the radius of the wire:
 //!
 //! ```text
-//! d' = n · t = 0, rising: the wire is nearest here        depth = r − d                            (1)
+//! d' = n · t = 0, rising: a nearest point of the wire        depth = r − d                       
+//! (1)
 //! ```
 //!
-//! - **Lows**, where (1) holds (`lows.rs`).
-//! - **Anchors** are fixed places of the wire that hold it where it lies along the solid, and (1) says nothing: the whole ring on a plane, half of it on
-//!   the end of a box. They weigh `WHOLE` touches together and are lifted where the wire is inclined to the solid on both their sides,
+//! - **Nearest points**, where (1) holds (`lows.rs`).
+//! - **Anchors** are fixed points of the wire that support it where it lies along the solid and (1)
+//!   does not determine a point: the whole ring on a plane, half of it on the end of a box.
+//!   Together they weigh [`ANCHORS_WEIGHT`] touches, and they are lifted where the wire is inclined
+//!   to the solid on both their sides,
 //!
 //!   ```text
-//!   depth − LIFT · size · q        1/q = 1/q₋ + 1/q₊,   q the mean of d'² as far as the next anchor
+//! depth − ANCHOR_LIFT · size · q     1/q = 1/q₋ + 1/q₊,   q the mean of d'² up to the next anchor
 //!   ```
 //!
-//!   so that an inclined wire touches in its lows alone; half of the weight stands for either side, and goes where that leads away (`ASIDE`). A low takes what anchors as deep as it leave of a touch.
+//! so that an inclined wire touches at its nearest points alone. Half of the weight of an anchor
+//! belongs to either side, and vanishes where that side is inclined ([`INCLINED_SLOPE_SQUARED`]). A
+//! nearest point gets the weight that the anchors of equal depth do not use.
 
 mod lows;
 
@@ -26,36 +33,39 @@ use crate::space::{Mat3, Vec3};
 use lows::LOWS;
 use std::f64::consts::TAU;
 
-/// Stations of the wire at which is looked, at least, and at most.
+/// Number of stations at which the distance is evaluated, least and most.
 const STATIONS: [usize; 2] = [48, 4096];
-/// Places that hold a wire that lies along a solid.
+/// Number of fixed points that support a wire that lies along a solid.
 const ANCHORS: usize = 12;
-/// Touches of a wire that has a length.
+/// Touches of a wire with a length.
 pub(super) const WIRE_TOUCHES: usize = ANCHORS + LOWS;
-/// Touches that a wire lying along a plane weighs: as many as the rim of a cylinder.
-const WHOLE: f64 = 4.0;
-/// How far anchors of an inclined wire are lifted.
-const LIFT: f64 = 100.0;
-/// Anchors within this part of the size count for a low.
-const NEIGHBOURS: f64 = 1.7;
-/// Depth below which a low and an anchor count as equally deep if they differ by less than it, as a part of the size.
-const SHALLOW: f64 = 1e-4;
-/// Mean square of d' on one side of an anchor at which that side counts no more than a quarter.
-const ASIDE: f64 = 0.01;
-/// A wire farther off than this many times its size is left alone.
-const FAR: f64 = 1e6;
+/// Weight of all anchors of a wire that lies along a plane, in touches: as many as the rim of a
+/// cylinder has.
+const ANCHORS_WEIGHT: f64 = 4.0;
+/// Lift of the anchors of an inclined wire, as a multiple of the size, per mean of d'².
+const ANCHOR_LIFT: f64 = 100.0;
+/// Distance, as a part of the size, within which anchors take weight from a nearest point.
+const ANCHOR_RANGE: f64 = 1.7;
+/// Difference of depth, as a part of the size, below which a nearest point and an anchor are
+/// equally deep.
+const EQUAL_DEPTH: f64 = 1e-4;
+/// Mean square of d' (a pure number) on one side of an anchor at which the weight of that side
+/// falls to a quarter.
+const INCLINED_SLOPE_SQUARED: f64 = 0.01;
+/// Distance, as a multiple of its size, above which a wire is not searched.
+const SEARCH_DISTANCE: f64 = 1e6;
 
-/// A place of the wire.
+/// A point of the wire at which the distance is evaluated.
 #[derive(Clone, Copy, Debug)]
 struct Station {
     /// parameter of the curve
     s: f64,
     at: Vec3<f64>,
-    /// way to the next one
+    /// length of the wire to the next station
     way: f64,
 }
 
-/// The solid, as it is asked for distances.
+/// The solid, in the form that gives distances.
 #[derive(Clone, Debug)]
 enum Target {
     Formula(Solid),
@@ -64,21 +74,21 @@ enum Target {
     Hull(std::sync::Arc<super::query::Body>),
 }
 
-/// The question for a wire and a solid.
+/// The search for the touches of a wire and a solid.
 #[derive(Clone, Debug)]
 pub struct Wire {
     rim: Rim,
-    /// radius of the wire
+    /// radius of the wire, in length units
     tube: f64,
-    /// of the curve, about the middle of its marker
+    /// radius of the curve about the middle of its marker, in length units
     size: f64,
     closed: bool,
-    /// none of a point
+    /// stations; none of a point
     stations: Vec<Station>,
-    /// of them, in order
+    /// indices of the anchors among the stations, ascending
     anchors: Vec<usize>,
     target: Target,
-    /// the wire is J's
+    /// whether the wire is J's
     turned: bool,
 }
 
@@ -90,12 +100,12 @@ impl Target {
             Solid::Hull(_) => super::query::Body::new(solid).map(|b| Self::Hull(b.into())),
             #[cfg(not(feature = "geometry"))]
             Solid::Hull(_) => None,
-            // two points, or a curve and a point, are no solid
+            // two points, or a curve and a point, never touch
             Solid::Ball { radius: 0.0 } => None,
             _ => Some(Self::Formula(solid.clone())),
         }
     }
-    /// Signed distance of a point, and the direction in which it grows.
+    /// Returns the signed distance of a point, and the direction in which it grows.
     fn distance(&self, p: Vec3<f64>) -> (f64, Vec3<f64>) {
         match self {
             Self::Formula(solid) => distance(solid, p),
@@ -107,7 +117,8 @@ impl Target {
 }
 
 impl Question {
-    /// A torus or a point of I or J and the other's solid; `None`: neither is one, or the other cannot be asked for distances.
+    /// Prepares for a torus or a point of I or J and the other's solid; `None` if neither is one,
+    /// or the other gives no distances.
     pub fn wire(i: &Solid, j: &Solid) -> Option<Self> {
         let one = |wire: &Solid, solid: &Solid, turned: bool| match *wire {
             Solid::Torus { ring, tube } => Wire::new(Rim::Circle(ring, TAU), tube, solid, turned),
@@ -118,7 +129,7 @@ impl Question {
         Some(Question::Wire(Box::new(wire)))
     }
 
-    /// A plane curve and a solid, the curve being I's or, `turned`, J's.
+    /// Prepares for a plane curve and a solid; the curve is I's or, `turned`, J's.
     pub fn curve(outline: &Outline, solid: &Solid, turned: bool) -> Option<Self> {
         let wire = Wire::new(outline.rim().clone(), 0.0, solid, turned)?;
         Some(Question::Wire(Box::new(wire)))
@@ -148,7 +159,7 @@ impl Wire {
         Some(this)
     }
 
-    /// Touches that it may have.
+    /// Returns the largest number of touches.
     pub fn touches(&self) -> usize {
         if self.stations.is_empty() {
             1
@@ -157,13 +168,13 @@ impl Wire {
         }
     }
 
-    /// A point of the curve.
+    /// Returns a point of the curve.
     fn at(&self, s: f64) -> Vec3<f64> {
         let p = self.rim.at(s, 0);
         Vec3([p[0], p[1], 0.0])
     }
 
-    /// Stations and anchors.
+    /// Places stations and anchors.
     fn divide(&mut self) {
         let knots = self.rim.knots();
         let pieces =
@@ -205,7 +216,7 @@ impl Wire {
         let whole: f64 = self.stations[..last].iter().map(|s| s.way).sum();
         let (mut k, mut gone) = (0, 0.0);
         for anchor in 0..ANCHORS {
-            // half a part in 1e9 for rounding
+            // a little less than the exact place, for rounding
             let next = whole * (anchor as f64 / gaps - 1e-9);
             while k + 1 < n && gone < next {
                 gone += self.stations[k].way;
@@ -215,17 +226,17 @@ impl Wire {
         }
     }
 
-    /// The touches for a pose of I's marker in J's, its position and the three columns of its axes, as [`super::found`] reads
-    /// them   ([`Wire::touches`] × TOUCH_NUMBERS).
+    /// Writes the touches for a pose of I's marker in J's, its position and the three columns of
+    /// its axes, in the form that [`super::found`] reads   ([`Wire::touches`] × TOUCH_NUMBERS).
     pub fn ask(&self, pose: &[f64], out: &mut [f64]) {
         super::nothing(out);
-        let far = FAR * self.size.max(1.0);
+        let far = SEARCH_DISTANCE * self.size.max(1.0);
         if pose.len() != 12 || !pose.iter().all(|x| x.abs() <= far) {
             return;
         }
         let vector = |k: usize| Vec3([pose[3 * k], pose[3 * k + 1], pose[3 * k + 2]]);
         let axes = Mat3::from_columns(vector(1), vector(2), vector(3));
-        // of the wire in the frame of the solid
+        // position and axes of the wire in the frame of the solid
         let (place, axes) = if self.turned {
             let back = Mat3::from_columns(axes.row(0), axes.row(1), axes.row(2));
             (-back.apply(vector(0)), back)
@@ -261,7 +272,8 @@ impl Wire {
         }
     }
 
-    /// Centres of touches with how far they are lifted and their shares: the anchors, then the lows along the wire.
+    /// Returns the centres of touches with their lift and their shares: the anchors, then the
+    /// nearest points along the wire.
     fn places(
         &self,
         distance: &dyn Fn(Vec3<f64>) -> f64,
@@ -275,10 +287,10 @@ impl Wire {
         for low in self.lows(&d, distance, slope) {
             let c = self.at(low.s);
             let depth = self.tube - low.d;
-            let scale = depth.max(SHALLOW * self.size);
+            let scale = depth.max(EQUAL_DEPTH * self.size);
             let taken = self.anchors.iter().zip(&held).map(|(&k, (lift, share))| {
                 let as_deep = 1.0 - (d[k] + lift - low.d) / scale;
-                let apart = (self.stations[k].at - c).norm() / (NEIGHBOURS * self.size);
+                let apart = (self.stations[k].at - c).norm() / (ANCHOR_RANGE * self.size);
                 share * as_deep.clamp(0.0, 1.0) * (1.0 - apart * apart).max(0.0).powi(2)
             });
             let left = (1.0 - taken.sum::<f64>()).max(0.0);
@@ -287,10 +299,10 @@ impl Wire {
         all
     }
 
-    /// How far the anchors are lifted and their shares, from the distances of the stations.
+    /// Returns lift and share of each anchor, from the distances of the stations.
     fn held(&self, d: &[f64]) -> Vec<(f64, f64)> {
         let n = d.len();
-        // none beyond the ends of an open wire
+        // no anchors beyond the ends of an open wire
         let after = |k: usize| match self.anchors.get(k + 1) {
             Some(&to) => self.inclined(d, self.anchors[k], to - self.anchors[k]),
             None if self.closed => {
@@ -304,16 +316,17 @@ impl Wire {
                 0 if !self.closed => f64::INFINITY,
                 _ => q[(k + ANCHORS - 1) % ANCHORS],
             };
-            let lift = (LIFT * self.size * both(before, q[k])).min(FAR * self.size);
-            // half of it stands for either side
-            let share = [before, q[k]].map(|q| 0.5 * (1.0 + q / ASIDE).powi(-2));
+            let lift =
+                (ANCHOR_LIFT * self.size * both(before, q[k])).min(SEARCH_DISTANCE * self.size);
+            // half of it belongs to either side
+            let share = [before, q[k]].map(|q| 0.5 * (1.0 + q / INCLINED_SLOPE_SQUARED).powi(-2));
             let gaps = ANCHORS - usize::from(!self.closed);
-            (lift, WHOLE / gaps as f64 * (share[0] + share[1]))
+            (lift, ANCHORS_WEIGHT / gaps as f64 * (share[0] + share[1]))
         };
         (0..ANCHORS).map(lift).collect()
     }
 
-    /// Mean of d'² from a station over so many ways.
+    /// Returns the mean of d'² from a station over a number of ways.
     fn inclined(&self, d: &[f64], from: usize, ways: usize) -> f64 {
         let n = d.len();
         let (mut sum, mut way) = (0.0, 0.0);
@@ -328,7 +341,7 @@ impl Wire {
     }
 }
 
-/// Half the harmonic mean.
+/// Returns half the harmonic mean.
 fn both(a: f64, b: f64) -> f64 {
     let least = |x: f64| 1.0 / x.max(f64::MIN_POSITIVE);
     1.0 / (least(a) + least(b))

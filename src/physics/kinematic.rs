@@ -1,29 +1,32 @@
 //! The kinematic measures (DM … WDTZ, AX … PITCH, INCANG, ORIENT) as formulas of marker states.
 //!
-//! One arm per measure, generic over the scalar: the same lines give the value at a prompt, the derivatives of a Jacobian,
-//! a batch of samples, and the nodes of a recorded program. Therefore nothing here looks at a number: where a formula has a
-//! singular point it selects, and it selects the *arguments* of the singular operation, so that no infinite derivative is
-//! ever formed, not even in a branch that is dropped.
+//! One arm per measure, generic over the scalar: the same lines give the value at a prompt, the
+//! derivatives of a Jacobian, a batch of samples, and the nodes of a recorded program. Therefore
+//! nothing here inspects a number: where a formula has a singular point it selects the *arguments*
+//! of the singular operation, so that no infinite derivative is ever formed, not even in a branch
+//! that is dropped.
 //!
-//! Conventions at singular points: a length has derivative 0 at 0; VR is 0 where the origins coincide; the zero first
-//! argument of an arc tangent counts as +0, so that a half turn is +π; where 3-1-3 angles are singular the whole turn is
-//! PSI, where 3-2-1 angles are singular it is YAW. AX, AY, AZ and INCANG are principal values here; counting turns needs
-//! history and belongs to whoever keeps it.
+//! Conventions at singular points: a length has derivative 0 at 0; VR is 0 where the origins
+//! coincide; the zero first argument of an arc tangent counts as +0, so that a half turn is +π;
+//! where 3-1-3 angles are singular the whole turn is PSI, where 3-2-1 angles are singular it is
+//! YAW. AX, AY, AZ and INCANG are principal values here; counting turns needs the history of a run.
 
 #![allow(non_snake_case)]
 
-use super::{MarkerState, Vec3};
 use crate::expr::measures::{Family, Measure};
 use crate::scalar::{Mask, Scalar};
+use crate::space::{MarkerState, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// Below this, sin θ of 3-1-3 angles and cos of PITCH count as zero.
-const SINGULAR: f64 = 1e-12;
+/// Value below which sin θ of 3-1-3 angles and cos of PITCH count as zero.
+const SINGULAR_SINE: f64 = 1e-12;
 
-/// The value of a kinematic measure of the markers `i`, `j`, `k`, `l`, given in the order of its arguments.
+/// Returns the value of a kinematic measure of the markers `i`, `j`, `k`, `l`, given in the order
+/// of its arguments.
 ///
-/// An argument that was not written is ground. VM, VR, ACCM and WDTM take (i, j, l): their L is the third marker.
-/// `None`: the measure is not a function of marker states alone (forces, elements, ORIENT with its selectors).
+/// An argument that was not written is ground. VM, VR, ACCM and WDTM take (i, j, l): their L is the
+/// third marker. `None`: the measure is not a function of marker states alone (forces, elements,
+/// ORIENT with its selectors).
 pub fn kinematic<S: Scalar>(
     measure: Measure,
     i: &MarkerState<S>,
@@ -96,10 +99,11 @@ pub fn kinematic<S: Scalar>(
     Some(value)
 }
 
-/// The value of a kinematic measure for the arguments as an input holds them: identifiers, and the selectors of ORIENT.
+/// Returns the value of a kinematic measure for the arguments of an input: identifiers, and the
+/// selectors of ORIENT.
 ///
-/// `marker` gives the state of an identifier other than 0, which is ground. `None`: a marker is missing, or the measure is
-/// not a function of marker states alone.
+/// `marker` gives the state of an identifier other than 0, which is ground. `None`: a marker is
+/// missing, or the measure is not a function of marker states alone.
 pub fn kinematic_of<S: Scalar>(
     measure: Measure,
     arguments: [u32; 4],
@@ -125,11 +129,12 @@ pub fn kinematic_of<S: Scalar>(
     kinematic(measure, &state(a)?, &state(b)?, &state(c)?, &state(d)?)
 }
 
-/// ORIENT: a component, from 1, of the orientation of `i` in `j`.
+/// Returns ORIENT: a component, from 1, of the orientation of `i` in `j`.
 ///
-/// Systems 1 to 12 are angles of body-fixed sequences, 13 to 24 those of the same sequences about axes of j, which do not move,
-/// 27 the Euler parameters, 28 the Rodrigues parameters (u tan ½φ), 29 the direction cosines, the axes of i one after another
-/// (the order in which the routine RCNVRT is documented to list them). `None` for other systems and components.
+/// Systems 1 to 12 are angles of body-fixed sequences, 13 to 24 those of the same sequences about
+/// the fixed axes of j, 27 the Euler parameters, 28 the Rodrigues parameters (u tan ½φ), 29 the
+/// direction cosines, the axes of i one after another (the order in which the routine RCNVRT is
+/// documented to list them). `None` for other systems and components.
 pub fn orientation<S: Scalar>(
     system: u32,
     component: u32,
@@ -171,9 +176,11 @@ const SEQUENCES: [[usize; 3]; 12] = [
     [2, 1, 2],
 ];
 
-/// Angle `which` of the body-fixed sequence `a b c` or `a b a`: `R = R_a(θ₁) R_b(θ₂) R_c(θ₃)`.
+/// Returns angle `which` of the body-fixed sequence `a b c` or `a b a`:
+/// `R = R_a(θ₁) R_b(θ₂) R_c(θ₃)`.
 ///
-/// With σ = ±1 as (a, b, c), the three different axes, are a cyclic order or not, the entries of R are
+/// With σ = ±1 as (a, b, c), the three different axes, are a cyclic order or not, the entries of R
+/// are
 ///
 /// ```text
 /// a b c:  R[a,c] = σ sin θ₂      R[b,c] = −σ sin θ₁ cos θ₂    R[c,c] = cos θ₁ cos θ₂
@@ -182,8 +189,8 @@ const SEQUENCES: [[usize; 3]; 12] = [
 ///                                R[a,b] = sin θ₂ sin θ₃       R[a,c] = σ sin θ₂ cos θ₃
 /// ```
 ///
-/// Where the common factor is 0 only θ₁ ± θ₃ is determined; then θ₃ = 0, and column b, which the second rotation leaves
-/// alone, gives θ₁: R[b,b] = cos θ₁, R[c,b] = σ sin θ₁.
+/// Where the common factor is 0 only θ₁ ± θ₃ is determined; then θ₃ = 0, and column b, which the
+/// second rotation does not change, gives θ₁: R[b,b] = cos θ₁, R[c,b] = σ sin θ₁.
 fn body_angle<S: Scalar>(sequence: [usize; 3], which: usize, r: impl Fn(usize, usize) -> S) -> S {
     let [a, b, last] = sequence;
     let c = 3 - a - b;
@@ -194,7 +201,7 @@ fn body_angle<S: Scalar>(sequence: [usize; 3], which: usize, r: impl Fn(usize, u
     } else {
         length2(r(b, c), r(c, c))
     };
-    let singular = leg.lt(S::constant(SINGULAR));
+    let singular = leg.lt(S::constant(SINGULAR_SINE));
     let (y, x) = match (which, proper) {
         (0, true) => (r(b, a), -sigma(r(c, a))),
         (0, false) => (-sigma(r(b, c)), r(c, c)),
@@ -211,10 +218,12 @@ fn body_angle<S: Scalar>(sequence: [usize; 3], which: usize, r: impl Fn(usize, u
     angle(S::select(singular, y0, y), S::select(singular, x0, x))
 }
 
-/// The Euler parameters (cos ½φ, u sin ½φ), the first not negative (a simulation follows their sign continuously).
+/// Returns the Euler parameters (cos ½φ, u sin ½φ), the first not negative (a simulation follows
+/// their sign continuously).
 ///
-/// Each of the four numbers 4 eₖ² is a sum of diagonal entries; the largest is well away from 0 and gives its parameter by a
-/// root, the others follow from sums and differences of the entries beside the diagonal.
+/// Each of the four numbers 4 eₖ² is a sum of diagonal entries; the largest is well away from 0 and
+/// gives its parameter by a root, the others follow from sums and differences of off-diagonal
+/// entries.
 fn euler_parameters<S: Scalar>(r: impl Fn(usize, usize) -> S) -> [S; 4] {
     let (one, zero) = (S::one(), S::zero());
     let d = [r(0, 0), r(1, 1), r(2, 2)];
@@ -244,7 +253,7 @@ fn euler_parameters<S: Scalar>(r: impl Fn(usize, usize) -> S) -> [S; 4] {
     row.map(|x| x * scale)
 }
 
-/// The rate of `p_JI` as seen from L: `v − ω_L × p`.
+/// Returns the rate of `p_JI` as an observer on L measures it: `v − ω_L × p`.
 fn velocity<S: Scalar>(i: &MarkerState<S>, j: &MarkerState<S>, l: &MarkerState<S>) -> Vec3<S> {
     let v = i.v_GM - j.v_GM;
     if at_rest(l.w_GM) {
@@ -254,7 +263,8 @@ fn velocity<S: Scalar>(i: &MarkerState<S>, j: &MarkerState<S>, l: &MarkerState<S
     }
 }
 
-/// The second rate of `p_JI` as seen from L: `a − α_L × p − 2 ω_L × v + ω_L × (ω_L × p)`.
+/// Returns the second rate of `p_JI` as an observer on L measures it:
+/// `a − α_L × p − 2 ω_L × v + ω_L × (ω_L × p)`.
 fn acceleration<S: Scalar>(i: &MarkerState<S>, j: &MarkerState<S>, l: &MarkerState<S>) -> Vec3<S> {
     let a = i.a_GM - j.a_GM;
     if at_rest(l.w_GM) && at_rest(l.alpha_GM) {
@@ -265,7 +275,7 @@ fn acceleration<S: Scalar>(i: &MarkerState<S>, j: &MarkerState<S>, l: &MarkerSta
     a - l.alpha_GM.cross(p) - coriolis + l.w_GM.cross(l.w_GM.cross(p))
 }
 
-/// The rate of `w_JI` as seen from L: `α − ω_L × ω`.
+/// Returns the rate of `w_JI` as an observer on L measures it: `α − ω_L × ω`.
 fn angular_acceleration<S: Scalar>(
     i: &MarkerState<S>,
     j: &MarkerState<S>,
@@ -279,33 +289,35 @@ fn angular_acceleration<S: Scalar>(
     }
 }
 
-/// Whether this rate is known to be zero, as that of ground is: then its products are left out.
+/// Returns whether this rate is known to be zero, as that of ground is: then its products are left
+/// out.
 fn at_rest<S: Scalar>(rate: Vec3<S>) -> bool {
     rate.0.iter().all(Scalar::is_known_zero)
 }
 
-/// Length, with derivative 0 at 0.
+/// Returns the length, with derivative 0 at 0.
 fn length<S: Scalar>(v: Vec3<S>) -> S {
     root(v.norm2())
 }
 
-/// `√(a² + b²)`, with derivative 0 at 0.
+/// Returns `√(a² + b²)`, with derivative 0 at 0.
 fn length2<S: Scalar>(a: S, b: S) -> S {
     root(a * a + b * b)
 }
 
-/// Square root of a sum of squares, with derivative 0 at 0.
+/// Returns the square root of a sum of squares, with derivative 0 at 0.
 fn root<S: Scalar>(square: S) -> S {
     let none = square.same(S::zero());
     S::select(none, S::zero(), S::select(none, S::one(), square).sqrt())
 }
 
-/// Angle of the point (x, y), −π < angle ≤ π; 0 with derivative 0 at the origin.
+/// Returns the angle of the point (x, y), −π < angle ≤ π; 0 with derivative 0 at the origin.
 fn angle<S: Scalar>(y: S, x: S) -> S {
     let zero = S::zero();
     let origin = y.same(zero).and(x.same(zero));
     let angle = S::select(origin, zero, y).atan2(S::select(origin, S::one(), x));
-    // −0 as first argument gave −π; asked as an equality, since whether an angle is below zero would count as a change of branch
+    // −0 as first argument gave −π; compared for equality, since a comparison with zero would count
+    // as a change of branch
     let below = y.same(zero).and(angle.same(S::constant(-PI)));
     S::select(below, angle + S::constant(TAU), angle)
 }
