@@ -1,7 +1,8 @@
-//! From a mistake in an expression to what is said about it: one sentence that names it, and advice for what people type.
+//! The message for a mistake in an expression: one sentence that names it, and advice for common
+//! habits.
 //!
-//! The tables of characters and names are what users of other languages bring along. Advice is given only where it fits; a
-//! mistake that speaks for itself gets none.
+//! The tables list characters and names that users of other languages bring along. Advice is given
+//! only where it fits; a mistake that is plain gets none.
 
 use super::ast::{Callee, Dialect};
 use super::signature::Kind;
@@ -9,7 +10,7 @@ use super::symbols;
 use super::token::{About, Fault, Open};
 use crate::diagnostic::{Diagnostic, Span, near_names};
 
-/// The diagnostic for the first mistake of a text.
+/// Returns the diagnostic for the first mistake of a text.
 pub(crate) fn explain(text: &str, dialect: Dialect, fault: &Fault) -> Diagnostic {
     let place = Place {
         text,
@@ -47,7 +48,7 @@ pub(crate) fn explain(text: &str, dialect: Dialect, fault: &Fault) -> Diagnostic
     said
 }
 
-/// An error at a place of an expression, whose columns count all characters of the text.
+/// Returns an error at a place of an expression; its column counts all characters of the text.
 pub(crate) fn at(
     text: &str,
     code: &'static str,
@@ -61,10 +62,10 @@ pub(crate) fn at(
     said
 }
 
-/// A sentence, and advice.
+/// The sentence of a message, and advice.
 type Said = (String, Vec<String>);
 
-/// Characters that other languages use, and what to write instead.
+/// Characters of other languages, with their replacement here.
 const CHARACTERS: &[(&str, &str)] = &[
     ("^", "the power operator is **, as in 2**3"),
     (
@@ -111,7 +112,7 @@ const CHARACTERS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Names that other languages use, and what to write instead.
+/// Names of other languages, with their replacement in direct-entry functions.
 const NAMES: &[(&str, &str)] = &[
     (
         "LN",
@@ -200,7 +201,7 @@ const NAMES: &[(&str, &str)] = &[
     ("AZU", "AZ counts turns by itself"),
 ];
 
-/// The same for expression functions.
+/// Names of other languages, with their replacement in expression functions.
 const EXPRESSION_NAMES: &[(&str, &str)] = &[
     ("TIME", "time is t here"),
     ("PI", "the number is radians(180)"),
@@ -224,7 +225,7 @@ const EXPRESSION_NAMES: &[(&str, &str)] = &[
     ),
 ];
 
-/// The text, its language, and where the mistake is.
+/// The place of a mistake: the text, its language, and the bytes.
 struct Place<'a> {
     text: &'a str,
     dialect: Dialect,
@@ -514,13 +515,13 @@ fn beyond(code: &str, limit: usize) -> Said {
     )
 }
 
-/// Whether a comma between these stands for a decimal point.
+/// Returns whether a comma between these stands for a decimal point.
 fn is_number(before: &str, after: &str) -> bool {
     before.ends_with(|c: char| c.is_ascii_digit())
         && after.starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// A character that can be seen.
+/// Returns a visible form of a character.
 fn shown(c: &str) -> String {
     match c.chars().next() {
         Some(x) if x.is_control() || x.is_whitespace() => x.escape_unicode().to_string(),

@@ -1,7 +1,8 @@
-//! An expression as written: a tree in an arena, with the place of every node, that prints back to source.
+//! The syntax tree of an expression: an arena of nodes with their places in the text, which prints
+//! back to source.
 //!
-//! Nodes are indices into one vector, children before parents: walking is a loop or a recursion over bounded depth, and
-//! dropping never recurses.
+//! Nodes are indices into one vector, children before parents: traversal is a loop or a recursion
+//! of bounded depth, and dropping never recurses.
 
 use super::functions::Function;
 use super::interpolation::Interpolation;
@@ -11,7 +12,7 @@ use crate::diagnostic::Span;
 /// Index of a node in its [`Ast`].
 pub type NodeIx = u32;
 
-/// Which of the two languages a text is written in.
+/// The language of a text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Dialect {
     /// direct-entry functions: radians, `TIME`, degree suffix `D`, arithmetic IF
@@ -32,7 +33,8 @@ pub enum Constant {
     Dtor,
     /// 180/π
     Rtod,
-    /// code of the running analysis: 1 kinematic, 3 initial conditions, 4 dynamic, 5 static, 6 quasi-static, 7 linear
+    /// code of the running analysis (1 kinematic, 3 initial conditions, 4 dynamic, 5 static, 6
+    /// quasi-static, 7 linear)
     Mode,
 }
 
@@ -51,7 +53,7 @@ pub enum BinaryOp {
     Pow,
 }
 
-/// What a call calls.
+/// The target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Callee {
     /// a function of numbers
@@ -62,10 +64,10 @@ pub enum Callee {
     Interpolation(Interpolation),
 }
 
-/// One node.
+/// A node of the tree.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// A literal. `degrees`: it carried the suffix D, its value is `literal·π/180`.
+    /// A literal. With `degrees` it carried the suffix D, and its value is `literal·π/180`.
     Number {
         /// the number before the suffix
         literal: f64,
@@ -93,28 +95,28 @@ pub enum Node {
     },
     /// `NAME(args)`; identifiers and selectors are `Number` nodes
     Call {
-        /// what is called
+        /// the function, measure or interpolation
         callee: Callee,
-        /// as many as were written
+        /// the arguments that were written
         args: Vec<NodeIx>,
     },
 }
 
-/// An expression as written.
+/// The syntax tree of an expression.
 #[derive(Clone, Debug)]
 pub struct Ast {
-    /// the language
+    /// language of the text
     pub dialect: Dialect,
     /// all nodes, children before parents
     pub nodes: Vec<Node>,
-    /// where each node stands in the text: for a binary operator the operator itself, for a call its name
+    /// place of each node in the text: of a binary operator the operator itself, of a call its name
     pub spans: Vec<Span>,
-    /// the whole
+    /// node of the whole expression
     pub root: NodeIx,
 }
 
 impl Ast {
-    /// The node at an index.
+    /// Returns the node at an index.
     pub fn node(&self, ix: NodeIx) -> &Node {
         &self.nodes[ix as usize]
     }

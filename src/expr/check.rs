@@ -1,10 +1,13 @@
-//! One ordered pass over a text: finds its first mistake, or what each of its names and numbers means.
+//! One ordered pass over a text: it finds the first mistake, or the meaning of every name and
+//! number.
 //!
-//! The grammar says what the language is and makes the tree; but a grammar that fails knows neither kind nor cause. So the
-//! tokens are first led through an automaton with a stack of open calls and groups, from left to right, without recursion.
-//! It reports the first mistake it meets, by the rules of the language reference: names when they are read, the syntax of a
-//! whole argument list before the number of its arguments, that before what its identifiers must be. A text that passes is
-//! one that the grammar accepts (the fuzz target `parse` holds them to that), and is nested no deeper than recursion can go.
+//! The grammar defines the language and makes the tree; but a grammar that fails knows neither the
+//! kind nor the cause of a mistake. So the tokens first pass through an automaton with a stack of
+//! open calls and groups, from left to right, without recursion. It reports the first mistake by
+//! the rules of the language reference: names as they are read, the syntax of a whole argument list
+//! before the number of its arguments, and that before the kinds of its identifiers. A text that
+//! passes is one that the grammar accepts (the fuzz target `parse` checks that), and is nested no
+//! deeper than recursion can go.
 
 use super::ast::{Callee, Constant, Dialect};
 use super::signature::{Choice, Element, Kind as ArgumentKind, LARGEST_IDENTIFIER};
@@ -20,23 +23,23 @@ pub const DEEPEST_NESTING: usize = 256;
 /// Most levels of the tree that recursion follows: the nesting, and chains of signs and powers.
 const DEEPEST_TREE: usize = 512;
 
-/// What I-DEAS bounds, so that hosts may bound it too.
+/// The limits of I-DEAS, so that hosts may apply them too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// calls, IFs and groups inside one another
+    /// most calls, IFs and groups inside one another
     pub nesting: usize,
-    /// operators, brackets, names, numbers and separators
+    /// most operators, brackets, names, numbers and separators
     pub symbols: usize,
-    /// different identifiers of one kind of element
+    /// most different identifiers of one kind of element
     pub elements: usize,
-    /// lines
+    /// most lines
     pub lines: usize,
-    /// characters
+    /// most characters
     pub characters: usize,
 }
 
 impl Limits {
-    /// Only what keeps the reader safe.
+    /// The limits that keep the reader safe, and no others.
     pub const NONE: Limits = Limits {
         nesting: DEEPEST_NESTING,
         symbols: usize::MAX,
@@ -44,7 +47,7 @@ impl Limits {
         lines: usize::MAX,
         characters: MOST_CHARACTERS,
     };
-    /// Those of I-DEAS Mechanism Design.
+    /// The limits of I-DEAS Mechanism Design.
     pub const IDEAS: Limits = Limits {
         nesting: 10,
         symbols: 1000,
@@ -55,7 +58,7 @@ impl Limits {
 }
 
 impl Profile {
-    /// The limits that this profile keeps.
+    /// Returns the limits of this profile.
     pub fn limits(self) -> Limits {
         match self {
             Profile::Adams => Limits::NONE,
@@ -64,7 +67,7 @@ impl Profile {
     }
 }
 
-/// The meaning of a number or a name, in the order of the text.
+/// The meaning of a number or a name, collected in the order of the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Atom {
     Number { literal: f64, degrees: bool },
@@ -76,15 +79,15 @@ pub(crate) enum Atom {
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     open: Open,
-    /// the name; the parenthesis of a group
+    /// the name; of a group its parenthesis
     name: Span,
-    /// place of its first argument in `Check::arguments`
+    /// index of its first argument in `Check::arguments`
     first: usize,
-    /// levels of the tree outside
+    /// levels of the tree above it
     depth: usize,
 }
 
-/// What identifiers are checked by.
+/// An argument, as far as the check of identifiers needs it.
 #[derive(Clone, Copy, Debug)]
 struct Argument {
     start: usize,
@@ -102,15 +105,15 @@ struct Check<'a> {
     frames: Vec<Frame>,
     /// arguments of all open calls, those of inner calls last
     arguments: Vec<Argument>,
-    /// levels of the tree that the next operand lies under
+    /// levels of the tree above the next operand
     depth: usize,
     elements: BTreeSet<(Element, u32)>,
     symbols: usize,
-    /// up to where lines and characters have been counted, and how many
+    /// lines and characters counted so far
     counted: Counted,
 }
 
-/// Lines and characters up to a place in the text.
+/// A count of lines and characters up to a place in the text.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counted {
     bytes: usize,
@@ -118,7 +121,7 @@ struct Counted {
     line_breaks: usize,
 }
 
-/// The meaning of all numbers and names of a text, or its first mistake.
+/// Returns the meaning of all numbers and names of a text, or its first mistake.
 pub(crate) fn check(
     text: &str,
     dialect: Dialect,
@@ -146,7 +149,7 @@ pub(crate) fn check(
     Ok(check.atoms)
 }
 
-/// The place of the character after the first `n`, if there is one.
+/// Returns the place of the character after the first `n`, if there is one.
 fn character_after(text: &str, n: usize) -> Option<Span> {
     if text.len() <= n {
         return None;
@@ -188,7 +191,8 @@ impl Check<'_> {
         }
     }
 
-    /// A constant with what follows it, or the beginning of a call; the token that the next operand begins with.
+    /// Reads a constant with its suffix, or the beginning of a call; returns the token that the
+    /// next operand begins with.
     fn name(&mut self, name: Token) -> Result<Option<Token>, Fault> {
         let text = &self.text[name.span.start..name.span.end];
         let Some(meaning) = symbol(text, self.dialect, self.profile) else {
@@ -228,7 +232,8 @@ impl Check<'_> {
         }
     }
 
-    /// Closing parentheses, then an operator, a separator or the end; the token that the next operand begins with.
+    /// Reads closing parentheses, then an operator, a separator or the end; returns the token that
+    /// the next operand begins with.
     fn after_operand(&mut self, mut token: Token) -> Result<Option<Token>, Fault> {
         loop {
             let unexpected = Err(self.unexpected(token.span, true));
@@ -268,7 +273,7 @@ impl Check<'_> {
         }
     }
 
-    /// Number of arguments, then identifiers and selectors from left to right.
+    /// Checks the number of arguments, then identifiers and selectors from left to right.
     fn close_call(&mut self, callee: Callee, frame: &Frame) -> Result<(), Fault> {
         let count = self.arguments.len() - frame.first;
         let (least, most) = callee.arity();
@@ -346,12 +351,12 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The tree level of a fresh term here.
+    /// Returns the tree level of a new term here.
     fn level(&self) -> usize {
         self.frames.last().map_or(0, |f| f.depth + 1)
     }
 
-    /// A sign or `**`: what follows lies one level deeper.
+    /// Notes a sign or `**`: the next operand lies one level deeper.
     fn deeper(&mut self, token: Token) -> Result<Token, Fault> {
         self.depth += 1;
         if self.depth > DEEPEST_TREE {
@@ -369,7 +374,7 @@ impl Check<'_> {
         });
     }
 
-    /// Whether the token just read is the first of an argument. (It has been counted already.)
+    /// Returns whether the token just read, and counted, is the first of an argument.
     fn at_start_of_argument(&self) -> bool {
         let in_call = matches!(
             self.frames.last(),
@@ -395,7 +400,7 @@ impl Check<'_> {
         })
     }
 
-    /// The next token, counted.
+    /// Reads and counts the next token.
     fn next(&mut self) -> Result<Token, Fault> {
         let token = self.lexer.next();
         self.keep_to_length(
@@ -411,7 +416,7 @@ impl Check<'_> {
                     .about(About::Limit(self.limits.symbols)));
             }
         }
-        // only the argument that is being read counts tokens, and it lies in the innermost call
+        // only the argument being read counts tokens, and it belongs to the innermost call
         if let Some(argument) = self.arguments.last_mut() {
             if argument.tokens == 0 {
                 argument.start = token.span.start;
@@ -426,7 +431,7 @@ impl Check<'_> {
         Ok(token)
     }
 
-    /// Lines and characters up to the end of this token.
+    /// Counts lines and characters up to the end of this token.
     fn keep_to_length(&mut self, span: Span) -> Result<(), Fault> {
         if self.limits.lines == usize::MAX && self.limits.characters >= MOST_CHARACTERS {
             return Ok(());

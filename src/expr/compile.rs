@@ -1,8 +1,10 @@
-//! From trees to straight-line code: names resolved, constants folded, equal parts shared across all expressions.
+//! The compiler from trees to straight-line code: names resolved, constants folded, equal parts
+//! shared across all expressions.
 //!
-//! A [`Compiler`] takes one [`Ast`] after the other; what they have in common is computed once. Nothing is rearranged: the
-//! program yields the bits that the walker yields. Functions with a body longer than an operation stay one operation, so
-//! that the machine can run them with their constants prepared; the others expand into operations.
+//! A [`Compiler`] takes one [`Ast`] after the other; common parts are computed once. Nothing is
+//! rearranged: the program yields the same bits as the walker. Functions with a body longer than
+//! one operation stay one operation, so that the machine can run them with their constants
+//! prepared; the others expand into operations.
 
 use super::ast::{Ast, BinaryOp as Written, Callee, Constant, Node, NodeIx};
 use super::functions::{Family, Function};
@@ -12,20 +14,21 @@ use crate::diagnostic::{Diagnostic, Span};
 use std::cell::RefCell;
 use std::f64::consts::PI;
 
-/// A value of the past that a program reads as [`Input::Delayed`]: `DELAY(expression, delay, history, options)`.
+/// A value of the past that a program reads as [`Input::Delayed`]:
+/// `DELAY(expression, delay, history, options)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Delay {
-    /// what is delayed
+    /// the delayed expression
     pub expression: Value,
-    /// by how much; less than 0 counts as 0
+    /// the delay, in time units; less than 0 counts as 0
     pub delay: Value,
-    /// what it was before the start
+    /// the value before the start
     pub history: Value,
-    /// array of options, 0 for none
+    /// identifier of the array of options, 0 for none
     pub options: u32,
 }
 
-/// Compiles expressions that share their parts.
+/// A compiler of expressions that share their parts.
 ///
 /// ```ignore
 /// let mut compiler = Compiler::new(&bindings);
@@ -39,11 +42,11 @@ pub struct Compiler<'a> {
     delays: Vec<Delay>,
 }
 
-/// The program of some expressions: one output each.
+/// Compiles some expressions into a program with one output each.
 ///
 /// # Errors
 ///
-/// As [`Compiler::add`].
+/// Those of [`Compiler::add`].
 pub fn compile(asts: &[&Ast], bindings: &Bindings) -> Result<Program, Diagnostic> {
     let mut compiler = Compiler::new(bindings);
     let outputs = asts
@@ -53,7 +56,7 @@ pub fn compile(asts: &[&Ast], bindings: &Bindings) -> Result<Program, Diagnostic
     Ok(compiler.finish(&outputs))
 }
 
-/// The value of a literal; the suffix D makes it degrees.
+/// Returns the value of a literal; the suffix D makes it degrees.
 pub fn literal_value(literal: f64, degrees: bool) -> f64 {
     if degrees {
         literal * PI / 180.0
@@ -62,7 +65,7 @@ pub fn literal_value(literal: f64, degrees: bool) -> f64 {
     }
 }
 
-/// The value of a named number, unless the host knows it.
+/// Returns the value of a named number, or `None` if it is the host's.
 pub fn constant_value(constant: Constant) -> Option<f64> {
     match constant {
         Constant::Pi => Some(PI),
@@ -73,7 +76,7 @@ pub fn constant_value(constant: Constant) -> Option<f64> {
 }
 
 impl<'a> Compiler<'a> {
-    /// A compiler that finds splines and curves in `bindings`.
+    /// Creates a compiler that finds splines and curves in `bindings`.
     pub fn new(bindings: &'a Bindings) -> Self {
         Self {
             bindings,
@@ -82,25 +85,25 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// What has been recorded; for adding derivatives or own operations.
+    /// Returns the recorded operations, so that derivatives or other operations can be added.
     pub fn builder(&self) -> &RefCell<Builder> {
         &self.builder
     }
-    /// The delayed values asked for so far; the `k`-th is [`Input::Delayed`]`(k)`.
+    /// Returns the delayed values that were read so far; the `k`-th is [`Input::Delayed`]`(k)`.
     pub fn delays(&self) -> &[Delay] {
         &self.delays
     }
-    /// The program of these values.
+    /// Returns the program of these values.
     pub fn finish(&self, outputs: &[Value]) -> Program {
         self.builder.borrow().finish(outputs)
     }
 
-    /// Records an expression. Equal parts of earlier ones are used again.
+    /// Records an expression, sharing equal parts with earlier ones.
     ///
     /// # Errors
     ///
-    /// `unknown_element` for a spline or curve that is not bound, `domain` where a part outside every IF has no value
-    /// whatever the inputs are. The span is that of the operator or function name.
+    /// `unknown_element` for a spline or curve that is not bound, `domain` where a part outside
+    /// every IF has no value for any inputs. The span is that of the operator or function name.
     pub fn add(&mut self, ast: &Ast) -> Result<Value, Diagnostic> {
         let conditional = conditional(ast);
         let mut values: Vec<Option<Value>> = Vec::with_capacity(ast.nodes.len());
@@ -127,7 +130,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The value of a node whose operands have theirs. `always`: it is evaluated whatever the inputs are.
+    /// Records a node whose operands are recorded. `always`: it is evaluated for all inputs.
     fn node(
         &mut self,
         node: &Node,
@@ -200,7 +203,7 @@ impl<'a> Compiler<'a> {
             Callee::Measure(measure) => {
                 let mut ids = [0; 4];
                 for (id, &x) in ids.iter_mut().zip(&known) {
-                    // a literal, checked by the parser; `as` saturates
+                    // the parser has checked the literal; `as` saturates
                     *id = x as u32;
                 }
                 Ok(builder.input(Input::Measure(measure, ids)))
@@ -212,7 +215,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// A function as one operation where that pays, else as the operations of its body.
+    /// Records a function as one operation where that pays, else as the operations of its body.
     fn function(&mut self, function: Function, args: &[Value]) -> Value {
         let builder = self.builder.get_mut();
         match function {
@@ -232,7 +235,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Records what a formula does with these values.
+    /// Records the operations of a formula on these values.
     fn expand(&mut self, args: &[Value], formula: impl for<'b> Fn(&[Sym<'b>]) -> Sym<'b>) -> Value {
         let result = {
             let args: Vec<Sym> = args.iter().map(|&a| Sym::of(a, &self.builder)).collect();
@@ -267,17 +270,17 @@ impl<'a> Compiler<'a> {
     }
 }
 
-/// When a node is evaluated.
+/// The conditions under which a node is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Reach {
-    /// it does not belong to the expression
+    /// never: it does not belong to the expression
     Never,
-    /// in a branch of an IF
+    /// sometimes: it stands in a branch of an IF
     Sometimes,
     Always,
 }
 
-/// When each node is evaluated.
+/// Returns for each node when it is evaluated.
 fn conditional(ast: &Ast) -> Vec<Reach> {
     let mut reach = vec![Reach::Never; ast.nodes.len()];
     if let Some(root) = reach.get_mut(ast.root as usize) {

@@ -24,7 +24,7 @@ use std::str::FromStr;
 /// # Ok::<(), cognate::diagnostic::Diagnostic>(())
 /// ```
 ///
-/// What comes from a model is given by name:
+/// Inputs from a model are given by name:
 ///
 /// ```
 /// # use cognate::expr::Expr;
@@ -44,7 +44,8 @@ impl Expr {
     /// Reads a direct-entry function.
     ///
     /// # Errors
-    /// The first mistake in the text; or an operation that has no value whatever the inputs are, as in `1/0`.
+    /// The first mistake in the text; or an operation that has no value for any inputs, as in
+    /// `1/0`.
     ///
     /// ```
     /// # use cognate::expr::Expr;
@@ -58,7 +59,7 @@ impl Expr {
     /// Reads a text of either language.
     ///
     /// # Errors
-    /// As [`Expr::parse`].
+    /// Those of [`Expr::parse`].
     ///
     /// ```
     /// # use cognate::expr::{Expr, ast::Dialect};
@@ -70,10 +71,10 @@ impl Expr {
         Self::parse_profile(text, dialect, Profile::Adams)
     }
 
-    /// Reads a text by the habits of a program: its limits and other names.
+    /// Reads a text under the profile of a program: its limits and its additional names.
     ///
     /// # Errors
-    /// As [`Expr::parse`], and what exceeds a limit.
+    /// Those of [`Expr::parse`], and exceeding a limit.
     ///
     /// ```
     /// # use cognate::expr::{Expr, Profile, ast::Dialect};
@@ -95,20 +96,21 @@ impl Expr {
         })
     }
 
-    /// The text it was read from.
+    /// Returns the text it was read from.
     pub fn text(&self) -> &str {
         &self.text
     }
-    /// The tree.
+    /// Returns the tree.
     pub fn ast(&self) -> &Ast {
         &self.ast
     }
 
-    /// The value, for inputs given by name: `TIME` (or `t`), `MODE`, and measures as they are written.
+    /// Evaluates for inputs given by name: `TIME` (or `t`), `MODE`, and measures as they are
+    /// written.
     ///
     /// # Errors
-    /// A name that is no input, an input without a value, or an operation on the taken path that has no value: the message
-    /// names it and the numbers it was given.
+    /// A name that is no input, an input without a value, or an operation on the taken path that
+    /// has no value: the message names it and the numbers it was given.
     ///
     /// ```
     /// # use cognate::expr::Expr;
@@ -127,15 +129,16 @@ impl Expr {
         self.eval_with(&|input| known.get(&input).copied())
     }
 
-    /// The value, for inputs and curves of a host.
+    /// Evaluates for the inputs and curves of a host.
     ///
     /// # Errors
-    /// As [`Expr::eval`].
+    /// Those of [`Expr::eval`].
     pub fn eval_with(&self, host: &dyn Host) -> Result<f64, Diagnostic> {
         walk::value(&self.ast, host).map_err(|trouble| trouble.diagnostic(&self.text))
     }
 
-    /// What it reads, each once, in the order of the text. Delayed values are left out; the program numbers them.
+    /// Returns its inputs, each once, in the order of the text. Delayed values are left out; the
+    /// program numbers them.
     pub fn inputs(&self) -> Vec<Input> {
         let mut found = Vec::new();
         for ix in 0..self.ast.nodes.len() {
@@ -146,7 +149,7 @@ impl Expr {
         found
     }
 
-    /// The names of what it reads that needs history: DELAY, and angles that count turns.
+    /// Returns the names of its inputs that depend on the past: DELAY, and angles that count turns.
     pub fn needs_history(&self) -> Vec<&'static str> {
         let mut found = Vec::new();
         for node in &self.ast.nodes {
@@ -160,12 +163,13 @@ impl Expr {
         found
     }
 
-    /// What is legal but probably not meant: degrees for radians, operators that bind otherwise than they look.
+    /// Returns warnings about what is legal but probably not meant: degrees for radians, operators
+    /// that bind otherwise than they look.
     pub fn warnings(&self) -> Vec<Diagnostic> {
         super::lint::lint(&self.ast, &self.text)
     }
 
-    /// The program that yields the same value, fast.
+    /// Compiles the program that yields the same value, fast.
     ///
     /// # Errors
     /// A spline or curve that is not bound.
@@ -187,14 +191,15 @@ impl FromStr for Expr {
     }
 }
 
-/// Prints back to source: as few parentheses as possible, shortest digits. Reading that gives the same tree.
+/// Prints the source: as few parentheses as possible, shortest digits. Reading that gives the same
+/// tree.
 impl fmt::Display for Expr {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.ast.fmt(f)
     }
 }
 
-/// The input of this name: `TIME`, `DX(1, 2)`.
+/// Returns the input of this name: `TIME`, `DX(1, 2)`.
 ///
 /// # Errors
 /// A mistake in the name, or an expression that is more than one input.
@@ -212,7 +217,7 @@ pub fn input_named(name: &str, dialect: Dialect) -> Result<Input, Diagnostic> {
 }
 
 impl Ast {
-    /// What a node asks of the host, if it is a question.
+    /// Returns the input that a node reads, if it is one.
     pub fn input(&self, ix: NodeIx) -> Option<Input> {
         match self.node(ix) {
             Node::Constant(Constant::Time) => Some(Input::Time),
@@ -224,7 +229,7 @@ impl Ast {
                 let mut identifiers = [0; 4];
                 for (identifier, &arg) in identifiers.iter_mut().zip(args) {
                     if let Node::Number { literal, .. } = *self.node(arg) {
-                        // the check has found a whole number in its range
+                        // the check has found an integer in its range
                         *identifier = literal as u32;
                     }
                 }
@@ -234,7 +239,8 @@ impl Ast {
         }
     }
 
-    /// The calls of DELAY with their numbers as delayed values: calls written alike share one.
+    /// Returns the calls of DELAY with the numbers of their delayed values: identical calls share
+    /// one.
     pub fn delays(&self) -> Vec<(NodeIx, u32)> {
         let mut different: Vec<String> = Vec::new();
         let mut found = Vec::new();
@@ -259,7 +265,7 @@ impl Ast {
     }
 }
 
-/// As a user would write it; arguments that may be left out are, where they are ground.
+/// Prints the input as a user would write it; trailing arguments that are ground are left out.
 impl fmt::Display for Input {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {

@@ -1,7 +1,8 @@
-//! TABLE of functions that look data up by identifier: AKISPL, CUBSPL, INTERP, CURVE, INVPSD; and the data they read.
+//! TABLE of functions that look data up by identifier: AKISPL, CUBSPL, INTERP, CURVE, INVPSD; and
+//! the data they read.
 //!
-//! [`Bindings`] holds the splines and curves by number. [`Bindings::bind`] turns a call into a [`Bound`], which knows its
-//! curve and evaluates over any number; walker and compiler both go through it.
+//! [`Bindings`] holds the splines and curves by number. [`Bindings::bind`] turns a call into a
+//! [`Bound`], which has its curve and evaluates over any number; walker and compiler both use it.
 
 use super::ast::Dialect;
 use super::functions::Continuity;
@@ -15,12 +16,12 @@ use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
-/// The number of a spline.
-const ID: Kind = identifier(Element::Spline);
-/// The number of a curve.
-const CURVE: Kind = identifier(Element::Curve);
-/// Order of a derivative.
-const ORDER: Kind = Kind::Selector(Choice::Range(0, 2));
+/// The identifier of a spline.
+const SPLINE_ID: Kind = identifier(Element::Spline);
+/// The identifier of a curve.
+const CURVE_ID: Kind = identifier(Element::Curve);
+/// The order of a derivative.
+const DERIVATIVE: Kind = Kind::Selector(Choice::Range(0, 2));
 
 const fn identifier(element: Element) -> Kind {
     Kind::Identifier {
@@ -46,10 +47,10 @@ macro_rules! interpolations {
         }
 
         impl Interpolation {
-            /// All of them, in the order of the table.
+            /// All functions over data, in the order of the table.
             pub const ALL: &'static [Interpolation] = &[$(Interpolation::$variant,)+];
 
-            /// What the table says about this function.
+            /// Returns the row of this function in the table.
             pub fn row(self) -> &'static InterpolationRow {
                 static ROWS: &[InterpolationRow] = &[$(InterpolationRow {
                     interpolation: Interpolation::$variant,
@@ -68,18 +69,18 @@ macro_rules! interpolations {
     };
 }
 
-/// What the table says about one function over data.
+/// A row of the table of functions over data.
 #[derive(Clone, Copy, Debug)]
 pub struct InterpolationRow {
     /// the function itself
     pub interpolation: Interpolation,
     /// name as users write it
     pub name: &'static str,
-    /// its parameters
+    /// its arguments
     pub parameters: &'static [Argument],
-    /// how smooth the function is in its first argument
+    /// smoothness of the function in its first argument
     pub continuity: Continuity,
-    /// sentence that says what it is, then remarks
+    /// one sentence that describes it, then remarks
     pub doc: &'static str,
     /// equation, in plain text
     pub equation: &'static str,
@@ -88,33 +89,38 @@ pub struct InterpolationRow {
 interpolations! {
     /// Akima spline through the points of spline `id`, or its derivative of order `iord`.
     ///
-    /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind that takes an order.
-    Akispl "AKISPL" (x: Number, z: Number, id: ID; iord: ORDER) C1
+    /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind
+    /// that takes an order.
+    Akispl "AKISPL" (x: Number, z: Number, id: SPLINE_ID; iord: DERIVATIVE) C1
     "cubics with slopes weighted by the neighbouring changes of slope (Akima 1970)"
 
     /// Cubic spline through the points of spline `id`, or its derivative of order `iord`.
     ///
-    /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind that takes an order.
-    Cubspl "CUBSPL" (x: Number, z: Number, id: ID; iord: ORDER) C2
+    /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind
+    /// that takes an order.
+    Cubspl "CUBSPL" (x: Number, z: Number, id: SPLINE_ID; iord: DERIVATIVE) C2
     "cubics with continuous curvature, zero at the ends"
 
-    /// Time series: linear (method 1) or cubic (method 3) interpolation of spline `id`, or its derivative of order `iord`.
-    Interp "INTERP" (x: Number, method: one_of(&[1, 3]), id: ID; iord: ORDER) C0
+    /// Time series: linear (method 1) or cubic (method 3) interpolation of spline `id`, or its
+    /// derivative of order `iord`.
+    Interp "INTERP" (x: Number, method: one_of(&[1, 3]), id: SPLINE_ID; iord: DERIVATIVE) C0
     "straight lines, or the curve of CUBSPL"
 
-    /// Component (1 x, 2 y, 3 z) of curve `id` at parameter `alpha`, or its derivative of order `iord`.
-    Curve "CURVE" (alpha: Number, iord: ORDER, comp: Kind::Selector(Choice::Range(1, 3)), id: CURVE) C2
+    /// Component (1 x, 2 y, 3 z) of curve `id` at parameter `alpha`, or its derivative of order
+    /// `iord`.
+    Curve "CURVE" (alpha: Number, iord: DERIVATIVE, comp: Kind::Selector(Choice::Range(1, 3)), id: CURVE_ID) C2
     "cubic B-spline through the points of the curve, alpha from -1 to 1"
 
-    /// Random signal whose power spectral density is spline `id`, between the frequencies f0 and f1.
+    /// Random signal whose power spectral density is spline `id`, between the frequencies f0 and
+    /// f1.
     ///
     /// The same seed gives the same signal. All arguments but x must be constant.
-    Invpsd "INVPSD" (x: Number, id: ID, f0: Number, f1: Number, nf: Number, linlog: one_of(&[0, 1]), seed: Number) Smooth
+    Invpsd "INVPSD" (x: Number, id: SPLINE_ID, f0: Number, f1: Number, nf: Number, linlog: one_of(&[0, 1]), seed: Number) Smooth
     "sum sqrt(2 PSD(f_i) df_i) sin(2 pi f_i x + phi_i) over nf frequencies"
 }
 
 impl Interpolation {
-    /// The function of this name in this language; AKIMA is another name of AKISPL.
+    /// Finds the function of this name in this language; AKIMA is another name of AKISPL.
     pub fn from_name(name: &str, dialect: Dialect) -> Option<Interpolation> {
         if dialect == Dialect::Expression {
             return None;
@@ -127,16 +133,16 @@ impl Interpolation {
             .copied()
             .find(|f| f.name().eq_ignore_ascii_case(name))
     }
-    /// Name as users write it.
+    /// Returns the name as users write it.
     pub fn name(self) -> &'static str {
         self.row().name
     }
-    /// How many arguments may be written.
+    /// Returns the fewest and the most arguments.
     pub fn arity(self) -> RangeInclusive<usize> {
         let (least, most) = signature::arity(self.row().parameters);
         least..=most
     }
-    /// The signature as help shows it.
+    /// Prints the signature as help shows it.
     pub fn signature(self) -> String {
         signature::signature(self.name(), self.row().parameters)
     }
@@ -165,11 +171,13 @@ pub struct Spline {
 }
 
 impl Spline {
-    /// From x (at least 4, increasing), z (empty for a single curve, else increasing) and the values of each curve.
+    /// Creates it from x (at least 4, increasing), z (empty for a single curve, else increasing)
+    /// and the values of each curve.
     ///
     /// # Errors
     ///
-    /// When the counts differ, points do not increase, something is not a number, or the ends do not fit the data.
+    /// When the counts differ, points do not increase, something is not a number, or the ends do
+    /// not fit the data.
     pub fn new(
         x: Vec<f64>,
         z: Vec<f64>,
@@ -204,22 +212,22 @@ impl Spline {
         })
     }
 
-    /// Whether it is one curve.
+    /// Returns whether it is a single curve.
     pub fn is_single(&self) -> bool {
         self.y.len() == 1
     }
-    /// Local cubics with Akima's slopes.
+    /// Returns local cubics with Akima's slopes, fitted at the first call.
     pub fn akima(&self) -> &Arc<Surface> {
         self.akima
             .get_or_init(|| self.fit(|y| Piecewise::akima(&self.x, y, self.extrapolation)))
     }
-    /// The cubic spline.
+    /// Returns the cubic spline, fitted at the first call.
     pub fn cubic(&self) -> &Arc<Surface> {
         self.cubic.get_or_init(|| {
             self.fit(|y| Piecewise::cubic(&self.x, y, self.ends, self.extrapolation))
         })
     }
-    /// Straight lines.
+    /// Returns straight lines from point to point, fitted at the first call.
     pub fn linear(&self) -> &Arc<Surface> {
         self.linear
             .get_or_init(|| self.fit(|y| Piecewise::linear(&self.x, y)))
@@ -247,7 +255,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Value, or derivative with respect to x, at (x, z); beyond the first and last z the nearest two curves continue.
+    /// Returns the value, or a derivative with respect to x, at (x, z); beyond the first and last z
+    /// the nearest two curves continue.
     pub fn at<S: Scalar>(&self, x: S, z: S, order: u32) -> S {
         if self.curves.len() == 1 {
             return x.lookup(&self.curves[0], order);
@@ -273,7 +282,7 @@ impl Surface {
     }
 }
 
-/// Whether the points of a curve lie on it.
+/// The meaning of the points of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurvePoints {
     /// the curve goes through them
@@ -284,7 +293,8 @@ pub enum CurvePoints {
 
 /// A curve in space over a parameter from −1 to 1; outside it has no value.
 ///
-/// A curve through its points is a cubic spline over the length of the polygon of the points, natural or (closed) periodic.
+/// A curve through its points is a cubic spline over the length of the polygon of the points,
+/// natural or (closed) periodic.
 #[derive(Debug)]
 pub struct Curve {
     components: [Arc<dyn Table>; 3],
@@ -293,12 +303,13 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// From at least 4 points; a closed curve ends with its first point. `order` is that of the polynomials plus one.
+    /// Creates it from at least 4 points; a closed curve ends with its first point. `order` is that
+    /// of the polynomials plus one.
     ///
     /// # Errors
     ///
-    /// When there are too few points, neighbouring points coincide, a closed curve is not closed, or the order is unknown
-    /// (through points: 2 or 4).
+    /// When there are too few points, neighbouring points coincide, a closed curve is not closed,
+    /// or the order is unknown (through points: 2 or 4).
     pub fn new(
         points: &[[f64; 3]],
         closed: bool,
@@ -365,16 +376,16 @@ impl Curve {
         })
     }
 
-    /// Parameters, ascending from −1 to 1, between which it is a polynomial.
+    /// Returns the parameters, ascending from −1 to 1, between which it is one polynomial.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    /// The x, y and z over the parameter.
+    /// Returns x, y and z over the parameter.
     pub fn components(&self) -> &[Arc<dyn Table>; 3] {
         &self.components
     }
-    /// Whether it returns to its beginning.
+    /// Returns whether it returns to its beginning.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
@@ -388,7 +399,8 @@ struct Signal {
 }
 
 impl Signal {
-    /// `n` bands of equal width between two frequencies, each with the density of its middle.
+    /// Divides the range between two frequencies into `n` bands of equal width, each with the
+    /// density of its middle.
     fn new(density: impl Fn(f64) -> f64, f0: f64, f1: f64, n: usize, seed: i64) -> Self {
         let width = (f1 - f0) / n as f64;
         let mut state = seed as u64;
@@ -423,7 +435,7 @@ impl Table for Signal {
     }
 }
 
-/// The next of a sequence of numbers between 0 and 1 (SplitMix64).
+/// Returns the next of a sequence of numbers between 0 and 1 (SplitMix64).
 fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut z = *state;
@@ -435,13 +447,13 @@ fn uniform(state: &mut u64) -> f64 {
 /// The splines and curves that an expression may name.
 #[derive(Clone, Debug, Default)]
 pub struct Bindings {
-    /// by number
+    /// splines by identifier
     pub splines: BTreeMap<u32, Arc<Spline>>,
-    /// by number
+    /// curves by identifier
     pub curves: BTreeMap<u32, Arc<Curve>>,
 }
 
-/// A call whose data are found.
+/// A call together with its data.
 #[derive(Clone, Debug)]
 pub enum Bound {
     /// a curve or a family of curves, and the order of the derivative
@@ -451,7 +463,7 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// The value for the arguments of the call, as written; identifiers among them are ignored.
+    /// Evaluates the call for its arguments as written; identifiers among them are ignored.
     pub fn eval<S: Scalar>(&self, args: &[S]) -> S {
         let Some(&x) = args.first() else {
             return S::constant(f64::NAN);
@@ -466,14 +478,16 @@ impl Bound {
 }
 
 impl Bindings {
-    /// Finds the data of a call. `args` are the arguments as written: literals and what else is constant; NaN for others.
+    /// Finds the data of a call. `args` are the arguments as written: literals and other constants;
+    /// NaN for the rest.
     ///
     /// # Errors
     ///
-    /// `unknown_element` when there is no such spline or curve; `out_of_range` for an order on a family of curves and for
-    /// arguments of INVPSD that are not constant or make no signal.
+    /// `unknown_element` when there is no such spline or curve; `out_of_range` for an order on a
+    /// family of curves and for arguments of INVPSD that are not constant or make no signal.
     pub fn bind(&self, function: Interpolation, args: &[f64]) -> Result<Bound, Diagnostic> {
-        // the checker has seen to literals being whole numbers in their range; `as` saturates for the rest
+        // the check has found the literals to be integers in their range; `as` saturates for the
+        // rest
         let whole = |k: usize| args.get(k).map_or(0, |&x| x as u32);
         let order = |spline: &Spline, k: usize| match whole(k) {
             0 => Ok(0),
@@ -536,7 +550,7 @@ impl Bindings {
             .ok_or_else(|| unknown("spline", id, self.splines.keys()))
     }
 
-    /// INVPSD(x, id, f0, f1, nf, linlog, seed)
+    /// Binds INVPSD(x, id, f0, f1, nf, linlog, seed).
     fn signal(&self, args: &[f64]) -> Result<Bound, Diagnostic> {
         let refuse = |message: &str| Err(Diagnostic::error("out_of_range", message));
         let &[_, id, f0, f1, nf, linlog, seed] = args else {
@@ -734,7 +748,8 @@ mod tests {
         let (a, again, other) = (bind(7.0), bind(7.2), bind(8.0));
         assert_eq!(a.eval(&[0.3]), again.eval(&[0.3]));
         assert_ne!(a.eval(&[0.3]), other.eval(&[0.3]));
-        // mean square over one common period (5 s: bands of 0.2 cycles per unit, centred on odd multiples of 0.1)
+        // mean square over one common period (5 s: bands of 0.2 cycles per unit, centred on odd
+        // multiples of 0.1)
         let n = 20_000;
         let mean: f64 = (0..n)
             .map(|k| a.eval(&[10.0 * f64::from(k) / f64::from(n)]).powi(2))

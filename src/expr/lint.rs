@@ -1,6 +1,8 @@
-//! What is legal but probably not meant: degrees for radians, operators that bind otherwise than they look.
+//! Warnings about what is legal but probably not meant: degrees for radians, operators that bind
+//! otherwise than they look.
 //!
-//! Only patterns that are hardly ever right are reported; each rule looks at one node and what stands directly below it.
+//! Only patterns that are hardly ever right are reported; each rule examines one node and its
+//! children.
 
 use super::advice;
 use super::ast::{Ast, BinaryOp, Callee, Constant, Node, NodeIx};
@@ -9,7 +11,7 @@ use super::measures::Measure;
 use crate::diagnostic::{Diagnostic, Severity};
 use std::f64::consts::TAU;
 
-/// Warnings about an expression, in the order of its text.
+/// Returns the warnings about an expression, in the order of its text.
 ///
 /// ```
 /// use cognate::expr::{Profile, ast::Dialect, lint, parse};
@@ -48,17 +50,18 @@ pub fn lint(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     found
 }
 
-/// Whether there is a parenthesis between the places of two nodes: then their order was written, not left to precedence.
+/// Returns whether there is a parenthesis between the places of two nodes: then their order was
+/// written, not left to precedence.
 fn parenthesis_between(ast: &Ast, text: &str, first: NodeIx, second: NodeIx) -> bool {
     let start = |ix: NodeIx| ast.spans.get(ix as usize).map_or(0, |span| span.start);
     text.get(start(first)..start(second))
         .is_some_and(|between| between.contains(['(', ')']))
 }
 
-/// Code, message, advice.
+/// A warning: code, message, advice.
 type Doubt = (&'static str, String, String);
 
-/// SIN(30), SIN(360*TIME); in expression functions sin(radians(x)).
+/// Warns of degrees for radians: SIN(30), SIN(360*TIME); in expression functions sin(radians(x)).
 fn angle_argument(ast: &Ast, function: Function, args: &[NodeIx]) -> Option<Doubt> {
     use Function as F;
     let &[x] = args else { return None };
@@ -103,7 +106,7 @@ fn angle_argument(ast: &Ast, function: Function, args: &[NodeIx]) -> Option<Doub
     }
 }
 
-/// AZ(1,2)-25
+/// Warns of degrees for the radians of an angle: AZ(1,2)-25.
 fn angle_difference(ast: &Ast, op: BinaryOp, a: NodeIx, b: NodeIx) -> Option<Doubt> {
     use Measure as M;
     if !matches!(op, BinaryOp::Add | BinaryOp::Sub) {
@@ -142,7 +145,7 @@ fn angle_difference(ast: &Ast, op: BinaryOp, a: NodeIx, b: NodeIx) -> Option<Dou
     looks_like_degrees(n).then_some(("degrees_or_radians", message, help))
 }
 
-/// x**1/2
+/// Warns of `x**1/2`, which is `(x**1)/2`.
 fn precedence(ast: &Ast, op: BinaryOp, a: NodeIx, b: NodeIx) -> Option<Doubt> {
     let n = number(ast, b).filter(|n| [2.0, 3.0, 4.0].contains(n))?;
     match *ast.node(a) {
@@ -158,7 +161,7 @@ fn precedence(ast: &Ast, op: BinaryOp, a: NodeIx, b: NodeIx) -> Option<Doubt> {
     }
 }
 
-/// -2**2
+/// Warns of `-2**2`, which is `-(2**2)`.
 fn negated_power(ast: &Ast, x: NodeIx, sign: NodeIx, text: &str) -> Option<Doubt> {
     let Node::Binary(BinaryOp::Pow, base, exponent) = *ast.node(x) else {
         return None;
@@ -175,7 +178,7 @@ fn negated_power(ast: &Ast, x: NodeIx, sign: NodeIx, text: &str) -> Option<Doubt
     ))
 }
 
-/// A literal without suffix.
+/// Returns the value of a literal without suffix.
 fn number(ast: &Ast, ix: NodeIx) -> Option<f64> {
     match *ast.node(ix) {
         Node::Number {
@@ -193,7 +196,7 @@ fn number(ast: &Ast, ix: NodeIx) -> Option<f64> {
     }
 }
 
-/// More than a turn, and a multiple of five: hardly radians.
+/// Returns whether an angle is more than a turn and a multiple of five: hardly radians.
 fn looks_like_degrees(n: f64) -> bool {
     n.abs() > TAU
         && n % 5.0 == 0.0

@@ -1,11 +1,13 @@
-//! TABLE of functions of the model: DX, VZ, FX, VARVAL … Their arguments are identifiers; their value comes from a host.
+//! The TABLE of functions of the model: DX, VZ, FX, VARVAL … Their arguments are identifiers; their
+//! value comes from a host.
 //!
-//! A row is: variant, name, arguments, unit, formula, and the documentation above it. Parsing, checks of arguments, help and
-//! completion read the rows; the formulas of the kinematic ones are code in [`crate::space::kinematic`].
+//! A row is: variant, name, arguments, unit, formula, and the documentation above it. Parsing,
+//! checks of arguments, help and completion read the rows; the formulas of the kinematic ones are
+//! code in `physics/kinematic.rs`.
 
 use super::signature::{Argument, Choice, Element};
 
-/// What a group of measures needs to be known of the model before it has a value.
+/// The data of the model that a group of measures reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Family {
     /// poses of markers
@@ -22,22 +24,22 @@ pub enum Family {
     System,
 }
 
-/// One measure: everything the language knows about it.
+/// A row of the table: everything the language knows about a measure.
 #[derive(Debug)]
 pub struct Row {
     /// the measure
     pub measure: Measure,
-    /// its name, upper case
+    /// name, in upper case
     pub name: &'static str,
-    /// its arguments in order
+    /// arguments in order
     pub arguments: &'static [Argument],
-    /// what it needs
+    /// data of the model that it reads
     pub family: Family,
     /// dimension of the value
     pub unit: &'static str,
-    /// the value as an equation, in the notation of the kernels; empty where the model decides
+    /// the value as an equation, with the symbols of the formulas; empty where the model decides
     pub formula: &'static str,
-    /// what it is
+    /// description
     pub doc: &'static str,
 }
 
@@ -124,7 +126,8 @@ const OF_SENSOR: &[Argument] = &[Argument::identifier("id", Element::Sensor)];
 
 measures! {
     Displacement {
-        /// Distance of the origin of i from that of j, never negative; its rate is VR, and 0 where the origins coincide.
+        /// Distance of the origin of i from that of j, never negative; its rate is VR, and 0 where
+        /// the origins coincide.
         Dm "DM" I_J "length" "|p_JI|";
         /// Displacement of i from j along the x axis of k.
         Dx "DX" I_J_K "length" "p_JI · x_K";
@@ -132,16 +135,17 @@ measures! {
         Dy "DY" I_J_K "length" "p_JI · y_K";
         /// Displacement of i from j along the z axis of k.
         Dz "DZ" I_J_K "length" "p_JI · z_K";
-        /// Rotation of i against j about the x axis of j, radians. In a simulation it counts turns; without history it is
-        /// the principal value. Undefined where z of i is parallel to x of j.
+        /// Rotation of i against j about the x axis of j, radians. In a simulation it counts turns;
+        /// without history it is the principal value. Undefined where z of i is parallel to x of j.
         Ax "AX" I_J "angle" "atan2(−z_I · y_J, z_I · z_J)";
-        /// Rotation of i against j about the y axis of j, radians. In a simulation it counts turns; without history it is
-        /// the principal value. Undefined where z of i is parallel to y of j.
+        /// Rotation of i against j about the y axis of j, radians. In a simulation it counts turns;
+        /// without history it is the principal value. Undefined where z of i is parallel to y of j.
         Ay "AY" I_J "angle" "atan2(z_I · x_J, z_I · z_J)";
-        /// Rotation of i against j about the z axis of j, radians. In a simulation it counts turns; without history it is
-        /// the principal value. Undefined where x of i is parallel to z of j.
+        /// Rotation of i against j about the z axis of j, radians. In a simulation it counts turns;
+        /// without history it is the principal value. Undefined where x of i is parallel to z of j.
         Az "AZ" I_J "angle" "atan2(x_I · y_J, x_I · x_J)";
-        /// First of the body-fixed 3-1-3 angles of i in j, radians. Where THETA is 0 or π the whole turn is PSI.
+        /// First of the body-fixed 3-1-3 angles of i in j, radians. Where THETA is 0 or π the whole
+        /// turn is PSI.
         Psi "PSI" I_J "angle" "atan2(R13, −R23),  R = R_JI = Rz(ψ) Rx(θ) Rz(φ)";
         /// Second of the body-fixed 3-1-3 angles of i in j, radians, 0 to π.
         Theta "THETA" I_J "angle" "atan2(√(R13² + R23²), R33),  R = R_JI = Rz(ψ) Rx(θ) Rz(φ)";
@@ -149,23 +153,27 @@ measures! {
         Phi "PHI" I_J "angle" "atan2(R31, R32),  R = R_JI = Rz(ψ) Rx(θ) Rz(φ)";
         /// First of the body-fixed 3-2-1 angles of i in j, radians.
         Yaw "YAW" I_J "angle" "atan2(R21, R11),  R = R_JI = Rz(yaw) Ry(−pitch) Rx(roll)";
-        /// The negative of the second of the body-fixed 3-2-1 angles of i in j, radians: nose up is positive.
+        /// The negative of the second of the body-fixed 3-2-1 angles of i in j, radians: nose up is
+        /// positive.
         Pitch "PITCH" I_J "angle" "atan2(R31, √(R11² + R21²)),  R = R_JI = Rz(yaw) Ry(−pitch) Rx(roll)";
         /// Third of the body-fixed 3-2-1 angles of i in j, radians; 0 where PITCH is ±π/2.
         Roll "ROLL" I_J "angle" "atan2(R32, R33),  R = R_JI = Rz(yaw) Ry(−pitch) Rx(roll)";
-        /// Angle at j between the directions to i and to k, radians. In a simulation it is followed continuously; without
-        /// history it lies between 0 and π.
+        /// Angle at j between the directions to i and to k, radians. In a simulation it is followed
+        /// continuously; without history it lies between 0 and π.
         Incang "INCANG" THREE_MARKERS "angle" "atan2(|p_JI × p_JK|, p_JI · p_JK)";
-        /// Component of the orientation of i in j. System 1 to 12: angles of the body-fixed sequences 1-2-3, 2-3-1, 3-1-2,
-        /// 1-3-2, 2-1-3, 3-2-1, 1-2-1, 1-3-1, 2-1-2, 2-3-2, 3-1-3, 3-2-3; 13 to 24: of the same sequences about the axes of j,
-        /// which stay; 27: Euler parameters, components 1 to 4; 28: Rodrigues parameters; 29: direction cosines, components
-        /// 1 to 3 the x axis of i, 4 to 6 its y axis, 7 to 9 its z axis. Systems 25 and 26 are read but have no value here.
+        /// Component of the orientation of i in j. System 1 to 12: angles of the body-fixed
+        /// sequences 1-2-3, 2-3-1, 3-1-2, 1-3-2, 2-1-3, 3-2-1, 1-2-1, 1-3-1, 2-1-2, 2-3-2, 3-1-3,
+        /// 3-2-3; 13 to 24: of the same sequences about the axes of j, which stay; 27: Euler
+        /// parameters, components 1 to 4; 28: Rodrigues parameters; 29: direction cosines,
+        /// components 1 to 3 the x axis of i, 4 to 6 its y axis, 7 to 9 its z axis. Systems 25 and
+        /// 26 are read but have no value here.
         Orient "ORIENT" ORIENTATION "angle or none" "";
     }
     Velocity {
         /// Magnitude of the velocity of i relative to j, seen from l.
         Vm "VM" I_J_L "length/time" "|v_JI − ω_L × p_JI|";
-        /// Rate at which i and j separate; negative while they approach, 0 where the origins coincide.
+        /// Rate at which i and j separate; negative while they approach, 0 where the origins
+        /// coincide.
         Vr "VR" I_J_L "length/time" "v_JI · p_JI / |p_JI|";
         /// Velocity of i relative to j, seen from l, along the x axis of k.
         Vx "VX" I_J_K_L "length/time" "(v_JI − ω_L × p_JI) · x_K";
@@ -201,71 +209,80 @@ measures! {
         Wdtz "WDTZ" I_J_K_L "angle/time²" "(α_JI − ω_L × ω_JI) · z_K";
     }
     GenericForce {
-        /// Magnitude of the sum of all forces on i from elements between i and j; without j, of action-only forces on i.
+        /// Magnitude of the sum of all forces on i from elements between i and j; without j, of
+        /// action-only forces on i.
         Fm "FM" I_J "force" "|F|";
-        /// Sum of all forces on i from elements between i and j, along the x axis of k; without j, of action-only forces.
+        /// Sum of all forces on i from elements between i and j, along the x axis of k; without j,
+        /// of action-only forces.
         Fx "FX" I_J_K "force" "F · x_K";
-        /// Sum of all forces on i from elements between i and j, along the y axis of k; without j, of action-only forces.
+        /// Sum of all forces on i from elements between i and j, along the y axis of k; without j,
+        /// of action-only forces.
         Fy "FY" I_J_K "force" "F · y_K";
-        /// Sum of all forces on i from elements between i and j, along the z axis of k; without j, of action-only forces.
+        /// Sum of all forces on i from elements between i and j, along the z axis of k; without j,
+        /// of action-only forces.
         Fz "FZ" I_J_K "force" "F · z_K";
-        /// Magnitude of the sum of all torques on i from elements between i and j; without j, of action-only torques on i.
+        /// Magnitude of the sum of all torques on i from elements between i and j; without j, of
+        /// action-only torques on i.
         Tm "TM" I_J "torque" "|T|";
-        /// Sum of all torques on i from elements between i and j, along the x axis of k; without j, of action-only torques.
+        /// Sum of all torques on i from elements between i and j, along the x axis of k; without j,
+        /// of action-only torques.
         Tx "TX" I_J_K "torque" "T · x_K";
-        /// Sum of all torques on i from elements between i and j, along the y axis of k; without j, of action-only torques.
+        /// Sum of all torques on i from elements between i and j, along the y axis of k; without j,
+        /// of action-only torques.
         Ty "TY" I_J_K "torque" "T · y_K";
-        /// Sum of all torques on i from elements between i and j, along the z axis of k; without j, of action-only torques.
+        /// Sum of all torques on i from elements between i and j, along the z axis of k; without j,
+        /// of action-only torques.
         Tz "TZ" I_J_K "torque" "T · z_K";
     }
     ElementForce {
-        /// Force of a beam on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude, 2–4 force,
-        /// 5 magnitude, 6–8 torque.
+        /// Force of a beam on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1
+        /// magnitude, 2–4 force, 5 magnitude, 6–8 torque.
         Beam "BEAM" OF_BEAM "force or torque" "";
-        /// Force of a bushing on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude, 2–4 force,
-        /// 5 magnitude, 6–8 torque.
+        /// Force of a bushing on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1
+        /// magnitude, 2–4 force, 5 magnitude, 6–8 torque.
         Bush "BUSH" OF_BUSH "force or torque" "";
-        /// Force of a field element on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude,
-        /// 2–4 force, 5 magnitude, 6–8 torque.
-        Field "FIELD" OF_FIELD "force or torque" "";
-        /// Force of a spring-damper on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude,
-        /// 2–4 force, 5 magnitude, 6–8 torque.
-        Spdp "SPDP" OF_SPDP "force or torque" "";
-        /// Force of a single-component force on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude,
-        /// 2–4 force, 5 magnitude, 6–8 torque.
-        Sforce "SFORCE" OF_SFORCE "force or torque" "";
-        /// Force of a six-component force on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude,
-        /// 2–4 force, 5 magnitude, 6–8 torque.
-        Gforce "GFORCE" OF_GFORCE "force or torque" "";
-        /// Force of a three-component force on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude,
-        /// 2–4 force; 5–8 are 0.
-        Vforce "VFORCE" OF_VFORCE "force or torque" "";
-        /// Torque of a three-component torque on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 5 magnitude,
-        /// 6–8 torque; 1–4 are 0.
-        Vtorq "VTORQ" OF_VTORQ "force or torque" "";
-        /// Reaction of a point-curve constraint on its I marker (jflag 0) or J marker (1), in the axes of rm; comp
-        /// 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
-        Ptcv "PTCV" OF_PTCV "force or torque" "";
-        /// Reaction of a curve-curve constraint on its I marker (jflag 0) or J marker (1), in the axes of rm; comp
-        /// 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
-        Cvcv "CVCV" OF_CVCV "force or torque" "";
-        /// Reaction of a joint on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude, 2–4 force,
-        /// 5 magnitude, 6–8 torque.
-        Joint "JOINT" OF_JOINT "force or torque" "";
-        /// Reaction of a joint primitive on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude,
-        /// 2–4 force, 5 magnitude, 6–8 torque.
-        Jprim "JPRIM" OF_JPRIM "force or torque" "";
-        /// Reaction of a motion on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1 magnitude, 2–4 force,
-        /// 5 magnitude, 6–8 torque.
-        Motion "MOTION" OF_MOTION "force or torque" "";
-        /// Force of a contact, all its incidents together, on its I geometry (jflag 0) or J geometry (1), in the axes of rm;
+        /// Force of a field element on its I marker (jflag 0) or J marker (1), in the axes of rm;
         /// comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Field "FIELD" OF_FIELD "force or torque" "";
+        /// Force of a spring-damper on its I marker (jflag 0) or J marker (1), in the axes of rm;
+        /// comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Spdp "SPDP" OF_SPDP "force or torque" "";
+        /// Force of a single-component force on its I marker (jflag 0) or J marker (1), in the axes
+        /// of rm; comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Sforce "SFORCE" OF_SFORCE "force or torque" "";
+        /// Force of a six-component force on its I marker (jflag 0) or J marker (1), in the axes of
+        /// rm; comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Gforce "GFORCE" OF_GFORCE "force or torque" "";
+        /// Force of a three-component force on its I marker (jflag 0) or J marker (1), in the axes
+        /// of rm; comp 1 magnitude, 2–4 force; 5–8 are 0.
+        Vforce "VFORCE" OF_VFORCE "force or torque" "";
+        /// Torque of a three-component torque on its I marker (jflag 0) or J marker (1), in the
+        /// axes of rm; comp 5 magnitude, 6–8 torque; 1–4 are 0.
+        Vtorq "VTORQ" OF_VTORQ "force or torque" "";
+        /// Reaction of a point-curve constraint on its I marker (jflag 0) or J marker (1), in the
+        /// axes of rm; comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Ptcv "PTCV" OF_PTCV "force or torque" "";
+        /// Reaction of a curve-curve constraint on its I marker (jflag 0) or J marker (1), in the
+        /// axes of rm; comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Cvcv "CVCV" OF_CVCV "force or torque" "";
+        /// Reaction of a joint on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1
+        /// magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Joint "JOINT" OF_JOINT "force or torque" "";
+        /// Reaction of a joint primitive on its I marker (jflag 0) or J marker (1), in the axes of
+        /// rm; comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Jprim "JPRIM" OF_JPRIM "force or torque" "";
+        /// Reaction of a motion on its I marker (jflag 0) or J marker (1), in the axes of rm; comp
+        /// 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
+        Motion "MOTION" OF_MOTION "force or torque" "";
+        /// Force of a contact, all its incidents together, on its I geometry (jflag 0) or J
+        /// geometry (1), in the axes of rm; comp 1 magnitude, 2–4 force, 5 magnitude, 6–8 torque.
         Contact "CONTACT" OF_CONTACT "force or torque" "";
-        /// Force of a multi-point force on the marker `at`, in the axes of rm; comp 1 magnitude, 2–4 force, 5 magnitude,
-        /// 6–8 torque.
+        /// Force of a multi-point force on the marker `at`, in the axes of rm; comp 1 magnitude,
+        /// 2–4 force, 5 magnitude, 6–8 torque.
         Nforce "NFORCE" OF_NFORCE "force or torque" "";
-        /// Joint friction, in the axes of the joint's J marker; index 1–3 force, 4–6 torque, 7–12 coefficients, 13 effective
-        /// static coefficient, 14–16 sliding velocity, 17–19 angular velocity, 20–24 creep.
+        /// Joint friction, in the axes of the joint's J marker; index 1–3 force, 4–6 torque, 7–12
+        /// coefficients, 13 effective static coefficient, 14–16 sliding velocity, 17–19 angular
+        /// velocity, 20–24 creep.
         Friction "FRICTION" OF_FRICTION "by index" "";
     }
     System {
@@ -287,21 +304,22 @@ measures! {
 }
 
 impl Measure {
-    /// The row of this measure.
+    /// Returns the row of this measure in the table.
     pub fn row(self) -> &'static Row {
         &ROWS[self as usize]
     }
-    /// The name, upper case.
+    /// Returns the name, in upper case.
     pub fn name(self) -> &'static str {
         self.row().name
     }
-    /// The measure of this name, in any case.
+    /// Finds the measure of this name, in any case.
     pub fn by_name(name: &str) -> Option<Self> {
         ROWS.iter()
             .find(|r| r.name.eq_ignore_ascii_case(name))
             .map(|r| r.measure)
     }
-    /// Whether its value depends on what was before: angles that count turns, Euler parameters that keep their sign.
+    /// Returns whether its value depends on the past: angles that count turns, Euler parameters
+    /// that keep their sign.
     pub fn needs_history(self) -> bool {
         matches!(
             self,
@@ -310,7 +328,7 @@ impl Measure {
     }
 }
 
-/// How many components a system of ORIENT has.
+/// Returns the number of components of a system of ORIENT.
 pub fn orientation_components(system: u32) -> u32 {
     match system {
         27 => 4,
@@ -319,7 +337,7 @@ pub fn orientation_components(system: u32) -> u32 {
     }
 }
 
-/// All rows, in the order of the reference.
+/// Returns all rows, in the order of the reference.
 pub fn rows() -> &'static [Row] {
     ROWS
 }

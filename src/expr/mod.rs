@@ -10,21 +10,23 @@
 //!
 //! ```text
 //! text ── check, parse ──▶ Ast ── compile ──▶ Program ──▶ numbers, derivatives, batches
-//!                           └──── walk ──────────────────▶ the same number, or why there is none
+//!                           └──── walk ──────────────────▶ the same number, or the reason for none
 //! ```
 //!
 //! | step | file | |
 //! |---|---|---|
-//! | names | `functions/` `measures.rs` `interpolation.rs` | the tables; `signature.rs` says what arguments are, `symbols.rs` what a name means |
-//! | text | `token.rs` `check.rs` | words; one ordered pass that finds the first mistake, exactly placed |
-//! | | `advice.rs` `lint.rs` | what is said about mistakes, and about what is legal but hardly meant |
-//! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | the grammars, the tree, and back to source |
-//! | value | `walk.rs` | the reference: lazily correct, names what has no value |
+//! | names | `functions/` `measures.rs` `interpolation.rs` | tables of the functions |
+//! | | `signature.rs` `symbols.rs` | arguments of functions; meanings of names in each language |
+//! | text | `token.rs` `check.rs` | tokens; one ordered pass that finds the first mistake and its
+//! place |
+//! | | `advice.rs` `lint.rs` | advice on mistakes; warnings about what is legal but hardly meant |
+//! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | grammars, tree, and back to source |
+//! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
-//! | | `smoothness.rs` | where it is not smooth, and which derivative jumps there |
+//! | | `smoothness.rs` | places where it is not smooth, and the derivative that jumps there |
 //!
-//! Parsing finds every mistake with its place; compiling resolves names, folds constants and shares equal parts; running
-//! allocates nothing.
+//! Parsing finds every mistake with its place; compiling resolves names, folds constants and shares
+//! equal parts; running allocates nothing.
 
 mod advice;
 pub mod ast;

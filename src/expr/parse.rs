@@ -1,7 +1,9 @@
-//! Text to [`Ast`]: the ordered check first, then the grammar, whose pairs become nodes.
+//! The parser from text to [`Ast`]: first the ordered check, then the grammar, whose pairs become
+//! nodes.
 //!
-//! The grammars (`grammar/function.pest`, `grammar/expression.pest`) are the definition of the languages and make the tree.
-//! Names and numbers were given their meaning by the check, in the order of the text; the pairs take them in that order.
+//! The grammars (`grammar/function.pest`, `grammar/expression.pest`) define the languages and make
+//! the tree. The check has determined the meaning of names and numbers in the order of the text;
+//! the pairs take them in that order.
 
 use super::advice;
 use super::ast::{Ast, BinaryOp, Dialect, Node, NodeIx};
@@ -15,13 +17,13 @@ use std::iter::Peekable;
 /// Reads a text of one of the two languages.
 ///
 /// # Errors
-/// The first mistake in the text, from left to right: its kind is the diagnostic's code, its column counts all characters of
-/// the text from 1.
+/// The first mistake in the text, from left to right: the code of the diagnostic is its kind, its
+/// column counts all characters of the text from 1.
 pub fn parse(text: &str, dialect: Dialect, profile: Profile) -> Result<Ast, Diagnostic> {
     parse_with_limits(text, dialect, profile, profile.limits())
 }
 
-/// As [`parse`], with limits of the caller's own.
+/// Reads like [`parse`], with limits of the caller's own.
 ///
 /// # Errors
 /// The first mistake in the text; exceeding a limit is one.
@@ -38,7 +40,7 @@ pub fn parse_with_limits(
         Dialect::Expression => expression::tree(text, atoms),
     };
     let (nodes, spans) = tree.ok_or_else(|| {
-        // The check and the grammar disagree: our mistake, but the user's text is not readable all the same.
+        // The check and the grammar disagree: a bug of ours, yet the text cannot be read.
         debug_assert!(
             false,
             "the grammar refuses what the check accepts: {text:?}"
@@ -55,7 +57,7 @@ pub fn parse_with_limits(
     })
 }
 
-/// What a pair of either grammar is, where the tree needs to know.
+/// The role of a pair of either grammar, as far as the tree depends on it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Role {
     /// a whole expression, or one in parentheses or between separators: a flat list
@@ -68,11 +70,11 @@ enum Role {
     /// a name with or without arguments
     Reference,
     Conditional,
-    /// what the tree does not need
+    /// anything that leaves no trace in the tree
     Other,
 }
 
-/// One grammar: its parser, and what its rules are.
+/// Defines one grammar: its parser, and the roles of its rules.
 macro_rules! grammar {
     ($module:ident, $file:literal, $($conditional:ident)?) => {
         mod $module {
@@ -108,10 +110,11 @@ macro_rules! grammar {
 grammar!(function, "../grammar/function.pest", conditional);
 grammar!(expression, "../grammar/expression.pest",);
 
-/// The pairs of one level that are still to be read.
+/// The pairs of one level that remain to be read.
 type Level<'i, R> = Peekable<Pairs<'i, R>>;
 
-/// Makes nodes of pairs, children before parents. `None` anywhere: the pairs are not those of the grammar.
+/// The construction of nodes from pairs, children before parents. `None` anywhere: the pairs are
+/// not those of the grammar.
 struct Builder<R> {
     atoms: std::vec::IntoIter<Atom>,
     role: fn(R) -> Role,
@@ -140,7 +143,7 @@ impl<R: pest::RuleType> Builder<R> {
         (self.nodes.len() - 1) as NodeIx
     }
 
-    /// The pairs of a sum: products with operators between them, from the left.
+    /// Reads the pairs of a sum: products with operators between them, from the left.
     fn sum(&mut self, pairs: &mut Level<R>) -> Option<NodeIx> {
         let mut left = self.product(pairs)?;
         while let Some(operator) = pairs.next_if(|p| self.is(p, Role::SumOperator)) {
@@ -205,7 +208,7 @@ impl<R: pest::RuleType> Builder<R> {
         }
     }
 
-    /// A constant, or a call.
+    /// Reads a constant, or a call.
     fn reference(&mut self, pair: Pair<R>) -> Option<NodeIx> {
         let mut pairs = pair.into_inner();
         let span = place(&pairs.next()?);

@@ -1,12 +1,13 @@
-//! [`Ast`] to text: as few parentheses as the grammar allows, shortest digits; reading it back gives the same tree.
+//! The printer from [`Ast`] to text: as few parentheses as the grammar allows, shortest digits;
+//! reading it back gives the same tree.
 //!
-//! Printing keeps a list of what is still to be written instead of recursing, for a sum of many thousand terms leans to the
-//! left as deep as it is long.
+//! It keeps a list of the pieces that remain to be written instead of recursing, because the tree
+//! of a sum of many thousand terms is as deep as the sum is long.
 
 use super::ast::{Ast, BinaryOp, Dialect, Node, NodeIx};
 use std::fmt;
 
-/// How tightly the grammar binds, loosest first; a place demands a level, a node has one.
+/// Levels of binding in the grammar, loosest first; a place demands a level, a node has one.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Sum,
@@ -16,7 +17,7 @@ enum Level {
     Primary,
 }
 
-/// What is still to be written.
+/// A piece that remains to be written.
 enum Piece {
     Text(&'static str),
     /// a node, at a place of this level
@@ -33,7 +34,7 @@ impl fmt::Display for Ast {
     }
 }
 
-/// A node with all that is below it.
+/// A node with everything below it.
 pub(super) struct Written<'a> {
     pub ast: &'a Ast,
     pub ix: NodeIx,
@@ -131,11 +132,11 @@ impl Ast {
 }
 
 impl BinaryOp {
-    /// As it is written.
+    /// Returns the operator as it is written.
     pub fn symbol(self) -> &'static str {
         self.spaced().trim()
     }
-    /// With blanks where they help reading.
+    /// Returns the operator with blanks where they help reading.
     fn spaced(self) -> &'static str {
         match self {
             BinaryOp::Add => " + ",
@@ -147,7 +148,7 @@ impl BinaryOp {
     }
 }
 
-/// A number in the fewest digits that give it again.
+/// A number in the fewest digits that read back as the same number.
 pub(super) struct Digits(pub f64);
 
 impl fmt::Display for Digits {
@@ -161,7 +162,7 @@ impl fmt::Display for Digits {
     }
 }
 
-/// Two trees are equal when they say the same in the same words; places do not count.
+/// Two trees are equal when they have the same meaning in the same words; places do not count.
 impl PartialEq for Ast {
     fn eq(&self, other: &Self) -> bool {
         (self.dialect, self.root) == (other.dialect, other.root) && self.nodes == other.nodes

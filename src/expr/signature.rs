@@ -1,27 +1,74 @@
-//! What a function takes: the arguments of a call with their kinds, ranges and defaults.
+//! Signatures: the arguments of a function with their kinds, ranges and defaults.
 //!
-//! The rows of the measures and of the interpolations are written in these terms. The parser checks calls against them; the
-//! help prints them.
+//! The tables of measures and interpolations are written in these terms. The parser checks calls
+//! against them; the help prints them.
 
 use std::fmt;
 
-/// What kind of element an identifier names. Identifiers are counted and looked up per kind.
+/// The kind of element that an identifier names. Identifiers are counted and looked up per kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
-#[rustfmt::skip]
 pub enum Element {
-    Marker, Beam, Bushing, Field, SpringDamper, Sforce, Gforce, Vforce, Vtorque, Ptcv, Cvcv, Joint, Jprim, Motion, Contact,
-    Nforce, Friction, Variable, Array, Diff, Pinput, Poutput, Sensor, Spline, Curve,
+    /// MARKER
+    Marker,
+    /// BEAM
+    Beam,
+    /// BUSHING
+    Bushing,
+    /// FIELD
+    Field,
+    /// SPRINGDAMPER
+    SpringDamper,
+    /// SFORCE
+    Sforce,
+    /// GFORCE
+    Gforce,
+    /// VFORCE
+    Vforce,
+    /// VTORQUE
+    Vtorque,
+    /// PTCV
+    Ptcv,
+    /// CVCV
+    Cvcv,
+    /// JOINT
+    Joint,
+    /// JPRIM
+    Jprim,
+    /// MOTION
+    Motion,
+    /// CONTACT
+    Contact,
+    /// NFORCE
+    Nforce,
+    /// FRICTION
+    Friction,
+    /// VARIABLE
+    Variable,
+    /// ARRAY
+    Array,
+    /// DIFF
+    Diff,
+    /// PINPUT
+    Pinput,
+    /// POUTPUT
+    Poutput,
+    /// SENSOR
+    Sensor,
+    /// SPLINE
+    Spline,
+    /// CURVE
+    Curve,
 }
 
-/// What may stand as an argument.
+/// The kind of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// any expression
     Number,
-    /// the identifier of an element: an unsigned integer literal from 1; from 0 where 0 stands for ground
+    /// the identifier of an element: an unsigned integer literal from 1; from 0 where 0 stands for
+    /// ground
     Identifier {
-        /// what it identifies
+        /// kind of the element
         element: Element,
         /// whether 0 is allowed
         zero: bool,
@@ -30,7 +77,7 @@ pub enum Kind {
     Selector(Choice),
 }
 
-/// The integers a selector may have.
+/// The integers that a selector may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// from the first to the last, both included
@@ -45,7 +92,7 @@ pub enum Choice {
 pub const LARGEST_IDENTIFIER: u32 = (1 << 31) - 2;
 
 impl Choice {
-    /// Whether this integer may stand here.
+    /// Returns whether this integer is one of them.
     pub fn allows(self, n: u32) -> bool {
         match self {
             Choice::Range(first, last) => (first..=last).contains(&n),
@@ -68,19 +115,19 @@ impl fmt::Display for Choice {
     }
 }
 
-/// One argument.
+/// An argument of a signature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Argument {
-    /// as it is called in help and messages
+    /// name in help and messages
     pub name: &'static str,
-    /// what may stand there
+    /// kind of the argument
     pub kind: Kind,
-    /// whether it may be left out; what it then is, for a reader
+    /// default in words, if it may be left out
     pub default: Option<&'static str>,
 }
 
 impl Argument {
-    /// An expression.
+    /// Describes an expression.
     pub const fn number(name: &'static str) -> Self {
         Self {
             name,
@@ -88,7 +135,7 @@ impl Argument {
             default: None,
         }
     }
-    /// An identifier from 1.
+    /// Describes an identifier from 1.
     pub const fn identifier(name: &'static str, element: Element) -> Self {
         Self {
             name,
@@ -99,7 +146,7 @@ impl Argument {
             default: None,
         }
     }
-    /// An identifier from 0.
+    /// Describes an identifier from 0.
     pub const fn identifier_or_zero(name: &'static str, element: Element) -> Self {
         Self {
             name,
@@ -110,7 +157,7 @@ impl Argument {
             default: None,
         }
     }
-    /// An integer from a set.
+    /// Describes an integer from a set.
     pub const fn selector(name: &'static str, choice: Choice) -> Self {
         Self {
             name,
@@ -118,7 +165,7 @@ impl Argument {
             default: None,
         }
     }
-    /// The same, but it may be left out.
+    /// Makes the argument optional, with a default in words.
     pub const fn or(self, default: &'static str) -> Self {
         Self {
             default: Some(default),
@@ -127,7 +174,7 @@ impl Argument {
     }
 }
 
-/// Fewest and most arguments of a signature.
+/// Returns the fewest and the most arguments of a signature.
 pub fn arity(arguments: &[Argument]) -> (usize, usize) {
     (
         arguments.iter().filter(|a| a.default.is_none()).count(),
@@ -135,7 +182,7 @@ pub fn arity(arguments: &[Argument]) -> (usize, usize) {
     )
 }
 
-/// `NAME(i[, j][, k])`
+/// Prints the signature: `NAME(i[, j][, k])`.
 pub fn signature(name: &str, arguments: &[Argument]) -> String {
     let mut text = format!("{name}(");
     for (k, a) in arguments.iter().enumerate() {

@@ -1,13 +1,15 @@
-//! Continuity of an expression: where it is not smooth, and which derivative jumps there.
+//! Continuity of an expression: the places where it is not smooth, and the derivative that jumps
+//! there.
 //!
-//! Every operation that can break names a value and its levels: comparisons their difference at zero, roundings their argument
-//! at whole numbers, tables their argument at the knots. Those that depend on one variable alone (usually TIME) have fixed
-//! roots, which are found on an interval. Whether and how the expression breaks there is not guessed: it is evaluated over
-//! [`Germ`] on either side, and the one-sided derivatives are compared. So `ABS(TIME)**3` is C2 at 0, and
+//! Every operation that can break has a switching value and levels: comparisons their difference
+//! and zero, roundings their argument and the integers, tables their argument and the knots. Those
+//! that depend on one variable alone (usually TIME) have fixed roots, which are found on an
+//! interval. At each root the expression is evaluated over [`Germ`] on either side, and the
+//! one-sided derivatives are compared. So `ABS(TIME)**3` is C2 at 0, and
 //! `STEP(TIME,1,0,2,1) - STEP(TIME,1,0,2,1)` smooth.
 //!
-//! Values that depend on other inputs vanish on surfaces in the space of inputs. Points on them are sought from several places,
-//! and the expression is compared along the normal there.
+//! Values that depend on other inputs vanish on surfaces in the space of inputs. Points on them are
+//! sought from several starting points, and the expression is compared along the normal there.
 
 use super::Expr;
 use super::functions::Continuity;
@@ -18,7 +20,7 @@ use crate::scalar::{Germ, ORDERS};
 use std::fmt;
 use std::ops::RangeInclusive;
 
-/// How smooth an expression is.
+/// The smoothness of an expression.
 ///
 /// ```
 /// use cognate::expr::{Expr, functions::Continuity, interpolation::Bindings};
@@ -33,15 +35,15 @@ use std::ops::RangeInclusive;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothness {
-    /// the worst of everything below; [`Continuity::Jump`] too where history is read (DELAY)
+    /// worst class of all breaks below; [`Continuity::Jump`] too where the past is read (DELAY)
     pub class: Continuity,
-    /// where it breaks in the interior of the interval, increasing
+    /// breaks in the interior of the interval, increasing
     pub breakpoints: Vec<Breakpoint>,
-    /// where it breaks in the space of its other inputs
+    /// breaks in the space of its other inputs
     pub surfaces: Vec<Surface>,
-    /// all switching functions with their levels, breaks or not
+    /// all switching functions with their levels, whether they break or not
     pub switches: Vec<String>,
-    /// false when there are more breakpoints than are told
+    /// whether all breakpoints are listed
     pub complete: bool,
 }
 
@@ -50,20 +52,23 @@ pub struct Smoothness {
 pub struct Breakpoint {
     /// value of the variable
     pub at: f64,
-    /// the lowest derivative that jumps, becomes infinite or ends there: 0 the value, 1 the slope, 2 the curvature
+    /// the lowest derivative that jumps, becomes infinite or ends there: 0 the value, 1 the slope,
+    /// 2 the curvature
     pub order: usize,
-    /// limits of the derivatives from below (index = order); NaN where there is none, infinite where it grows without bound
+    /// limits of the derivatives from below (index = order): NaN where there is none, infinite
+    /// where it grows without bound
     pub before: [f64; ORDERS],
     /// limits of the derivatives from above
     pub after: [f64; ORDERS],
 }
 
 impl Breakpoint {
-    /// The class of an expression that has this break and no worse one.
+    /// Returns the class of an expression that has this break and no worse one.
     pub fn class(&self) -> Continuity {
         class(self.order)
     }
-    /// By how much the `k`-th derivative jumps (0: the value); 0 where it does not or `k` is too high to be known.
+    /// Returns the jump of the `k`-th derivative (0: the value); 0 where it does not jump or `k` is
+    /// too high to be known.
     pub fn jump(&self, k: usize) -> f64 {
         match (self.before.get(k), self.after.get(k)) {
             (Some(before), Some(after)) if k >= self.order => after - before,
@@ -72,20 +77,21 @@ impl Breakpoint {
     }
 }
 
-/// A surface in the space of inputs on which an expression is not smooth: where a switching function has a level.
+/// A surface in the space of inputs on which an expression is not smooth: where a switching
+/// function has a level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// the switching function
     pub switch: String,
-    /// where it switches, in words (` at whole numbers`); empty for at zero
+    /// levels in words (` at whole numbers`); empty for zero
     pub levels: String,
-    /// what it reads
+    /// inputs that the switching function reads
     pub inputs: Vec<Input>,
     /// the lowest derivative across the surface that jumps
     pub order: usize,
 }
 
-/// What breaks: `value`, `slope`, `curvature`, `third derivative`, …
+/// Names the derivative of an order: `value`, `slope`, `curvature`, `third derivative`, …
 pub fn derivative_name(order: usize) -> &'static str {
     const NAMES: [&str; ORDERS] = [
         "value",
@@ -98,7 +104,7 @@ pub fn derivative_name(order: usize) -> &'static str {
     NAMES.get(order).unwrap_or(&"a higher derivative")
 }
 
-/// `slope jumps from -1 to 1`
+/// Prints, for example, `slope jumps from -1 to 1`.
 impl fmt::Display for Breakpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = derivative_name(self.order);
@@ -109,7 +115,7 @@ impl fmt::Display for Breakpoint {
             (Some(before), Some(after)) => {
                 let side = |x: &f64| match x {
                     x if x.is_nan() => "no value".to_string(),
-                    // a zero has no side here
+                    // a zero has no sign here
                     x => format!("{}", x + 0.0).replace("inf", "infinity"),
                 };
                 write!(f, "{name} jumps from {} to {}", side(before), side(after))
@@ -119,7 +125,7 @@ impl fmt::Display for Breakpoint {
     }
 }
 
-/// `DX(1, 2) - 0.5 = 0: slope jumps`
+/// Prints, for example, `DX(1, 2) - 0.5 = 0: slope jumps`.
 impl fmt::Display for Surface {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let levels = match self.levels.as_str() {
@@ -131,7 +137,7 @@ impl fmt::Display for Surface {
     }
 }
 
-/// The class of what first jumps in the derivative of this order.
+/// Returns the class of an expression whose derivative of this order is the first to jump.
 pub fn class(order: usize) -> Continuity {
     match order {
         0 => Continuity::Jump,
@@ -143,7 +149,8 @@ pub fn class(order: usize) -> Continuity {
 }
 
 impl Expr {
-    /// How smooth it is for TIME in an interval, and for any values of its other inputs. Breaks at the ends are not asked for.
+    /// Finds the smoothness for TIME in an interval, and for any values of its other inputs. Breaks
+    /// at the ends do not count.
     ///
     /// # Errors
     /// A spline or curve that is not bound.
@@ -161,20 +168,23 @@ impl Expr {
     }
 }
 
-/// Most breakpoints that are told.
+/// Most breakpoints that are listed.
 pub const MOST_BREAKPOINTS: usize = 1000;
-/// Cells in which single crossings are looked for; further ones show by the slopes at the ends of a cell.
+/// Number of cells of the interval in which a single crossing is found; more crossings show by the
+/// slopes at the ends of a cell.
 const CELLS: usize = 1024;
-/// Places from which surfaces are sought, and draws of other inputs at a breakpoint.
+/// Number of starting points for surfaces, and of draws of other inputs at a breakpoint.
 const DRAWS: usize = 12;
-/// How near the two ends of a touch lie, and how well its jumps cancel.
-const TOUCH: f64 = 1e-6;
-/// Jumps below this part of what jumps are rounding.
-const NEGLIGIBLE: f64 = 1e-9;
+/// Distance of the two ends of a touch, and part of their jumps that may remain when they cancel.
+const TOUCH_TOLERANCE: f64 = 1e-6;
+/// Jump, as a part of the derivative that jumps, below which it is rounding.
+const NEGLIGIBLE_JUMP: f64 = 1e-9;
 
-/// How smooth an output of a program is in one of its inputs within an interval, and across the surfaces of the others.
+/// Finds the smoothness of an output of a program in one of its inputs within an interval, and
+/// across the surfaces of the others.
 ///
-/// Roots that lie closer together than a thousandth of the interval are found if the switching function turns between them once.
+/// Roots that lie closer together than a thousandth of the interval are found if the switching
+/// function turns between them once.
 pub fn smoothness(
     program: &Program,
     output: usize,
@@ -230,8 +240,9 @@ pub fn smoothness(
     }
 }
 
-/// Takes away jumps that the next one takes back at once. Where a value only touches a level, as SIN does at 1, rounding
-/// keeps it there for about the root of the machine's precision; nothing crosses.
+/// Removes jumps that the next one reverses at once. Where a value only touches a level, as SIN
+/// does at 1, rounding keeps it there for about the square root of the machine precision; nothing
+/// crosses.
 fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
     let mut kept: Vec<Breakpoint> = Vec::with_capacity(breakpoints.len());
     let mut rest = breakpoints.drain(..).peekable();
@@ -239,12 +250,14 @@ fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
         let mut group = vec![first];
         while let Some(next) = rest.next_if(|b| {
             let last = &group[group.len() - 1];
-            b.order == 0 && last.order == 0 && b.at - last.at <= TOUCH * b.at.abs().max(1.0)
+            b.order == 0
+                && last.order == 0
+                && b.at - last.at <= TOUCH_TOLERANCE * b.at.abs().max(1.0)
         }) {
             group.push(next);
         }
         let (before, after) = (group[0].before[0], group[group.len() - 1].after[0]);
-        let cancel = (before - after).abs() <= TOUCH * before.abs();
+        let cancel = (before - after).abs() <= TOUCH_TOLERANCE * before.abs();
         if group.len() < 2 || !cancel {
             kept.append(&mut group);
         }
@@ -253,7 +266,7 @@ fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
     *breakpoints = kept;
 }
 
-/// Roots of switching functions of one variable.
+/// Candidate roots of switching functions of one variable.
 struct Candidates {
     from: f64,
     to: f64,
@@ -272,12 +285,13 @@ impl Candidates {
         }
     }
 
-    /// What was found inside the interval, each once.
+    /// Returns the roots inside the interval, each once.
     fn times(&mut self) -> Vec<f64> {
         let (from, to) = (self.from, self.to);
         self.found.retain(|&t| from < t && t < to);
         self.found.sort_unstable_by(f64::total_cmp);
-        // the same place by another formula differs by roundings; the shortest digits are the likelier ones
+        // the same root by another formula differs by rounding; the shortest digits are the
+        // likelier ones
         let width = (to - from) * 1e-14;
         let mut times: Vec<f64> = Vec::new();
         for &t in &self.found {
@@ -293,7 +307,7 @@ impl Candidates {
         times
     }
 
-    /// Looks for the places where the value of a break reaches a level.
+    /// Looks for the roots of a break: the places where its value reaches a level.
     fn search(&mut self, builder: &mut Builder, b: &Break, variable: Input) {
         if self.from >= self.to || self.from.is_nan() || self.to.is_nan() {
             return;
@@ -317,7 +331,7 @@ impl Candidates {
         }
     }
 
-    /// The places inside a cell.
+    /// Finds the roots inside a cell.
     fn cell(
         &mut self,
         function: &mut impl FnMut(f64) -> (f64, f64),
@@ -328,7 +342,7 @@ impl Candidates {
     ) {
         let (place_left, place_right) = (levels.place(left.1.0), levels.place(right.1.0));
         let same = place_left == place_right || place_left.is_nan() && place_right.is_nan();
-        // the same side at both ends: the function may have been on the other between if it turns
+        // the same side at both ends: the function may have crossed twice if it turns
         let turns = left.1.1 * right.1.1 < 0.0;
         if same && !(turns && depth < 40) {
             return;
@@ -367,13 +381,14 @@ struct Whole {
 
 /// One-sided derivatives along a line.
 struct Sides {
-    /// derivatives before and after, with noise
+    /// derivatives before, with rounding errors
     before: [(f64, f64); ORDERS],
     after: [(f64, f64); ORDERS],
 }
 
 impl Whole {
-    /// The one-sided derivatives at a place along a direction; `None` where there is no value on either side.
+    /// Returns the one-sided derivatives at a place along a direction, or `None` where there is no
+    /// value on either side.
     fn sides(&self, place: &[f64], direction: &[f64]) -> Option<Sides> {
         let mut work = Work::default();
         let mut side = |sign: f64| {
@@ -402,7 +417,7 @@ impl Whole {
         })
     }
 
-    /// The break at a value of the variable, whatever the other inputs are.
+    /// Returns the break at a value of the variable, for any values of the other inputs.
     fn at(&self, t: f64) -> Option<Breakpoint> {
         let n = self.inputs.len();
         let mut direction = vec![0.0; n];
@@ -432,7 +447,7 @@ impl Whole {
         worst
     }
 
-    /// Whether the value at a point is not its limit.
+    /// Returns whether the value at a point differs from its limit.
     fn is_isolated(&self, t: f64, sides: &Sides) -> bool {
         let mut out = [0.0];
         self.program.run(&[t], &mut Work::default(), &mut out);
@@ -442,7 +457,7 @@ impl Whole {
         off.is_nan() || off > noise.max(1e-6 * limit.abs()).max(1e-9)
     }
 
-    /// How the expression breaks where a switching function has a level.
+    /// Returns the break of the expression where a switching function has a level.
     fn surface(&self, builder: &mut Builder, b: &Break) -> Option<Surface> {
         let own = builder.inputs_of(&[b.value]);
         let variables: Vec<Value> = self.inputs.iter().map(|&i| builder.input(i)).collect();
@@ -467,7 +482,7 @@ impl Whole {
 }
 
 impl Sides {
-    /// The lowest derivative that jumps; `None` if none does as far as known.
+    /// Returns the lowest derivative that jumps, or `None` if none does as far as known.
     fn order(&self) -> Option<usize> {
         (0..ORDERS).find(|&k| {
             let ((before, n), (after, m)) = (self.before[k], self.after[k]);
@@ -476,13 +491,13 @@ impl Sides {
             }
             let size = before.abs().max(after.abs());
             let jump = (after - before).abs();
-            // what is infinite breaks, on both sides alike too
-            !size.is_finite() || jump > (NEGLIGIBLE * size).max(1e3 * (n + m))
+            // an infinite derivative breaks, even if it is the same on both sides
+            !size.is_finite() || jump > (NEGLIGIBLE_JUMP * size).max(1e3 * (n + m))
         })
     }
 }
 
-/// Some values of inputs: of several sizes and both signs, the same each time.
+/// Returns some values of inputs: of several sizes and both signs, the same each time.
 fn drawn(n: usize, draw: usize) -> Vec<f64> {
     (0..n)
         .map(|k| {
@@ -500,7 +515,8 @@ fn drawn(n: usize, draw: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A place near a given one where a function has a level, and the unit normal there. `program`: the function and its gradient.
+/// Finds a place near a given one where a function has a level, and the unit normal there.
+/// `program`: the function and its gradient.
 fn met(program: &Program, levels: &Levels, mut place: Vec<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = place.len();
     let mut out = vec![0.0; n + 1];

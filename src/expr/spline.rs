@@ -1,17 +1,18 @@
-//! Curves through data: piecewise polynomials with their derivatives, and what they do beyond the data.
+//! Curves through data: piecewise polynomials with their derivatives and their extrapolation.
 //!
-//! One form serves all kinds: on each interval a polynomial in `x − xᵢ`, and one more piece to either side. At an inner
-//! knot the interval to the right counts; at the last one the last interval.
+//! One form serves all kinds: on each interval a polynomial in `x − xᵢ`, and one more piece to
+//! either side. An inner knot belongs to the interval on its right, the last knot to the last
+//! interval.
 
 use crate::scalar::Table;
 
-/// How a cubic spline ends.
+/// The end conditions of a cubic spline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Ends {
     /// no curvature at either end
     #[default]
     Natural,
-    /// the first two and the last two cubics are one
+    /// the first two cubics are one polynomial, and the last two
     NotAKnot,
     /// given slopes
     Clamped(f64, f64),
@@ -19,7 +20,7 @@ pub enum Ends {
     Periodic,
 }
 
-/// What happens outside the data.
+/// The continuation outside the data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Extrapolation {
     /// the parabola through the first or last three points
@@ -43,7 +44,7 @@ pub struct Piecewise {
     density: f64,
 }
 
-/// Why data make no curve.
+/// The reason why data make no curve, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnfitData(pub String);
 
@@ -55,7 +56,7 @@ impl std::fmt::Display for UnfitData {
 
 impl std::error::Error for UnfitData {}
 
-/// That there are enough finite points with increasing x.
+/// Checks that there are enough finite points with increasing x.
 pub(super) fn check(x: &[f64], y: &[f64], least: usize) -> Result<(), UnfitData> {
     if x.len() != y.len() {
         return Err(UnfitData(format!(
@@ -88,21 +89,21 @@ pub(super) fn check(x: &[f64], y: &[f64], least: usize) -> Result<(), UnfitData>
 }
 
 impl Piecewise {
-    /// Straight lines from point to point, continued to both sides.
+    /// Fits straight lines from point to point, continued to both sides.
     pub fn linear(x: &[f64], y: &[f64]) -> Result<Self, UnfitData> {
         check(x, y, 2)?;
         let pieces = (0..x.len() - 1).map(|i| vec![y[i], (y[i + 1] - y[i]) / (x[i + 1] - x[i])]);
         Ok(Self::assemble(x, y, 1, pieces, Extrapolation::Linear))
     }
 
-    /// Akima's local cubics (1970): the slope at a point is a mean of the neighbouring slopes, weighted by how much the
-    /// slopes change on the other side.
+    /// Fits Akima's local cubics (1970): the slope at a point is a mean of the neighbouring slopes,
+    /// weighted by the change of the slopes on the other side.
     ///
     /// ```text
     /// tᵢ = (|mᵢ₊₁ − mᵢ| mᵢ₋₁ + |mᵢ₋₁ − mᵢ₋₂| mᵢ)/(|mᵢ₊₁ − mᵢ| + |mᵢ₋₁ − mᵢ₋₂|)
     /// ```
     ///
-    /// Where both weights are zero, or no more than rounding, it is the mean of the two neighbours.
+    /// Where both weights are zero up to rounding, the slope is the mean of the two neighbours.
     pub fn akima(x: &[f64], y: &[f64], extrapolation: Extrapolation) -> Result<Self, UnfitData> {
         check(x, y, 3)?;
         let n = x.len();
@@ -115,7 +116,8 @@ impl Piecewise {
         m[0] = 2.0 * m[1] - m[2];
         m[n + 1] = 2.0 * m[n] - m[n - 1];
         m[n + 2] = 2.0 * m[n + 1] - m[n];
-        // what rounding of the data makes of slopes that are equal: where straight parts meet, it must not choose between them
+        // rounding of the data in slopes that are equal: where straight parts meet, it must not
+        // choose between them
         let noise = |i: usize| {
             let i = i.min(n - 2);
             let (x0, x1, y0, y1) = (x[i].abs(), x[i + 1].abs(), y[i].abs(), y[i + 1].abs());
@@ -145,7 +147,7 @@ impl Piecewise {
         Ok(Self::assemble(x, y, 3, pieces, extrapolation))
     }
 
-    /// The cubic spline with continuous curvature.
+    /// Fits the cubic spline with continuous curvature.
     pub fn cubic(
         x: &[f64],
         y: &[f64],
@@ -162,8 +164,8 @@ impl Piecewise {
         Ok(Self::assemble(x, y, 3, pieces, extrapolation))
     }
 
-    /// The B-spline of an order (degree + 1) with equally spaced knots over `[from, to]`: clamped to the first and last
-    /// control point, or closed.
+    /// Builds the B-spline of an order (degree + 1) with equally spaced knots over `[from, to]`:
+    /// clamped to the first and last control point, or closed.
     pub fn b_spline(
         control: &[f64],
         order: usize,
@@ -179,7 +181,7 @@ impl Piecewise {
         }
         let mut control = control.to_vec();
         if closed {
-            // the last control point repeats the first; the curve goes round
+            // the last control point repeats the first
             control.pop();
         }
         if control.len() < order.max(2) {
@@ -209,33 +211,10 @@ impl Piecewise {
             }
         };
         let pieces = (0..n_spans).map(|span| {
-            let mut points: Vec<f64> = (0..=degree)
+            let points: Vec<f64> = (0..=degree)
                 .map(|j| control[(span + j) % control.len()])
                 .collect();
-            // derivatives at the start of the span: difference the control points, then evaluate by de Boor
-            let mut coefficients = Vec::with_capacity(order);
-            let (mut scale, mut lost) = (1.0, 0);
-            loop {
-                let remaining = degree - lost;
-                coefficients.push(
-                    scale * de_boor(&points, remaining, span as f64, |i| knot(span + i + lost)),
-                );
-                if remaining == 0 {
-                    break;
-                }
-                points = (0..remaining)
-                    .map(|j| {
-                        let (a, b) = (
-                            knot(span + j + 1 + lost),
-                            knot(span + j + 1 + lost + remaining),
-                        );
-                        remaining as f64 * (points[j + 1] - points[j]) / (b - a)
-                    })
-                    .collect();
-                lost += 1;
-                scale /= lost as f64 * width;
-            }
-            coefficients
+            b_spline_piece(points, span, width, knot)
         });
         let x: Vec<f64> = (0..=n_spans)
             .map(|k| {
@@ -288,7 +267,7 @@ impl Piecewise {
         }
     }
 
-    /// The same, without values outside the data.
+    /// Returns the same curve without values outside the data.
     pub fn without_extrapolation(mut self) -> Self {
         let (width, length) = (self.degree + 1, self.coefficients.len());
         self.coefficients[..width].fill(f64::NAN);
@@ -296,23 +275,23 @@ impl Piecewise {
         self
     }
 
-    /// First and last knot.
+    /// Returns the first and the last knot.
     pub fn range(&self) -> (f64, f64) {
         (self.knots[0], self.knots[self.knots.len() - 1])
     }
 
-    /// The knots.
+    /// Returns the knots.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    /// The piece for `x`, and where its polynomial starts.
+    /// Returns the piece for `x`, and the origin of its polynomial.
     #[inline]
     fn piece(&self, x: f64) -> (usize, f64) {
         let knots = &self.knots;
         let last = knots.len() - 1;
         if x >= knots[0] && x < knots[last] {
-            // equally spaced data are met at once; `as` saturates, so the guess is an index
+            // exact for equally spaced data; `as` saturates, so the guess is an index
             let guess = (((x - knots[0]) * self.density) as usize).min(last - 1);
             if knots[guess] <= x && x < knots[guess + 1] {
                 return (guess + 1, knots[guess]);
@@ -331,7 +310,7 @@ impl Piecewise {
 }
 
 impl Piecewise {
-    /// The `order`-th derivative of a piece at `x`.
+    /// Returns the `order`-th derivative of a piece at `x`.
     #[inline(always)]
     fn polynomial(&self, piece: usize, origin: f64, x: f64, order: u32) -> f64 {
         let width = self.degree + 1;
@@ -375,7 +354,44 @@ impl Table for Piecewise {
     }
 }
 
-/// Value at `t` of the B-spline piece with these control points; `knot(i)` counts from the first knot of the piece.
+/// Returns the coefficients of one span of a B-spline, as a polynomial in x less the start of the
+/// span.
+///
+/// `points`: its control points   (degree + 1); `width`: length of a span; `knot(i)` in units of
+/// spans.
+fn b_spline_piece(
+    mut points: Vec<f64>,
+    span: usize,
+    width: f64,
+    knot: impl Fn(usize) -> f64,
+) -> Vec<f64> {
+    let degree = points.len() - 1;
+    // derivatives at the start of the span: difference the control points, then evaluate by de Boor
+    let mut coefficients = Vec::with_capacity(degree + 1);
+    let (mut scale, mut lost) = (1.0, 0);
+    loop {
+        let remaining = degree - lost;
+        coefficients
+            .push(scale * de_boor(&points, remaining, span as f64, |i| knot(span + i + lost)));
+        if remaining == 0 {
+            return coefficients;
+        }
+        points = (0..remaining)
+            .map(|j| {
+                let (a, b) = (
+                    knot(span + j + 1 + lost),
+                    knot(span + j + 1 + lost + remaining),
+                );
+                remaining as f64 * (points[j + 1] - points[j]) / (b - a)
+            })
+            .collect();
+        lost += 1;
+        scale /= lost as f64 * width;
+    }
+}
+
+/// Returns the value at `t` of the B-spline piece with these control points; `knot(i)` counts from
+/// the first knot of the piece.
 fn de_boor(points: &[f64], degree: usize, t: f64, knot: impl Fn(usize) -> f64) -> f64 {
     let mut d = points.to_vec();
     for r in 1..=degree {
@@ -388,10 +404,10 @@ fn de_boor(points: &[f64], degree: usize, t: f64, knot: impl Fn(usize) -> f64) -
     d[degree]
 }
 
-/// Second derivatives at the points of the spline.
+/// Returns the second derivatives at the points of the spline.
 ///
 /// ```text
-/// hᵢ₋₁ Mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) Mᵢ + hᵢ Mᵢ₊₁ = 6 (mᵢ − mᵢ₋₁)        hᵢ = xᵢ₊₁ − xᵢ, mᵢ = (yᵢ₊₁ − yᵢ)/hᵢ
+/// hᵢ₋₁ Mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) Mᵢ + hᵢ Mᵢ₊₁ = 6 (mᵢ − mᵢ₋₁)     hᵢ = xᵢ₊₁ − xᵢ, mᵢ = (yᵢ₊₁ − yᵢ)/hᵢ
 /// ```
 fn curvatures(x: &[f64], y: &[f64], ends: Ends) -> Result<Vec<f64>, UnfitData> {
     let n = x.len();
@@ -419,7 +435,8 @@ fn curvatures(x: &[f64], y: &[f64], ends: Ends) -> Result<Vec<f64>, UnfitData> {
                     "{n} points, but not-a-knot ends need at least 4"
                 )));
             }
-            // M₀ = (1 + r) M₁ − r M₂ with r = h₀/h₁ makes the third derivative continuous at x₁; likewise at the end
+            // M₀ = (1 + r) M₁ − r M₂ with r = h₀/h₁ makes the third derivative continuous at x₁;
+            // likewise at the end
             let (r, s) = (h[0] / h[1], h[n - 2] / h[n - 3]);
             rows[1][1] += h[0] * (1.0 + r);
             rows[1][2] -= h[0] * r;
@@ -466,7 +483,8 @@ fn tridiagonal(mut rows: Vec<[f64; 4]>) -> Vec<f64> {
     x
 }
 
-/// Second derivatives of the closed spline: the cyclic system as a tridiagonal one and a correction of rank one.
+/// Returns the second derivatives of the closed spline: solves the cyclic system as a tridiagonal
+/// one with a correction of rank one.
 fn periodic(h: &[f64], m: &[f64]) -> Vec<f64> {
     let n = h.len(); // unknowns; the last point is the first
     let before = |i: usize| if i == 0 { n - 1 } else { i - 1 };
@@ -540,7 +558,8 @@ mod tests {
         }
     }
 
-    /// Slopes that differ by no more than the rounding of the data must not decide which side of a corner counts.
+    /// Slopes that differ by no more than the rounding of the data must not decide which side of a
+    /// corner counts.
     #[test]
     fn akima_at_a_corner_of_straight_parts_has_the_mean_slope() {
         for (offset, step) in [(0.0, 0.1), (7.3, 0.1), (0.0, 0.7), (1e3, 0.3)] {

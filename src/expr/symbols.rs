@@ -1,4 +1,5 @@
-//! What names mean: one table of constants, functions, measures and interpolations per language, made from their rows.
+//! The meaning of names: one table of constants, functions, measures and interpolations per
+//! language, made from their own tables.
 
 use super::ast::{Callee, Constant, Dialect};
 use super::functions::Function;
@@ -8,31 +9,32 @@ use super::signature::{self, Argument, Kind};
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-/// Whose habits are followed beyond the common language.
+/// The program whose habits are followed beyond the common language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Profile {
     /// no limits but those that keep the reader safe
     #[default]
     Adams,
-    /// the limits of I-DEAS (nesting, symbols, elements, length), and AKIMA as another name of AKISPL
+    /// the limits of I-DEAS (nesting, symbols, elements, length), and AKIMA as another name of
+    /// AKISPL
     Ideas,
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symbol {
     /// a named number, never followed by parentheses
     Constant(Constant),
     /// the arithmetic IF
     If,
-    /// something with arguments
+    /// a function with arguments
     Callee(Callee),
 }
 
 /// Names of a language in the order of [`compare`], with their meaning.
 type Table = Vec<(&'static str, Symbol)>;
 
-/// The meaning of a name, in upper or lower case.
+/// Returns the meaning of a name, in upper or lower case.
 pub fn symbol(name: &str, dialect: Dialect, profile: Profile) -> Option<Symbol> {
     let table = table(dialect);
     match table.binary_search_by(|entry| compare(entry.0, name)) {
@@ -44,7 +46,8 @@ pub fn symbol(name: &str, dialect: Dialect, profile: Profile) -> Option<Symbol> 
     }
 }
 
-/// Every name of a language with its meaning, in alphabetical order: for completion, highlighting and near names.
+/// Returns every name of a language with its meaning, in alphabetical order: for completion,
+/// highlighting and near names.
 pub fn names(dialect: Dialect) -> &'static [(&'static str, Symbol)] {
     table(dialect)
 }
@@ -90,7 +93,7 @@ const CONSTANTS: [(&str, Constant); 5] = [
     ("MODE", Constant::Mode),
 ];
 
-/// Alphabetical order without regard to case.
+/// Compares in alphabetical order without regard to case.
 fn compare(a: &str, b: &str) -> Ordering {
     a.bytes()
         .map(|b| b.to_ascii_uppercase())
@@ -98,7 +101,7 @@ fn compare(a: &str, b: &str) -> Ordering {
 }
 
 impl Constant {
-    /// As it is written in a language.
+    /// Returns the name as it is written in a language.
     pub fn name(self, dialect: Dialect) -> &'static str {
         match (self, dialect) {
             (Constant::Time, Dialect::Expression) => "t",
@@ -112,7 +115,7 @@ impl Constant {
 }
 
 impl Callee {
-    /// As it is written.
+    /// Returns the name as it is written.
     pub fn name(self) -> &'static str {
         match self {
             Callee::Function(f) => f.name(),
@@ -120,7 +123,7 @@ impl Callee {
             Callee::Interpolation(f) => f.name(),
         }
     }
-    /// Fewest and most arguments.
+    /// Returns the fewest and the most arguments.
     pub fn arity(self) -> (usize, usize) {
         let range = match self {
             Callee::Function(f) => f.arity(),
@@ -129,7 +132,7 @@ impl Callee {
         };
         (*range.start(), *range.end())
     }
-    /// Its arguments that have names of their own.
+    /// Returns the arguments that have names of their own.
     pub fn arguments(self) -> &'static [Argument] {
         match self {
             Callee::Function(f) => f.row().parameters,
@@ -137,15 +140,15 @@ impl Callee {
             Callee::Interpolation(f) => f.row().parameters,
         }
     }
-    /// What the `k`-th argument may be (`k` from 0).
+    /// Returns the kind of the `k`-th argument (`k` from 0).
     pub fn argument(self, k: usize) -> Kind {
         self.arguments().get(k).map_or(Kind::Number, |a| a.kind)
     }
-    /// What the `k`-th argument is called (`k` from 0).
+    /// Returns the name of the `k`-th argument (`k` from 0).
     pub fn argument_name(self, k: usize) -> &'static str {
         self.arguments().get(k).map_or("the argument", |a| a.name)
     }
-    /// `NAME(i[, j])`
+    /// Prints the signature: `NAME(i[, j])`.
     pub fn signature(self) -> String {
         match self {
             Callee::Function(f) => f.signature(),
@@ -153,7 +156,7 @@ impl Callee {
             Callee::Interpolation(f) => f.signature(),
         }
     }
-    /// Whether the value depends on what was before, so that a host has to keep a history.
+    /// Returns whether the value depends on the past, so that a host has to keep a history.
     pub fn needs_history(self) -> bool {
         match self {
             Callee::Function(f) => f == Function::Delay,

@@ -1,13 +1,13 @@
-//! Words and signs of the language, one at a time, with their places.
+//! The tokens of the language, one at a time, with their places.
 //!
-//! The lexer serves the ordered check of a text (`check.rs`): it says which character or literal is wrong as soon as it is
-//! reached, and never looks further than the end of the token.
+//! The lexer serves the ordered check of a text (`check.rs`): it reports a wrong character or
+//! literal as soon as it is reached, and never reads beyond the end of the token.
 
 use super::ast::Callee;
 use super::compile::literal_value;
 use crate::diagnostic::Span;
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     /// a literal
@@ -38,7 +38,7 @@ pub(crate) struct Token {
     pub span: Span,
 }
 
-/// The first mistake of a text: code and bytes, and what the check knew there, for advice.
+/// The first mistake of a text: code, bytes, and the state of the check there, for advice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fault {
     pub code: &'static str,
@@ -46,10 +46,10 @@ pub(crate) struct Fault {
     pub about: About,
 }
 
-/// What a mistake is about.
+/// The subject of a mistake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum About {
-    /// the place says all
+    /// the place alone
     Place,
     /// a token that cannot stand here
     Token {
@@ -66,12 +66,12 @@ pub(crate) enum About {
     Limit(usize),
 }
 
-/// What an open parenthesis belongs to.
+/// The owner of an open parenthesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Open {
     Group,
     Call(Callee),
-    /// the number of the part that is being read: 0 the selector, 1 to 3 the branches
+    /// an IF, with the part that is being read: 0 the selector, 1 to 3 the branches
     If(u8),
 }
 
@@ -88,7 +88,7 @@ impl Fault {
     }
 }
 
-/// Reads tokens from a text.
+/// A reader of tokens from a text.
 pub(crate) struct Lexer<'a> {
     text: &'a str,
     at: usize,
@@ -105,7 +105,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// The next token. After the end it is the end again.
+    /// Reads the next token. After the end it is the end again.
     pub fn next(&mut self) -> Result<Token, Fault> {
         self.skip_blanks()?;
         let start = self.at;
@@ -159,7 +159,7 @@ impl<'a> Lexer<'a> {
         length
     }
 
-    /// Blanks, comments, and ampersands that continue a line.
+    /// Skips blanks, comments, and ampersands that continue a line.
     fn skip_blanks(&mut self) -> Result<(), Fault> {
         loop {
             self.skip_while(|b| matches!(b, b' ' | b'\t' | b'\r' | b'\n'));
@@ -188,7 +188,8 @@ impl<'a> Lexer<'a> {
         Fault::new("bad_char", Span::new(self.at, self.at + length))
     }
 
-    /// `mantissa [exponent] [D]`, after which neither a letter, a digit, `_` nor `.` may follow.
+    /// Reads `mantissa [exponent] [D]`, after which neither a letter, a digit, `_` nor `.` may
+    /// follow.
     fn number(&mut self) -> Result<Kind, Fault> {
         let start = self.at;
         let digit = |b: u8| b.is_ascii_digit();

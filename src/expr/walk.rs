@@ -1,10 +1,11 @@
-//! The walker: the meaning of an expression, read off its tree one node at a time.
+//! The walker: the reference evaluator, which evaluates a tree one node at a time.
 //!
-//! It is the reference that programs are tested against, and the explainer: where it finds no value it names the operation on
-//! the taken path that has none, with the numbers it was given. Only the selected branch of an IF is looked at. Division by
-//! zero, overflow and arguments outside a domain are errors here, never infinities that travel on.
+//! Programs are tested against it, and it explains: where there is no value it names the operation
+//! on the taken path that has none, with its numbers. Only the selected branch of an IF is
+//! evaluated. Division by zero, overflow and arguments outside a domain are errors here, never
+//! infinities that propagate.
 //!
-//! The same walk with everything unknown that is not constant finds the mistakes that can be known before any value is.
+//! The same walk with every input unknown finds the mistakes that can be known before any value is.
 
 use super::ast::{Ast, BinaryOp, Callee, Constant, Node, NodeIx};
 use super::compile::{constant_value, literal_value};
@@ -15,24 +16,24 @@ use super::program::Input;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::scalar::Scalar;
 
-/// What an expression asks for its numbers.
+/// The source of the numbers and data that an expression reads.
 pub trait Host {
-    /// The value of an input; `None` when it has none here.
+    /// Returns the value of an input, or `None` when it has none here.
     fn input(&self, input: Input) -> Option<f64>;
-    /// The splines and curves that may be named.
+    /// Returns the splines and curves that may be named, if there are any.
     fn bindings(&self) -> Option<&Bindings> {
         None
     }
 }
 
-/// A closure that knows inputs is a host without curves.
+/// A closure that gives inputs is a host without curves.
 impl<F: Fn(Input) -> Option<f64>> Host for F {
     fn input(&self, input: Input) -> Option<f64> {
         self(input)
     }
 }
 
-/// Why an expression has no value.
+/// The reason why an expression has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trouble {
     /// `domain`, `missing_value`, `needs_history`, `unknown_element` or `out_of_range`
@@ -41,14 +42,14 @@ pub struct Trouble {
     pub node: NodeIx,
     /// its place in the text
     pub span: Span,
-    /// what is wrong, with the numbers
+    /// sentence that names the cause, with the numbers
     pub message: String,
     /// advice
     pub help: Vec<String>,
 }
 
 impl Trouble {
-    /// As a diagnostic about the text the tree was read from.
+    /// Converts to a diagnostic about the text of the tree.
     pub fn diagnostic(&self, text: &str) -> Diagnostic {
         let mut said = super::advice::at(text, self.code, self.message.clone(), self.span);
         said.help = self.help.clone();
@@ -56,7 +57,7 @@ impl Trouble {
     }
 }
 
-/// The value of an expression.
+/// Evaluates an expression.
 ///
 /// # Errors
 /// The first operation on the taken path that has no value.
@@ -64,7 +65,8 @@ pub fn value(ast: &Ast, host: &dyn Host) -> Result<f64, Trouble> {
     Walk::new(ast, Some(host)).run(|_, _| ())
 }
 
-/// The value of every node on the taken path; `None` for the others. The last one found is that of the whole.
+/// Returns the value of every node on the taken path, and `None` for the others; that of the root
+/// belongs to the whole expression.
 ///
 /// # Errors
 /// The first operation on the taken path that has no value.
@@ -74,7 +76,7 @@ pub fn values(ast: &Ast, host: &dyn Host) -> Result<Vec<Option<f64>>, Trouble> {
     Ok(values)
 }
 
-/// Looks for operations that have no value whatever the inputs are, on paths that are certainly taken.
+/// Looks for operations that have no value for any inputs, on paths that are certainly taken.
 ///
 /// # Errors
 /// The first such operation.
@@ -82,7 +84,7 @@ pub fn check_constants(ast: &Ast) -> Result<(), Trouble> {
     Walk::new(ast, None).run(|_, _| ()).map(|_| ())
 }
 
-/// What is still to be done, last first.
+/// A task that remains to be done.
 enum Task {
     Evaluate(NodeIx),
     /// the operands are on the stack of values
@@ -95,7 +97,7 @@ enum Task {
 
 struct Walk<'a> {
     ast: &'a Ast,
-    /// nobody: all inputs are unknown, and an unknown number is NaN
+    /// absent when all inputs are unknown; an unknown number is NaN
     host: Option<&'a dyn Host>,
     tasks: Vec<Task>,
     values: Vec<f64>,
@@ -131,7 +133,7 @@ impl<'a> Walk<'a> {
         Ok(self.values.pop().unwrap_or(f64::NAN))
     }
 
-    /// The value of a leaf, or the tasks of a node.
+    /// Pushes the value of a leaf, or the tasks of a node.
     fn begin(&mut self, ix: NodeIx) -> Result<Option<f64>, Trouble> {
         match *self.ast.node(ix) {
             Node::Number { literal, degrees } => {
@@ -198,7 +200,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A delayed value: from the host, which alone knows the past.
+    /// Reads a delayed value from the host, which alone keeps the past.
     fn delayed(&self, ix: NodeIx) -> Result<f64, Trouble> {
         let Some(host) = self.host else {
             return Ok(f64::NAN);
@@ -218,7 +220,8 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// The selected branch; when the selector is unknown none may be taken, and the value is unknown.
+    /// Selects the branch of an IF; when the selector is unknown no branch is taken, and the value
+    /// is unknown.
     fn choose(&mut self, ix: NodeIx) {
         let Node::If {
             negative,
@@ -246,7 +249,7 @@ impl<'a> Walk<'a> {
             .extend([Task::Chosen(ix), Task::Evaluate(branch)]);
     }
 
-    /// The value of an operation on the numbers at the end of the stack.
+    /// Evaluates an operation on the numbers at the end of the stack.
     fn apply(&mut self, ix: NodeIx) -> Result<f64, Trouble> {
         let count = match self.ast.node(ix) {
             Node::Call { args, .. } => args.len(),
@@ -318,7 +321,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The argument of a call over data that a mistake is about: the identifier, or the order.
+    /// Returns the argument of a call over data that a mistake is about: the identifier, or the
+    /// order.
     fn culprit(&self, ix: NodeIx, code: &str) -> NodeIx {
         let Node::Call {
             callee: Callee::Interpolation(f),
@@ -353,7 +357,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What was computed of which numbers, why it has no value, and when.
+    /// Composes the sentence of a mistake: the operation with its numbers, the reason, and the
+    /// time.
     fn out_of_domain(&self, ix: NodeIx, operands: &[f64]) -> Trouble {
         let shown = |x: &f64| {
             if x.is_nan() {
@@ -407,7 +412,7 @@ impl<'a> Walk<'a> {
 }
 
 impl BinaryOp {
-    /// The value for two numbers.
+    /// Evaluates the operator for two numbers.
     fn apply(self, a: f64, b: f64) -> f64 {
         match self {
             BinaryOp::Add => a + b,
@@ -420,7 +425,7 @@ impl BinaryOp {
 }
 
 impl Ast {
-    /// A node as it would be written.
+    /// Prints a node as it would be written.
     pub fn written(&self, ix: NodeIx) -> String {
         super::print::Written { ast: self, ix }.to_string()
     }

@@ -5,12 +5,13 @@
 //! c = cmax w² (3 − 2w), w = p/d      p < d, else cmax
 //! ```
 //!
-//! `p` is the penetration. `STEP(x, x1−d, cmax, x1, 0)` of the manuals is the same ramp, seen from the other end.
+//! `p` is the penetration. `STEP(x, x1−d, cmax, x1, 0)` of the manuals is the same ramp, measured
+//! from the other end.
 
 use super::step::cubic;
 use crate::scalar::{Mask, Scalar};
 
-/// `IMPACT(x, x_dot, x1, k, e, cmax, d)`; `per_depth` is 1/d.
+/// Evaluates `IMPACT(x, x_dot, x1, k, e, cmax, d)`; `per_depth` is 1/d.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
 pub fn impact<S: Scalar>(
@@ -30,7 +31,7 @@ pub fn impact<S: Scalar>(
     pushing(free, contact(x1 - x, -x_dot, k, cmax, d, per_depth, power))
 }
 
-/// `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
+/// Evaluates `BISTOP(x, x_dot, x1, x2, k, e, cmax, d)`; `per_depth` is 1/d.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
 pub fn bistop<S: Scalar>(
@@ -56,16 +57,18 @@ pub fn bistop<S: Scalar>(
     S::select(low, force, S::zero() - force)
 }
 
-/// A force that never attracts, and is none where bodies are apart.
+/// Limits a force to one that never attracts, and is none where bodies are apart.
 ///
-/// In this order: whoever watches comparisons sees a zero while bodies are apart, not the sign of what the force would be there.
+/// In this order, so that the switching value is zero while bodies are apart, not the sign of the
+/// force that would be there.
 #[inline(always)]
 fn pushing<S: Scalar>(free: S::Mask, force: S) -> S {
     let force = S::select(free, S::zero(), force);
     S::select(force.le(S::zero()), S::zero(), force)
 }
 
-/// Elastic and damping force at penetration `p > 0` and penetration rate `p_dot`. `power` is `pᵉ`.
+/// Returns elastic and damping force at penetration `p > 0` and penetration rate `p_dot`. `power`
+/// is `pᵉ`.
 #[inline(always)]
 fn contact<S: Scalar>(
     p: S,

@@ -1,7 +1,8 @@
-//! Functions of numbers: STEP, IMPACT, POLY, SIN … — what a row of the table can tell and do.
+//! Functions of numbers: STEP, IMPACT, POLY, SIN … The properties of a row of their table.
 //!
-//! The rows themselves stand in `table.rs`; longer formulas in a file per kind (`step.rs`, `contact.rs`, `series.rs`).
-//! Adding a function is adding one row: parsing, arity, help, compilation, derivatives and batches follow from it.
+//! The rows themselves stand in `table.rs`; longer formulas in a file per kind (`step.rs`,
+//! `contact.rs`, `series.rs`). Adding a function is adding one row: parsing, arity, help,
+//! compilation, derivatives and batches follow from it.
 
 pub(crate) mod contact;
 pub(crate) mod prepared;
@@ -15,7 +16,7 @@ use super::ast::Dialect;
 use super::signature::{self, Argument};
 use std::ops::RangeInclusive;
 
-/// What kind of function it is; help and documentation are grouped by it.
+/// The group of a function, in help and documentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
     /// the FORTRAN 77 intrinsics of direct-entry functions
@@ -27,7 +28,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// A heading for help.
+    /// Returns the heading for help.
     pub fn title(self) -> &'static str {
         match self {
             Family::Intrinsic => "FORTRAN 77 intrinsics",
@@ -37,7 +38,7 @@ impl Family {
     }
 }
 
-/// How smooth a function is where it is defined; the worse is the smaller.
+/// The smoothness of a function where it is defined; the worse is the smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Continuity {
     /// the value may jump
@@ -53,7 +54,7 @@ pub enum Continuity {
 }
 
 impl Continuity {
-    /// `C1: the slope is continuous, the curvature is not`
+    /// Describes the class in words: `C1: the slope is continuous, the curvature is not`.
     pub fn describe(self) -> &'static str {
         match self {
             Continuity::Jump => "none: the value jumps",
@@ -70,11 +71,11 @@ impl Continuity {
 pub struct Example {
     /// the expression
     pub source: &'static str,
-    /// what it gives
+    /// its value
     pub value: f64,
 }
 
-/// What the table says about one function, apart from its body.
+/// A row of the table: everything about one function apart from its body.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// the function itself
@@ -87,11 +88,11 @@ pub struct Row {
     pub family: Family,
     /// parameters that have a name
     pub parameters: &'static [Argument],
-    /// how many further arguments of the last kind may follow: name, least, most
+    /// further arguments of the last kind: name, fewest, most
     pub further: Option<(&'static str, usize, usize)>,
-    /// how smooth the function is in its arguments
+    /// smoothness of the function in its arguments
     pub continuity: Continuity,
-    /// sentence that says what it is, then remarks
+    /// one sentence that describes it, then remarks
     pub doc: &'static str,
     /// equation, in plain text
     pub equation: &'static str,
@@ -100,7 +101,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// How many arguments may be written.
+    /// Returns the fewest and the most arguments.
     pub fn arity(&self) -> RangeInclusive<usize> {
         let (required, named) = signature::arity(self.parameters);
         let (least, most) = self
@@ -109,7 +110,7 @@ impl Row {
         required + least..=named + most
     }
 
-    /// The signature as help shows it: `STEP(x, x0, h0, x1, h1)`, `MAX(a, b[, …])`.
+    /// Prints the signature as help shows it: `STEP(x, x0, h0, x1, h1)`, `MAX(a, b[, …])`.
     pub fn signature(&self) -> String {
         let mut text = format!("{}(", self.name);
         for (k, parameter) in self.parameters.iter().enumerate() {
@@ -132,22 +133,22 @@ impl Row {
 }
 
 impl Function {
-    /// The function of this name in this language; upper and lower case are the same.
+    /// Finds the function of this name in this language; upper and lower case are the same.
     pub fn from_name(name: &str, dialect: Dialect) -> Option<Function> {
         Self::ALL
             .iter()
             .copied()
             .find(|f| f.row().dialect == dialect && f.name().eq_ignore_ascii_case(name))
     }
-    /// Name as users write it.
+    /// Returns the name as users write it.
     pub fn name(self) -> &'static str {
         self.row().name
     }
-    /// How many arguments may be written.
+    /// Returns the fewest and the most arguments.
     pub fn arity(self) -> RangeInclusive<usize> {
         self.row().arity()
     }
-    /// The signature as help shows it.
+    /// Prints the signature as help shows it.
     pub fn signature(self) -> String {
         self.row().signature()
     }

@@ -1,7 +1,8 @@
-//! Functions whose parameters are constant, with what can be computed beforehand.
+//! Functions with constant parameters, and the numbers that can be computed from these beforehand.
 //!
-//! `STEP(x, x0, h0, x1, h1)` with constant ends needs the reciprocal of `x1 − x0` once. Each function here does the
-//! operations of its row in the same order, so that it yields the same bits; tests compare the two.
+//! `STEP(x, x0, h0, x1, h1)` with constant ends needs the reciprocal of `x1 − x0` once. Each
+//! function here does the operations of its row in the same order, so that it yields the same bits;
+//! tests compare the two.
 
 use super::Function;
 use super::contact;
@@ -9,7 +10,7 @@ use super::series;
 use super::step::{cubic, haversine, quintic};
 use crate::scalar::{Dual, Exponent, Lanes, Scalar};
 
-/// What a prepared function is; its parameters stand in a slice beside it.
+/// A prepared function; each variant lists its variables, then its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Prepared {
     /// x; x0, x1, h0, h1, 1/(x1 − x0), h1 − h0
@@ -29,7 +30,8 @@ pub(crate) enum Prepared {
 }
 
 impl Prepared {
-    /// The prepared form of a call, and its parameters, if all that must be constant is, and allowed.
+    /// Returns the prepared form of a call and its parameters, or `None` if a parameter is not
+    /// constant or out of range.
     pub(crate) fn of(function: Function, args: &[Option<f64>]) -> Option<(Prepared, Vec<f64>)> {
         let variable = match function {
             Function::Impact | Function::Bistop => 2,
@@ -71,7 +73,7 @@ impl Prepared {
         Some(prepared)
     }
 
-    /// How many arguments are not parameters.
+    /// Returns the number of variables.
     pub(crate) fn n_variables(self) -> usize {
         match self {
             Prepared::Impact(_) | Prepared::Bistop(_) => 2,
@@ -80,7 +82,7 @@ impl Prepared {
     }
 }
 
-/// A step; `p` as [`Prepared::Step`] says.
+/// Evaluates a step; `p` as [`Prepared::Step`] lists it.
 #[inline(always)]
 pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
     let [x0, x1, h0, h1, ..] = *p;
@@ -97,14 +99,14 @@ pub(crate) fn step<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) ->
     )
 }
 
-/// A step between its ends.
+/// Evaluates a step between its ends.
 #[inline(always)]
 pub(crate) fn rising<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
     let [x0, _, h0, _, per_length, rise] = *p;
     S::constant(h0) + shape((x - S::constant(x0)).scale(per_length)).scale(rise)
 }
 
-/// A step whose three pieces are all computed: the better way for many samples at once.
+/// Evaluates all three pieces of a step and selects: faster for many samples at once.
 #[inline(always)]
 pub(crate) fn step_everywhere<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(S) -> S) -> S {
     let [x0, x1, h0, h1, per_length, rise] = *p;
@@ -116,44 +118,44 @@ pub(crate) fn step_everywhere<S: Scalar>(x: S, p: &[f64; 6], shape: impl FnOnce(
     S::select(x.le(x0), h0, S::select(x1.le(x), h1, between))
 }
 
-/// STEP
+/// Evaluates STEP.
 #[inline(always)]
 pub(crate) fn step3<S: Scalar>(x: S, p: &[f64; 6]) -> S {
     step(x, p, cubic)
 }
-/// STEP5
+/// Evaluates STEP5.
 #[inline(always)]
 pub(crate) fn step5<S: Scalar>(x: S, p: &[f64; 6]) -> S {
     step(x, p, quintic)
 }
-/// HAVSIN
+/// Evaluates HAVSIN.
 #[inline(always)]
 pub(crate) fn havsin<S: Scalar>(x: S, p: &[f64; 6]) -> S {
     step(x, p, haversine)
 }
 
-/// POLY
+/// Evaluates POLY.
 #[inline(always)]
 pub(crate) fn poly<S: Scalar>(x: S, p: &[f64]) -> S {
     series::powers(x - S::constant(p[0]), &p[1..], S::constant)
 }
-/// CHEBY
+/// Evaluates CHEBY.
 #[inline(always)]
 pub(crate) fn cheby<S: Scalar>(x: S, p: &[f64]) -> S {
     series::chebyshev(x - S::constant(p[0]), &p[1..], S::constant)
 }
-/// FORCOS
+/// Evaluates FORCOS.
 #[inline(always)]
 pub(crate) fn forcos<S: Scalar>(x: S, p: &[f64]) -> S {
     series::cosines((x - S::constant(p[0])).scale(p[1]), &p[2..], S::constant)
 }
-/// FORSIN
+/// Evaluates FORSIN.
 #[inline(always)]
 pub(crate) fn forsin<S: Scalar>(x: S, p: &[f64]) -> S {
     series::sines((x - S::constant(p[0])).scale(p[1]), &p[2..], S::constant)
 }
 
-/// IMPACT
+/// Evaluates IMPACT.
 #[inline(always)]
 pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent) -> S {
     let [x1, k, cmax, d, per_depth, e] = *p;
@@ -167,7 +169,7 @@ pub(crate) fn impact<S: Power>(x: S, x_dot: S, p: &[f64; 6], exponent: Exponent)
     })
 }
 
-/// BISTOP
+/// Evaluates BISTOP.
 #[inline(always)]
 pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent) -> S {
     let [x1, x2, k, cmax, d, per_depth, e] = *p;
@@ -184,7 +186,7 @@ pub(crate) fn bistop<S: Power>(x: S, x_dot: S, p: &[f64; 7], exponent: Exponent)
 
 /// A number that can be raised to a power whose kind is known.
 pub(crate) trait Power: Scalar {
-    /// `self**e`, where `exponent` is the kind of `e`.
+    /// Returns `self**e`, where `exponent` is the kind of `e`.
     fn power(self, exponent: Exponent, e: f64) -> Self;
 }
 
@@ -205,7 +207,7 @@ impl<const N: usize> Power for Lanes<N> {
         match exponent {
             Exponent::Whole(n) => Scalar::powi(self, n),
             Exponent::Half(n) => Scalar::powi(self, n) * Scalar::sqrt(self),
-            // the base of a contact is positive; samples without contact are not looked at
+            // the base of a contact is positive; samples without contact do not count
             Exponent::Other => {
                 let mut result = self.0;
                 for x in &mut result {
@@ -220,7 +222,7 @@ impl<const N: usize> Power for Lanes<N> {
 impl<const N: usize> Power for Dual<N> {
     #[inline(always)]
     fn power(self, exponent: Exponent, e: f64) -> Self {
-        // as `Dual::powf`; the base of a contact is not zero
+        // like `Dual::powf`; the base of a contact is not zero
         let value = self.re.power(exponent, e);
         let slope = match exponent {
             Exponent::Whole(n) => e * Scalar::powi(self.re, n - 1),

@@ -1,14 +1,16 @@
 //! Sums of powers, Chebyshev polynomials and harmonics.
 //!
-//! Coefficients are numbers of the same kind as the variable, or plain numbers that `of` turns into such.
+//! Coefficients are numbers of the same kind as the variable, or plain numbers that `of` turns into
+//! such.
 //!
-//! Harmonics come from one sine and one cosine: `e^(i j θ)` are the powers of `e^(i θ)`. Four powers proceed side by side,
-//! each by the fourth; the error of the j-th is that of rounding `j θ`, whatever θ is. (The recurrence of Clenshaw takes
-//! fewer operations, but loses digits near θ = 0 and π, and each of its steps waits for the one before.)
+//! Harmonics come from one sine and one cosine: `e^(i j θ)` are the powers of `e^(i θ)`. Four
+//! powers proceed side by side, each by the fourth; the error of the j-th is that of rounding
+//! `j θ`, for every θ. (The recurrence of Clenshaw takes fewer operations, but loses digits near θ
+//! = 0 and π, and each of its steps waits for the one before.)
 
 use crate::scalar::Scalar;
 
-/// `Σ aⱼ yʲ`
+/// Returns `Σ aⱼ yʲ`.
 #[inline(always)]
 pub fn powers<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
     let Some((&last, rest)) = a.split_last() else {
@@ -21,7 +23,7 @@ pub fn powers<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
     sum
 }
 
-/// `Σ aⱼ Tⱼ(y)`, by the recurrence of Clenshaw
+/// Returns `Σ aⱼ Tⱼ(y)`, by the recurrence of Clenshaw.
 #[inline(always)]
 pub fn chebyshev<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
     let Some((&a0, rest)) = a.split_first() else {
@@ -38,13 +40,13 @@ pub fn chebyshev<S: Scalar, A: Copy>(y: S, a: &[A], of: impl Fn(A) -> S) -> S {
     y * b1 + (of(a0) - b2)
 }
 
-/// `a₀ + Σ aⱼ cos(j θ)`
+/// Returns `a₀ + Σ aⱼ cos(j θ)`.
 #[inline(always)]
 pub fn cosines<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S) -> S {
     harmonics(theta, a, of, |(cosine, _)| cosine)
 }
 
-/// `a₀ + Σ aⱼ sin(j θ)`
+/// Returns `a₀ + Σ aⱼ sin(j θ)`.
 #[inline(always)]
 pub fn sines<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S) -> S {
     harmonics(theta, a, of, |(_, sine)| sine)
@@ -82,7 +84,7 @@ fn harmonics<S: Scalar, A: Copy>(
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
-/// Product of complex numbers.
+/// Multiplies complex numbers.
 #[inline(always)]
 fn product<S: Scalar>(a: (S, S), b: (S, S)) -> (S, S) {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)

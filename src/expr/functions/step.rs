@@ -6,12 +6,12 @@
 //! f = h1                            x ≥ x1
 //! ```
 //!
-//! The shape `s` rises from 0 to 1. The quotient is a product with `1/(x1 − x0)`, which costs one more rounding and
-//! lets a program with constant ends compute the reciprocal once.
+//! The shape `s` rises from 0 to 1. The quotient is a product with `1/(x1 − x0)`, which costs one
+//! more rounding and lets a program with constant ends compute the reciprocal once.
 
 use crate::scalar::Scalar;
 
-/// From `h0` at `x0` to `h1` at `x1` along a shape.
+/// Steps from `h0` at `x0` to `h1` at `x1` along a shape.
 #[inline(always)]
 pub fn step<S: Scalar>(x: S, x0: S, h0: S, x1: S, h1: S, shape: impl FnOnce(S) -> S) -> S {
     S::choose(
@@ -27,7 +27,7 @@ pub fn step<S: Scalar>(x: S, x0: S, h0: S, x1: S, h1: S, shape: impl FnOnce(S) -
     )
 }
 
-/// The rising part: `h0 + rise·s((x − x0)·per_length)`.
+/// Returns the rising part: `h0 + rise·s((x − x0)·per_length)`.
 #[inline(always)]
 pub fn between<S: Scalar>(
     x: S,
@@ -40,25 +40,26 @@ pub fn between<S: Scalar>(
     h0 + rise * shape((x - x0) * per_length)
 }
 
-/// `u² (3 − 2u)`
+/// Returns the shape of STEP, `u² (3 − 2u)`.
 #[inline(always)]
 pub fn cubic<S: Scalar>(u: S) -> S {
     u * u * (S::constant(3.0) - (u + u))
 }
 
-/// `u³ (10 − 15u + 6u²)`
+/// Returns the shape of STEP5, `u³ (10 − 15u + 6u²)`.
 #[inline(always)]
 pub fn quintic<S: Scalar>(u: S) -> S {
     u * u * u * (S::constant(10.0) + u * (u.scale(6.0) - S::constant(15.0)))
 }
 
-/// `sin²(π u/2) = (1 − cos π u)/2`
+/// Returns the shape of HAVSIN, `sin²(π u/2) = (1 − cos π u)/2`.
 #[inline(always)]
 pub fn haversine<S: Scalar>(u: S) -> S {
     u.scale(std::f64::consts::FRAC_PI_2).sin().square()
 }
 
-/// Turns made by a sweep at `x`, and the frequency rising from `f0` to `f1` between `x0` and `x1`.
+/// Returns the turns made by a sweep at `x`; its frequency rises from `f0` to `f1` between `x0` and
+/// `x1`.
 ///
 /// ```text
 /// P = f0 x                                              x ≤ x0

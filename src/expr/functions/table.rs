@@ -1,7 +1,9 @@
-//! TABLE of functions of numbers: one row is name, arguments, continuity, equation, body generic over scalar, examples.
+//! The TABLE of functions of numbers. A row is name, arguments, continuity, equation, body generic
+//! over the scalar, examples.
 //!
-//! `forbid` names arguments for which there is no value although the body would yield one: the value becomes NaN.
-//! `domain` names arguments for which the body yields NaN or infinity by itself; the text is for people.
+//! `forbid` names arguments for which there is no value although the body would yield one: the
+//! value becomes NaN. `domain` names arguments for which the body yields NaN or infinity by itself;
+//! its text is for people.
 
 use super::step::{cubic, haversine, quintic, step, sweep_turns};
 use super::{
@@ -14,10 +16,12 @@ use crate::expr::signature::{Argument, Element};
 use crate::scalar::{Mask, Scalar};
 use std::f64::consts::{LN_10, PI};
 
+/// A degree, in rad.
 const DEGREE: f64 = PI / 180.0;
-const ENDLESS: usize = usize::MAX - 2;
+/// Number of further arguments without a limit.
+const UNLIMITED: usize = usize::MAX - 2;
 
-/// A parameter that is an expression, or what the row says in parentheses.
+/// Describes a parameter: an expression, or the kind that the row gives in parentheses.
 macro_rules! parameter {
     ($name:ident) => {
         Argument::number(stringify!($name))
@@ -52,7 +56,7 @@ macro_rules! functions {
             /// All functions, in the order of the table.
             pub const ALL: &'static [Function] = &[$($(Function::$variant,)+)+];
 
-            /// What the table says about this function.
+            /// Returns the row of this function in the table.
             pub fn row(self) -> &'static Row {
                 static ROWS: &[Row] = &[$($(Row {
                     function: Function::$variant,
@@ -69,7 +73,7 @@ macro_rules! functions {
                 &ROWS[self as usize]
             }
 
-            /// The value, over any number. A wrong number of arguments gives NaN.
+            /// Evaluates the function over any number. A wrong number of arguments gives NaN.
             #[inline]
             pub fn eval<S: Scalar>(self, args: &[S]) -> S {
                 match self {
@@ -83,7 +87,8 @@ macro_rules! functions {
                 }
             }
 
-            /// Why these arguments have no value, as far as they are known. An unknown one is NaN.
+            /// Returns the reason why these arguments have no value, as far as they are known. An
+            /// unknown one is NaN.
             pub fn violation(self, args: &[f64]) -> Option<&'static str> {
                 type S = f64;
                 match self {
@@ -113,7 +118,7 @@ macro_rules! functions {
     };
 }
 
-/// NaN where the mask is true.
+/// Returns NaN where the mask is true.
 #[inline(always)]
 fn guard<S: Scalar>(forbidden: S::Mask, value: S) -> S {
     match forbidden.known() {
@@ -123,13 +128,13 @@ fn guard<S: Scalar>(forbidden: S::Mask, value: S) -> S {
     }
 }
 
-/// The larger; the first on a tie; NaN if either is.
+/// Returns the larger; the first on a tie; NaN if either is.
 #[inline(always)]
 fn larger<S: Scalar>(a: S, b: S) -> S {
     S::choose(a.lt(b), || b, || S::choose(b.le(a), || a, || a + b))
 }
 
-/// The smaller; the first on a tie; NaN if either is.
+/// Returns the smaller; the first on a tie; NaN if either is.
 #[inline(always)]
 fn smaller<S: Scalar>(a: S, b: S) -> S {
     S::choose(b.lt(a), || b, || S::choose(a.le(b), || a, || a + b))
@@ -203,7 +208,7 @@ functions! {
     example "LOG10(1000)" => 3.0,
 
     /// The largest of two or more numbers.
-    Max "MAX" (a, b | c 0..=ENDLESS) C0 "max(a, b, ...)" {
+    Max "MAX" (a, b | c 0..=UNLIMITED) C0 "max(a, b, ...)" {
         let mut largest = larger(a, b);
         for &x in c {
             largest = larger(largest, x);
@@ -213,7 +218,7 @@ functions! {
     example "MAX(1,3,2)" => 3.0,
 
     /// The smallest of two or more numbers.
-    Min "MIN" (a, b | c 0..=ENDLESS) C0 "min(a, b, ...)" {
+    Min "MIN" (a, b | c 0..=UNLIMITED) C0 "min(a, b, ...)" {
         let mut smallest = smaller(a, b);
         for &x in c {
             smallest = smaller(smallest, x);
@@ -264,8 +269,8 @@ functions! {
 
     /// Force of a gap element: zero between two stops, the force of IMPACT at either.
     ///
-    /// Positive at the lower stop x1, negative at the upper stop x2; never attractive. The damping grows
-    /// from 0 at contact to cmax at penetration d.
+    /// Positive at the lower stop x1, negative at the upper stop x2; never attractive. The damping
+    /// grows from 0 at contact to cmax at penetration d.
     Bistop "BISTOP" (x, x_dot, x1, x2, k, e, cmax, d) C0
     "x < x1: max(k (x1-x)^e - step(x, x1-d, cmax, x1, 0) x_dot, 0);  x > x2: min(-k (x-x2)^e - step(x, x2, 0, x2+d, cmax) x_dot, 0);  else 0"
     {
@@ -315,7 +320,8 @@ functions! {
 
     /// Force of a one-sided contact: a stiff spring with exponent and a damper that fades in.
     ///
-    /// Zero unless x < x1; never attractive. The damping grows from 0 at contact to cmax at penetration d.
+    /// Zero unless x < x1; never attractive. The damping grows from 0 at contact to cmax at
+    /// penetration d.
     Impact "IMPACT" (x, x_dot, x1, k, e, cmax, d) C0
     "x < x1: max(0, k (x1-x)^e - step(x, x1-d, cmax, x1, 0) x_dot);  else 0"
     { impact(x, x_dot, x1, k, cmax, d, d.recip(), |p| p.powf(e)) }
@@ -350,7 +356,8 @@ functions! {
     forbid x1.le(x0) => "x0 must be less than x1",
     example "STEP5(1.25,1,0,2,1)" => 0.103515625,
 
-    /// Sine of constant amplitude a whose frequency rises from f0 at x0 to f1 at x1, in cycles per unit of x.
+    /// Sine of constant amplitude a whose frequency rises from f0 at x0 to f1 at x1, in cycles per
+    /// unit of x.
     ///
     /// It fades in between 0 and dx.
     Sweep "SWEEP" (x, a, x0, f0, x1, f1, dx) C1
