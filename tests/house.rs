@@ -68,3 +68,40 @@ fn a_scene_is_changed_nowhere_but_where_it_is_compiled() {
     }
     assert!(offences.is_empty(), "{}", offences.join("\n"));
 }
+
+/// Index arithmetic over the row of numbers that programs read, or over the integrator's unknowns.
+const INDEX_ARITHMETIC: [&str; 13] = [
+    "l.n_q +",
+    "layout.n_q +",
+    "l.n_q..",
+    "layout.n_q..",
+    "..l.n_q]",
+    "..layout.n_q]",
+    ".q().start +",
+    ".v().start +",
+    ".x().start +",
+    ".y().start +",
+    ".external().start +",
+    "numbers[0]",
+    "numbers[1..",
+];
+
+#[test]
+fn places_of_numbers_are_known_to_the_layout_alone() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut offences = Vec::new();
+    for folder in ["scene", "analysis", "results", "cli"] {
+        for path in sources(&src.join(folder)) {
+            if path == src.join("scene").join("layout.rs") {
+                continue;
+            }
+            let text = fs::read_to_string(&path).expect("a readable source");
+            for (k, line) in text.lines().enumerate() {
+                if INDEX_ARITHMETIC.iter().any(|way| line.contains(way)) {
+                    offences.push(format!("{}:{}: {}", path.display(), k + 1, line.trim()));
+                }
+            }
+        }
+    }
+    assert!(offences.is_empty(), "{}", offences.join("\n"));
+}

@@ -5,7 +5,6 @@ use super::contacts::Shell;
 use super::equations::Unsupported;
 use super::external_inputs::{ExternalInput, HookKind, HookName, SceneDelay, SceneHook};
 use super::forces::{ForceElement, ForceLaw};
-use super::layout::Layout;
 use super::left_out::LeftOut;
 use super::loops::{self, Key};
 use super::reads::{Allowed, offence};
@@ -796,12 +795,12 @@ const SIDES: [&str; 2] = ["I", "J"];
 
 /// Places of the unknowns by name, for messages: the names of q, v and x.
 pub fn unknown_names(scene: &Scene) -> Vec<String> {
-    let l: Layout = scene.layout;
-    let mut names = vec![String::new(); l.n_q + l.n_v + l.n_x];
+    let mut all = vec![String::new(); scene.layout.n_y()];
+    let names = scene.layout.state_mut(&mut all);
     for c in &scene.coordinates {
         if let Source::Free { q, v } = c.source {
-            names[q] = c.name.clone();
-            names[l.n_q + v] = format!("rate of {}", c.name);
+            names.q[q] = c.name.clone();
+            names.v[v] = format!("rate of {}", c.name);
         }
     }
     for link in &scene.links {
@@ -811,7 +810,7 @@ pub fn unknown_names(scene: &Scene) -> Vec<String> {
         } = link.motion
         {
             for k in 0..4 {
-                names[quaternion + k] = format!(
+                names.q[quaternion + k] = format!(
                     "{} (Euler parameter {k})",
                     scene.coordinates[coordinate].name
                 );
@@ -820,19 +819,19 @@ pub fn unknown_names(scene: &Scene) -> Vec<String> {
     }
     for d in &scene.differentials {
         if let Some(state) = d.state {
-            names[l.n_q + l.n_v + state].clone_from(&d.name);
+            names.x[state].clone_from(&d.name);
         }
     }
     for m in &scene.motions {
         if let Some(s) = m.state {
-            names[l.n_q + l.n_v + s] = format!("MOTION/{} displacement", m.id);
+            names.x[s] = format!("MOTION/{} displacement", m.id);
         }
     }
     for cam in &scene.cams {
         for (k, curve) in cam.curves.iter().enumerate() {
             let name = format!("{} place on CURVE/{curve} of {}", cam.name(), SIDES[k]);
-            names[l.n_q + l.n_v + cam.state + k] = name;
+            names.x[cam.state + k] = name;
         }
     }
-    names
+    all
 }

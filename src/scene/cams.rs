@@ -8,6 +8,7 @@ use super::build::{Builder, active};
 use super::compile::Compiler;
 use super::configuration::{Configuration, Configured, ContactStart};
 use super::equations::Equations;
+use super::layout::Layout;
 use super::{ConstraintElement, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
 use crate::model::CurveSide;
@@ -436,7 +437,7 @@ pub fn broken(scene: Configured<'_>, numbers: &[f64], until: Option<f64>) -> Opt
                 Some(until) => format!(
                     "extend CURVE/{} beyond that point: it moves on at {speed:.4}, which takes {:.4} more until time {until}",
                     cam.curves[k],
-                    speed * (until - numbers[0])
+                    speed * (until - numbers[Layout::TIME])
                 ),
                 None => format!("extend CURVE/{} beyond that point by more than {beyond:.6}", cam.curves[k]),
             };

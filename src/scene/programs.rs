@@ -222,7 +222,7 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
             out
         },
         |builder, values| {
-            let (rates, sources) = values.split_at(scene.layout.y().len() + 1);
+            let (rates, sources) = values.split_at(scene.layout.n_y() + 1);
             let side = |k: usize| Input::Slot((n + k) as u32);
             let (held, switches) = builder.held(rates, sources, side);
             vec![held, switches]
@@ -270,7 +270,7 @@ where
         |builder, values| {
             let (known, wanted) = values.split_at(values.len() - n_all.get());
             let side = |k: usize| Input::Slot((first + k) as u32);
-            let sources = &known[scene.layout.y().len() + 1..];
+            let sources = &known[scene.layout.n_y() + 1..];
             let (held, switches) = builder.held(wanted, sources, side);
             same.set(switches.len() == n_switches);
             let (one, other) = held.split_at(n_first.get());

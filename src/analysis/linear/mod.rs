@@ -21,6 +21,7 @@ use crate::expr::program::{Program, Work};
 use crate::model::Model;
 use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
+use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 use crate::scene::{Scene, build};
 use nalgebra::{DMatrix, DVector};
@@ -206,7 +207,7 @@ fn tangents(system: &System) -> Vec<Vec<(usize, f64)>> {
     let l = system.scene.layout;
     let mut moves = vec![Vec::new(); l.n_v];
     for (v, place, slope) in system.mover().tangents(&system.numbers[l.q()]) {
-        moves[v].push((l.q().start + place, slope));
+        moves[v].push((l.q_at(place), slope));
     }
     moves
 }
@@ -230,7 +231,7 @@ pub fn linearize(
     wanted: &Wanted,
 ) -> Result<Linearization, Vec<Diagnostic>> {
     let l = system.scene.layout;
-    let (n_q, n_v, n_x) = (l.n_q, l.n_v, l.n_x);
+    let n_x = l.n_x;
     let output_ids = variables(model, true, wanted.outputs).map_err(|d| vec![d])?;
     let input_ids = variables(model, false, wanted.inputs).map_err(|d| vec![d])?;
     let small = Small::at(system)?;
@@ -257,7 +258,7 @@ pub fn linearize(
     let mut directions: Vec<Vec<(usize, f64)>> = Vec::new();
     let speeds = |column: &[f64]| -> Vec<(usize, f64)> {
         let all = column.iter().enumerate().filter(|(_, s)| **s != 0.0);
-        all.map(|(v, s)| (l.v().start + v, *s)).collect()
+        all.map(|(v, s)| (l.v_at(v), *s)).collect()
     };
     for k in 0..n {
         let mut direction = speeds(small.p.column(k).as_slice());
@@ -279,11 +280,11 @@ pub fn linearize(
             speeds(small.z.column(k).as_slice())
         });
     }
-    directions.extend((0..n_x).map(|k| vec![(l.x().start + k, 1.0)]));
+    directions.extend((0..n_x).map(|k| vec![(l.x_at(k), 1.0)]));
     for id in &input_ids {
         let own = |s: &ExternalInput| matches!(s, ExternalInput::Input(f) if system.scene.variables.get(id) == Some(f));
         let place = system.scene.external_inputs.iter().position(own);
-        directions.push(place.map_or_else(Vec::new, |p| vec![(l.external().start + p, 1.0)]));
+        directions.push(place.map_or_else(Vec::new, |p| vec![(l.external_at(p), 1.0)]));
     }
     let slopes = along(system, &program, &directions).map_err(|k| undetermined(system, k))?;
     if slopes.iter().any(|x| !x.is_finite()) {
@@ -297,14 +298,15 @@ pub fn linearize(
     let q = system.numbers[l.q()].to_vec();
     for k in 0..slopes.ncols() {
         let column: Vec<f64> = slopes.column(k).iter().copied().collect();
-        let tangent = DVector::from_vec(system.mover().tangent(&q, &column[..n_q], n_v));
-        let speed = DVector::from_column_slice(&column[n_q..n_q + n_v]);
+        let rates = l.state(&column);
+        let tangent = DVector::from_vec(system.mover().tangent(&q, rates.q, l.n_v));
+        let speed = DVector::from_column_slice(rates.v);
         a.view_mut((0, k), (n, 1))
             .copy_from(&small.z.tr_mul(&tangent));
         a.view_mut((n, k), (n, 1))
             .copy_from(&small.z.tr_mul(&speed));
         for i in 0..n_x {
-            a[(2 * n + i, k)] = column[n_q + n_v + i];
+            a[(2 * n + i, k)] = rates.x[i];
         }
     }
     if wanted.no_damping {
@@ -313,14 +315,13 @@ pub fn linearize(
             a[(k, n + k)] = 1.0;
         }
     }
-    let below = n_q + n_v + n_x;
-    let y = slopes.rows(below, watched.len()).into_owned();
+    let y = slopes.rows(l.n_y(), watched.len()).into_owned();
     let own = a.columns(0, n_z).into_owned();
     let names = build::unknown_names(&system.scene);
     let modes = modes::modes(system, model, &small, &own, wanted)?;
     let named = |ids: &[u32]| ids.iter().map(|id| format!("VARIABLE/{id}")).collect();
     Ok(Linearization {
-        time: system.numbers[0],
+        time: system.numbers[Layout::TIME],
         states: state_names(&system.scene, &small, &names),
         inputs: named(&input_ids),
         outputs: named(&output_ids),
@@ -352,6 +353,6 @@ fn state_names(scene: &Scene, small: &Small, names: &[String]) -> Vec<String> {
     };
     let mut all: Vec<String> = (0..n).map(position).collect();
     all.extend((0..n).map(|k| format!("rate of {}", position(k))));
-    all.extend(names[l.n_q + l.n_v..].iter().cloned());
+    all.extend(l.state(names).x.iter().cloned());
     all
 }

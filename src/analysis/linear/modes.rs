@@ -9,6 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scene::build;
 use crate::scene::equations::Equations;
+use crate::scene::layout::Layout;
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -123,8 +124,7 @@ struct PartMotion {
     /// (6 n_parts × n_free)
     map: DMatrix<f64>,
     n: usize,
-    n_x: usize,
-    places: usize,
+    layout: Layout,
 }
 
 impl PartMotion {
@@ -135,7 +135,7 @@ impl PartMotion {
         let mut twists = |k: Option<usize>| -> Vec<f64> {
             numbers[l.v()].fill(0.0);
             if let Some(k) = k {
-                numbers[l.v().start + k] = 1.0;
+                numbers[l.v_at(k)] = 1.0;
             }
             let at = Equations::new(scene, &numbers);
             let mut all = Vec::with_capacity(6 * scene.parts.len());
@@ -167,8 +167,7 @@ impl PartMotion {
             parts: scene.parts.iter().map(name).collect(),
             map: jacobian * &small.z,
             n: small.z.ncols(),
-            n_x: l.n_x,
-            places: l.n_q + l.n_v,
+            layout: l,
         }
     }
 
@@ -198,7 +197,7 @@ impl PartMotion {
             unit = largest(&mut part(1));
         }
         if unit.norm() <= 1e-9 * whole {
-            unit = largest(&mut z.rows(2 * self.n, self.n_x).iter().copied());
+            unit = largest(&mut z.rows(2 * self.n, self.layout.n_x).iter().copied());
         }
         if unit.norm() == 0.0 {
             return;
@@ -217,8 +216,9 @@ impl PartMotion {
                 rotation: [3, 4, 5].map(|i| pair(moved[6 * k + i])),
             })
             .collect();
-        mode.states = (0..self.n_x)
-            .map(|k| (names[self.places + k].clone(), pair(z[2 * self.n + k])))
+        let states = self.layout.state(names).x.iter().enumerate();
+        mode.states = states
+            .map(|(k, name)| (name.clone(), pair(z[2 * self.n + k])))
             .collect();
     }
 }

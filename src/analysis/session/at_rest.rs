@@ -10,6 +10,7 @@ use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
 use crate::numeric::Stats;
 use crate::results::{self, Event, Kind, Status};
+use crate::scene::layout::Layout;
 use std::time::Instant;
 
 /// The equilibria that were found, one after the other.
@@ -48,7 +49,7 @@ impl Session {
         let stopped = found.failed.map(|(t, why)| stop_reason(t, why));
         // what the next simulation begins with
         let last = found.rows.last().cloned().unwrap_or(first);
-        let end = last[0];
+        let end = last[Layout::TIME];
         self.keep(system, last);
         if let Some(carried) = &mut self.carried {
             carried.at_rest = true;

@@ -9,6 +9,7 @@ use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::{Equations, Unsupported};
+use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
 use crate::space::MarkerState;
 
@@ -474,7 +475,7 @@ pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
     let mut work = Work::default();
     let mut values = vec![0.0; program.n_outputs() + 1];
     for row in rows {
-        values[0] = row[0];
+        values[0] = row[Layout::TIME];
         program.run(row, &mut work, &mut values[1..]);
         run.push(&values);
     }

@@ -12,6 +12,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::program::Program;
 use crate::results::{Event, Kind, Status};
 use crate::scene::Scene;
+use crate::scene::layout::Layout;
 
 /// Velocities times links of the largest scene that is searched for free directions without mass
 /// before each run: a motion of all links takes about a microsecond per link.
@@ -110,7 +111,13 @@ impl Session {
         }
         let (l, numbers) = (system.scene.layout, &system.numbers);
         let (q, x) = (&numbers[l.q()], &numbers[l.x()]);
-        let massless = massless(system.configured(), &self.model, numbers[0], q, x);
+        let massless = massless(
+            system.configured(),
+            &self.model,
+            numbers[Layout::TIME],
+            q,
+            x,
+        );
         if massless.is_empty() {
             Ok(())
         } else {

@@ -17,6 +17,7 @@ use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::contacts::Shell;
 use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
+use crate::scene::layout::Layout;
 use crate::space::{MarkerState, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -168,20 +169,16 @@ impl Session {
                 .names
                 .iter()
                 .map(String::as_str)
-                .zip(carried.numbers[1..].iter().copied())
+                .zip(carried.numbers.iter().skip(Layout::STATE).copied())
                 .collect();
             let mut speeds = vec![0.0; l.n_v];
-            let mut complete = true;
-            for (k, name) in names.iter().enumerate() {
-                match values.get(name.as_str()) {
-                    Some(&value) if k < l.n_q => q[k] = value,
-                    Some(&value) if k < l.n_q + l.n_v => speeds[k - l.n_q] = value,
-                    Some(&value) => x[k - l.n_q - l.n_v] = value,
-                    None => complete &= k >= l.n_q + l.n_v,
-                }
-            }
+            let names = l.state(&names);
+            // every position and velocity is told; states may be new
+            let mut complete = take_over(&values, names.q, &mut q);
+            complete &= take_over(&values, names.v, &mut speeds);
+            take_over(&values, names.x, &mut x);
             for (cam, contact) in scene.cams.iter().zip(&mut configuration.contacts) {
-                let name = &names[l.n_q + l.n_v + cam.state];
+                let name = &names.x[cam.state];
                 contact.begun = values.contains_key(name.as_str());
             }
             if complete && !carried.at_rest {
@@ -248,7 +245,7 @@ impl Session {
         y.extend(v);
         y.extend(x);
         system.numbers[l.turns()].copy_from_slice(&turns);
-        system.numbers[0] = t;
+        system.numbers[Layout::TIME] = t;
         system.numbers[l.y()].copy_from_slice(&y);
         if let Err(k) = system.resolve() {
             let name = system.scene.loops[k].name.clone();
@@ -306,16 +303,15 @@ impl Session {
         let carried = self.carried.as_ref();
         let none = BTreeMap::new();
         let held = carried.map_or(&none, |c| &c.samples);
-        let first = l.external().start;
         for (place, input) in scene.external_inputs.iter().enumerate() {
             let sensor = scene.sensor_of(*input);
             let seen = sensor.and_then(|id| carried?.sensors.get(&id).copied());
             let value = seen.or_else(|| samples::before(&scene, *input, held));
-            numbers[first + place] = value.unwrap_or(0.0);
+            numbers[l.external_at(place)] = value.unwrap_or(0.0);
         }
         self.set_constants(&scene, &mut numbers);
         if !scene.hooks.is_empty() {
-            numbers[0] = t;
+            numbers[Layout::TIME] = t;
             numbers[l.q()].copy_from_slice(q);
             numbers[l.x()].copy_from_slice(x);
             numbers[l.turns()].copy_from_slice(&scene.configuration.turns);
@@ -379,7 +375,7 @@ impl Session {
             .map(|(k, p)| (p.point_mass, p.id, at.part(k, false)))
             .collect();
         self.carried = Some(Carried {
-            t: numbers[0],
+            t: numbers[Layout::TIME],
             turns: numbers[system.scene.layout.turns()].to_vec(),
             sensors: sensed(&system.scene, &numbers),
             samples: system.samples.held(&numbers),
@@ -392,11 +388,23 @@ impl Session {
     }
 }
 
+/// Takes over the values that are known by these names; returns whether all are.
+fn take_over(known: &BTreeMap<&str, f64>, names: &[String], values: &mut [f64]) -> bool {
+    let mut complete = true;
+    for (name, value) in names.iter().zip(values) {
+        match known.get(name.as_str()) {
+            Some(&found) => *value = found,
+            None => complete = false,
+        }
+    }
+    complete
+}
+
 /// What SENVAL yields of each sensor.
 fn sensed(scene: &Scene, numbers: &[f64]) -> BTreeMap<u32, f64> {
-    let first = scene.layout.external().start;
+    let l = scene.layout;
     let all = scene.external_inputs.iter().enumerate();
-    all.filter_map(|(place, s)| Some((scene.sensor_of(*s)?, numbers[first + place])))
+    all.filter_map(|(place, s)| Some((scene.sensor_of(*s)?, numbers[l.external_at(place)])))
         .collect()
 }
 
@@ -405,9 +413,8 @@ pub(super) fn has_new_unknowns(scene: &Scene, carried: &Carried) -> bool {
     let known: BTreeSet<&str> = carried.names.iter().map(String::as_str).collect();
     let l = scene.layout;
     let names = unknown_names(scene);
-    names[..l.n_q + l.n_v]
-        .iter()
-        .any(|name| !known.contains(name.as_str()))
+    let state = l.state(&names);
+    (state.q.iter().chain(state.v)).any(|name| !known.contains(name.as_str()))
 }
 
 /// The model with its parts where they are, and moving as they do.

@@ -218,7 +218,7 @@ fn equations(
     let mut residual = DVector::from_iterator(wishes.len(), residual);
     let mut directions = vec![Direction::new(); l.n_v];
     for (v, place, slope) in mover.tangents(&numbers[l.q()]) {
-        directions[v].push((l.q().start + place, slope));
+        directions[v].push((l.q_at(place), slope));
     }
     let all = numbers.iter().copied();
     let nothing = |_: &mut [_], _| Ok(());

@@ -344,8 +344,8 @@ impl Settler<'_> {
 
     /// Returns how large the terms of the differential equations are.
     fn state_scale(&self, p: &Point) -> f64 {
-        let first = self.system.scene.layout.x().start;
-        let states = self.states.iter().map(|x| p.numbers[first + x].abs());
+        let l = self.system.scene.layout;
+        let states = self.states.iter().map(|&x| p.numbers[l.x_at(x)].abs());
         states.fold(0.0, f64::max)
     }
 

@@ -36,6 +36,7 @@ use crate::model;
 use crate::numeric::Stats;
 use crate::numeric::pattern::Pattern;
 use crate::scalar::Dual;
+use crate::scene::layout::Layout;
 use crate::scene::programs::{record_more, record_moving};
 use nalgebra::DMatrix;
 use point::Point;
@@ -246,6 +247,6 @@ impl<'a> Settler<'a> {
     fn keep(&mut self, p: &Point) {
         let y = p.numbers[self.system.scene.layout.y()].to_vec();
         self.system.numbers.copy_from_slice(&p.numbers);
-        self.system.count_turns(p.numbers[0], &y);
+        self.system.count_turns(p.numbers[Layout::TIME], &y);
     }
 }

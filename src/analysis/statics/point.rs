@@ -65,9 +65,9 @@ impl Settler<'_> {
         let l = self.system.scene.layout;
         let mut directions = vec![Direction::new(); n];
         for (v, place, slope) in self.system.mover().tangents(&p.numbers[l.q()]) {
-            directions[v].push((l.q().start + place, slope));
+            directions[v].push((l.q_at(place), slope));
         }
-        directions.extend(self.states.iter().map(|&x| vec![(l.x().start + x, 1.0)]));
+        directions.extend(self.states.iter().map(|&x| vec![(l.x_at(x), 1.0)]));
         let pattern = match self.pattern.take() {
             Some(pattern) => pattern,
             None => {

@@ -7,6 +7,7 @@ use crate::numeric::Ode;
 use crate::numeric::dense::Lu;
 use crate::numeric::envelope;
 use crate::scene::equations::Equations;
+use crate::scene::layout::Layout;
 use crate::scene::tunnelling::ThicknessBound;
 use nalgebra::{DMatrix, DVector};
 
@@ -141,14 +142,15 @@ impl Settler<'_> {
     pub(super) fn moved(&mut self, p: &Point, step: &DVector<f64>) -> Option<Vec<f64>> {
         let l = self.system.scene.layout;
         let mut numbers = p.numbers.clone();
-        let dq: Vec<f64> = step.iter().take(l.n_v).copied().collect();
-        self.system.mover().displace(&mut numbers[l.q()], &dq);
-        for (k, &x) in self.states.iter().enumerate() {
-            numbers[l.x().start + x] += step[l.n_v + k];
+        // a change of positions by a tangent, then of states
+        let (dq, dx) = step.as_slice().split_at(l.n_v);
+        self.system.mover().displace(&mut numbers[l.q()], dq);
+        for (&x, d) in self.states.iter().zip(dx) {
+            numbers[l.x_at(x)] += d;
         }
         let mut y = numbers[l.y()].to_vec();
-        self.system.project(numbers[0], &mut y).ok()?;
-        y[l.n_q..l.n_q + l.n_v].fill(0.0);
+        self.system.project(numbers[Layout::TIME], &mut y).ok()?;
+        l.state_mut(&mut y).v.fill(0.0);
         numbers[l.y()].copy_from_slice(&y);
         self.system.numbers.copy_from_slice(&numbers);
         self.system.resolve().ok()?;

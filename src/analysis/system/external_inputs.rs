@@ -279,7 +279,7 @@ impl ExternalInputs {
     /// # Errors
     /// What the equations cannot supply; closures that would read what depends on them.
     pub fn new(scene: Configured<'_>, hooks: &[Hook]) -> Result<Self, Vec<Unsupported>> {
-        let first = scene.layout.external().start;
+        let l = scene.layout;
         let mut this = Self {
             still: scene.layout.y().is_empty(),
             ..Self::default()
@@ -290,7 +290,7 @@ impl ExternalInputs {
                 ExternalInput::Delay(k) if !at_rest => {
                     let d = scene.delays[k];
                     this.tracks.push(Track {
-                        place: first + place,
+                        place: l.external_at(place),
                         expression: record(scene, |at| vec![at.formula(d.expression)])?,
                         delay: record(scene, |at| vec![at.formula(d.delay)])?,
                         history: record(scene, |at| vec![at.formula(d.history)])?,
@@ -311,7 +311,7 @@ impl ExternalInputs {
                             all.iter().flat_map(|v| v.0).collect()
                         }
                     })?;
-                    let places = first + hook.place..first + hook.place + hook.n;
+                    let places = l.external_at(hook.place)..l.external_at(hook.place + hook.n);
                     if places.clone().any(|place| inputs.reads(place)) {
                         return Err(vec![Unsupported::new(&hook.element, Lack::OwnResult)]);
                     }
@@ -513,7 +513,7 @@ pub fn remember(
             t
         };
         // methods for implicit equations have multipliers behind it
-        system.set(t, &state[..system.scene.layout.y().len()]);
+        system.set(t, &state[..system.scene.layout.n_y()]);
         for (track, piece) in system.external.tracks.iter().zip(&mut pieces) {
             track
                 .expression

@@ -59,7 +59,7 @@ fn residual<S: Scalar>(
     formulation: Formulation,
 ) -> Vec<S> {
     let l = scene.layout;
-    let n = l.y().len();
+    let n = l.n_y();
     let (ydot, multipliers) = more.split_at(n);
     let rows: Vec<_> = (0..scene.rows.len())
         .filter(|&r| at.is_active(r))
@@ -75,9 +75,10 @@ fn residual<S: Scalar>(
     let minus = |rates: &[S], values: Vec<S>| -> Vec<S> {
         rates.iter().zip(values).map(|(&a, b)| a - b).collect()
     };
-    let mut out = minus(&ydot[..l.n_q], at.position_rates_at(&v));
-    out.extend(at.imbalance(&ydot[l.n_q..l.n_q + l.n_v], lambda));
-    out.extend(minus(&ydot[l.n_q + l.n_v..], at.state_rates()));
+    let rates = l.state(ydot);
+    let mut out = minus(rates.q, at.position_rates_at(&v));
+    out.extend(at.imbalance(rates.v, lambda));
+    out.extend(minus(rates.x, at.state_rates()));
     out.extend(rows.iter().map(|row| row.value));
     if formulation == Formulation::Stabilized {
         out.extend(rows.iter().map(|row| {
@@ -109,7 +110,7 @@ impl Implicit {
             )
             .help("leave the method to the program, or ask for RADAU5")]);
         }
-        let n = scene.layout.y().len();
+        let n = scene.layout.n_y();
         let m = scene.configuration.active_rows().count();
         let levels = match formulation {
             Formulation::Index3 => 1,
@@ -311,9 +312,9 @@ impl Dae for System {
 
     fn kinds(&self) -> Vec<Kind> {
         let l = self.scene.layout;
-        let mut kinds = vec![Kind::Differential; l.y().len()];
+        let mut kinds = vec![Kind::Differential; l.n_y()];
         if self.implicit().formulation == Formulation::Index3 && self.implicit().m > 0 {
-            kinds[l.n_q..l.n_q + l.n_v].fill(Kind::DifferentialUncontrolled);
+            (l.state_mut(&mut kinds).v).fill(Kind::DifferentialUncontrolled);
         }
         kinds.resize(Dae::size(self), Kind::Algebraic);
         kinds
@@ -322,12 +323,9 @@ impl Dae for System {
     fn levels(&self) -> Levels {
         let l = self.scene.layout;
         let m = self.implicit().m;
-        let mut rows = vec![1; l.n_q];
-        rows.resize(l.n_q + l.n_v, 2);
-        rows.resize(l.y().len(), 1);
-        let mut unknowns = vec![0; l.n_q];
-        unknowns.resize(l.n_q + l.n_v, 1);
-        unknowns.resize(l.y().len(), 0);
+        let (mut rows, mut unknowns) = (vec![1; l.n_y()], vec![0; l.n_y()]);
+        l.state_mut(&mut rows).v.fill(2);
+        l.state_mut(&mut unknowns).v.fill(1);
         rows.resize(rows.len() + m, 0);
         unknowns.resize(unknowns.len() + m, 2);
         if self.implicit().formulation == Formulation::Stabilized {

@@ -125,13 +125,14 @@ impl System {
     }
 
     fn found_pattern(&mut self) -> Option<Pattern> {
-        let n = self.scene.layout.y().len();
+        let n = self.scene.layout.n_y();
         if n <= DENSE_LIMIT || matches!(self.gradient(n), Gradient::Recorded(..)) {
             return None;
         }
-        let mut along = vec![Vec::new(); self.scene.layout.len()];
+        let l = self.scene.layout;
+        let mut along = vec![Vec::new(); l.len()];
         for j in 0..n {
-            along[1 + j].push(j as u32);
+            along[l.y_at(j)].push(j as u32);
         }
         self.depend_along(&mut along);
         let mut rows = self.rate.dependence(&along);
@@ -154,7 +155,7 @@ impl System {
             unreachable!("entries are asked for where there is a pattern");
         };
         let sums: Vec<Vec<usize>> = (pattern.groups().iter())
-            .map(|group| group.iter().map(|j| 1 + j).collect())
+            .map(|group| group.iter().map(|&j| self.scene.layout.y_at(j)).collect())
             .collect();
         self.along_sums(&sums, |k, slope| {
             for &j in &pattern.groups()[k] {
@@ -174,7 +175,7 @@ impl System {
         if self.is_sliding() {
             return self.along_sums_sliding(sums, take);
         }
-        let n = self.scene.layout.y().len();
+        let n = self.scene.layout.n_y();
         let constant = Dual {
             re: 0.0,
             eps: [0.0; WIDTH],

@@ -281,10 +281,9 @@ fn watched_angles(scene: &Scene, switching: Option<&Switching>) -> Vec<usize> {
     let Some(Switching { switches, .. }) = switching else {
         return Vec::new();
     };
-    let first = scene.layout.q().start;
     let angular = scene.coordinates.iter().filter(|c| c.angular);
     let free = angular.filter_map(|c| match c.source {
-        Source::Free { q, v } if switches.reads(first + q) => Some(v),
+        Source::Free { q, v } if switches.reads(scene.layout.q_at(q)) => Some(v),
         _ => None,
     });
     free.collect()
@@ -328,7 +327,7 @@ impl System {
         let sensors = Sensors::new(here).map_err(complaints)?;
         let samples = Samples::new(here).map_err(complaints)?;
         let thickness_bounds =
-            ThicknessBounds::new(here, scene.layout.y().len()).map_err(complaints)?;
+            ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?;
         let time_events = TimeEvents::new(here).map_err(complaints)?;
         let counted = if scene.counted.is_empty() {
             None
@@ -392,13 +391,13 @@ impl System {
             dual_numbers: Vec::new(),
             dual_out: Vec::new(),
             change: vec![0.0; 2 * l.n_v + contact_states(&scene).len()],
-            rates: vec![0.0; l.y().len() + 1],
+            rates: vec![0.0; l.n_y() + 1],
             was_weak: false,
             contacts: contact_states(&scene),
             weak_seen: false,
             singular_steps: SingularSteps::default(),
             left_out,
-            stage: Vec::with_capacity(l.y().len()),
+            stage: Vec::with_capacity(l.n_y()),
             mover,
             scene,
             configuration,
@@ -584,7 +583,7 @@ impl System {
         let here = scene.within(&configuration);
         self.projection = projection_program(here)?;
         self.thickness_bounds =
-            ThicknessBounds::new(here, scene.layout.y().len()).map_err(complaints)?;
+            ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?;
         self.violation = violation_program(here)?;
         let n_violations = self.violation.as_ref().map_or(0, Program::n_outputs);
         self.violations.resize(n_violations, 0.0);
@@ -633,16 +632,17 @@ impl System {
             .filter(|(c, _)| c.angular);
         speeds
             .filter_map(|(_, f)| f.v)
-            .map(|v| y[l.n_q + v].abs())
+            .map(|v| l.state(y).v[v].abs())
             .sum()
     }
 
     /// How long a step may be so that no angle which decides a branch turns by more than [`FOLLOWED`]: a free flight or a free rotation leaves long steps no
     /// reason to become shorter, and a branch may come and go in every turn.
     pub(super) fn longest_turn(&self, y: &[f64], ydot: &[f64]) -> f64 {
-        let v = self.scene.layout.n_q;
+        let l = self.scene.layout;
+        let (v, vdot) = (l.state(y).v, l.state(ydot).v);
         let time = |&k: &usize| {
-            let (speed, acceleration) = (y[v + k].abs(), ydot[v + k].abs());
+            let (speed, acceleration) = (v[k].abs(), vdot[k].abs());
             2.0 * FOLLOWED / (speed + (speed * speed + 2.0 * FOLLOWED * acceleration).sqrt())
         };
         let times = self.watched_angles.iter().map(time);
@@ -728,7 +728,7 @@ impl System {
 
     /// The same for the system's own numbers.
     fn follow(&mut self, first: bool) -> Result<(), Failure> {
-        let n = self.scene.layout.y().len();
+        let n = self.scene.layout.n_y();
         self.external.follow(&mut self.dual_numbers, first);
         match &mut self.unknowns {
             Some(unknowns) => unknowns
@@ -744,7 +744,7 @@ impl System {
 
 impl Ode for System {
     fn size(&self) -> usize {
-        self.scene.layout.y().len()
+        self.scene.layout.n_y()
     }
 
     fn rate(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -790,7 +790,7 @@ impl Ode for System {
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
         let l = self.scene.layout;
-        let changed = self.mover.normalize(&mut y[..l.n_q]);
+        let changed = self.mover.normalize(l.state_mut(y).q);
         let Some(program) = self.projection.take() else {
             return Ok(changed);
         };
@@ -809,22 +809,22 @@ impl Ode for System {
         for _ in 0..8 {
             self.set(t, y);
             program.run(&self.numbers, &mut self.project_work, &mut self.change);
-            let (dq, rest) = self.change.split_at(l.n_v);
-            let (dv, ds) = rest.split_at(l.n_v);
-            let size = dq.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let change = l.change(&self.change);
+            let size = change.q.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             if !size.is_finite() || size > 2.0 * last {
                 break;
             }
             last = size;
             first.get_or_insert(size);
-            for (v, d) in y[l.n_q..l.n_q + l.n_v].iter_mut().zip(dv) {
+            let state = l.state_mut(y);
+            for (v, d) in state.v.iter_mut().zip(change.v) {
                 *v += d;
             }
-            for (&place, d) in self.contacts.iter().zip(ds) {
-                y[l.n_q + l.n_v + place] += d;
+            for (&place, d) in self.contacts.iter().zip(change.x) {
+                state.x[place] += d;
             }
             if size > 0.0 {
-                self.mover.displace(&mut y[..l.n_q], dq);
+                self.mover.displace(state.q, change.q);
             }
             // the velocities were corrected with the gradient before this displacement
             if size < 1e-11 {
@@ -849,23 +849,24 @@ impl Ode for System {
         // Δv(v) = −W Gᵀ (G W Gᵀ)⁻¹ (G v + ġ₀): its part linear in v takes away what is normal to the rows
         let l = self.scene.layout;
         let n_v = l.n_v;
-        let tangent = self.mover.tangent(&y[..l.n_q], &error[..l.n_q], n_v);
+        let q = l.state(y).q;
+        let error = l.state_mut(error);
+        let tangent = self.mover.tangent(q, error.q, n_v);
         let mut state = y.to_vec();
         let mut normal = |v: &[f64], numbers: &mut [f64]| {
-            state[l.n_q..l.n_q + n_v].copy_from_slice(v);
+            l.state_mut(&mut state).v.copy_from_slice(v);
             numbers[Layout::TIME] = t;
             numbers[l.y()].copy_from_slice(&state);
             program.run(numbers, &mut self.project_work, &mut self.change);
-            self.change[n_v..2 * n_v].to_vec()
+            l.change(&self.change).v.to_vec()
         };
         let none = normal(&vec![0.0; n_v], &mut self.numbers);
         let of_q = normal(&tangent, &mut self.numbers);
-        let of_v = normal(&error[l.n_q..l.n_q + n_v], &mut self.numbers);
+        let of_v = normal(error.v, &mut self.numbers);
         let filtered: Vec<f64> = (0..n_v).map(|k| tangent[k] + of_q[k] - none[k]).collect();
-        self.mover
-            .untangent(&y[..l.n_q], &filtered, &mut error[..l.n_q]);
+        self.mover.untangent(q, &filtered, error.q);
         for k in 0..n_v {
-            error[l.n_q + k] += of_v[k] - none[k];
+            error.v[k] += of_v[k] - none[k];
         }
         true
     }
@@ -896,28 +897,28 @@ impl Ode for System {
     }
 
     fn typical(&self, typical: &mut [f64]) {
-        let l = self.scene.layout;
         typical.fill(1.0);
+        let typical = self.scene.layout.state_mut(typical);
         for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
             if let Source::Free { q, v } = c.source
                 && !c.angular
                 && !f.in_ball
             {
-                typical[q] = self.scene.length;
-                typical[l.n_q + v] = self.scene.length;
+                typical.q[q] = self.scene.length;
+                typical.v[v] = self.scene.length;
             }
         }
     }
 
     fn relations(&self, relations: &mut [Relation]) {
-        let l = self.scene.layout;
+        let relations = self.scene.layout.state_mut(relations);
         for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
             let Source::Free { q, v } = c.source else {
                 continue;
             };
             let kind = u16::from(c.angular);
             if !f.in_ball {
-                relations[q] = Relation {
+                relations.q[q] = Relation {
                     most: if c.angular {
                         std::f64::consts::PI
                     } else {
@@ -930,7 +931,7 @@ impl Ode for System {
             }
             // what is short because of a contact has to be seen in velocity
             let smooth = self.switching.is_none() && !f.in_ball;
-            relations[l.n_q + v] = Relation {
+            relations.v[v] = Relation {
                 group: Some(2 + kind),
                 share: SHARE_OF_SPEED,
                 rate_of: smooth.then_some(q),

@@ -16,6 +16,7 @@ use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::ExternalInput;
+use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -64,14 +65,14 @@ impl Samples {
     /// # Errors
     /// What the equations cannot supply.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
-        let first = scene.layout.external().start;
+        let l = scene.layout;
         let mut all = Vec::new();
         for s in &scene.samplers {
             all.push(Sampled {
                 id: s.id,
                 name: s.name.clone(),
-                states: first + s.states..first + s.states + s.n,
-                results: first + s.results..first + s.results + s.n,
+                states: l.external_at(s.states)..l.external_at(s.states + s.n),
+                results: l.external_at(s.results)..l.external_at(s.results + s.n),
                 period: record(scene, |at| vec![at.formula(s.period)])?,
                 next: vec![0.0; s.n],
                 due: f64::INFINITY,
@@ -125,7 +126,7 @@ impl System {
     /// # Errors
     /// A period that is none.
     pub fn begin_sampling(&mut self, held: &BTreeMap<u32, Held>) -> Result<(), Diagnostic> {
-        let t = self.numbers[0];
+        let t = self.numbers[Layout::TIME];
         for k in 0..self.samples.all.len() {
             let Samples { all, work } = &mut self.samples;
             let s = &mut all[k];

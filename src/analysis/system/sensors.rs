@@ -61,13 +61,12 @@ impl Sensors {
                 (scene.sensors.iter()).map(|s| s.evaluate.map_or(zero, |f| at.formula(f)));
             watched.chain(evaluated).collect()
         })?;
-        let first = scene.layout.external().start;
         let place = |k: usize| {
             let own = scene
                 .external_inputs
                 .iter()
                 .position(|s| *s == ExternalInput::Sensor(k));
-            first + own.unwrap_or(0)
+            scene.layout.external_at(own.unwrap_or(0))
         };
         Ok(Self {
             program: Some(program),

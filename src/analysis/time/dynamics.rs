@@ -9,6 +9,7 @@ use crate::analysis::time::options::Options;
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{self, Method, Ode, Reason, Stop};
+use crate::scene::layout::Layout;
 
 /// Restarts with other rows before something is wrong.
 const MAX_ROW_RESTARTS: usize = 10_000;
@@ -26,7 +27,7 @@ pub fn integrate(
         return out;
     };
     let n = Ode::size(system);
-    let t0 = system.numbers[0];
+    let t0 = system.numbers[Layout::TIME];
     let mut y = system.numbers[system.scene.layout.y()].to_vec();
     system.precision = options.error;
     system.external.begin(t0, &[]);

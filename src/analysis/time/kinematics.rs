@@ -9,6 +9,7 @@ use crate::analysis::time::ranks;
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{Failure, Ode, Reason, Stop};
+use crate::scene::layout::Layout;
 
 /// Halvings of a step before the mechanism counts as locked.
 const MAX_HALVINGS: u32 = 24;
@@ -28,7 +29,7 @@ pub fn trace(
     watch: &mut dyn Watch,
 ) -> Trajectory {
     let l = system.scene.layout;
-    let t = system.numbers[0];
+    let t = system.numbers[Layout::TIME];
     let y = system.numbers[l.y()].to_vec();
     let mut out = Trajectory::default();
     out.begin_method(t, "KINEMATIC");
@@ -106,10 +107,10 @@ impl Tracer<'_> {
     fn predict(&mut self, next: f64) {
         let l = self.system.scene.layout;
         self.trial.copy_from_slice(&self.y);
-        for (d, v) in self.dq.iter_mut().zip(&self.y[l.n_q..l.n_q + l.n_v]) {
+        for (d, v) in self.dq.iter_mut().zip(l.state(&self.y).v) {
             *d = v * (next - self.t);
         }
-        (self.system.mover()).displace(&mut self.trial[..l.n_q], &self.dq);
+        (self.system.mover()).displace(l.state_mut(&mut self.trial).q, &self.dq);
     }
 
     /// Brings the predicted state onto the rows; refuses one that jumped to another branch.
@@ -129,9 +130,9 @@ impl Tracer<'_> {
             }
             trial.copy_from_slice(&numbers[system.scene.layout.y()]);
         }
-        let n_q = system.scene.layout.n_q;
+        let l = system.scene.layout;
         let moved = |a: &[f64], b: &[f64]| {
-            let both = a.iter().zip(b).take(n_q);
+            let both = l.state(a).q.iter().zip(l.state(b).q);
             both.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
         };
         // the correction should be small against the step itself, once the velocities are known

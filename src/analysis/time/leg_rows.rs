@@ -5,6 +5,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::leg::{Finished, Leg};
 use crate::analysis::time::ranks;
 use crate::numeric::{Failure, Method, Reason, Step, Stop};
+use crate::scene::layout::Layout;
 
 /// Violation of a row that is left out, relative to what counts as one, up to which it follows from
 /// the others.
@@ -79,7 +80,7 @@ impl Leg<'_> {
             return;
         }
         let last = kept.last().and_then(Option::as_ref);
-        if !last.is_some_and(|n| n[0] == t0) {
+        if !last.is_some_and(|n| n[Layout::TIME] == t0) {
             kept.push(None);
             kept.push(Some(self.system.numbers_at(t0, &self.before)));
         }
@@ -108,8 +109,8 @@ impl Leg<'_> {
     /// Chooses other rows where they are better; whether it did.
     fn choose(&mut self, t: f64, y: &[f64]) -> bool {
         let l = self.system.scene.layout;
-        self.system.numbers[0] = t;
-        self.system.numbers[l.y()].copy_from_slice(&y[..l.y().len()]);
+        self.system.numbers[Layout::TIME] = t;
+        self.system.numbers[l.y()].copy_from_slice(&y[..l.n_y()]);
         let Some(active) = ranks::better_rows(self.system.configured(), &self.system.numbers)
         else {
             return false;

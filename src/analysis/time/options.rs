@@ -2,6 +2,7 @@
 
 use crate::analysis::system::System;
 use crate::numeric::{self, Method, Ode};
+use crate::scene::layout::Layout;
 
 /// Options of an integration.
 #[derive(Clone, Debug)]
@@ -108,7 +109,7 @@ pub fn first_method(system: &mut System, duration: f64) -> &'static str {
     if n == 0 || n > MAX_EIGENVALUES {
         return "DOP853";
     }
-    let t = system.numbers[0];
+    let t = system.numbers[Layout::TIME];
     let y = system.numbers[system.scene.layout.y()].to_vec();
     let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
     if Ode::jacobian(system, t, &y, &mut jacobian, &mut dfdt).is_err() {

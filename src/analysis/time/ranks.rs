@@ -8,6 +8,7 @@ use crate::analysis::start::assemble::{self, DEPENDENT, Mover};
 use crate::expr::program::{Program, Work};
 use crate::scene::configuration::Configured;
 use crate::scene::equations::row_name;
+use crate::scene::layout::Layout;
 use crate::scene::programs::{record, weights};
 use crate::scene::{Scene, Source};
 use nalgebra::DMatrix;
@@ -102,7 +103,12 @@ impl Gradients {
 /// All rows at one place, as [`Gradients::at`] gives them.
 fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
     let l = scene.layout;
-    let (_, gradient, _) = assemble::rows_at(scene, numbers[0], &numbers[l.q()], &numbers[l.x()]);
+    let (_, gradient, _) = assemble::rows_at(
+        scene,
+        numbers[Layout::TIME],
+        &numbers[l.q()],
+        &numbers[l.x()],
+    );
     let mut all = assemble::scaled_rows(&gradient, &weights(&scene));
     for (r, row) in all.iter_mut().enumerate() {
         let one = assemble::natural(&scene, r);
@@ -190,7 +196,7 @@ pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Option<Vec<bool>> 
 /// Moves a state onto all rows, also those that were left out, where that is possible with a small change.
 pub fn repair(scene: Configured<'_>, numbers: &mut [f64]) -> bool {
     let l = scene.layout;
-    let t = numbers[0];
+    let t = numbers[Layout::TIME];
     let x = numbers[l.x()].to_vec();
     let mut q = numbers[l.q()].to_vec();
     let mut own = scene.configuration.clone();
@@ -216,7 +222,7 @@ pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
         13..31 => 16,
         _ => 3,
     };
-    let mut times = states.iter().flatten().map(|n| n[0]);
+    let mut times = states.iter().flatten().map(|n| n[Layout::TIME]);
     let first = times.next().unwrap_or(0.0);
     let duration = times.next_back().unwrap_or(first) - first;
     // the longest that each row is on the way
@@ -248,12 +254,12 @@ pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
             let fall = (sizes[before] - sizes[k]).max(sizes[after] - sizes[k]);
             // straight on from outside, the two sides would meet at zero between these states
             let slope = |a: usize, b: usize| {
-                let h = run[b][0] - run[a][0];
+                let h = run[b][Layout::TIME] - run[a][Layout::TIME];
                 ((sizes[b] - sizes[a]) / h.max(f64::MIN_POSITIVE)).abs()
             };
             let steep = |a: usize, b: usize| {
                 let outer = slope(a.saturating_sub(1), a).max(slope(b, (b + 1).min(run.len() - 1)));
-                sizes[a] + sizes[b] <= 1.5 * outer * (run[b][0] - run[a][0])
+                sizes[a] + sizes[b] <= 1.5 * outer * (run[b][Layout::TIME] - run[a][Layout::TIME])
             };
             if sizes[k] > 1.25 * fall && !steep(before, k) && !steep(k, after) {
                 continue;
@@ -267,7 +273,7 @@ pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
             let Some((at, size)) = best else { continue };
             let new = found
                 .last()
-                .is_none_or(|p: &Pass| (p.t - at[0]).abs() > 1e-4 * duration);
+                .is_none_or(|p: &Pass| (p.t - at[Layout::TIME]).abs() > 1e-4 * duration);
             if size < PASSED && new {
                 found.push(pass(scene, &at, &rows, &usual));
             }
@@ -289,7 +295,7 @@ fn between(
 ) -> Vec<f64> {
     let l = scene.layout;
     let mover = Mover::new(&scene);
-    let h = b[0] - a[0];
+    let h = b[Layout::TIME] - a[Layout::TIME];
     let rate = |n: &[f64]| {
         let mut rate = vec![0.0; l.n_q];
         mover.untangent(&n[l.q()], &n[l.v()], &mut rate);
@@ -297,7 +303,7 @@ fn between(
     };
     let (rate_a, rate_b) = (rate(a), rate(b));
     let mut n: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + s * (b - a)).collect();
-    n[0] = a[0] + s * h;
+    n[Layout::TIME] = a[Layout::TIME] + s * h;
     let mut q: Vec<f64> = l
         .q()
         .enumerate()
@@ -311,7 +317,7 @@ fn between(
     if let Some(rows) = rows {
         let x = n[l.x()].to_vec();
         let mut own = scene.configuration.clone();
-        assemble::close(&scene, &mut own, n[0], &mut q, &x, |_, r| {
+        assemble::close(&scene, &mut own, n[Layout::TIME], &mut q, &x, |_, r| {
             !rows.contains(&r)
         });
     }
@@ -328,7 +334,7 @@ fn refined(scene: Configured<'_>, run: &[&Vec<f64>], rows: &[usize]) -> Vec<Vec<
         .collect();
     let mut all = Vec::new();
     for pair in run.windows(2) {
-        let h = pair[1][0] - pair[0][0];
+        let h = pair[1][Layout::TIME] - pair[0][Layout::TIME];
         let speed = |n: &[f64]| {
             turning
                 .iter()
@@ -417,7 +423,7 @@ fn pass(scene: Configured<'_>, numbers: &[f64], rows: &[usize], usual: &[f64]) -
     // the row that comes last in the combination is the one that would be left out
     let last = (0..unit.len()).rev().find(|&k| unit[k].abs() > 0.1 * most);
     Pass {
-        t: numbers[0],
+        t: numbers[Layout::TIME],
         rows: last
             .map(|k| row_name(&scene.rows[rows[k]]))
             .into_iter()
@@ -484,7 +490,7 @@ pub struct Lock {
 pub fn locked(scene: Configured<'_>, numbers: &[f64]) -> Option<Lock> {
     let l = scene.layout;
     let rows = active(scene);
-    let (t, q, x) = (numbers[0], &numbers[l.q()], &numbers[l.x()]);
+    let (t, q, x) = (numbers[Layout::TIME], &numbers[l.q()], &numbers[l.x()]);
     let all = gradients(scene, numbers);
     let m = rows.len();
     // rows that have become short here are compared with the longest

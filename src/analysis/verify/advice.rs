@@ -9,6 +9,7 @@ use crate::model::{JointKind, PrimitiveKind};
 use crate::physics::joint::Tie;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
+use crate::scene::layout::Layout;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -129,7 +130,7 @@ fn fits(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, c: usize, t
         let l = changed.layout;
         let (_, gradient, _) = assemble::rows_at(
             changed.within(configuration),
-            numbers[0],
+            numbers[Layout::TIME],
             &numbers[l.q()],
             &numbers[l.x()],
         );
