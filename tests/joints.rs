@@ -4,7 +4,7 @@
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
-use cognate::results::Status;
+use cognate::results::{Quantity, Status};
 
 const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
 
@@ -362,7 +362,10 @@ fn motions_that_jump_run_piecewise_when_somebody_insists() {
     assert!(off(&s, "DZ(20,1)", |t| (t - 0.75).max(0.0)) < 1e-10);
     assert!(off(&s, "VZ(20,1)", |t| f64::from(u8::from(t > 0.75))) < 1e-10);
     let jump = &s.run.record.piecewise[0];
-    assert_eq!((jump.motion, jump.at, jump.of), (1, 0.75, "velocity"));
+    assert_eq!(
+        (jump.motion, jump.at, jump.of),
+        (1, 0.75, Quantity::Velocity)
+    );
     assert!((jump.by - 1.0).abs() < 1e-12);
     // beside it a part that is free to move: its spring is not disturbed
     let text = driven("FUNCTION=IF(TIME-1: 0, 0, 0.5)")

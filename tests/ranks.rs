@@ -4,7 +4,7 @@
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
-use cognate::results::Status;
+use cognate::results::{RowChange, Status};
 use std::f64::consts::PI;
 
 fn session(text: &str, columns: &[&str], error: f64) -> Session {
@@ -38,7 +38,7 @@ fn parallelogram(third: bool, more: &str) -> String {
 fn passes(session: &Session) -> Vec<f64> {
     let changes = session.run.record.rank_changes.iter();
     changes
-        .filter(|c| c.what == "passes")
+        .filter(|c| c.change == RowChange::Passes)
         .map(|c| c.time)
         .collect()
 }
@@ -137,7 +137,7 @@ fn the_rows_that_are_kept_change_as_a_pin_turns() {
     }
     let changes = &pinned.run.record.rank_changes;
     assert!(
-        changes.iter().any(|c| c.what == "other rows"),
+        changes.iter().any(|c| c.change == RowChange::Exchanged),
         "{changes:?}"
     );
 }
@@ -263,7 +263,7 @@ fn linked_four_bars_tell_each_folded_position() {
     let changes = &s.run.record.rank_changes;
     assert!(changes.len() >= 10, "{changes:?}");
     for (k, c) in changes.iter().enumerate() {
-        assert_eq!(c.what, "passes");
+        assert_eq!(c.change, RowChange::Passes);
         assert!(c.rows.iter().all(|r| r.starts_with("JOINT/")), "{c:?}");
         let crank = c.place.iter().find(|p| p.0 == "JOINT/1 angle");
         // level after each odd number of quarter turns, none left out; found where the rank falls

@@ -1,11 +1,13 @@
-//! Tables as comma-separated values: names in the first row, units in the second when asked for, then one row per output.
+//! Tables as comma-separated values: a row of names, a row of units when asked for, then one row
+//! per output.
 //!
-//! Numbers have the shortest digits that read back as the same bits, so a table is as good as the run itself.
+//! Numbers have the shortest digits that read back as the same bits, so that a table is as good as
+//! the run itself.
 
 use super::{Column, Kind, Run, Sequence, Units, digits, malformed, number};
 use crate::diagnostic::Diagnostic;
 
-/// The table of a run; `units`: with a row of units below the names.
+/// Writes the table of a run. `units`: with a row of units below the names.
 pub fn write(run: &Run, units: bool) -> String {
     let columns: Vec<&Column> = run
         .table_columns()
@@ -29,7 +31,8 @@ pub fn write(run: &Run, units: bool) -> String {
     text
 }
 
-/// A unit in a cell: never empty, so that no reader takes the row for numbers or for a blank line.
+/// Writes a unit in a cell: never empty, so that no reader takes the row for numbers or for a blank
+/// line.
 fn unit_cell(unit: &str) -> String {
     if unit.is_empty() {
         "-".into()
@@ -38,11 +41,11 @@ fn unit_cell(unit: &str) -> String {
     }
 }
 
-/// Rows of text cells, quoted where they must be.
+/// Writes rows of text cells, quoted where they must be.
 fn to_text(rows: &[Vec<String>]) -> String {
     let mut writer = ::csv::Writer::from_writer(Vec::new());
     for row in rows {
-        // Writing to memory with rows of equal length has nothing that could fail.
+        // writing rows of equal length to memory cannot fail
         let written = writer.write_record(row);
         debug_assert!(written.is_ok(), "rows have equal length");
     }
@@ -55,7 +58,7 @@ fn to_text(rows: &[Vec<String>]) -> String {
 /// Reads a table; a second row that holds no number is the row of units.
 ///
 /// # Errors
-/// When a row has more or fewer cells than the first, or a cell holds no number; says which line.
+/// When a row has more or fewer cells than the first, or a cell holds no number, with the line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     let mut reader = ::csv::ReaderBuilder::new()
         .has_headers(false)
@@ -116,7 +119,7 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     if run.columns.is_empty() {
         return Err(malformed(0, "there is no row of names"));
     }
-    // A table does not say where its rows come from: they are one sequence.
+    // a table does not say where its rows come from: they are one sequence
     let (kind, rows) = (Kind::Dynamic, 0..run.rows());
     let name = format!("{}_001", kind.name());
     run.sequences.push(Sequence { name, kind, rows });

@@ -1,11 +1,13 @@
 //! Reading `.gra` files: the place of every part at every output, to six digits.
 //!
-//! Card, decoded from real files: a line of identification, the title, a line of counts (parts, markers, graphics, –, joints, …);
-//! one line per part (ground first), per joint one line, per marker two lines, then graphics. Then come frames. A frame begins with a
-//! line that holds one number, its time, and has one line of six numbers per part other than ground (x y z of the part's frame in
-//! ground, 3-1-3 angles in radians), followed by lines for force arrows, which are skipped. The first frame, time −999999, is
-//! the model as it was read; a time of −555555 marks a static equilibrium, which has no time of its own. Numbers stand in
-//! columns of 13 characters after one blank, and may touch.
+//! Card, decoded from real files: a line of identification, the title, a line of counts (parts,
+//! markers, graphics, –, joints, …); one line per part (ground first), per joint one line, per
+//! marker two lines, then graphics. Then come frames. A frame begins with a line that holds one
+//! number, its time, and has one line of six numbers per part other than ground (x y z of the
+//! part's frame in ground, 3-1-3 angles in radians), followed by lines for force arrows, which are
+//! skipped. The first frame, time −999999, is the model as it was read. A time of −555555 marks a
+//! static equilibrium, which has no time of its own. Numbers stand in columns of 13 characters
+//! after one blank, and may touch.
 
 use super::{Component, Entity, Kind, Run, Units, component_unit, malformed, number};
 use crate::diagnostic::Diagnostic;
@@ -17,7 +19,7 @@ const STATIC: f64 = -5.55555e5;
 /// Reads the trajectories of a `.gra` file.
 ///
 /// # Errors
-/// When the contents are not of this format; says which line.
+/// When the contents are not of this format, with the line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     let text = String::from_utf8_lossy(bytes);
     let lines: Vec<&str> = text.lines().collect();
@@ -128,13 +130,13 @@ fn frames(run: &mut Run, lines: &[&str], first: usize) -> Result<(), Diagnostic>
     Ok(())
 }
 
-/// The number of a line that holds nothing else.
+/// Reads the number of a line that holds nothing else.
 fn lone_number(line: &str) -> Option<f64> {
     let text = line.trim();
     if text.len() <= 13 { number(text) } else { None }
 }
 
-/// The numbers of a line of one blank and columns 13 wide.
+/// Reads the numbers of a line of one blank and columns 13 wide.
 fn columns(line: &str) -> Option<Vec<f64>> {
     let line = line.trim_end();
     let cells = line
@@ -151,7 +153,8 @@ fn columns(line: &str) -> Option<Vec<f64>> {
         .collect()
 }
 
-/// Units from the code in the first line, such as `MMKGS_N_RACA`: length, mass, time, force, angle in two characters each.
+/// Reads the units from the code in the first line, such as `MMKGS_N_RACA`: length, mass, time,
+/// force and angle in two characters each.
 fn units(identification: &str) -> Units {
     let code = identification
         .split_whitespace()
@@ -161,7 +164,7 @@ fn units(identification: &str) -> Units {
     units_of_code(code)
 }
 
-/// Units of a code such as `M_KGS_N_RACA`; what it does not know stays SI.
+/// Returns the units of a code such as `M_KGS_N_RACA`; letters that are not known mean SI.
 pub(super) fn units_of_code(code: &str) -> Units {
     let name = |at: usize, names: &[(&str, &str)], default: &str| {
         let short = code.get(at..at + 2).unwrap_or_default();

@@ -6,7 +6,7 @@ use super::{Counts, Jump, RankChange, Run, Simulation};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// The record of a run: status, counts, timings, and one entry per simulation.
+/// Writes the record of a run: status, counts, timings, and one entry per simulation.
 pub fn record(run: &Run) -> Value {
     let r = &run.record;
     let mut record = json!({
@@ -42,21 +42,21 @@ pub fn record(run: &Run) -> Value {
     record
 }
 
-/// The record with the names and sizes of the files that were written.
+/// Adds to a record the names and sizes of the files that were written.
 pub fn with_files(mut record: Value, files: &BTreeMap<String, u64>) -> Value {
     record["files"] = json!(files);
     record
 }
 
 fn jump(j: &Jump) -> Value {
-    json!({ "element": format!("MOTION/{}", j.motion), "time": j.at, "of": j.of, "by": j.by })
+    json!({ "element": format!("MOTION/{}", j.motion), "time": j.at, "of": j.of.word(), "by": j.by })
 }
 
 fn rank_change(c: &RankChange) -> Value {
     let place: Map<String, Value> = (c.place.iter())
         .map(|(name, x)| (name.clone(), json!(x)))
         .collect();
-    json!({ "time": c.time, "what": c.what, "rows": c.rows, "place": place })
+    json!({ "time": c.time, "what": c.change.word(), "rows": c.rows, "place": place })
 }
 
 fn simulation(s: &Simulation) -> Value {
@@ -86,7 +86,7 @@ fn add_counts(to: &mut Map<String, Value>, c: &Counts) {
     to.insert("factorizations".into(), c.factorizations.into());
 }
 
-/// The table of a run, column by column: `{"columns": [{"name", "unit", "values"}]}`.
+/// Writes the table of a run, column by column: `{"columns": [{"name", "unit", "values"}]}`.
 pub fn table(run: &Run) -> Value {
     let rows: Vec<usize> = run.table_rows().collect();
     let columns = run
@@ -100,7 +100,7 @@ pub fn table(run: &Run) -> Value {
     json!({ "name": run.name, "title": run.title, "columns": columns.collect::<Vec<_>>() })
 }
 
-/// A run as one document: its table, and which rows belong to which simulation.
+/// Writes a run as one document: its table, and which rows belong to which simulation.
 pub fn document(run: &Run) -> String {
     let mut document = table(run);
     document["sequences"] = (run.sequences.iter())
@@ -110,7 +110,7 @@ pub fn document(run: &Run) -> String {
     text(&document)
 }
 
-/// A value as indented text with a line break at its end.
+/// Writes a value as indented text with a line break at its end.
 pub fn text(value: &Value) -> String {
     format!("{value:#}\n")
 }

@@ -1,135 +1,74 @@
 //! `.msg` logs: what happened, in the lines that users' scripts look for.
 //!
-//! Scripts find `command:` echoes, the table of steps (time, step, evaluations, steps, order, CPU time), the list of redundant
-//! equations, boxes `---- START: WARNING ----`, and `Finished -----` with the times below it. Those lines keep their form here; the
-//! rest is ours.
+//! Scripts find `command:` echoes, the table of steps (time, step, evaluations, steps, order, CPU
+//! time), the list of redundant equations, boxes `---- START: WARNING ----`, and `Finished -----`
+//! with the times below it. Those lines keep their form here; the rest is ours.
 
 use super::{Event, Kind, Run};
 use std::fmt::Write;
 
+/// The frame of the title.
 const RULE: &str =
     "-------------------------------------------------------------------------------";
 
-/// The log of a run.
-pub fn write(run: &Run) -> String {
-    let mut text = format!("\n cognate {}\n\n", env!("CARGO_PKG_VERSION"));
-    let mut in_table = false;
-    for event in &run.log {
-        if in_table && !matches!(event, Event::Progress { .. }) {
-            in_table = false;
-        }
-        if let Event::Progress { .. } = event
-            && !in_table
-        {
-            text.push_str(TABLE_HEAD);
-            in_table = true;
-        }
-        // Writing to a String cannot fail.
-        let _ = write_event(&mut text, event);
-    }
-    text
-}
-
+/// The head of the table of steps.
 const TABLE_HEAD: &str = "
    Simulation      Step        Function    Cumulative   Integration     CPU
       Time         Size       Evaluations  Steps Taken    Order        time
    ___________  ___________   ___________  ___________   _________    ________
 ";
 
+/// Writes the log of a run.
+pub fn write(run: &Run) -> String {
+    let mut text = format!("\n cognate {}\n\n", env!("CARGO_PKG_VERSION"));
+    let mut in_table = false;
+    for event in &run.log {
+        let is_row = matches!(event, Event::Progress { .. });
+        if is_row && !in_table {
+            text.push_str(TABLE_HEAD);
+        }
+        in_table = is_row;
+        // writing to a String cannot fail
+        let _ = write_event(&mut text, event);
+    }
+    text
+}
+
 fn write_event(text: &mut String, event: &Event) -> std::fmt::Result {
     match event {
         Event::Command(command) => {
-            for line in command.lines() {
-                writeln!(text, " command: {line}")?;
-            }
-            Ok(())
+            let mut lines = command.lines();
+            lines.try_for_each(|line| writeln!(text, " command: {line}"))
         }
-        Event::Title(title) => {
-            let (heading, double) = ("Model Title", "=".repeat(77));
-            let empty = "";
-            writeln!(
-                text,
-                "\n{RULE}\n|{heading:^77}|\n|{double}|\n|{empty:77}|\n|{title:^77}|\n|{empty:77}|\n{RULE}\n"
-            )
-        }
-        Event::Redundant { time, equations } => {
-            let heading =
-                "Degree-of-freedom analysis identified redundant constraints in the model:";
-            writeln!(
-                text,
-                "  Time T={}.\n  {heading}\n  {}",
-                fortran(*time, 9),
-                "-".repeat(heading.len())
-            )?;
-            for (equation, element) in equations {
-                writeln!(
-                    text,
-                    "   -  deactivating constraint equation  {equation} in model.{element}"
-                )?;
-            }
-            text.push('\n');
-            Ok(())
-        }
+        Event::Title(title) => write_title(text, title),
+        Event::Redundant { time, equations } => write_redundant(text, *time, equations),
         Event::Info(message) => writeln!(text, "\n  {message}"),
         Event::Warning(message) => boxed(text, "WARNING", message),
         Event::Error(message) => boxed(text, "ERROR", message),
-        Event::InitialConditions { time, iterations } => {
-            writeln!(
-                text,
-                "\n\n  Begin Displacement Initial Conditions\n\n  Time T={}.",
-                fortran(*time, 9)
-            )?;
-            writeln!(
-                text,
-                "  Converged in {iterations} iterations\n\n  End Displacement Initial Conditions"
-            )
-        }
+        Event::InitialConditions { time, iterations } => writeln!(
+            text,
+            "\n\n  Begin Displacement Initial Conditions\n\n  Time T={}.\n  \
+             Converged in {iterations} iterations\n\n  End Displacement Initial Conditions",
+            fortran(*time, 9)
+        ),
         Event::Static {
             time,
             iterations,
             imbalance,
-        } => {
-            writeln!(
-                text,
-                "\n\n  Begin Static Solution\n\n  Time T={}.",
-                fortran(*time, 9)
-            )?;
-            writeln!(
-                text,
-                "  Static Solution converged in {iterations} iterations"
-            )?;
-            writeln!(
-                text,
-                "  Residual imbalance is less than {}\n\n  End Static Solution",
-                fortran(*imbalance, 5)
-            )
-        }
+        } => writeln!(
+            text,
+            "\n\n  Begin Static Solution\n\n  Time T={}.\n  \
+             Static Solution converged in {iterations} iterations\n  \
+             Residual imbalance is less than {}\n\n  End Static Solution",
+            fortran(*time, 9),
+            fortran(*imbalance, 5)
+        ),
         Event::Begin {
             kind,
             integrator,
             formulation,
             error,
-        } => {
-            let kind = if *kind == Kind::Kinematic {
-                "Kinematic"
-            } else {
-                "Dynamic"
-            };
-            let method = if formulation.is_empty() {
-                integrator.clone()
-            } else {
-                format!("{integrator} {formulation}")
-            };
-            writeln!(
-                text,
-                "\n\n  Begin Simulation\n\n  ****** Performing {kind} Simulation using {method} Integrator ******"
-            )?;
-            writeln!(
-                text,
-                "   The integrator is {integrator}\n   Integration error = {:>15}",
-                fortran(*error, 6)
-            )
-        }
+        } => write_begin(text, *kind, integrator, formulation, *error),
         Event::Progress {
             time,
             step,
@@ -139,25 +78,74 @@ fn write_event(text: &mut String, event: &Event) -> std::fmt::Result {
             seconds,
         } => {
             let (time, step) = (fortran(*time, 5), fortran(*step, 5));
+            let clock = clock(*seconds);
             writeln!(
                 text,
-                "   {time}  {step}{evaluations:13}{steps:13}{order:8}{:>16} ",
-                clock(*seconds)
+                "   {time}  {step}{evaluations:13}{steps:13}{order:8}{clock:>16} "
             )
         }
         Event::End => writeln!(text, "\n  End Simulation"),
         Event::Finished { elapsed, cpu } => {
-            let share = if *elapsed > 0.0 {
-                100.0 * cpu / elapsed
-            } else {
-                100.0
-            };
+            let used = *elapsed > 0.0;
+            let share = if used { 100.0 * cpu / elapsed } else { 100.0 };
             writeln!(
                 text,
-                "\n\nFinished -----\nElapsed time = {elapsed:.2}s,  CPU time = {cpu:.2}s,  {share:.2}%\n"
+                "\n\nFinished -----\n\
+                 Elapsed time = {elapsed:.2}s,  CPU time = {cpu:.2}s,  {share:.2}%\n"
             )
         }
     }
+}
+
+fn write_title(text: &mut String, title: &str) -> std::fmt::Result {
+    let (heading, double, empty) = ("Model Title", "=".repeat(77), "");
+    writeln!(
+        text,
+        "\n{RULE}\n|{heading:^77}|\n|{double}|\n|{empty:77}|\n|{title:^77}|\n|{empty:77}|\n{RULE}\n"
+    )
+}
+
+fn write_redundant(
+    text: &mut String,
+    time: f64,
+    equations: &[(String, String)],
+) -> std::fmt::Result {
+    let heading = "Degree-of-freedom analysis identified redundant constraints in the model:";
+    let (time, rule) = (fortran(time, 9), "-".repeat(heading.len()));
+    writeln!(text, "  Time T={time}.\n  {heading}\n  {rule}")?;
+    for (equation, element) in equations {
+        writeln!(
+            text,
+            "   -  deactivating constraint equation  {equation} in model.{element}"
+        )?;
+    }
+    writeln!(text)
+}
+
+fn write_begin(
+    text: &mut String,
+    kind: Kind,
+    integrator: &str,
+    formulation: &str,
+    error: f64,
+) -> std::fmt::Result {
+    let kind = if kind == Kind::Kinematic {
+        "Kinematic"
+    } else {
+        "Dynamic"
+    };
+    let method = format!("{integrator} {formulation}");
+    let method = method.trim_end();
+    writeln!(
+        text,
+        "\n\n  Begin Simulation\n\n  \
+         ****** Performing {kind} Simulation using {method} Integrator ******"
+    )?;
+    let error = fortran(error, 6);
+    writeln!(
+        text,
+        "   The integrator is {integrator}\n   Integration error = {error:>15}"
+    )
 }
 
 fn boxed(text: &mut String, grade: &str, message: &str) -> std::fmt::Result {
@@ -168,21 +156,19 @@ fn boxed(text: &mut String, grade: &str, message: &str) -> std::fmt::Result {
     )
 }
 
-/// A number as FORTRAN's `E` format prints it: `-1.50000E-02`.
+/// Writes a number as FORTRAN's `E` format does: `-1.50000E-02`.
 fn fortran(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$E}");
-    match text.split_once('E') {
-        Some((mantissa, exponent)) => {
-            let (sign, digits) = exponent
-                .strip_prefix('-')
-                .map_or(('+', exponent), |d| ('-', d));
-            format!("{mantissa}E{sign}{digits:0>2}")
-        }
-        None => text,
-    }
+    // Rust writes exponents without leading zero and plus
+    let Some((mantissa, exponent)) = text.split_once('E') else {
+        return text;
+    };
+    let negative = exponent.strip_prefix('-');
+    let (sign, digits) = negative.map_or(('+', exponent), |digits| ('-', digits));
+    format!("{mantissa}E{sign}{digits:0>2}")
 }
 
-/// Seconds as the table shows them: `20.06`, `8:40`, `1:30:52`.
+/// Writes seconds as the table shows them: `20.06`, `8:40`, `1:30:52`.
 fn clock(seconds: f64) -> String {
     let seconds = if seconds.is_finite() {
         seconds.clamp(0.0, 1e9)

@@ -1,7 +1,7 @@
 //! Where the files of a run go: results of an earlier run make way, files of anybody else are kept.
 //!
-//! A run record lists the files of its run and their sizes. A file that stands where one is to be written and is not on that list
-//! was made by somebody else, or changed since: it is renamed, never overwritten.
+//! A run record lists the files of its run and their sizes. A file that stands in the way and is
+//! not on that list was made by somebody else, or changed since: it is renamed, never overwritten.
 
 use super::write_text;
 use crate::diagnostic::Diagnostic;
@@ -25,7 +25,7 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// The folder `dir` for the run called `base`.
+    /// Opens the folder `dir` for the run called `base`.
     pub fn new(dir: &Path, base: &str) -> Self {
         let name = format!("{base}.json");
         let record = dir.join(&name);
@@ -78,28 +78,28 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Names and sizes of what has been written, for the record.
+    /// Returns names and sizes of the files that were written, for the record.
     pub fn written(&self) -> &BTreeMap<String, u64> {
         &self.written
     }
 
-    /// What has been written, in that order.
+    /// Returns the files that were written, in that order.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
 
-    /// Files of others that were in the way: where they were, and where they are now.
+    /// Returns the files of others that were in the way: where they were, and where they are now.
     pub fn kept(&self) -> &[(PathBuf, PathBuf)] {
         &self.kept
     }
 
-    /// The file of the record.
+    /// Returns the path of the record.
     pub fn record(&self) -> &Path {
         &self.record
     }
 }
 
-/// `path~`, or the first of `path~2`, `path~3` … that is free.
+/// Returns `path~`, or the first of `path~2`, `path~3` … that is free.
 fn free_name(path: &Path) -> PathBuf {
     let named = |k: u32| {
         let mut name = path.as_os_str().to_owned();

@@ -9,7 +9,7 @@ use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::time::{ranks, valueless};
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};
-use crate::results::{self, Counts, Event, Kind, Status};
+use crate::results::{self, Counts, Event, Kind, RowChange, Status};
 use crate::scene::build::unknown_names;
 use crate::scene::equations::row_name;
 
@@ -129,7 +129,7 @@ impl Session {
             for pass in ranks::passes(scene.within(&configuration), &trajectory.weak) {
                 told.push(results::RankChange {
                     time: pass.t,
-                    what: "passes",
+                    change: RowChange::Passes,
                     rows: pass.rows,
                     place: pass.place,
                 });
@@ -144,7 +144,7 @@ impl Session {
             configuration.active.clone_from(active);
             told.push(results::RankChange {
                 time: *t,
-                what: "other rows",
+                change: RowChange::Exchanged,
                 rows,
                 place: Vec::new(),
             });
@@ -152,7 +152,7 @@ impl Session {
         for &(t, row) in &trajectory.restored {
             told.push(results::RankChange {
                 time: t,
-                what: "restored",
+                change: RowChange::Restored,
                 rows: vec![row_name(&scene.rows[row])],
                 place: Vec::new(),
             });
@@ -161,13 +161,13 @@ impl Session {
         for change in told.iter().take(20) {
             let rows = change.rows.join(", ");
             let time = change.time;
-            self.warn(&match change.what {
-                "passes" => format!(
+            self.warn(&match change.change {
+                RowChange::Passes => format!(
                     "at time {time:.9} the rank of the constraints falls in passing: {rows} depends on others where {}",
                     ranks::words(&change.place)
                 ),
-                "restored" => format!("at time {time:.9} {rows} no longer follows from the others; it is kept from there"),
-                _ => format!("at time {time:.9} other rows are kept: {rows} in place of what they make superfluous"),
+                RowChange::Restored => format!("at time {time:.9} {rows} no longer follows from the others; it is kept from there"),
+                RowChange::Exchanged => format!("at time {time:.9} other rows are kept: {rows} in place of what they make superfluous"),
             });
         }
         self.run.record.rank_changes.extend(told);

@@ -9,7 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::program::Input;
 use crate::expr::smoothness::{Breakpoint, smoothness};
 use crate::model::Level;
-use crate::results::Jump;
+use crate::results::{Jump, Quantity};
 use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
@@ -32,14 +32,21 @@ impl From<Break> for Jump {
         Jump {
             motion: b.motion,
             at: b.at,
-            of: QUANTITIES[b.order.min(2)],
+            of: quantity(b.order),
             by: b.by,
         }
     }
 }
 
-/// What jumps, by order.
-const QUANTITIES: [&str; 3] = ["displacement", "velocity", "acceleration"];
+/// The derivative of a displacement of this order.
+fn quantity(order: usize) -> Quantity {
+    match order {
+        0 => Quantity::Displacement,
+        1 => Quantity::Velocity,
+        _ => Quantity::Acceleration,
+    }
+}
+
 /// Most breakpoints that a sentence names.
 const TOLD: usize = 5;
 
@@ -115,7 +122,7 @@ fn told(breaks: &[Break], which: impl Fn(&Break) -> bool) -> Vec<(u32, String)> 
                 .filter(|b| b.motion == m && which(b))
                 .collect();
             let worst = own.iter().map(|b| b.order).min()?;
-            let what = QUANTITIES[worst];
+            let what = quantity(worst).word();
             let mut times: Vec<String> = (own.iter().take(TOLD))
                 .map(|b| format!("{} (by {:.6})", b.at, b.by))
                 .collect();

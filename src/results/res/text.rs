@@ -1,13 +1,14 @@
-//! `.res` files, old text form: places, velocities and accelerations of rigid parts.
+//! Reading `.res` files of the old text form: places, velocities and accelerations of rigid parts.
 //!
-//! Card: blocks of lines, each opened by a title in columns 1–40 and closed by a line `!`. `RIGID PARTS MAP` says for each part on
-//! which line of an output block its records stand, counted from the title; `NAME MAP` names the parts; each `ANALYSIS OUTPUT
-//! BLOCK` holds one time. Numbers stand in columns of 12 characters and may touch. Orientation is given by Euler parameters
-//! e0 … e3. Records of other elements are not read: their layout is not known.
+//! Card: blocks of lines, each opened by a title in columns 1–40 and closed by a line `!`. `RIGID
+//! PARTS MAP` says for each part on which line of an output block its records stand, counted from
+//! the title. `NAME MAP` names the parts. Each `ANALYSIS OUTPUT BLOCK` holds one time. Numbers
+//! stand in columns of 12 characters and may touch. Orientation is given by Euler parameters e0 …
+//! e3. Records of other elements are not read: their layout is not known.
 
-use super::gra::units_of_code;
-use super::{Component, Entity, Kind, Run, component_unit, malformed, number};
 use crate::diagnostic::Diagnostic;
+use crate::results::gra::units_of_code;
+use crate::results::{Component, Entity, Kind, Run, component_unit, malformed, number};
 
 const FIRST_TITLE: &str = "FILE TYPE AND SOURCE";
 const RECORDS: [&[&str]; 3] = [
@@ -16,12 +17,12 @@ const RECORDS: [&[&str]; 3] = [
     &["ACCX", "ACCY", "ACCZ", "WDX", "WDY", "WDZ"],
 ];
 
-/// Whether a text begins like this format.
+/// Returns whether a text begins like this format.
 pub(super) fn recognise(text: &str) -> bool {
     text.trim_start().starts_with(FIRST_TITLE)
 }
 
-/// A block: its title, the line it stands on (1-based), and the lines up to, not including, its `!`.
+/// A block: its title, the 1-based line of that, and the lines up to, not including, its `!`.
 struct Block<'a> {
     title: &'a str,
     line: usize,
@@ -29,7 +30,7 @@ struct Block<'a> {
 }
 
 impl Block<'_> {
-    /// The `width` numbers on a line counted from the title.
+    /// Returns the `width` numbers on a line counted from the title.
     fn record(&self, line: usize, width: usize) -> Result<Vec<f64>, Diagnostic> {
         let text = (line.checked_sub(1))
             .and_then(|l| self.lines.get(l))
@@ -123,7 +124,8 @@ fn blocks<'a>(lines: &'a [&'a str]) -> Result<Vec<Block<'a>>, Diagnostic> {
     Ok(blocks)
 }
 
-/// Adds the columns of all parts; for each record in their order the line of an output block and the count of numbers.
+/// Adds the columns of all parts. Returns, for each record in their order, the line of an output
+/// block and the count of numbers.
 fn add_parts(
     run: &mut Run,
     map: &Block<'_>,
@@ -154,7 +156,7 @@ fn add_parts(
             }
         }
     }
-    // Records are lines of their own: what is read from a block grows with the block, whatever the map says.
+    // a line holds one record: otherwise a small block with a large map would take any memory
     let mut places: Vec<u64> = parts
         .iter()
         .flat_map(|p| p.1.iter().zip(saved).filter(|s| s.1).map(|s| *s.0))
@@ -177,7 +179,7 @@ fn add_parts(
             components: Vec::new(),
         });
     }
-    // All places first, then all velocities, then all accelerations, as in the XML form.
+    // all places first, then all velocities, then all accelerations, as in the XML form
     for (kind, components) in RECORDS.iter().enumerate().filter(|&(kind, _)| saved[kind]) {
         for (index, (_, places)) in parts.iter().enumerate() {
             records.push((
@@ -197,7 +199,7 @@ fn add_parts(
     Ok(records)
 }
 
-/// The last part of the name that the map gives to a rigid part.
+/// Returns the last part of the name that the map gives to a rigid part.
 fn name_of(id: u64, names: Option<&Block<'_>>) -> String {
     let is_it = |line: &str| {
         line.contains("RIGID PART")
@@ -211,7 +213,7 @@ fn name_of(id: u64, names: Option<&Block<'_>>) -> String {
         .map_or_else(|| format!("PART_{id}"), str::to_owned)
 }
 
-/// The kind of analysis from the first line of an output block.
+/// Reads the kind of analysis from the first line of an output block.
 fn kind_of(line: &str) -> Kind {
     let text = line.to_ascii_uppercase();
     let known = [
@@ -227,7 +229,7 @@ fn kind_of(line: &str) -> Kind {
         .map_or(Kind::Dynamic, |k| k.1)
 }
 
-/// The numbers of a line of columns 12 wide.
+/// Reads the numbers of a line of columns 12 wide.
 fn columns(line: &str) -> Option<Vec<f64>> {
     let line = line.trim_end();
     if !line.is_ascii() {

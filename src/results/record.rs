@@ -1,0 +1,230 @@
+//! The record of a run: how it ended, what it cost, and what the user should know.
+
+use super::Kind;
+
+/// The way in which a run, or one simulation of it, ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Status {
+    /// everything that was asked for was done
+    #[default]
+    Completed,
+    /// the model has no consistent configuration, or contradicts itself
+    Model,
+    /// no equilibrium was found
+    NoEquilibrium,
+    /// the integration could not go on
+    Stopped,
+    /// a limit of time, memory or steps was reached
+    Limit,
+    /// the user asked to stop
+    Interrupted,
+}
+
+impl Status {
+    /// Returns its word in the run record.
+    pub fn word(self) -> &'static str {
+        match self {
+            Status::Completed => "completed",
+            Status::Model => "model_error",
+            Status::NoEquilibrium => "no_equilibrium",
+            Status::Stopped => "stopped",
+            Status::Limit => "limit",
+            Status::Interrupted => "interrupted",
+        }
+    }
+    /// Returns the exit code of a program that ends this way.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Status::Completed => 0,
+            Status::Model => 4,
+            Status::NoEquilibrium => 5,
+            Status::Stopped => 6,
+            Status::Limit => 7,
+            Status::Interrupted => 130,
+        }
+    }
+}
+
+/// The work that a method did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// accepted steps
+    pub steps: u64,
+    /// rejected steps
+    pub rejected_steps: u64,
+    /// evaluations of rates or residuals
+    pub evaluations: u64,
+    /// evaluations of the Jacobian
+    pub jacobians: u64,
+    /// factorizations of a matrix
+    pub factorizations: u64,
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.rejected_steps += other.rejected_steps;
+        self.evaluations += other.evaluations;
+        self.jacobians += other.jacobians;
+        self.factorizations += other.factorizations;
+    }
+}
+
+/// The facts about a run, as its JSON record holds them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Record {
+    /// why it ended
+    pub status: Status,
+    /// why it ended early, as a code that `cognate explain` knows; empty: everything was done
+    pub stop_code: &'static str,
+    /// the same in a sentence
+    pub stop_reason: String,
+    /// the file that was run, as the user named it
+    pub model: String,
+    /// the method that integrated, and why, when the program chose
+    pub method: String,
+    /// requested error
+    pub error: Option<f64>,
+    /// reading and compiling the model, in s
+    pub read_seconds: f64,
+    /// solving alone, median of the repeats, in s
+    pub solve_seconds: f64,
+    /// writing results, in s
+    pub write_seconds: f64,
+    /// how often it was solved to time it
+    pub repeats: u32,
+    /// totals of all simulations
+    pub counts: Counts,
+    /// degrees of freedom
+    pub freedom: i64,
+    /// rows left out because others imply them, by name
+    pub redundant: Vec<String>,
+    /// when and where the rank of the rows changed
+    pub rank_changes: Vec<RankChange>,
+    /// largest change of the energy balance, relative to its largest part; `None`: not watched
+    pub energy_drift: Option<f64>,
+    /// largest residual of a constraint row over the run; `None`: there are no rows
+    pub constraint_drift: Option<f64>,
+    /// what the user should know, one sentence each
+    pub warnings: Vec<String>,
+    /// jumps of what motions prescribe that were run all the same
+    pub piecewise: Vec<Jump>,
+    /// one per SIMULATE command
+    pub simulations: Vec<Simulation>,
+}
+
+/// A jump of what a MOTION prescribes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jump {
+    /// user's number of the MOTION
+    pub motion: u32,
+    /// when
+    pub at: f64,
+    /// the quantity that jumps
+    pub of: Quantity,
+    /// by how much
+    pub by: f64,
+}
+
+/// A quantity that a MOTION prescribes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// a length or an angle
+    Displacement,
+    /// its rate
+    Velocity,
+    /// the rate of that
+    Acceleration,
+}
+
+impl Quantity {
+    /// Returns its word in sentences and in the run record.
+    pub fn word(self) -> &'static str {
+        match self {
+            Quantity::Displacement => "displacement",
+            Quantity::Velocity => "velocity",
+            Quantity::Acceleration => "acceleration",
+        }
+    }
+}
+
+/// A change of the rank of the rows during a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankChange {
+    /// when
+    pub time: f64,
+    /// what happened to the rows
+    pub change: RowChange,
+    /// the rows concerned
+    pub rows: Vec<String>,
+    /// coordinates there: names and values
+    pub place: Vec<(String, f64)>,
+}
+
+/// An event in the dependence of rows on each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowChange {
+    /// the rows depend on others at that position alone
+    Passes,
+    /// the rows are kept from there in place of others
+    Exchanged,
+    /// the rows followed from others and no longer do
+    Restored,
+}
+
+impl RowChange {
+    /// Returns its word in the run record.
+    pub fn word(self) -> &'static str {
+        match self {
+            RowChange::Passes => "passes",
+            RowChange::Exchanged => "other rows",
+            RowChange::Restored => "restored",
+        }
+    }
+}
+
+/// The facts about one simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// what it was
+    pub kind: Kind,
+    /// clock at its start
+    pub start: f64,
+    /// clock at its end
+    pub end: f64,
+    /// rows it wrote
+    pub outputs: usize,
+    /// the method
+    pub method: String,
+    /// why it ended
+    pub status: Status,
+    /// why it ended early, as a code that `cognate explain` knows; empty: everything was done
+    pub stop_code: &'static str,
+    /// the same in a sentence
+    pub stop_reason: String,
+    /// solving alone, in s
+    pub solve_seconds: f64,
+    /// what the method did
+    pub counts: Counts,
+    /// names of the worst rows or elements where it stopped
+    pub worst: Vec<String>,
+}
+
+impl Simulation {
+    /// Makes a simulation that has not done anything yet.
+    pub fn new(kind: Kind, start: f64) -> Self {
+        Self {
+            kind,
+            start,
+            end: start,
+            outputs: 0,
+            method: String::new(),
+            status: Status::Completed,
+            stop_code: "",
+            stop_reason: String::new(),
+            solve_seconds: 0.0,
+            counts: Counts::default(),
+            worst: Vec::new(),
+        }
+    }
+}

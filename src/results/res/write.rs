@@ -1,0 +1,171 @@
+//! Writing `.res` files.
+
+use super::EXPRESSIONS;
+use crate::results::{Run, Status, digits};
+use std::fmt::Write;
+
+/// Writes a run as `.res` text, which reads back with the same numbers.
+pub fn write(run: &Run) -> String {
+    let owners = owners(run);
+    let mut text = String::from(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <Results xmlns=\"http://www.mscsoftware.com/:xrf10\">\n",
+    );
+    head(run, &mut text);
+    step_map(run, &owners, &mut text);
+    for (sequence, id) in run.sequences.iter().zip(1..) {
+        put(
+            &mut text,
+            format_args!("<Data name=\"{}\" id=\"{id}\">\n", escape(&sequence.name)),
+        );
+        for row in sequence.rows.clone().filter(|&row| row < run.rows()) {
+            put(
+                &mut text,
+                format_args!("<Step type=\"{}\">\n", sequence.kind.step()),
+            );
+            values(run, &owners, row, &mut text);
+            text.push_str("</Step>\n");
+        }
+        text.push_str("</Data>\n");
+    }
+    let status = if run.record.status == Status::Completed {
+        "Successful"
+    } else {
+        "Failed"
+    };
+    put(
+        &mut text,
+        format_args!(
+            "<TerminationStatus runTermObject=\"{}\" runStatus=\"{status}\" />\n",
+            escape(&run.record.stop_reason)
+        ),
+    );
+    text.push_str("</Analysis>\n</Results>\n");
+    text
+}
+
+fn put(text: &mut String, what: std::fmt::Arguments<'_>) {
+    // writing to a String cannot fail
+    let _ = text.write_fmt(what);
+}
+
+/// Returns the entity that each column belongs to; `None`: it belongs to no element.
+fn owners(run: &Run) -> Vec<Option<usize>> {
+    let mut owners = vec![None; run.columns.len()];
+    for (index, entity) in run.entities.iter().enumerate() {
+        for component in &entity.components {
+            if let Some(owner) = owners.get_mut(component.column) {
+                *owner = Some(index);
+            }
+        }
+    }
+    owners
+}
+
+fn head(run: &Run, text: &mut String) {
+    let (name, title, version) = (
+        escape(&run.name),
+        escape(&run.title),
+        env!("CARGO_PKG_VERSION"),
+    );
+    let u = &run.units;
+    put(
+        text,
+        format_args!(
+            "<Bibliography>\n\
+             <File URI=\"file://{name}.res\" schema=\"xrf\" version=\"2.0.0.0\" publicationDate=\"-unknown-\" />\n\
+             <Revision version=\"1\" derivedFrom=\"-unknown-\">\n<Comment>\n</Comment>\n</Revision>\n\
+             </Bibliography>\n\
+             <Analysis name=\"{name}\" executionDate=\"-unknown-\" Solver=\"cognate {version}\" script=\"-unknown-\">\n\
+             <Bibliography>\n\
+             <Environment operatingSystem=\"-unknown-\" hostname=\"-unknown-\" />\n\
+             <Application name=\"cognate\" version=\"{version}\" />\n\
+             </Bibliography>\n\
+             <ModelInfo title=\"{title}\" creationDate=\"-unknown-\" checksum=\"-unknown-\" />\n\
+             <Units angle=\"{}\" length=\"{}\" mass=\"{}\" time=\"{}\" />\n",
+            escape(&u.angle),
+            escape(&u.length),
+            escape(&u.mass),
+            escape(&u.time)
+        ),
+    );
+}
+
+/// Writes the map: time, the elements, and columns of no element. A column's number is its place in
+/// the run, from 1.
+fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
+    let component = |text: &mut String, name: &str, column: usize, label: bool| {
+        let unit = run.columns.get(column).map_or("", |c| c.unit.as_str());
+        put(text, format_args!("<Component name=\"{}\"", escape(name)));
+        if label {
+            put(text, format_args!(" plotLabel=\"{}\"", escape(name)));
+        }
+        if !unit.is_empty() {
+            put(text, format_args!(" unitsValue=\"{}\"", escape(unit)));
+        }
+        put(text, format_args!(" id=\"{}\" />\n", column + 1));
+    };
+    text.push_str("<StepMap name=\"map_001\">\n<Entity name=\"time\">\n");
+    component(text, "TIME", 0, false);
+    text.push_str("</Entity>\n");
+    for e in &run.entities {
+        let (name, entity, kind, id) = (escape(&e.name), escape(&e.entity), escape(&e.kind), e.id);
+        put(
+            text,
+            format_args!(
+                "<Entity name=\"{name}\" entity=\"{entity}\" entType=\"{kind}\" objectId=\"{id}\">\n"
+            ),
+        );
+        for c in e.components.iter().filter(|c| c.column < run.columns.len()) {
+            component(text, &c.name, c.column, e.kind == "Request");
+        }
+        text.push_str("</Entity>\n");
+    }
+    let free: Vec<usize> = (1..run.columns.len())
+        .filter(|&c| owners[c].is_none())
+        .collect();
+    if !free.is_empty() {
+        put(
+            text,
+            format_args!(
+                "<Entity name=\"{EXPRESSIONS}\" entity=\"{EXPRESSIONS}\" entType=\"Request\" objectId=\"0\">\n"
+            ),
+        );
+        free.into_iter()
+            .for_each(|c| component(text, &run.columns[c].name, c, true));
+        text.push_str("</Entity>\n");
+    }
+    text.push_str("</StepMap>\n");
+}
+
+/// Writes one row, a line per group of neighbours with one owner.
+fn values(run: &Run, owners: &[Option<usize>], row: usize, text: &mut String) {
+    for (i, column) in run.columns.iter().enumerate() {
+        if i > 0 {
+            text.push(if i == 1 || owners[i] != owners[i - 1] {
+                '\n'
+            } else {
+                ' '
+            });
+        }
+        text.push_str(&digits(column.values[row]));
+    }
+    text.push('\n');
+}
+
+/// Escapes a text for an attribute: markup, and characters that XML cannot hold.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => out.push(' '),
+            '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,267 @@
+//! The results of a run as a table: named columns of one length, and which rows belong to what.
+
+use super::{Event, Record, Units};
+use std::ops::Range;
+
+/// The results of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Run {
+    /// base name of the files a run writes
+    pub name: String,
+    /// title line of the dataset
+    pub title: String,
+    /// units of the model as result files spell them
+    pub units: Units,
+    /// all columns, of one length, in the order of their identifiers in `.res` files; the first is
+    /// time
+    pub columns: Vec<Column>,
+    /// elements and the columns that are their components
+    pub entities: Vec<Entity>,
+    /// columns that tables (`.csv`, plots) show, in order; empty: all
+    pub table: Vec<usize>,
+    /// which rows belong to which simulation
+    pub sequences: Vec<Sequence>,
+    /// status, counts and timings
+    pub record: Record,
+    /// what happened, in order, as the `.msg` file tells it
+    pub log: Vec<Event>,
+}
+
+/// One quantity over all rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Column {
+    /// `time`, `PART_2_XFORM.X`, or the text of an expression
+    pub name: String,
+    /// `mm`, `rad/sec` …; empty: a pure number or unknown
+    pub unit: String,
+    /// one per row
+    pub values: Vec<f64>,
+}
+
+/// An element of the model that results belong to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Entity {
+    /// name of its result set, for example `PART_2_XFORM`
+    pub name: String,
+    /// name of the element, for example `PART_2`
+    pub entity: String,
+    /// `Part`, `Joint`, `Single_Component_Force`, `ADAMS_Variable`, `Request` …
+    pub kind: String,
+    /// number of the element in the dataset; 0 when unknown
+    pub id: u64,
+    /// its components, in the order shown
+    pub components: Vec<Component>,
+}
+
+/// One component of an [`Entity`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Component {
+    /// `X`, `PSI`, `FX`, `Q` …
+    pub name: String,
+    /// index in [`Run::columns`], whose unit it has
+    pub column: usize,
+}
+
+/// A kind of rows: what the model did in them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// the model as it was read, not assembled
+    Input,
+    /// after assembly, at the start of a simulation
+    InitialConditions,
+    /// an equilibrium
+    Static,
+    /// a row of equilibria
+    QuasiStatic,
+    /// moved by its motions alone
+    Kinematic,
+    /// integrated
+    Dynamic,
+}
+
+impl Kind {
+    /// All kinds with their names in `.res` files: of the data block, of its steps.
+    pub const NAMES: [(Kind, &'static str, &'static str); 6] = [
+        (Kind::Input, "modelInput", "input"),
+        (
+            Kind::InitialConditions,
+            "initialConditions",
+            "initialConditions",
+        ),
+        (Kind::Static, "static", "static"),
+        (Kind::QuasiStatic, "quasiStatic", "quasiStatic"),
+        (Kind::Kinematic, "kinematic", "kinematic"),
+        (Kind::Dynamic, "dynamic", "dynamic"),
+    ];
+
+    /// Returns the name of its data blocks in `.res` files, without the number.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].1
+    }
+    /// Returns the type of its steps in `.res` files.
+    pub fn step(self) -> &'static str {
+        Self::NAMES[self as usize].2
+    }
+}
+
+/// Consecutive rows that one simulation produced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    /// `dynamic_001`
+    pub name: String,
+    /// what the model did in its rows
+    pub kind: Kind,
+    /// which rows
+    pub rows: Range<usize>,
+}
+
+impl Run {
+    /// Makes a run without rows, whose first column is time.
+    pub fn new(name: impl Into<String>, title: impl Into<String>, units: Units) -> Self {
+        let time = Column {
+            name: "time".into(),
+            unit: units.time.clone(),
+            values: Vec::new(),
+        };
+        Self {
+            name: name.into(),
+            title: title.into(),
+            units,
+            columns: vec![time],
+            ..Self::default()
+        }
+    }
+    /// Adds a column and returns its index. All columns are added before the first row.
+    pub fn add_column(&mut self, name: impl Into<String>, unit: impl Into<String>) -> usize {
+        self.columns.push(Column {
+            name: name.into(),
+            unit: unit.into(),
+            values: Vec::new(),
+        });
+        self.columns.len() - 1
+    }
+    /// Adds a row: time and one value for each further column, in order; missing ones are NaN.
+    pub fn push(&mut self, row: &[f64]) {
+        for (column, index) in self.columns.iter_mut().zip(0..) {
+            column
+                .values
+                .push(row.get(index).copied().unwrap_or(f64::NAN));
+        }
+    }
+    /// Begins a sequence at the next row; it is named by its kind and number.
+    pub fn begin(&mut self, kind: Kind) {
+        let number = self.sequences.iter().filter(|s| s.kind == kind).count() + 1;
+        let rows = self.rows()..self.rows();
+        self.sequences.push(Sequence {
+            name: format!("{}_{number:03}", kind.name()),
+            kind,
+            rows,
+        });
+    }
+    /// Ends the last sequence after the last row.
+    pub fn end(&mut self) {
+        let rows = self.rows();
+        if let Some(last) = self.sequences.last_mut() {
+            last.rows.end = rows;
+        }
+    }
+    /// Keeps the rows of some sequences and drops all others.
+    pub fn keep_sequences(&mut self, keep: impl Fn(&Sequence) -> bool) {
+        self.sequences.retain(keep);
+        for column in &mut self.columns {
+            let kept = self
+                .sequences
+                .iter()
+                .filter_map(|s| column.values.get(s.rows.clone()));
+            column.values = kept.flatten().copied().collect();
+        }
+        let mut at = 0;
+        for sequence in &mut self.sequences {
+            let length = sequence.rows.len();
+            sequence.rows = at..at + length;
+            at += length;
+        }
+    }
+    /// Returns the number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |c| c.values.len())
+    }
+    /// Returns the indices of the columns that tables show: [`Run::table`], or all.
+    pub fn table_columns(&self) -> Vec<usize> {
+        if self.table.is_empty() {
+            (0..self.columns.len()).collect()
+        } else {
+            self.table.clone()
+        }
+    }
+    /// Returns the rows that tables show: all but the model as it was read.
+    pub fn table_rows(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.rows()).filter(|row| {
+            !self
+                .sequences
+                .iter()
+                .any(|s| s.kind == Kind::Input && s.rows.contains(row))
+        })
+    }
+    /// Returns the index of the column with this name, without regard to blanks and case.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        let plain = |text: &str| {
+            text.chars()
+                .filter(|c| !c.is_whitespace())
+                .flat_map(char::to_lowercase)
+                .collect::<String>()
+        };
+        let wanted = plain(name);
+        let exact = self.columns.iter().position(|c| c.name == name);
+        exact.or_else(|| self.columns.iter().position(|c| plain(&c.name) == wanted))
+    }
+    /// Returns the values of the column with this name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.find(name).map(|i| self.columns[i].values.as_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sequences_are_numbered_by_kind_and_hold_their_rows() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("x", "mm");
+        for (kind, rows) in [(Kind::Dynamic, 2), (Kind::Static, 1), (Kind::Dynamic, 3)] {
+            run.begin(kind);
+            (0..rows).for_each(|i| run.push(&[i as f64, 0.0]));
+            run.end();
+        }
+        let names: Vec<_> = run
+            .sequences
+            .iter()
+            .map(|s| (s.name.as_str(), s.rows.clone()))
+            .collect();
+        assert_eq!(
+            names,
+            [
+                ("dynamic_001", 0..2),
+                ("static_001", 2..3),
+                ("dynamic_002", 3..6)
+            ]
+        );
+    }
+
+    #[test]
+    fn columns_are_found_without_regard_to_blanks_and_case() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("DX(12, 21)", "mm");
+        run.push(&[0.0, 4.5]);
+        assert_eq!(run.column("dx(12,21)"), Some(&[4.5][..]));
+        assert_eq!(run.column("DX(12,22)"), None);
+    }
+
+    #[test]
+    fn names_of_kinds_stand_in_the_order_of_the_kinds() {
+        for (kind, block, step) in Kind::NAMES {
+            assert_eq!((kind.name(), kind.step()), (block, step));
+        }
+    }
+}
