@@ -1,4 +1,65 @@
 //! cognate: the ADAMS function language and the multibody solver that speaks it.
+//!
+//! # A guide
+//!
+//! | to | begin with |
+//! |---|---|
+//! | evaluate an expression, differentiate it, find its mistakes | [`expr::Expr`] |
+//! | write a formula once, for values, derivatives, rates, batches | [`scalar::Scalar`] |
+//! | read a model, simulate it, read the results | `model::Model`, `analysis::session::Session` |
+//! | check a dataset, or convert results | `dataset`, `results` |
+//! | integrate equations of your own | `numeric` |
+//!
+//! An expression is read, checked and evaluated in two lines:
+//!
+//! ```
+//! use cognate::expr::Expr;
+//! let f = Expr::parse("STEP5(TIME, 0, 0, 1, 10) * SIN(2*PI*TIME)")?;
+//! assert_eq!(f.eval(&[("TIME", 0.25)])?, 1.03515625);
+//! # Ok::<(), cognate::diagnostic::Diagnostic>(())
+//! ```
+//!
+//! A model is read, simulated, and its results are read by the names of their columns:
+//!
+//! ```no_run
+//! # #[cfg(feature = "solver")] {
+//! use cognate::analysis::{session::{Analysis, Options, Session}, watch::Unwatched};
+//! let model = cognate::model::Model::read("examples/slider_crank.adm")?;
+//! let options = Options { columns: vec!["DX(41,22)".into()], ..Options::default() };
+//! let mut session = Session::new(model, "crank", options);
+//! session.simulate(Analysis::Dynamic, 2.0, 400, &mut Unwatched).ok();
+//! let x = session.run.column("DX(41,22)");
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! Lengths, masses, forces and times are in the units of the model, angles in radians. Vectors are
+//! named after their frames: `p_JI_K` is the position of I from J expressed in K, `R_GP` turns
+//! vectors of P into vectors of G. Every mistake of a user is a [`diagnostic::Diagnostic`] with a
+//! code, a place and advice. The same input gives the same bits in every run.
+//!
+//! # Features
+//!
+//! Without any, the crate is an evaluator of expressions and has no linear algebra in its
+//! dependency tree. `solver` adds models and their simulation, `geometry` the contacts of convex
+//! solids that need parry, `cli` the command line.
+//!
+//! # Floors
+//!
+//! A module uses lower floors only. Physics stands above the model because it gives laws to the
+//! elements that the model lists; results stand beside the scene because they know nothing of it:
+//!
+//! ```text
+//! 6  cli                        the command line
+//! 5  analysis   report          simulations of a scene; plots of results
+//! 4  scene      results         equations of a model; records and files of results
+//! 3  dataset    physics         files of models; laws of elements and of measures
+//! 2  model                      the elements as the user wrote them
+//! 1  expr  space  numeric       the language; frames; methods and linear algebra
+//! 0  scalar  diagnostic         numbers; messages and places
+//! ```
 
 #![warn(missing_docs)]
 // names follow the monogram notation: capitals are frames and only frames (`p_JI_K`, `R_GP`)
@@ -21,14 +82,14 @@ pub mod dataset;
 pub mod physics;
 // floor 4
 #[cfg(feature = "solver")]
+pub mod results;
+#[cfg(feature = "solver")]
 pub mod scene;
 // floor 5
 #[cfg(feature = "solver")]
 pub mod analysis;
 #[cfg(feature = "cli")]
 pub mod report;
-#[cfg(feature = "solver")]
-pub mod results;
 // floor 6
 #[cfg(feature = "cli")]
 pub mod cli;

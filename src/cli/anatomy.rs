@@ -1,5 +1,5 @@
-//! What the machine sees in an expression: its tree with values, what it reads, where it switches and how smooth it is, and
-//! what was left to compute. `:explain` and `eval --explain` show it.
+//! The anatomy of an expression: its tree with values, its inputs, its switching functions and
+//! smoothness, and the compiled operations. `:explain` and `eval --explain` show it.
 
 use crate::cli::data::Data;
 use crate::cli::formula::{Formula, TimedData};
@@ -10,17 +10,18 @@ use crate::expr::walk;
 use crate::results::digits;
 use std::ops::RangeInclusive;
 
-/// Deepest level of a tree that is shown, and most lines.
+/// Deepest level of a tree that is shown.
 const DEEPEST: usize = 40;
+/// Most lines of a tree that are shown.
 const MOST_LINES: usize = 200;
 
-/// Most breakpoints and switching functions that are shown.
+/// Most breakpoints, and most switching functions, that are shown.
 const MOST_BREAKS: usize = 12;
 
-/// Where breakpoints are sought unless the user says so.
-pub const INTERVAL: RangeInclusive<f64> = -100.0..=100.0;
+/// Interval in which breakpoints are sought by default.
+pub const BREAKPOINT_INTERVAL: RangeInclusive<f64> = -100.0..=100.0;
 
-/// The explanation as text; breakpoints are sought in the interval.
+/// Explains an expression as text; breakpoints are sought in the interval.
 pub fn explain(
     formula: &Formula,
     time: Option<f64>,
@@ -72,7 +73,7 @@ pub fn explain(
     text
 }
 
-/// Switching functions, class and breakpoints, a line each.
+/// Lists switching functions, class and breakpoints, one a line.
 fn breaks(formula: &Formula, interval: RangeInclusive<f64>) -> String {
     let found = smoothness(&formula.program, 0, Input::Time, interval.clone());
     let time = Constant::Time.name(formula.expr.ast().dialect);
@@ -94,7 +95,7 @@ fn breaks(formula: &Formula, interval: RangeInclusive<f64>) -> String {
     text.replace("TIME", time)
 }
 
-/// A name and lines beside it; nothing if there are none.
+/// Sets lines beside a name; empty if there are none.
 fn block(name: &str, lines: impl Iterator<Item = String>) -> String {
     let lines: Vec<String> = lines.collect();
     let shown = lines.iter().take(MOST_BREAKS).enumerate();
@@ -107,10 +108,10 @@ fn block(name: &str, lines: impl Iterator<Item = String>) -> String {
     text
 }
 
-/// The tree, a node a line, with the values on the taken path.
+/// Prints the tree, one node a line, with the values on the taken path.
 fn tree(ast: &Ast, values: &[Option<f64>]) -> String {
     let mut lines: Vec<(String, String)> = Vec::new();
-    // An own stack: trees may be deeper than ours.
+    // a stack of its own: trees may be deeper than the program's
     let mut rest: Vec<(NodeIx, usize, &str)> = vec![(ast.root, 0, "")];
     while let Some((ix, depth, role)) = rest.pop() {
         if lines.len() >= MOST_LINES || depth > DEEPEST {
@@ -151,7 +152,7 @@ fn tree(ast: &Ast, values: &[Option<f64>]) -> String {
         .collect()
 }
 
-/// What a node is called, and what is below it with its role there.
+/// Returns the name of a node, and its children with their roles.
 fn node(ast: &Ast, ix: NodeIx) -> (String, Vec<(NodeIx, &'static str)>) {
     match ast.node(ix) {
         Node::Number { .. } | Node::Constant(_) => (ast.written(ix), Vec::new()),

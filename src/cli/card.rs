@@ -1,4 +1,5 @@
-//! What the tables of the language tell about one name, in one form: for `cognate functions`, for help and completion in the REPL.
+//! The card of a name of the language: all facts of its tables in one form, for
+//! `cognate functions`, and for help and completion in the REPL.
 
 use crate::expr::Symbol;
 use crate::expr::ast::{Callee, Constant, Dialect};
@@ -8,33 +9,33 @@ use crate::expr::signature::{Argument, Kind};
 use crate::expr::{Profile, names, symbol};
 use serde_json::{Value, json};
 
-/// Everything that is known about a name.
+/// All facts about a name.
 pub struct Card {
-    /// as it is written
+    /// the name as it is written
     pub name: &'static str,
     /// language it belongs to
     pub dialect: Dialect,
-    /// heading it stands under
+    /// heading in the list
     pub group: &'static str,
     /// `STEP(x, x0, h0, x1, h1)`
     pub signature: String,
-    /// what it is: a sentence, then remarks
+    /// description: a sentence, then remarks
     pub doc: String,
     /// value as an equation; may be empty
     pub equation: String,
-    /// dimension of the value; empty: that of its arguments
+    /// dimension of the value; when empty, that of its arguments
     pub unit: String,
-    /// arguments with what may stand there
+    /// arguments with their kinds
     pub arguments: Vec<(String, String)>,
-    /// how smooth it is; `None`: as smooth as what it measures
+    /// smoothness; `None`: as smooth as the motion it measures
     pub continuity: Option<Continuity>,
     /// expressions and their values
     pub examples: Vec<(String, f64)>,
-    /// whether its value depends on what was before
+    /// whether its value depends on the past
     pub needs_history: bool,
 }
 
-/// Groups in the order they are shown.
+/// Headings in the order of the list.
 const GROUPS: [&str; 12] = [
     "Constants and variables",
     "Arithmetic IF",
@@ -50,7 +51,7 @@ const GROUPS: [&str; 12] = [
     "Expression functions (degrees)",
 ];
 
-/// All cards of both languages, by group, in each group in the order of the tables.
+/// Returns all cards of both languages, by group, in each group in the order of the tables.
 pub fn all() -> Vec<Card> {
     let mut cards: Vec<Card> = [Dialect::Function, Dialect::Expression]
         .into_iter()
@@ -60,7 +61,7 @@ pub fn all() -> Vec<Card> {
     cards
 }
 
-/// The cards of a name, one per language that knows it.
+/// Returns the cards of a name, one per language that knows it.
 pub fn of(name: &str) -> Vec<Card> {
     let one = |dialect| {
         symbol(name, dialect, Profile::Ideas)
@@ -80,6 +81,7 @@ fn written(meaning: Symbol, dialect: Dialect) -> &'static str {
     }
 }
 
+/// Makes the card of a name.
 fn card(name: &'static str, meaning: Symbol, dialect: Dialect) -> Card {
     let empty = Card {
         name,
@@ -110,6 +112,7 @@ fn card(name: &'static str, meaning: Symbol, dialect: Dialect) -> Card {
     }
 }
 
+/// Describes a constant.
 fn constant(c: Constant) -> &'static str {
     match c {
         Constant::Time => "Time of the simulation.",
@@ -122,6 +125,7 @@ fn constant(c: Constant) -> &'static str {
     }
 }
 
+/// Fills the card of a function from its table.
 fn of_callee(callee: Callee, empty: Card) -> Card {
     let argument = |a: &Argument| {
         let default = a
@@ -174,6 +178,7 @@ fn of_callee(callee: Callee, empty: Card) -> Card {
     }
 }
 
+/// Returns the heading of a group of measures.
 fn group(family: measures::Family) -> &'static str {
     match family {
         measures::Family::Displacement => GROUPS[5],
@@ -185,7 +190,7 @@ fn group(family: measures::Family) -> &'static str {
     }
 }
 
-/// What may stand as an argument, in words.
+/// Describes the kind of an argument in words.
 fn kind(kind: Kind) -> String {
     match kind {
         Kind::Number => "expression".into(),
@@ -201,7 +206,7 @@ fn kind(kind: Kind) -> String {
     }
 }
 
-/// A documentation comment as paragraphs: line breaks within one go.
+/// Turns a documentation comment into paragraphs: line breaks within one go.
 fn paragraphs(doc: &str) -> String {
     let lines = doc.lines().map(str::trim);
     let text = lines.fold(String::new(), |text, line| match line {
@@ -213,7 +218,7 @@ fn paragraphs(doc: &str) -> String {
     text.trim_end().to_owned()
 }
 
-/// How smooth, in words.
+/// Describes the smoothness in words.
 pub fn continuity_in_words(continuity: Continuity) -> &'static str {
     match continuity {
         Continuity::Jump => "the value may jump",
@@ -225,7 +230,7 @@ pub fn continuity_in_words(continuity: Continuity) -> &'static str {
 }
 
 impl Card {
-    /// What it is in one line: the first sentence, or its first part where it is long.
+    /// Returns the description in one line: the first sentence, or its first part where it is long.
     pub fn summary(&self) -> &str {
         let first = self.doc.lines().next().unwrap_or_default();
         let sentence = first
@@ -241,7 +246,7 @@ impl Card {
         }
     }
 
-    /// The card as help shows it.
+    /// Prints the card as help shows it.
     pub fn text(&self) -> String {
         let mut text = format!("{}\n", self.signature);
         for paragraph in self.doc.lines() {
@@ -285,7 +290,7 @@ impl Card {
         text
     }
 
-    /// The card for programs.
+    /// Returns the card as JSON.
     pub fn json(&self) -> Value {
         let argument = |(name, what): &(String, String)| json!({ "name": name, "what": what });
         let example =

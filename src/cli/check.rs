@@ -1,4 +1,4 @@
-//! `cognate check`: everything that is wrong with datasets and command files, without running them.
+//! `cognate check`: the mistakes in datasets and command files, without running them.
 
 use super::render::{self, Sources};
 use super::{Exit, Failure, Outcome, complain, remark, say};
@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 /// Find what is wrong with datasets and command files
 ///
-/// All mistakes of all files at once, each with its place, its element and advice. Exit code 3 when there is an error;
-/// warnings alone are no failure.
+/// All mistakes of all files at once, each with its place, its element and advice. Exit code 3 when
+/// there is an error; warnings alone are no failure.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -26,6 +26,7 @@ pub struct Args {
     json: bool,
 }
 
+/// Checks the files and prints their mistakes and warnings.
 pub fn run(args: &Args) -> Outcome {
     let mut all = Vec::new();
     let mut sources = Sources::default();
@@ -61,7 +62,7 @@ pub fn run(args: &Args) -> Outcome {
     Ok(if errors > 0 { Exit::Input } else { Exit::Done })
 }
 
-/// A command file, and what its commands do to the model it names.
+/// Checks a command file, and the effect of its commands on the model it names.
 fn check_script(file: &Path) -> Vec<Diagnostic> {
     let script = match Script::read(file) {
         Ok(script) => script,
@@ -106,7 +107,7 @@ fn tally(errors: usize, warnings: usize) -> String {
     }
 }
 
-/// The text of a dataset, for excerpts.
+/// Returns the texts of a dataset, for excerpts.
 pub fn sources(reading: &Reading) -> Sources {
     let mut sources = Sources::default();
     add(&mut sources, reading);
@@ -118,7 +119,7 @@ fn add(sources: &mut Sources, reading: &Reading) {
     sources.add(source.file.clone().unwrap_or_default(), source.text.clone());
 }
 
-/// Mistakes of a file as the failure of a command.
+/// Turns mistakes of a file into the failure of a command.
 pub fn failure(errors: Errors) -> Failure {
     Failure {
         exit: Exit::Input,

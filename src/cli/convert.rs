@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 /// Convert results from one format into another
 ///
-/// The names of the files tell the formats: .res (XML and old text form), .gra and .csv are read; .csv, .json and .res are written.
+/// The names of the files tell the formats: .res (XML and old text form), .gra and .csv are read;
+/// .csv, .json and .res are written.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -26,6 +27,10 @@ pub struct Args {
     sequences: Vec<String>,
 }
 
+/// Converts results from one file into another.
+///
+/// # Errors
+/// When a file cannot be read or written, or has no such column or sequence.
 pub fn run(args: &Args) -> Outcome {
     if same_file(&args.input, &args.output) {
         return Err(Failure::usage(
@@ -45,12 +50,12 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Done)
 }
 
-/// Whether two names are of one file that exists.
+/// Returns whether two names are of one file that exists.
 pub fn same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Leaves time and the named columns in the table; `.res` keeps them all, as its elements refer to them.
+/// Keeps time and the named columns of the table; `.res` keeps all, as its elements refer to them.
 fn select_columns(run: &mut Run, names: &[String]) -> Result<(), Failure> {
     if names.is_empty() {
         return Ok(());
@@ -66,7 +71,7 @@ fn select_columns(run: &mut Run, names: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Leaves the rows of the named sequences.
+/// Keeps the rows of the named sequences.
 fn select_sequences(run: &mut Run, names: &[String]) -> Result<(), Failure> {
     if names.is_empty() {
         return Ok(());

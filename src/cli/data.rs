@@ -1,8 +1,10 @@
-//! States of markers and data of splines as the user gives them in JSON files, and the host that answers expressions from them.
+//! Numbers that the user gives for an expression: states of markers and data of splines from JSON
+//! files, and the host that answers expressions from them.
 //!
-//! Markers: `{"12": {"r": [x, y, z], "v": …, "w": …, "a": …, "al": …, "e313": [psi, theta, phi]}}`, or `"A"` with the rows of the
-//! matrix whose columns are the marker's axes; all in ground, what is left out is 0. Splines: `{"1": {"x": […], "y": […]}}`, with
-//! `"z"` a family of curves; `"end"` is natural, not-a-knot or periodic, `"extrap"` parabolic or linear.
+//! Markers: `{"12": {"r": [x, y, z], "v": …, "w": …, "a": …, "al": …, "e313": [psi, theta, phi]}}`,
+//! or `"A"` with the rows of the matrix whose columns are the marker's axes; all in ground, angles
+//! in rad; missing entries are 0. Splines: `{"1": {"x": […], "y": […]}}`, with `"z"` a family of
+//! curves; `"end"` is natural, not-a-knot or periodic, `"extrap"` parabolic or linear.
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::interpolation::{Bindings, Spline};
@@ -16,7 +18,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What expressions may ask for, but for time.
+/// The inputs of expressions other than time.
 #[derive(Clone, Debug, Default)]
 pub struct Data {
     /// states of markers by number
@@ -30,8 +32,8 @@ pub struct Data {
 }
 
 impl Data {
-    /// The value of an input with its rates in time, as far as they are known: markers move on with constant accelerations, given
-    /// values stay. `None`: nothing is known of it.
+    /// Returns the value of an input with its rates in time, as far as they are known: markers move
+    /// on with constant accelerations, given values stay. `None`: nothing is known of it.
     pub fn jet(&self, input: Input, time: f64) -> Option<Jet> {
         match input {
             Input::Time => Some(Jet::variable(time)),
@@ -47,7 +49,7 @@ impl Data {
             }
         }
     }
-    /// The value of an input.
+    /// Returns the value of an input, if it is known.
     pub fn value(&self, input: Input, time: f64) -> Option<f64> {
         match input {
             Input::Measure(measure, arguments) if !self.values.contains_key(&input) => {
@@ -59,7 +61,7 @@ impl Data {
     /// Reads states of markers from a file.
     ///
     /// # Errors
-    /// When the file cannot be read or is not of the form above; says where.
+    /// When the file cannot be read or is not of the form above; the message names the place.
     pub fn read_markers(&mut self, file: &Path) -> Result<(), Diagnostic> {
         each_of(file, |id, object| {
             marker(object).map(|m| {
@@ -70,13 +72,13 @@ impl Data {
     /// Reads data of splines from a file.
     ///
     /// # Errors
-    /// When the file cannot be read or is not of the form above; says where.
+    /// When the file cannot be read or is not of the form above; the message names the place.
     pub fn read_splines(&mut self, file: &Path) -> Result<(), Diagnostic> {
         each_of(file, |id, object| {
             spline(object).map(|s| drop(self.bindings.splines.insert(id, Arc::new(s))))
         })
     }
-    /// Adds one marker from the text of a JSON object, as it stands in a file.
+    /// Adds one marker from the text of a JSON object, as in a file.
     ///
     /// # Errors
     /// When the text is not of the form above.
@@ -90,7 +92,8 @@ impl Data {
     }
 }
 
-/// The state with its rates: positions and velocities from the next derivative, accelerations constant.
+/// Returns the state with its rates: positions and velocities from the next derivative,
+/// accelerations constant.
 #[allow(non_snake_case)]
 fn moving(m: &MarkerState<f64>) -> MarkerState<Jet> {
     let jets = |value: Vec3<f64>, rate: Vec3<f64>, second: Vec3<f64>| {
@@ -117,7 +120,7 @@ fn bad(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error("bad_data", message)
 }
 
-/// Calls `take` with every entry of a file that holds an object from numbers to objects.
+/// Calls `take` for every entry of a file that holds an object from numbers to objects.
 fn each_of(
     file: &Path,
     mut take: impl FnMut(u32, &Map<String, Value>) -> Result<(), String>,
@@ -161,6 +164,7 @@ fn known_keys(object: &Map<String, Value>, known: &[&str]) -> Result<(), String>
     }
 }
 
+/// Reads the state of a marker.
 fn marker(object: &Map<String, Value>) -> Result<MarkerState<f64>, String> {
     known_keys(object, &["r", "v", "w", "a", "al", "A", "e313"])?;
     let vector = |key: &str| match object.get(key) {
@@ -189,7 +193,7 @@ fn marker(object: &Map<String, Value>) -> Result<MarkerState<f64>, String> {
     })
 }
 
-/// A matrix from its three rows, which must be orthonormal to six digits.
+/// Reads a matrix from its three rows, which must be orthonormal to six digits.
 fn matrix(rows: &Value) -> Result<Mat3<f64>, String> {
     let wrong = || "\"A\" should be three rows of three numbers".to_owned();
     let rows: Vec<[f64; 3]> = rows
@@ -209,6 +213,7 @@ fn matrix(rows: &Value) -> Result<Mat3<f64>, String> {
     }
 }
 
+/// Reads the data of a spline.
 fn spline(object: &Map<String, Value>) -> Result<Spline, String> {
     known_keys(object, &["x", "y", "z", "end", "extrap"])?;
     let get = |key: &str| {

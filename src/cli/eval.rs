@@ -14,7 +14,8 @@ use std::path::PathBuf;
 
 /// Evaluate an expression of the function language
 ///
-/// Prints the shortest digits that read back as the same number. Over a range of times it prints a table: time, value, derivatives.
+/// Prints the shortest digits that read back as the same number. Over a range of times it prints a
+/// table: time, value, derivatives.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -38,10 +39,12 @@ pub struct Args {
     /// The language: direct-entry functions, or expression functions of t in degrees
     #[arg(long, value_enum, default_value = "function")]
     dialect: DialectName,
-    /// Whose limits and names: adams, or ideas (nesting 10, 1000 symbols, 20 lines or 500 characters, AKIMA)
+    /// Whose limits and names: adams, or ideas (nesting 10, 1000 symbols, 20 lines or 500
+    /// characters, AKIMA)
     #[arg(long, value_enum, default_value = "adams")]
     profile: ProfileName,
-    /// States of markers: {"12": {"r": [x,y,z], "v": …, "w": …, "a": …, "al": …, "e313": [psi,theta,phi]}}
+    /// States of markers: {"12": {"r": [x,y,z], "v": …, "w": …, "a": …, "al": …, "e313":
+    /// [psi,theta,phi]}}
     #[arg(long, value_name = "FILE.json")]
     markers: Option<PathBuf>,
     /// Data of splines: {"1": {"x": […], "y": […]}}
@@ -56,12 +59,13 @@ pub struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Show the tree with values, inputs, switching functions, continuity class and breakpoints (within the range of --time)
+    /// Show the tree with values, inputs, switching functions, continuity class and breakpoints
+    /// (within the range of --time)
     #[arg(long, conflicts_with_all = ["plot", "json"])]
     explain: bool,
 }
 
-/// The language, as it is chosen by name.
+/// The language, chosen by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum DialectName {
     /// radians, TIME, degree suffix D
@@ -85,13 +89,17 @@ enum ProfileName {
     Ideas,
 }
 
-/// What `--time` says.
+/// The value of `--time`.
 enum Time {
     Not,
     At(f64),
     Over(Vec<f64>),
 }
 
+/// Evaluates an expression and prints its value, a table or an explanation.
+///
+/// # Errors
+/// The first mistake in the expression or in the data; or an operation without a value.
 pub fn run(args: &Args) -> Outcome {
     let text = match args.expression.as_str() {
         "-" => from_stdin()?,
@@ -106,6 +114,7 @@ pub fn run(args: &Args) -> Outcome {
     outcome
 }
 
+/// Evaluates an expression as the options demand.
 fn evaluate(args: &Args, text: &str) -> Outcome {
     let time = time(args.time.as_deref())?;
     let setting = setting(args)?;
@@ -117,11 +126,11 @@ fn evaluate(args: &Args, text: &str) -> Outcome {
     complain(&formula.expr.warnings(), &Sources::of(text));
     if args.explain {
         let (at, interval) = match &time {
-            Time::Not => (None, anatomy::INTERVAL),
-            Time::At(t) => (Some(*t), anatomy::INTERVAL),
+            Time::Not => (None, anatomy::BREAKPOINT_INTERVAL),
+            Time::At(t) => (Some(*t), anatomy::BREAKPOINT_INTERVAL),
             Time::Over(times) => match (times.first(), times.last()) {
                 (Some(&first), Some(&last)) => (None, first..=last),
-                _ => (None, anatomy::INTERVAL),
+                _ => (None, anatomy::BREAKPOINT_INTERVAL),
             },
         };
         say(&anatomy::explain(&formula, at, interval, &setting.data));
@@ -195,6 +204,7 @@ fn one(
     Ok(Exit::Done)
 }
 
+/// Collects language, profile and data from the options.
 fn setting(args: &Args) -> Result<Setting, Failure> {
     let profile = match args.profile {
         ProfileName::Adams => Profile::Adams,
@@ -227,6 +237,7 @@ fn setting(args: &Args) -> Result<Setting, Failure> {
     Ok(setting)
 }
 
+/// Reads a time, or a range of times.
 fn time(text: Option<&str>) -> Result<Time, Failure> {
     let Some(text) = text else {
         return Ok(Time::Not);
@@ -249,6 +260,7 @@ fn time(text: Option<&str>) -> Result<Time, Failure> {
     }
 }
 
+/// Reads the expression from standard input.
 fn from_stdin() -> Result<String, Failure> {
     let mut text = String::new();
     let read = std::io::stdin()

@@ -1,4 +1,4 @@
-//! `cognate explain`: what a code or a name means, or what becomes of a model.
+//! `cognate explain`: the meaning of a code or a name, or the outline of a model.
 
 use super::functions;
 use super::verify::model_of;
@@ -18,13 +18,18 @@ Examples:
   cognate explain IMPACT
   cognate explain slider_crank.adm")]
 pub struct Args {
-    /// Code as it stands in error[CODE], a name of the language, or a model (.adm, .acf); all codes when not given
+    /// Code as it stands in error[CODE], a name of the language, or a model (.adm, .acf); all codes
+    /// when not given
     what: Option<String>,
     /// Of a model: print the outline as JSON
     #[arg(long)]
     json: bool,
 }
 
+/// Explains a code, a name or a model.
+///
+/// # Errors
+/// When there is no such code or name, or the model has mistakes.
 pub fn run(args: &Args) -> Outcome {
     match &args.what {
         None => say(&list()),
@@ -49,7 +54,7 @@ fn list() -> String {
         .collect()
 }
 
-/// The explanation of a code; else the card of a name of the language.
+/// Returns the explanation of a code, or else the card of a name of the language.
 fn explained(what: &str) -> Result<String, Diagnostic> {
     let what = what
         .trim()
@@ -86,6 +91,7 @@ fn is_model(what: &str) -> bool {
     ending.is_some_and(|e| e.eq_ignore_ascii_case("adm") || e.eq_ignore_ascii_case("acf"))
 }
 
+/// Returns the outline of a model as JSON.
 fn as_json(o: &Outline) -> Value {
     let forest: Vec<Value> = (o.forest.iter())
         .map(|c| json!({ "part": c.part, "by": c.by, "carrier": c.carrier, "coordinates": c.coordinates }))
@@ -107,6 +113,7 @@ fn as_json(o: &Outline) -> Value {
     })
 }
 
+/// Prints the outline of a model.
 fn as_text(o: &Outline) -> String {
     let mut out = String::from("forest\n");
     for c in &o.forest {

@@ -7,8 +7,9 @@ use std::path::PathBuf;
 
 /// Write a dataset in the style of Adams View
 ///
-/// One argument per line, at most 80 columns, full keywords, shortest numbers. Comments, names and order stay. What the dataset
-/// means stays too: the formatted text is read again and compared before it is written.
+/// One argument per line, at most 80 columns, full keywords, shortest numbers. Comments, names and
+/// order stay. What the dataset means stays too: the formatted text is read again and compared
+/// before it is written.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -26,6 +27,10 @@ pub struct Args {
     output: Option<PathBuf>,
 }
 
+/// Formats a dataset.
+///
+/// # Errors
+/// When it cannot be read, has a statement that was not understood, or cannot be written.
 pub fn run(args: &Args) -> Outcome {
     let reading = dataset::read(&args.file).map_err(super::check::failure)?;
     refuse_mistakes(&reading)?;
@@ -61,7 +66,8 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Done)
 }
 
-/// A statement that was not understood cannot be written; what does not fit together otherwise is no hindrance.
+/// Refuses a dataset with a statement that was not understood, since that cannot be written; other
+/// mistakes do not matter.
 fn refuse_mistakes(reading: &Reading) -> Result<(), Failure> {
     let spans = reading.dataset.mistaken();
     if spans.is_empty() {

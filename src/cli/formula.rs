@@ -1,7 +1,8 @@
-//! An expression at the prompt: read, compiled, and evaluated with its rates in time from what the user gave.
+//! An expression at the prompt: read, compiled, and evaluated with its rates in time from the
+//! numbers that the user gave.
 //!
-//! The compiled program does the work. Where it yields no finite number the walker repeats the evaluation and says which part
-//! of the text has no value, and why.
+//! The compiled program does the work. Where it yields no finite number the walker repeats the
+//! evaluation and names the part of the text that has no value, and the reason.
 
 use super::data::Data;
 use crate::diagnostic::{Diagnostic, Span};
@@ -12,28 +13,30 @@ use crate::expr::signature::{Element, Kind};
 use crate::expr::{Expr, Profile, input_named, walk};
 use crate::scalar::{Jet, Scalar};
 
-/// How expressions are to be read and evaluated.
+/// The settings for reading and evaluating expressions.
 #[derive(Clone, Debug, Default)]
 pub struct Setting {
-    /// the language
+    /// language
     pub dialect: Dialect,
-    /// whose habits and limits
+    /// profile: habits and limits
     pub profile: Profile,
-    /// what expressions may ask for
+    /// inputs of expressions
     pub data: Data,
 }
 
-/// An expression, ready.
+/// An expression, read and compiled.
 pub struct Formula {
-    /// as it was read
+    /// the expression
     pub expr: Expr,
-    /// its code, with one output
+    /// its program, with one output
     pub program: Program,
+    /// scratch for values with rates
     jets: Work<Jet>,
+    /// scratch for values
     plain: Work,
 }
 
-/// Value and rates at a time; those that were not asked for are 0.
+/// Value, first and second rate at a time; those that were not requested are 0.
 pub type Sample = [f64; 3];
 
 impl Formula {
@@ -59,10 +62,11 @@ impl Formula {
         })
     }
 
-    /// The value at a time, with its first derivatives in time up to `order`, which is at most 2.
+    /// Evaluates at a time, with derivatives in time up to `order`, which is at most 2.
     ///
     /// # Errors
-    /// When there is none: a part outside its domain, or something that is not given. The place is that of the part.
+    /// When there is no value: a part outside its domain, or an input that is not given. The place
+    /// is that of the part.
     pub fn sample(
         &mut self,
         time: Option<f64>,
@@ -82,6 +86,7 @@ impl Formula {
         }
     }
 
+    /// Evaluates without rates.
     fn value(&mut self, time: Option<f64>, data: &Data) -> f64 {
         let given = |&input: &Input| {
             input_time(input, time)
@@ -94,6 +99,7 @@ impl Formula {
         out[0]
     }
 
+    /// Evaluates with rates.
     fn rates(&mut self, time: Option<f64>, data: &Data) -> Sample {
         let unknown = Jet::constant(f64::NAN);
         let given = |&input: &Input| {
@@ -107,7 +113,7 @@ impl Formula {
         [out[0].value, out[0].first, out[0].second]
     }
 
-    /// Why there is no finite number.
+    /// Returns the reason why there is no finite number.
     fn trouble(&self, time: Option<f64>, data: &Data, sample: &Sample) -> Diagnostic {
         match self.expr.eval_with(&TimedData { data, time }) {
             Err(d) => match d.code {
@@ -139,7 +145,7 @@ impl Formula {
 }
 
 impl Formula {
-    /// How to give the input that a mistake is about.
+    /// Returns advice: the command or option that gives the input of a mistake.
     fn what_is_missing(&self, d: &Diagnostic, data: &Data) -> String {
         let about = |i: &&Input| d.message.starts_with(&i.to_string());
         match self.program.inputs().iter().find(about) {
@@ -186,7 +192,8 @@ impl Formula {
     }
 }
 
-/// The time at which an input is asked for: the expression's own, or any where it does not read the time.
+/// Returns the time at which an input is read: the expression's own, or any where it does not read
+/// the time.
 fn input_time(input: Input, time: Option<f64>) -> Option<f64> {
     if input == Input::Time {
         time
@@ -195,11 +202,11 @@ fn input_time(input: Input, time: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Data at a time, as the walker asks for them.
+/// The user's numbers at a time, as a host for the walker.
 pub struct TimedData<'a> {
-    /// what is given
+    /// inputs other than time
     pub data: &'a Data,
-    /// time, if it is given
+    /// time, if it is given, in s
     pub time: Option<f64>,
 }
 
@@ -233,7 +240,7 @@ pub fn give(setting: &mut Setting, call: &str, value: f64) -> Result<(), Diagnos
     Ok(())
 }
 
-/// The names of a value and its derivatives over time.
+/// Returns the names of a value and its derivatives over time.
 pub fn derivative_names(text: &str) -> [String; 3] {
     let name = text.split_whitespace().collect::<Vec<_>>().join(" ");
     [
@@ -243,7 +250,8 @@ pub fn derivative_names(text: &str) -> [String; 3] {
     ]
 }
 
-/// Times from `first` to `last`, `step` apart; the last one is there when it is reached but for rounding.
+/// Returns times from `first` to `last`, `step` apart; the last one is included when it is reached
+/// up to rounding.
 ///
 /// # Errors
 /// When the step does not lead from the first to the last, or there are too many.
@@ -261,7 +269,7 @@ pub fn times(first: f64, last: f64, step: f64) -> Result<Vec<f64>, Diagnostic> {
             format!("{n} samples are more than {MOST}"),
         ));
     }
-    // Multiples of the step; the last is taken as it was given when only rounding keeps them apart.
+    // multiples of the step; the last is taken as it was given when only rounding keeps them apart
     let mut times: Vec<f64> = (0..=n as usize).map(|k| first + k as f64 * step).collect();
     if let Some(end) = times
         .last_mut()

@@ -1,4 +1,4 @@
-//! `cognate functions`: the names of the language, and what each is.
+//! `cognate functions`: the names of the language, with their descriptions.
 
 use super::card::{self, Card};
 use super::{Exit, Outcome, say};
@@ -21,6 +21,10 @@ pub struct Args {
     json: bool,
 }
 
+/// Lists the functions of the language, or explains one.
+///
+/// # Errors
+/// When there is no such name.
 pub fn run(args: &Args) -> Outcome {
     let cards = match &args.name {
         None => card::all(),
@@ -36,10 +40,10 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Done)
 }
 
-/// The cards of a name.
+/// Returns the cards of a name.
 ///
 /// # Errors
-/// When no language knows it; says which are near.
+/// When no language knows it; the advice lists near names.
 pub fn of_name(name: &str) -> Result<Vec<Card>, Diagnostic> {
     let cards = card::of(name.trim().trim_end_matches("()"));
     if !cards.is_empty() {
@@ -55,7 +59,7 @@ pub fn of_name(name: &str) -> Result<Vec<Card>, Diagnostic> {
     })
 }
 
-/// Cards below each other; where both languages have the name, each says which it is.
+/// Prints cards below each other; where both languages have the name, each names its language.
 pub fn text(cards: &[Card]) -> String {
     let one = |c: &Card| {
         if cards.len() > 1 {
@@ -67,7 +71,7 @@ pub fn text(cards: &[Card]) -> String {
     cards.iter().map(one).collect::<Vec<_>>().join("\n")
 }
 
-/// One line per name, by group.
+/// Prints one line per name, by group.
 fn list(cards: &[Card]) -> String {
     let mut text = String::new();
     for group in cards.chunk_by(|a, b| a.group == b.group) {

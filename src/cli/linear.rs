@@ -9,7 +9,8 @@ use crate::diagnostic::Diagnostic;
 use crate::results::{self, Status, json};
 use std::path::PathBuf;
 
-/// Linearize a model: eigenvalues, mode shapes, and the matrices A, B, C, D between its plant inputs and outputs
+/// Linearize a model: eigenvalues, mode shapes, and the matrices A, B, C, D between its plant
+/// inputs and outputs
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -53,7 +54,10 @@ impl Watch for Quiet {
     }
 }
 
-/// The linear system of a model.
+/// Linearizes a model and writes the files of its linear system.
+///
+/// # Errors
+/// When the model has mistakes, or has no state to linearize about.
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
     let commands = run::has_commands(&args.model);
@@ -116,7 +120,7 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Done)
 }
 
-/// Names and texts of the files of the linear systems that a session has found.
+/// Returns names and texts of the files of the linear systems that a session has found.
 pub fn files(session: &Session) -> Vec<(String, String)> {
     let mut files = Vec::new();
     let mut own = 0;

@@ -1,7 +1,8 @@
 //! The command line: one command, one verb, one file.
 //!
-//! A verb collects what it has to say and returns how it ended; only this file knows exit codes and streams. What was asked for goes
-//! to standard output, everything about it (mistakes, warnings, progress) to standard error.
+//! A verb collects its messages and returns its outcome; only this file knows exit codes and
+//! streams. Results go to standard output, everything about them (mistakes, warnings, progress) to
+//! standard error.
 
 mod anatomy;
 pub mod card;
@@ -57,7 +58,7 @@ const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 our mistake, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia),
 5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed, 130 interrupted.";
 
-/// How a command ended.
+/// The outcome of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// everything was done
@@ -83,7 +84,7 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// Its number.
+    /// Returns its number.
     pub fn code(self) -> u8 {
         match self {
             Exit::Done => 0,
@@ -100,13 +101,14 @@ impl Exit {
     }
 }
 
-/// Why a command could not be done: its exit code, what to say, and the texts that the places in it refer to.
+/// The reason why a command could not be done: its exit code, its messages, and the texts they
+/// refer to.
 pub struct Failure {
     /// the exit code
     pub exit: Exit,
     /// all mistakes
     pub diagnostics: Vec<Diagnostic>,
-    /// texts that were read
+    /// texts that the places refer to
     pub sources: Sources,
 }
 
@@ -122,7 +124,7 @@ impl From<Diagnostic> for Failure {
 }
 
 impl Failure {
-    /// Mistakes in files: their texts are read again, to show the places.
+    /// Creates a failure from mistakes in files; their texts are read again, to show the places.
     pub fn in_files(exit: Exit, diagnostics: Vec<Diagnostic>) -> Self {
         let sources = Sources::of_files(&diagnostics);
         Self {
@@ -131,12 +133,12 @@ impl Failure {
             sources,
         }
     }
-    /// What is wrong with a model, each at the statement of its element.
+    /// Creates a failure from mistakes in a model, each at the statement of its element.
     pub fn in_model(dataset: &Dataset, diagnostics: Vec<Diagnostic>) -> Self {
         let located = diagnostics.into_iter().map(|d| dataset.locate(d));
         Self::in_files(Exit::Model, located.collect())
     }
-    /// The command was understood but contradicts itself.
+    /// Creates a failure for a command that contradicts itself.
     pub fn usage(message: impl Into<String>) -> Self {
         Self {
             exit: Exit::Usage,
@@ -145,10 +147,10 @@ impl Failure {
     }
 }
 
-/// What verbs return.
+/// The result of a verb.
 pub type Outcome = Result<Exit, Failure>;
 
-/// Runs the command that the arguments of the process ask for.
+/// Runs the command that the arguments of the process name.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
@@ -182,24 +184,24 @@ pub fn main() -> ExitCode {
     ExitCode::from(exit.code())
 }
 
-/// Says what is wrong, on standard error.
+/// Prints diagnostics on standard error.
 pub fn complain(diagnostics: &[Diagnostic], sources: &Sources) {
     let text = render::render(diagnostics, sources, render::colour_on_stderr());
-    // Where nobody listens there is nothing to say.
+    // a closed stream is no mistake
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// Says what is wrong or doubtful in files, on standard error, with the places.
+/// Prints diagnostics about files on standard error, with their places.
 pub fn complain_in_files(diagnostics: &[Diagnostic]) {
     complain(diagnostics, &Sources::of_files(diagnostics));
 }
 
-/// Says on standard error what was done beside what was asked for.
+/// Prints on standard error a remark about what was done.
 pub fn remark(message: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr(), "{message}");
 }
 
-/// Prints what was asked for. When the reader has gone away (`| head`), the program ends quietly.
+/// Prints results on standard output. When the reader is gone (`| head`), the program ends quietly.
 pub fn say(text: &str) {
     let mut out = std::io::stdout().lock();
     if out

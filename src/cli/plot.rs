@@ -31,6 +31,10 @@ pub struct Args {
     svg: Option<PathBuf>,
 }
 
+/// Plots columns of results.
+///
+/// # Errors
+/// When the results cannot be read, have no such column, or no finite value.
 pub fn run(args: &Args) -> Outcome {
     let run = results::read(&args.input)?;
     let mut plot = Plot::of_run(&run, args.x.as_deref(), &args.y)?;
@@ -47,6 +51,9 @@ pub fn run(args: &Args) -> Outcome {
 }
 
 /// Writes the picture to a file.
+///
+/// # Errors
+/// When there is nothing to draw, or the file cannot be written.
 pub fn write_svg(plot: &Plot, file: &Path) -> Outcome {
     results::write_text(file, &svg(plot)?)?;
     remark(format!("plot in {}", file.display()));
@@ -54,12 +61,15 @@ pub fn write_svg(plot: &Plot, file: &Path) -> Outcome {
 }
 
 /// Draws the picture on standard output.
+///
+/// # Errors
+/// When there is nothing to draw.
 pub fn draw(plot: &Plot) -> Outcome {
     say(&terminal(plot, terminal_style())?);
     Ok(Exit::Done)
 }
 
-/// A picture that fits an ordinary terminal; COLUMNS says if it is narrower.
+/// Returns the style of a picture that fits an ordinary terminal; COLUMNS may make it narrower.
 pub fn terminal_style() -> Style {
     let columns = std::env::var("COLUMNS")
         .ok()

@@ -1,9 +1,9 @@
-//! How far a run is: a bar on standard error when that is a terminal, otherwise nothing.
+//! The progress of a run: a bar on standard error when that is a terminal, otherwise nothing.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Thousandths, of which a bar has so many.
+/// Parts of a whole bar.
 const LENGTH: u64 = 1000;
 
 /// A bar from one time to another.
@@ -14,7 +14,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A bar for what runs from `start` to `end`; hidden when `quiet`, or when nobody looks.
+    /// Creates a bar for a run from `start` to `end`, in s; hidden when `quiet`, or when standard
+    /// error is no terminal.
     pub fn new(quiet: bool, start: f64, end: f64) -> Self {
         let hidden = quiet || !std::io::stderr().is_terminal();
         let target = if hidden {
@@ -29,7 +30,7 @@ impl Progress {
         }
         Self { bar, start, end }
     }
-    /// The clock is at `time`.
+    /// Moves the bar to `time`, in s.
     pub fn at(&self, time: f64) {
         if self.bar.is_hidden() {
             return;

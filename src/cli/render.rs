@@ -1,4 +1,4 @@
-//! Diagnostics as people read them: the source line, a caret below the place, and advice.
+//! Diagnostics as text for people: the source line, a caret below the place, and advice.
 
 use crate::dataset::syntax::Source;
 use crate::diagnostic::{Diagnostic, Severity};
@@ -6,20 +6,21 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
 
-/// Texts that places refer to, by the name of their file; the name is empty for a text that has none.
+/// The texts that places refer to, by the name of their file; the name is empty for a text without
+/// a file.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     texts: Vec<(String, String)>,
 }
 
 impl Sources {
-    /// One text without a file.
+    /// Creates sources of one text without a file.
     pub fn of(text: impl Into<String>) -> Self {
         let mut sources = Self::default();
         sources.add("", text);
         sources
     }
-    /// The texts of the files that diagnostics name; a file that cannot be read any more has none.
+    /// Reads the files that diagnostics name; a file that can no longer be read has no text.
     pub fn of_files(diagnostics: &[Diagnostic]) -> Self {
         let mut sources = Self::default();
         for file in diagnostics.iter().filter_map(|d| d.file.as_deref()) {
@@ -46,7 +47,7 @@ impl Sources {
 /// Most diagnostics that are shown in full; a broken file can have thousands.
 const MOST_SHOWN: usize = 50;
 
-/// The diagnostics as text, one after another.
+/// Renders the diagnostics as text, one after another.
 pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
     let renderer = if colour {
         Renderer::styled()
@@ -75,13 +76,16 @@ pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> St
     text
 }
 
-/// Kinds of diagnostics that a model can have hundreds of, one for each element of a family, all with the same way out.
+/// Codes that a model can have hundreds of, one for each element of a family, all with the same
+/// remedy.
 const ALIKE: [&str; 4] = ["unsupported", "user_routine", "curve_data", "skipped"];
-/// How many of these are shown in full, and of how many more the names are told.
+/// Number of these that are shown in full.
 const FIRST_ALIKE: usize = 3;
+/// Number of further elements that are listed by name.
 const MOST_NAMED: usize = 12;
 
-/// Diagnostics that are to be shown, and the elements of those which say the same of others: by code.
+/// Separates the diagnostics that are shown in full from the elements of those that repeat them, by
+/// code.
 fn sorted_out(diagnostics: &[Diagnostic]) -> (Vec<&Diagnostic>, Vec<(&str, Vec<&str>)>) {
     let mut shown: Vec<&Diagnostic> = Vec::new();
     let mut alike: Vec<(&Diagnostic, Vec<&str>)> = Vec::new();
@@ -105,6 +109,7 @@ fn sorted_out(diagnostics: &[Diagnostic]) -> (Vec<&Diagnostic>, Vec<(&str, Vec<&
     (shown, alike)
 }
 
+/// Arranges a diagnostic for the renderer.
 fn group<'a>(d: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
     let level = match d.severity {
         Severity::Error => Level::ERROR,
@@ -141,16 +146,20 @@ fn group<'a>(d: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
     group.elements(d.help.iter().map(|advice| Level::HELP.message(advice)))
 }
 
-/// The lines that a place lies on, and the place within them.
+/// The lines around a place, and the place within them.
 struct Excerpt<'a> {
+    /// whole lines of the text
     lines: &'a str,
+    /// number of the first of them, from 1
     first_line: usize,
+    /// the place, in bytes of these lines
     range: std::ops::Range<usize>,
 }
 
 /// Longest piece of a line that is shown around a place, in bytes.
 const WIDEST: usize = 400;
 
+/// Cuts the lines around the place of a diagnostic out of its text.
 fn excerpt<'a>(d: &Diagnostic, sources: &'a Sources) -> Option<Excerpt<'a>> {
     let text = sources.text(d.file.as_deref())?;
     let (start, end) = match d.span {
@@ -182,7 +191,7 @@ fn excerpt<'a>(d: &Diagnostic, sources: &'a Sources) -> Option<Excerpt<'a>> {
     );
     let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
     let line_end = text[end..].find('\n').map_or(text.len(), |i| end + i);
-    // One statement can be a line of a megabyte: what is far from the place is left out.
+    // one statement can be a line of a megabyte: only the neighbourhood of the place is shown
     let (from, to) = (
         floor_boundary(text, line_start.max(start.saturating_sub(WIDEST))),
         floor_boundary(text, line_end.min(start + WIDEST)),
@@ -197,7 +206,7 @@ fn excerpt<'a>(d: &Diagnostic, sources: &'a Sources) -> Option<Excerpt<'a>> {
     })
 }
 
-/// The nearest place at or before this one that no character crosses.
+/// Returns the nearest place at or before this one that is between two characters.
 fn floor_boundary(text: &str, mut at: usize) -> usize {
     at = at.min(text.len());
     while !text.is_char_boundary(at) {
@@ -206,12 +215,12 @@ fn floor_boundary(text: &str, mut at: usize) -> usize {
     at
 }
 
-/// Whether colours are wanted on standard error: it is a terminal, and NO_COLOR is not set.
+/// Returns whether standard error gets colours: it is a terminal, and NO_COLOR is not set.
 pub fn colour_on_stderr() -> bool {
     std::io::stderr().is_terminal() && colours_allowed()
 }
 
-/// Whether colours are wanted on standard output.
+/// Returns whether standard output gets colours.
 pub fn colour_on_stdout() -> bool {
     std::io::stdout().is_terminal() && colours_allowed()
 }
@@ -220,7 +229,7 @@ fn colours_allowed() -> bool {
     std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
 }
 
-/// The diagnostics for programs: an array of objects with the same facts.
+/// Returns the diagnostics as JSON: an array of objects with the same facts.
 pub fn as_json(diagnostics: &[Diagnostic]) -> Value {
     let one = |d: &Diagnostic| {
         let severity = match d.severity {

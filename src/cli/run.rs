@@ -10,6 +10,7 @@ use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::model::Model;
 use crate::numeric::Stats;
 use crate::results::output_folder::OutputFolder;
 use crate::results::{Event, Status, csv, json, msg, res};
@@ -24,7 +25,8 @@ Examples:
   cognate run pendulum.adm --end 2 --steps 200 --column 'DX(12,21)'
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
-    /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or dataset (.adm)
+    /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
+    /// dataset (.adm)
     model: PathBuf,
     /// Permitted local error of the integration, relative to the magnitude of each unknown
     #[arg(long, value_name = "E")]
@@ -90,9 +92,15 @@ impl Watch for Terminal<'_> {
     }
 }
 
+/// Runs a model with its commands and writes its results.
+///
+/// # Errors
+/// When a file has mistakes or cannot be written, or the model cannot work.
 pub fn run(args: &Args) -> Outcome {
     let clock = Instant::now();
     interrupt::install();
+
+    // read
     let is_command = has_commands(&args.model);
     let Job {
         reading,
@@ -103,65 +111,22 @@ pub fn run(args: &Args) -> Outcome {
     } else {
         alone(args)?
     };
-    let warnings: Vec<Diagnostic> = reading
-        .diagnostics
-        .iter()
-        .filter(|d| d.severity == Severity::Warning)
-        .cloned()
-        .collect();
-    if !args.quiet && !warnings.is_empty() {
-        remark(format!(
-            "{} warning{} in the dataset: cognate check tells more",
-            warnings.len(),
-            if warnings.len() == 1 { "" } else { "s" }
-        ));
-    }
+    remark_on_warnings(args, &reading);
     let (model, dataset) = (reading.model, reading.dataset);
     let full = model.settings.contains_key("RESULTS");
-    let options = Options {
-        error: args.error,
-        method: args.method.clone(),
-        repeat: args.repeat,
-        columns: args.columns.clone(),
-        full,
-        piecewise: args.piecewise,
-        skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
-        zero_user: args.zero_user,
-    };
-    let mut session = Session::new(model, &base, options);
-    session.run.record.model = args.model.display().to_string();
-    let folder = args.model.parent().map(Path::to_path_buf);
-    session.folders = args.out.clone().into_iter().chain(folder).collect();
-    session
-        .run
-        .log
-        .push(Event::Title(session.run.title.clone()));
+    let mut session = open(args, model, &base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
-    let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
-    let begin = |start: f64, end: f64| {
-        progress.borrow().done();
-        *progress.borrow_mut() = Progress::new(args.quiet, start, end);
-    };
-    let outcome = obey(
-        &mut session,
-        &steps,
-        begin,
-        &mut Terminal {
-            progress: &progress,
-        },
-    );
-    progress.borrow().done();
-    let record = &mut session.run.record;
-    let (status, failure) = match outcome {
+
+    // solve
+    let (status, failure) = match solve(args, &mut session, &steps) {
         Ok(status) => (status, None),
         Err(errors) => {
+            let record = &mut session.run.record;
             record.status = Status::Model;
             record.stop_code = errors.first().map_or("", |d| d.code);
             record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
-            session
-                .run
-                .log
-                .extend(errors.iter().map(|e| Event::Error(e.to_string())));
+            let events = errors.iter().map(|e| Event::Error(e.to_string()));
+            session.run.log.extend(events);
             (Status::Model, Some(errors))
         }
     };
@@ -170,6 +135,8 @@ pub fn run(args: &Args) -> Outcome {
         elapsed,
         cpu: cpu_seconds().unwrap_or(elapsed),
     });
+
+    // write and report
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
     let shown = !args.json && !args.quiet;
     let (written, record) = write(&mut session, &dir, full, shown)?;
@@ -180,7 +147,7 @@ pub fn run(args: &Args) -> Outcome {
         remark(summary::facts(&session.run, &written).trim_end());
     }
     if let Some(mut diagnostics) = failure {
-        // a place without a file is one of the commands
+        // a place without a file belongs to the commands
         let commands = args.model.display().to_string();
         for d in diagnostics
             .iter_mut()
@@ -196,13 +163,66 @@ pub fn run(args: &Args) -> Outcome {
     Ok(exit(status))
 }
 
-/// What is to be run.
+/// Remarks on the number of warnings about a dataset.
+fn remark_on_warnings(args: &Args, reading: &Reading) {
+    let is_warning = |d: &&Diagnostic| d.severity == Severity::Warning;
+    let warnings = reading.diagnostics.iter().filter(is_warning).count();
+    if !args.quiet && warnings > 0 {
+        remark(format!(
+            "{warnings} warning{} in the dataset: cognate check tells more",
+            if warnings == 1 { "" } else { "s" }
+        ));
+    }
+}
+
+/// Opens the session of a model, with the options of the command line.
+fn open(args: &Args, model: Model, base: &str) -> Session {
+    let full = model.settings.contains_key("RESULTS");
+    let options = Options {
+        error: args.error,
+        method: args.method.clone(),
+        repeat: args.repeat,
+        columns: args.columns.clone(),
+        full,
+        piecewise: args.piecewise,
+        skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
+        zero_user: args.zero_user,
+    };
+    let mut session = Session::new(model, base, options);
+    session.run.record.model = args.model.display().to_string();
+    let folder = args.model.parent().map(Path::to_path_buf);
+    session.folders = args.out.clone().into_iter().chain(folder).collect();
+    let title = Event::Title(session.run.title.clone());
+    session.run.log.push(title);
+    session
+}
+
+/// Obeys the commands of a run, with a bar of its progress.
+fn solve(args: &Args, session: &mut Session, steps: &[Step]) -> Result<Status, Vec<Diagnostic>> {
+    let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
+    let begin = |start: f64, end: f64| {
+        progress.borrow().done();
+        *progress.borrow_mut() = Progress::new(args.quiet, start, end);
+    };
+    let mut terminal = Terminal {
+        progress: &progress,
+    };
+    let outcome = obey(session, steps, begin, &mut terminal);
+    progress.borrow().done();
+    outcome
+}
+
+/// The model and the commands of a run.
 pub(super) struct Job {
+    /// the model and its dataset
     pub reading: Reading,
+    /// base of the names of the files
     pub base: String,
+    /// the commands
     pub steps: Vec<Step>,
 }
 
+/// Returns the exit of a status.
 pub(super) fn exit(status: Status) -> Exit {
     match status {
         Status::Completed => Exit::Done,
@@ -214,7 +234,7 @@ pub(super) fn exit(status: Status) -> Exit {
     }
 }
 
-/// A dataset with one simulation given by options.
+/// Prepares a dataset with one simulation given by options.
 fn alone(args: &Args) -> Result<Job, Failure> {
     let reading = read(&args.model)?;
     let kind = match args.kind.unwrap_or(KindName::Transient) {
@@ -258,6 +278,7 @@ pub(super) fn stem(path: &Path) -> String {
         .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
+/// Reads a dataset.
 pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
     let reading = dataset::read(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
     if reading.failed() {
@@ -270,13 +291,14 @@ pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
     Ok(reading)
 }
 
-/// Whether a file holds commands: a command file, or the log of a run.
+/// Returns whether a file holds commands: a command file, or the log of a run.
 pub(super) fn has_commands(path: &Path) -> bool {
     let is = |e: &std::ffi::OsStr| e.eq_ignore_ascii_case("acf") || e.eq_ignore_ascii_case("msg");
     path.extension().is_some_and(is)
 }
 
-/// A command file and the dataset it names, or the commands that a log echoes and the dataset beside it.
+/// Reads a command file and the dataset it names, or the commands that a log echoes and the dataset
+/// beside it.
 pub(super) fn script(path: &Path) -> Result<Job, Failure> {
     let failed = |e: crate::dataset::Errors| Failure::in_files(Exit::Input, e.0);
     if path
@@ -300,7 +322,7 @@ pub(super) fn script(path: &Path) -> Result<Job, Failure> {
             ..
         }) = script.steps.first()
         {
-            // a state holds its model
+            // a state file holds its model
             let folder = path.parent().unwrap_or(Path::new(""));
             let file = folder.join(state::file_name(name));
             let bytes = std::fs::read(&file).map_err(|e| {
@@ -328,7 +350,8 @@ pub(super) fn script(path: &Path) -> Result<Job, Failure> {
     })
 }
 
-/// The dataset of a command file is not there: which line names it, and what may be meant.
+/// Creates the failure for a missing dataset of a command file: names the line, and the files that
+/// may be meant.
 fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
     let name = script.model.as_deref().unwrap_or_default();
     let mut d = Diagnostic::error(
@@ -350,8 +373,8 @@ fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
     Failure::in_files(Exit::Input, vec![d])
 }
 
-/// Writes everything the run produced; the names of the files, and the record. The record comes last: who sees it finds the
-/// others complete.
+/// Writes all files of the run; returns their names, and the record. The record comes last, so that
+/// its existence shows that the others are complete.
 fn write(
     session: &mut Session,
     dir: &Path,
@@ -391,7 +414,7 @@ fn write(
     Ok((folder.files().to_vec(), record))
 }
 
-/// Time that this process has computed, where the system tells.
+/// Returns the processor time of this process, in s, where the system tells it.
 fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;

@@ -1,15 +1,18 @@
-//! What `cognate run` says at its end: a short table, how it went, and which files it wrote; and a picture of the results.
+//! The summary at the end of `cognate run`: a short table, the facts of the run and its files, and
+//! a picture of the results.
 
 use crate::report::{Plot, svg::panels};
 use crate::results::Run;
 use std::path::PathBuf;
 
-/// Rows and columns of the table; results can have thousands of either.
+/// Rows of the table; results can have thousands.
 const ROWS: usize = 9;
+/// Columns of the table; results can have thousands.
 const COLUMNS: usize = 7;
+/// Width of a column, in characters.
 const WIDTH: usize = 13;
 
-/// A few rows of the table, from the first to the last at equal distances.
+/// Prints a few rows of the table, from the first to the last at equal distances.
 pub fn table(run: &Run) -> String {
     let columns: Vec<usize> = run
         .table_columns()
@@ -48,7 +51,7 @@ pub fn table(run: &Run) -> String {
     text
 }
 
-/// A name cut to the width of a column.
+/// Cuts a name to the width of a column.
 fn shortened(name: &str) -> String {
     if name.chars().count() <= WIDTH {
         name.to_owned()
@@ -57,7 +60,7 @@ fn shortened(name: &str) -> String {
     }
 }
 
-/// Six digits, as many as one reads; the files have them all.
+/// Prints a number with six digits; the files have all of them.
 fn number(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 {
@@ -70,7 +73,7 @@ fn number(x: f64) -> String {
     }
 }
 
-/// How it went, and the files that were written.
+/// Prints the facts of a run, and the files that were written.
 pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     let r = &run.record;
     let mut text = format!(
@@ -106,10 +109,10 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     text
 }
 
-/// How many warnings that differ in numbers and names alone are shown.
+/// Number of warnings shown that differ in numbers and names alone.
 const ALIKE: usize = 3;
 
-/// The warnings, three of each kind; the record has all of them.
+/// Selects the warnings to show, a few of each kind; the record has all of them.
 fn warnings(all: &[String]) -> Vec<String> {
     let kind = |warning: &str| -> String {
         let words = warning.split_once(": ").map_or(warning, |(_, w)| w);
@@ -146,7 +149,7 @@ fn warnings(all: &[String]) -> Vec<String> {
 /// Most panels of the picture.
 const PANELS: usize = 12;
 
-/// The table drawn over time as SVG, a panel per unit, if there is anything to draw.
+/// Draws the table over time as SVG, a panel per unit, if it has a finite value.
 pub fn picture(run: &Run) -> Option<String> {
     panels(&Plot::by_unit(run, PANELS)).ok()
 }

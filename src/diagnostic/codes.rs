@@ -1,6 +1,7 @@
-//! TABLE of codes: every kind of mistake, explained at length for `cognate explain CODE`.
+//! The TABLE of codes: every kind of mistake, explained at length for `cognate explain CODE`.
 //!
-//! A code never changes its meaning. Rows stand in the order in which a text is read; then those about files and commands.
+//! A code never changes its meaning. Rows stand in the order in which a text is read; then those
+//! about files and commands.
 
 mod model;
 mod run;
@@ -8,28 +9,29 @@ mod run;
 pub use model::MODEL_CODES;
 pub use run::RUN_CODES;
 
-/// What a code means.
+/// A code of a diagnostic, with its explanation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code {
     /// stable short name
     pub name: &'static str,
     /// one line
     pub summary: &'static str,
-    /// when it is given, why, and what to do; with examples
+    /// when it is given, its cause, and the remedy; with examples
     pub explanation: &'static str,
 }
 
-/// The row of a code.
+/// Finds the row of a code.
 pub fn code(name: &str) -> Option<&'static Code> {
     all().find(|code| code.name.eq_ignore_ascii_case(name))
 }
 
-/// All codes: those of the language and of files, of models, of runs.
+/// Iterates over all codes: those of the language and of files, of models, of runs.
 pub fn all() -> impl Iterator<Item = &'static Code> {
     CODES.iter().chain(MODEL_CODES).chain(RUN_CODES)
 }
 
-/// The codes of the language, in the order in which a text is read; then those of files and commands.
+/// The codes of the language, in the order in which a text is read; then those of files and
+/// commands.
 pub static CODES: &[Code] = &[
     Code {
         name: "bad_char",

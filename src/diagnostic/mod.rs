@@ -1,7 +1,7 @@
-//! What is said to the user, and about which place: spans, diagnostics, near names.
+//! Messages to the user and their places: spans, diagnostics, near names.
 //!
-//! Every mistake a user can make becomes a [`Diagnostic`]: a stable code, a place, what is wrong, and what to do.
-//! All mistakes of a text are collected; none ends the reading of the rest where that can be helped.
+//! Every mistake a user can make becomes a [`Diagnostic`]: a stable code, a place, a sentence, and
+//! advice. All mistakes of a text are collected; reading continues after a mistake wherever it can.
 
 pub mod codes;
 
@@ -17,39 +17,40 @@ pub struct Span {
 }
 
 impl Span {
-    /// From `start` up to, not including, `end`.
+    /// Creates the span from `start` up to, not including, `end`.
     pub fn new(start: usize, end: usize) -> Self {
         Self { start, end }
     }
 }
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// worth knowing
+    /// information
     Note,
-    /// works, but probably not as meant
+    /// legal, but probably not as meant
     Warning,
-    /// does not work
+    /// a mistake
     Error,
 }
 
-/// One thing to say to the user.
+/// A message to the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// stable short name, for example `unknown_name`; `cognate explain CODE` tells more
+    /// stable short name, for example `unknown_name`, which `cognate explain CODE` explains
     pub code: &'static str,
-    /// how bad it is
+    /// severity
     pub severity: Severity,
-    /// what is wrong, one sentence without a full stop
+    /// the mistake, in one sentence without a full stop
     pub message: String,
-    /// where, in bytes of the text that was given
+    /// its place, in bytes of the text that was given
     pub span: Option<Span>,
-    /// file that the text stands in
+    /// file of the text
     pub file: Option<String>,
     /// 1-based line in that text; 0 when unknown
     pub line: usize,
-    /// 1-based column, counted in characters (for an expression: of the whole expression text); 0 when unknown
+    /// 1-based column, counted in characters (for an expression: of the whole expression text); 0
+    /// when unknown
     pub column: usize,
     /// the element concerned, for example `SFORCE/3`
     pub element: Option<String>,
@@ -58,7 +59,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// An error without a place yet.
+    /// Creates an error without a place.
     pub fn error(code: &'static str, message: impl Into<String>) -> Self {
         Self {
             code,
@@ -72,14 +73,14 @@ impl Diagnostic {
             help: Vec::new(),
         }
     }
-    /// A warning without a place yet.
+    /// Creates a warning without a place.
     pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
             ..Self::error(code, message)
         }
     }
-    /// The same, about this place of `text`.
+    /// Sets the place, in `text`.
     pub fn at(mut self, text: &str, span: Span) -> Self {
         let before = text.get(..span.start.min(text.len())).unwrap_or(text);
         self.line = before.matches('\n').count() + 1;
@@ -87,12 +88,12 @@ impl Diagnostic {
         self.span = Some(span);
         self
     }
-    /// The same, with a sentence of advice.
+    /// Adds a sentence of advice.
     pub fn help(mut self, advice: impl Into<String>) -> Self {
         self.help.push(advice.into());
         self
     }
-    /// The same, about this element.
+    /// Sets the element concerned.
     pub fn element(mut self, element: impl Into<String>) -> Self {
         self.element = Some(element.into());
         self
@@ -125,9 +126,10 @@ impl fmt::Display for Diagnostic {
 
 impl std::error::Error for Diagnostic {}
 
-/// The names of `known` that are close to `name`, nearest first, at most three.
+/// Returns the names of `known` that are close to `name`, nearest first, at most three.
 ///
-/// Close means an edit distance (with transpositions) of at most a third of the length, or a common beginning.
+/// Close means an edit distance (with transpositions) of at most a third of the length, or a common
+/// beginning.
 pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let name = name.to_ascii_uppercase();
     let limit = (name.len() / 3).max(1);
@@ -147,7 +149,8 @@ pub fn near_names<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> V
     found.into_iter().map(|f| f.1).collect()
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours between two words (optimal string alignment).
+/// Counts the insertions, deletions, replacements and swaps of neighbours between two words
+/// (optimal string alignment).
 fn edit_distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) =
         (a.chars().take(64).collect(), b.chars().take(64).collect());

@@ -245,6 +245,7 @@ impl Place<'_> {
         self.text.get(self.span.end..).unwrap_or_default()
     }
 
+    /// Words a character that does not belong to the language.
     fn bad_character(&self) -> Said {
         let c = self.word();
         let mut help = Vec::new();
@@ -269,6 +270,7 @@ impl Place<'_> {
         (format!("`{}` is no part of the language", shown(c)), help)
     }
 
+    /// Words a literal that is not a number.
     fn bad_number(&self) -> Said {
         let word = self.word();
         let upper = word.to_ascii_uppercase();
@@ -302,6 +304,7 @@ impl Place<'_> {
         (format!("`{word}` is not a number"), vec![advice])
     }
 
+    /// Words a name that has no meaning, with near names.
     fn unknown_name(&self) -> Said {
         let word = self.word();
         let table = match self.dialect {
@@ -331,6 +334,7 @@ impl Place<'_> {
         (format!("there is no {what} `{word}`"), help)
     }
 
+    /// Words a name followed by parentheses that takes no arguments.
     fn not_callable(&self) -> Said {
         let name = self
             .before()
@@ -344,6 +348,7 @@ impl Place<'_> {
         (format!("{name} is a number, not a function"), help)
     }
 
+    /// Words a text that ends too early.
     fn unexpected_end(&self, after_operand: bool, inside: Option<(Open, Span)>) -> Said {
         let Some((open, name)) = inside else {
             let what = if self.before().trim().is_empty() {
@@ -380,6 +385,7 @@ impl Place<'_> {
         )
     }
 
+    /// Words an argument that is missing between separators.
     fn empty_argument(&self) -> Said {
         let help = if self.before().trim_end().ends_with(',') {
             vec![
@@ -395,6 +401,7 @@ impl Place<'_> {
         )
     }
 
+    /// Words a function without its parentheses.
     fn missing_arguments(&self, inside: Option<(Open, Span)>) -> Said {
         let word = self.word().to_ascii_uppercase();
         let form = match inside {
@@ -407,6 +414,7 @@ impl Place<'_> {
         )
     }
 
+    /// Words a token that cannot stand at its place.
     fn unexpected_token(&self, after_operand: bool, inside: Option<(Open, Span)>) -> Said {
         let word = self.word();
         let starts_operand =
@@ -444,6 +452,7 @@ impl Place<'_> {
         (format!("`{word}` cannot stand here"), vec![advice])
     }
 
+    /// Words an argument of the wrong kind or range.
     fn argument(&self, code: &str, callee: Callee, k: usize) -> Said {
         let parameter = callee.argument_name(k);
         let name = callee.name();
@@ -477,6 +486,7 @@ impl Place<'_> {
     }
 }
 
+/// Words a wrong number of arguments.
 fn arity(callee: Callee, count: usize) -> Said {
     let (least, most) = callee.arity();
     let takes = match (least, most) {
@@ -496,6 +506,7 @@ fn arity(callee: Callee, count: usize) -> Said {
     )
 }
 
+/// Words a limit that is exceeded.
 fn beyond(code: &str, limit: usize) -> Said {
     let message = match code {
         "limit_nesting" => {

@@ -90,8 +90,11 @@ struct Frame {
 /// An argument, as far as the check of identifiers needs it.
 #[derive(Clone, Copy, Debug)]
 struct Argument {
+    /// first byte
     start: usize,
+    /// byte behind it
     end: usize,
+    /// number of its tokens
     tokens: u32,
 }
 
@@ -101,13 +104,17 @@ struct Check<'a> {
     dialect: Dialect,
     profile: Profile,
     limits: Limits,
+    /// meanings collected so far
     atoms: Vec<Atom>,
+    /// open calls and groups, outermost first
     frames: Vec<Frame>,
     /// arguments of all open calls, those of inner calls last
     arguments: Vec<Argument>,
     /// levels of the tree above the next operand
     depth: usize,
+    /// different identifiers so far
     elements: BTreeSet<(Element, u32)>,
+    /// symbols counted so far
     symbols: usize,
     /// lines and characters counted so far
     counted: Counted,
@@ -159,6 +166,7 @@ fn character_after(text: &str, n: usize) -> Option<Span> {
 }
 
 impl Check<'_> {
+    /// Checks the whole text.
     fn run(&mut self) -> Result<(), Fault> {
         let mut token = self.next()?;
         loop {
@@ -290,6 +298,7 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// Checks that an argument is an integer literal of its kind and range.
     fn integer(&mut self, kind: ArgumentKind, argument: Argument) -> Result<(), Fault> {
         if kind == ArgumentKind::Number {
             return Ok(());
@@ -334,6 +343,7 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// Opens a call or a group.
     fn open(&mut self, open: Open, name: Span) -> Result<(), Fault> {
         if self.frames.len() >= self.limits.nesting.min(DEEPEST_NESTING)
             || self.depth >= DEEPEST_TREE

@@ -38,6 +38,7 @@ pub struct Delay {
 #[derive(Debug)]
 pub struct Compiler<'a> {
     bindings: &'a Bindings,
+    /// operations recorded so far
     builder: RefCell<Builder>,
     delays: Vec<Delay>,
 }
@@ -186,6 +187,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
+    /// Records a call.
     fn call(&mut self, callee: Callee, args: &[Value], always: bool) -> Result<Value, Diagnostic> {
         let builder = self.builder.get_mut();
         let known: Vec<f64> = args
@@ -247,6 +249,7 @@ impl<'a> Compiler<'a> {
         result.unwrap_or_else(|c| self.builder.get_mut().constant(c))
     }
 
+    /// Records a call of DELAY as an input of the past.
     fn delay(&mut self, args: &[Value], known: &[f64]) -> Value {
         let &[expression, delay, history, ..] = args else {
             return self.builder.get_mut().constant(f64::NAN);
@@ -320,6 +323,7 @@ fn conditional(ast: &Ast) -> Vec<Reach> {
     reach
 }
 
+/// Returns the operation of an operator.
 fn operation(op: Written) -> BinaryOp {
     match op {
         Written::Add => BinaryOp::Add,
@@ -334,6 +338,7 @@ fn domain(reason: &str) -> Diagnostic {
     Diagnostic::error("domain", reason)
 }
 
+/// Returns the mistake of an operation on constants that has no finite value.
 fn not_finite(node: &Node, c: f64) -> Diagnostic {
     let what = match node {
         Node::Call {

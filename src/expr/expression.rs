@@ -118,7 +118,8 @@ impl Expr {
     /// assert_eq!(f.eval(&[("TIME", 0.5)])?, 0.0);
     /// let error = f.eval(&[("TIME", 2.5)]).unwrap_err();
     /// assert_eq!(error.column, 18);
-    /// assert_eq!(error.message, "LOG of -0.5 has no value at TIME = 2.5: LOG takes positive numbers");
+    /// let message = "LOG of -0.5 has no value at TIME = 2.5: LOG takes positive numbers";
+    /// assert_eq!(error.message, message);
     /// # Ok::<(), cognate::diagnostic::Diagnostic>(())
     /// ```
     pub fn eval(&self, inputs: &[(&str, f64)]) -> Result<f64, Diagnostic> {

@@ -154,19 +154,26 @@ impl Interpolation {
 /// use cognate::expr::interpolation::Spline;
 /// use cognate::expr::spline::{Ends, Extrapolation};
 /// let y = vec![vec![0.0, 2.0, 1.0, 3.0]];
-/// let spline = Spline::new(vec![1.0, 2.0, 3.0, 4.0], vec![], y, Ends::Natural, Extrapolation::Parabolic)?;
+/// let x = vec![1.0, 2.0, 3.0, 4.0];
+/// let spline = Spline::new(x, vec![], y, Ends::Natural, Extrapolation::Parabolic)?;
 /// assert_eq!(spline.cubic().at(1.25, 0.0, 0), 0.734375);
 /// # Ok::<(), cognate::expr::spline::UnfitData>(())
 /// ```
 #[derive(Debug)]
 pub struct Spline {
+    /// abscissae, increasing   (n)
     x: Vec<f64>,
+    /// parameters of a family of curves, increasing; empty for a single curve
     z: Vec<f64>,
+    /// values of each curve   (curves × n)
     y: Vec<Vec<f64>>,
     ends: Ends,
     extrapolation: Extrapolation,
+    /// Akima's curve, once it has been fitted
     akima: OnceLock<Arc<Surface>>,
+    /// cubic spline, once it has been fitted
     cubic: OnceLock<Arc<Surface>>,
+    /// straight lines, once they have been fitted
     linear: OnceLock<Arc<Surface>>,
 }
 
@@ -233,6 +240,7 @@ impl Spline {
             .get_or_init(|| self.fit(|y| Piecewise::linear(&self.x, y)))
     }
 
+    /// Fits each curve of the family.
     fn fit(&self, curve: impl Fn(&[f64]) -> Result<Piecewise, UnfitData>) -> Arc<Surface> {
         let curves = self
             .y
@@ -250,6 +258,7 @@ impl Spline {
 /// One curve, or curves between which values run linearly in z.
 #[derive(Debug)]
 pub struct Surface {
+    /// parameters of the curves, increasing; empty for a single curve
     z: Vec<f64>,
     curves: Vec<Arc<dyn Table>>,
 }
@@ -264,6 +273,7 @@ impl Surface {
         self.between(x, z, order, 0, self.curves.len() - 1)
     }
 
+    /// Interpolates linearly in z between two neighbours of the curves `first` to `last`.
     fn between<S: Scalar>(&self, x: S, z: S, order: u32, first: usize, last: usize) -> S {
         if last - first > 1 {
             let middle = (first + last) / 2;
@@ -297,8 +307,11 @@ pub enum CurvePoints {
 /// natural or (closed) periodic.
 #[derive(Debug)]
 pub struct Curve {
+    /// x, y and z over the parameter
     components: [Arc<dyn Table>; 3],
+    /// whether it returns to its beginning
     closed: bool,
+    /// parameters between which it is one polynomial
     knots: Vec<f64>,
 }
 

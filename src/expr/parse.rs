@@ -116,7 +116,9 @@ type Level<'i, R> = Peekable<Pairs<'i, R>>;
 /// The construction of nodes from pairs, children before parents. `None` anywhere: the pairs are
 /// not those of the grammar.
 struct Builder<R> {
+    /// meanings of names and numbers that have not been used yet
     atoms: std::vec::IntoIter<Atom>,
+    /// role of a rule
     role: fn(R) -> Role,
     nodes: Vec<Node>,
     spans: Vec<Span>,
@@ -158,6 +160,7 @@ impl<R: pest::RuleType> Builder<R> {
         Some(left)
     }
 
+    /// Reads a product: unary terms with operators between them, from the left.
     fn product(&mut self, pairs: &mut Level<R>) -> Option<NodeIx> {
         let mut left = self.unary(pairs)?;
         while let Some(operator) = pairs.next_if(|p| self.is(p, Role::ProductOperator)) {
@@ -172,6 +175,7 @@ impl<R: pest::RuleType> Builder<R> {
         Some(left)
     }
 
+    /// Reads signs, and a power from the right.
     fn unary(&mut self, pairs: &mut Level<R>) -> Option<NodeIx> {
         if let Some(sign) = pairs.next_if(|p| self.is(p, Role::Sign)) {
             let x = self.unary(pairs)?;
@@ -193,6 +197,7 @@ impl<R: pest::RuleType> Builder<R> {
         ))
     }
 
+    /// Reads an operand: a number, a name, or a group.
     fn operand(&mut self, pair: Pair<R>) -> Option<NodeIx> {
         match (self.role)(pair.as_rule()) {
             Role::Sum => self.sum(&mut pair.into_inner().peekable()),
@@ -221,6 +226,7 @@ impl<R: pest::RuleType> Builder<R> {
         Some(self.push(Node::Call { callee, args }, span))
     }
 
+    /// Reads an IF.
     fn conditional(&mut self, pair: Pair<R>) -> Option<NodeIx> {
         let mut pairs = pair.into_inner();
         let span = place(&pairs.next()?);

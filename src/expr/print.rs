@@ -59,6 +59,7 @@ impl fmt::Display for Written<'_> {
 }
 
 impl Ast {
+    /// Returns the level of a node.
     fn level(&self, ix: NodeIx) -> Level {
         match self.node(ix) {
             Node::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => Level::Sum,

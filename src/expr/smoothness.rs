@@ -270,7 +270,9 @@ fn without_touches(breakpoints: &mut Vec<Breakpoint>) {
 struct Candidates {
     from: f64,
     to: f64,
+    /// roots found so far
     found: Vec<f64>,
+    /// whether there was room for all
     complete: bool,
 }
 
@@ -383,6 +385,7 @@ struct Whole {
 struct Sides {
     /// derivatives before, with rounding errors
     before: [(f64, f64); ORDERS],
+    /// derivatives after, with rounding errors
     after: [(f64, f64); ORDERS],
 }
 

@@ -39,6 +39,7 @@ pub struct Piecewise {
     knots: Vec<f64>,
     /// coefficients of the powers of `x − origin`, lowest first   ((n + 1) pieces × (degree + 1))
     coefficients: Vec<f64>,
+    /// degree of the polynomials
     degree: usize,
     /// intervals per unit of x, to guess the interval
     density: f64,
@@ -90,6 +91,9 @@ pub(super) fn check(x: &[f64], y: &[f64], least: usize) -> Result<(), UnfitData>
 
 impl Piecewise {
     /// Fits straight lines from point to point, continued to both sides.
+    ///
+    /// # Errors
+    /// When there are too few points, x does not increase, or something is not a number.
     pub fn linear(x: &[f64], y: &[f64]) -> Result<Self, UnfitData> {
         check(x, y, 2)?;
         let pieces = (0..x.len() - 1).map(|i| vec![y[i], (y[i + 1] - y[i]) / (x[i + 1] - x[i])]);
@@ -104,6 +108,9 @@ impl Piecewise {
     /// ```
     ///
     /// Where both weights are zero up to rounding, the slope is the mean of the two neighbours.
+    ///
+    /// # Errors
+    /// When there are too few points, x does not increase, or something is not a number.
     pub fn akima(x: &[f64], y: &[f64], extrapolation: Extrapolation) -> Result<Self, UnfitData> {
         check(x, y, 3)?;
         let n = x.len();
@@ -148,6 +155,10 @@ impl Piecewise {
     }
 
     /// Fits the cubic spline with continuous curvature.
+    ///
+    /// # Errors
+    /// When there are too few points, x does not increase, or something is not a number; or the
+    /// ends do not fit the data.
     pub fn cubic(
         x: &[f64],
         y: &[f64],
@@ -166,6 +177,9 @@ impl Piecewise {
 
     /// Builds the B-spline of an order (degree + 1) with equally spaced knots over `[from, to]`:
     /// clamped to the first and last control point, or closed.
+    ///
+    /// # Errors
+    /// When the order is unknown, there are too few control points, or something is not a number.
     pub fn b_spline(
         control: &[f64],
         order: usize,
@@ -229,6 +243,8 @@ impl Piecewise {
         Ok(Self::assemble(&x, &y, degree, pieces, Extrapolation::None))
     }
 
+    /// Assembles a curve from the coefficients of its inner pieces and the extrapolation beyond
+    /// them.
     fn assemble(
         x: &[f64],
         y: &[f64],
@@ -407,7 +423,7 @@ fn de_boor(points: &[f64], degree: usize, t: f64, knot: impl Fn(usize) -> f64) -
 /// Returns the second derivatives at the points of the spline.
 ///
 /// ```text
-/// hᵢ₋₁ Mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) Mᵢ + hᵢ Mᵢ₊₁ = 6 (mᵢ − mᵢ₋₁)     hᵢ = xᵢ₊₁ − xᵢ, mᵢ = (yᵢ₊₁ − yᵢ)/hᵢ
+/// hᵢ₋₁ Mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) Mᵢ + hᵢ Mᵢ₊₁ = 6 (mᵢ − mᵢ₋₁),   hᵢ = xᵢ₊₁ − xᵢ, mᵢ = (yᵢ₊₁ − yᵢ)/hᵢ
 /// ```
 fn curvatures(x: &[f64], y: &[f64], ends: Ends) -> Result<Vec<f64>, UnfitData> {
     let n = x.len();

@@ -56,6 +56,7 @@ fn is_akima(name: &str, dialect: Dialect) -> bool {
     dialect == Dialect::Function && name.eq_ignore_ascii_case("AKIMA")
 }
 
+/// Returns the table of a language, made at the first call.
 fn table(dialect: Dialect) -> &'static Table {
     static TABLES: [OnceLock<Table>; 2] = [OnceLock::new(), OnceLock::new()];
     TABLES[dialect as usize].get_or_init(|| {

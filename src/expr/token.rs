@@ -41,8 +41,10 @@ pub(crate) struct Token {
 /// The first mistake of a text: code, bytes, and the state of the check there, for advice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fault {
+    /// code of the diagnostic
     pub code: &'static str,
     pub span: Span,
+    /// state of the check there
     pub about: About,
 }
 
@@ -91,6 +93,7 @@ impl Fault {
 /// A reader of tokens from a text.
 pub(crate) struct Lexer<'a> {
     text: &'a str,
+    /// next byte
     at: usize,
     /// whether the suffix D is known
     suffix: bool,
@@ -106,6 +109,9 @@ impl<'a> Lexer<'a> {
     }
 
     /// Reads the next token. After the end it is the end again.
+    ///
+    /// # Errors
+    /// A wrong character or literal.
     pub fn next(&mut self) -> Result<Token, Fault> {
         self.skip_blanks()?;
         let start = self.at;

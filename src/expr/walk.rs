@@ -99,7 +99,9 @@ struct Walk<'a> {
     ast: &'a Ast,
     /// absent when all inputs are unknown; an unknown number is NaN
     host: Option<&'a dyn Host>,
+    /// tasks that remain, last first
     tasks: Vec<Task>,
+    /// values of finished operands
     values: Vec<f64>,
 }
 
@@ -113,6 +115,7 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// Walks the tree; calls `found` with the value of every node on the taken path.
     fn run(mut self, mut found: impl FnMut(NodeIx, f64)) -> Result<f64, Trouble> {
         while let Some(task) = self.tasks.pop() {
             let (ix, value) = match task {
@@ -183,6 +186,7 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// Reads an input from the host.
     fn input(&self, ix: NodeIx, input: Input) -> Result<f64, Trouble> {
         let Some(host) = self.host else {
             return Ok(f64::NAN);
@@ -262,6 +266,7 @@ impl<'a> Walk<'a> {
         Ok(value)
     }
 
+    /// Evaluates a node that is not an IF on its operands.
     fn operation(&self, ix: NodeIx, operands: &[f64]) -> Result<f64, Trouble> {
         let value = match (self.ast.node(ix), operands) {
             (Node::Negate(_), &[x]) => -x,
@@ -302,6 +307,7 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// Evaluates a call over data.
     fn interpolated(
         &self,
         ix: NodeIx,
@@ -341,6 +347,7 @@ impl<'a> Walk<'a> {
         args.get(place).copied().unwrap_or(ix)
     }
 
+    /// Creates the trouble of a node.
     fn trouble(&self, code: &'static str, node: NodeIx, message: String) -> Trouble {
         let span = self
             .ast

@@ -5,7 +5,7 @@
 //! φ₀ = yₙ,  φⱼ = ψ₁ … ψⱼ [yₙ, … yₙ₋ⱼ]      modified divided differences, ψⱼ = tₙ₊₁ − tₙ₊₁₋ⱼ  (1)
 //! φ*ⱼ = βⱼ φⱼ                              for the step to come                               (2)
 //! ŷ = Σ φ*ⱼ,  ẏ̂ = Σ γⱼ φ*ⱼ                prediction: polynomial of degree k through the past (3)
-//! y = ŷ + e,  ẏ = ẏ̂ + cj e                 cj = Σ_{j≤k} (1/j) / h, solved by `corrector.rs`    (4)
+//! y = ŷ + e,  ẏ = ẏ̂ + cj e                cj = Σ_{j≤k} (1/j) / h, solved by `corrector.rs`    (4)
 //! error = C ‖e‖,  C = max(αₖ₊₁, |αₖ₊₁ + αₛ − α₀|)     of the step and of the interpolant       (5)
 //! order k ± 1  where the error terms ‖h^{j+1} y^{(j+1)}‖, from e and φ, fall or rise with j    (6)
 //! ```
@@ -40,9 +40,11 @@ pub struct Bdf {
     options: Options,
     weights: Weights,
     stats: Stats,
+    /// highest order permitted
     max_order: usize,
     /// permitted error of a step
     tolerance: f64,
+    /// the past after the last step
     past: Past,
     /// the past before the last step, for undo
     before: Past,

@@ -32,6 +32,7 @@ pub struct Weights {
     typical: Vec<f64>,
     /// Mᵢ   (n)
     magnitude: Vec<f64>,
+    /// dependences between the magnitudes   (n)
     relations: Vec<Relation>,
     /// upper bounds of the magnitudes   (n)
     most: Vec<f64>,
@@ -176,10 +177,15 @@ pub fn worst_index(values: impl Iterator<Item = f64>) -> usize {
 /// Source: Gustafsson, ACM TOMS 17 (1991); Hairer & Wanner, Solving ODEs II, IV.2.
 #[derive(Clone, Copy, Debug)]
 pub struct Pi {
+    /// α
     alpha: f64,
+    /// β
     beta: f64,
+    /// factor that keeps the predicted error below the permitted one
     safety: f64,
+    /// smallest factor of a step
     shrink: f64,
+    /// largest factor of a step
     grow: f64,
     /// ‖e‖ of the last accepted step
     previous: f64,
@@ -337,8 +343,11 @@ pub struct Rejection {
 /// The attempts at one step.
 #[derive(Clone, Copy, Debug)]
 pub struct Attempts {
+    /// beginning of the step, in s
     t0: f64,
+    /// time that the step must not pass, in s
     t_limit: f64,
+    /// shortest sensible step, in s
     shortest: f64,
     /// attempts rejected so far
     rejected: usize,

@@ -73,7 +73,9 @@ pub struct NotSolved {
 #[derive(Clone, Debug)]
 pub struct Newton {
     factors: Factors,
+    /// rows and columns of the entries of J
     pattern: Vec<(usize, usize)>,
+    /// entries of J
     values: Vec<f64>,
     /// 1/typical   (n)
     scale: Vec<f64>,

@@ -346,13 +346,18 @@ struct Markowitz {
 }
 
 struct Pivot {
+    /// original row of the pivot
     row: u32,
+    /// original column of the pivot
     column: u32,
+    /// original rows below it
     l: Vec<u32>,
+    /// original columns beside it
     u: Vec<u32>,
 }
 
 impl Markowitz {
+    /// Gathers the entries by columns and rows, scaled; entries at the same place add up.
     fn new(n: usize, pattern: &[(u32, u32)], values: &[f64], scale: &[f64]) -> Self {
         let mut columns = vec![Vec::new(); n];
         let mut rows = vec![Vec::new(); n];

@@ -9,7 +9,7 @@
 //!
 //! ```text
 //! translation   F = −c ḋ − k (d − l₀) + f₀    on I along the unit vector from J to I; d: distance
-//! rotation      T = −c θ̇ − k (θ − l₀) + f₀    on I about z_J; θ: its angle about z_J, turns counted
+//! rotation      T = −c θ̇ − k (θ − l₀) + f₀   on I about z_J; θ: its angle, turns counted
 //! ```
 //!
 //! Singular where I and J coincide in translation: the direction, and with it the force, is zero

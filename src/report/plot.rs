@@ -1,46 +1,48 @@
-//! What a picture of curves shows: names, units, points, ranges. How it is drawn is said in `svg.rs` and `terminal.rs`.
+//! The content of a plot: names, units, points, ranges. `svg.rs` and `terminal.rs` draw it.
 //!
-//! Values that are not finite leave a gap. Curves with more points than a picture has columns are thinned to the least and greatest
-//! value of each column, so that no peak is lost and files stay small.
+//! Values that are not finite leave a gap. Curves with more points than a picture has columns are
+//! thinned to the smallest and largest value of each column, so that no peak is lost and files stay
+//! small.
 
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::results::Run;
 
-/// From the least to the greatest.
+/// A range from its smallest to its largest value.
 pub type Range = (f64, f64);
 
 /// Curves over a common x.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
-    /// above the picture; may be empty
+    /// title above the picture; may be empty
     pub title: String,
-    /// what x is, with its unit
+    /// name of x, with its unit
     pub x_label: String,
-    /// what y is, with its unit; empty: taken from the curves
+    /// name of y, with its unit; when empty, taken from the curves
     pub y_label: String,
     /// the curves, in the order of the legend
     pub curves: Vec<Curve>,
 }
 
-/// One line.
+/// A curve of a plot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
-    /// in the legend
+    /// name in the legend
     pub name: String,
-    /// of y; empty: unknown or none
+    /// unit of y; empty when unknown or none
     pub unit: String,
     /// (x, y) in the order they are joined
     pub points: Vec<(f64, f64)>,
 }
 
-/// Most curves that are shown when none are chosen.
+/// Most curves of a plot when none are chosen.
 const MOST_CURVES: usize = 8;
 
 impl Plot {
-    /// The named columns of a run over its first column, or over `x`; without names the first few.
+    /// Plots the named columns of a run over its first column, or over `x`; without names the first
+    /// few.
     ///
     /// # Errors
-    /// When the run has no such column; says which are near.
+    /// When the run has no such column; the advice lists near names.
     pub fn of_run(run: &Run, x: Option<&str>, names: &[String]) -> Result<Plot, Diagnostic> {
         let find = |name: &str| run.find(name).ok_or_else(|| unknown_column(run, name));
         let x = x.map_or(Ok(0), find)?;
@@ -87,7 +89,8 @@ impl Plot {
         })
     }
 
-    /// The columns of a run's table in panels: those of one unit together, those without one by themselves; at most `most`.
+    /// Plots the columns of a run's table in panels: those of one unit together, those without one
+    /// by themselves; at most `most`.
     pub fn by_unit(run: &Run, most: usize) -> Vec<Plot> {
         let mut panels: Vec<Plot> = Vec::new();
         for column in run.table_columns().into_iter().skip(1) {
@@ -114,13 +117,13 @@ impl Plot {
         panels
     }
 
-    /// The common unit of the curves, if they have one.
+    /// Returns the common unit of the curves, if they have one.
     fn common_unit(&self) -> Option<&str> {
         let first = self.curves.first()?.unit.as_str();
         self.curves.iter().all(|c| c.unit == first).then_some(first)
     }
 
-    /// What stands beside the y axis.
+    /// Returns the label of the y axis.
     pub fn y_axis(&self) -> String {
         match (
             self.y_label.as_str(),
@@ -133,7 +136,8 @@ impl Plot {
         }
     }
 
-    /// What stands in the legend: names, with units where they differ. A single curve is named by the axis.
+    /// Returns the labels of the legend: names, with units where they differ. A single curve is
+    /// named by the axis.
     pub fn legend(&self) -> Vec<String> {
         let units = self.common_unit().is_none();
         match self.curves.as_slice() {
@@ -151,7 +155,7 @@ impl Plot {
         }
     }
 
-    /// Least and greatest x and y of the finite points, widened where there is nothing between them.
+    /// Returns the ranges of x and y of the finite points, widened where they are empty.
     ///
     /// # Errors
     /// When there is no finite point.
@@ -175,9 +179,9 @@ impl Plot {
     }
 }
 
-/// The range itself, or one around it where its ends are the same number but for rounding.
+/// Returns the range itself, or one around it where its ends are the same number up to rounding.
 fn widened(low: f64, high: f64) -> (f64, f64) {
-    // Numbers beyond these have no place between two neighbours for ticks.
+    // numbers beyond these leave no room for ticks between neighbours
     const LARGEST: f64 = 1e300;
     const SMALLEST: f64 = 1e-290;
     let (low, high) = (low.clamp(-LARGEST, LARGEST), high.clamp(-LARGEST, LARGEST));
@@ -194,7 +198,7 @@ fn is_finite(p: &(f64, f64)) -> bool {
     p.0.is_finite() && p.1.is_finite()
 }
 
-/// `name [unit]`
+/// Prints `name [unit]`.
 pub fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
@@ -203,12 +207,12 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// What to say when there is nothing to draw.
+/// Returns the error for a plot without a finite value.
 pub(super) fn nothing_to_show() -> Diagnostic {
     Diagnostic::error("empty_plot", "there is no finite value to show")
 }
 
-/// What to say when a run has no column of this name: which are near, or all there are.
+/// Returns the error for a column that a run does not have; the advice lists near names, or all.
 pub fn unknown_column(run: &Run, name: &str) -> Diagnostic {
     let names: Vec<&str> = run.columns.iter().map(|c| c.name.as_str()).collect();
     let near = near_names(name, names.iter().copied());
@@ -222,7 +226,8 @@ pub fn unknown_column(run: &Run, name: &str) -> Diagnostic {
     Diagnostic::error("unknown_column", format!("there is no column `{name}`")).help(advice)
 }
 
-/// A curve in pieces without gaps, thinned to what a picture with this many columns over the range of x can show.
+/// Splits a curve into pieces without gaps, thinned to the resolution of a picture with this many
+/// columns over the range of x.
 pub fn pieces(points: &[(f64, f64)], x: (f64, f64), columns: u32) -> Vec<Vec<(f64, f64)>> {
     let parts = points
         .split(|p| !is_finite(p))
@@ -230,7 +235,8 @@ pub fn pieces(points: &[(f64, f64)], x: (f64, f64), columns: u32) -> Vec<Vec<(f6
     parts.map(|piece| thinned(piece, x, columns)).collect()
 }
 
-/// Of each column of the picture the first, least, greatest and last point, in their order.
+/// Returns, of each column of the picture, the first, smallest, largest and last point, in their
+/// order.
 fn thinned(points: &[(f64, f64)], x: (f64, f64), columns: u32) -> Vec<(f64, f64)> {
     if points.len() <= 4 * columns as usize {
         return points.to_vec();

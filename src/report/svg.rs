@@ -1,4 +1,5 @@
-//! A [`Plot`] as an SVG file: light ground, axes with units, ticks at round numbers, a legend above the curves.
+//! A [`Plot`] as an SVG file: light background, axes with units, ticks at round numbers, a legend
+//! above the curves.
 
 use super::plot::{Plot, Range, pieces};
 use crate::diagnostic::Diagnostic;
@@ -6,22 +7,28 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Width of the picture as it is shown, height with one panel, and of each of several.   [px]
+/// Width of a picture, in px.
 const WIDTH: u32 = 960;
+/// Height of a picture with one panel, in px.
 const HEIGHT: u32 = 540;
+/// Height of each panel of a picture with several, in px.
 const PANEL: u32 = 230;
-/// Dots per pixel: the backend places points on whole dots, and curves must not wobble. All lengths below are in dots.
+/// Dots per px: the backend places points on whole dots, and curves must not look jagged. All
+/// lengths below are in dots.
 const DOTS: u32 = 10;
+/// Size of the letters, in dots.
 const LETTERS: u32 = 15 * DOTS;
+/// Size of the letters of a title, in dots.
 const TITLE_LETTERS: u32 = 19 * DOTS;
-/// Width of an average letter of a common sans-serif face, per size.
+/// Width of an average letter of a common sans-serif face, as a part of its size.
 const LETTER_WIDTH: f64 = 0.56;
 
 const INK: RGBColor = RGBColor(38, 38, 44);
 const AXIS: RGBColor = RGBColor(110, 110, 120);
 const GRID: RGBColor = RGBColor(226, 226, 230);
 
-/// Colours of the curves. They differ in lightness too: everybody can tell them apart, also in grey print.
+/// Colours of the curves. They differ in lightness too: everybody can tell them apart, also in grey
+/// print.
 pub(super) const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 94, 162),
     RGBColor(213, 94, 0),
@@ -35,7 +42,7 @@ pub(super) const COLOURS: [RGBColor; 8] = [
 
 type Drawn<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// The plot as the text of an SVG file.
+/// Draws a plot; returns the text of an SVG file.
 ///
 /// # Errors
 /// When there is no finite value to show.
@@ -43,7 +50,8 @@ pub fn svg(plot: &Plot) -> Result<String, Diagnostic> {
     panels(std::slice::from_ref(plot))
 }
 
-/// Plots below each other, each with its own y, as the text of an SVG file. The first has the title, the last the name of x.
+/// Draws plots below each other, each with its own y; returns the text of an SVG file. The first
+/// has the title, the last the name of x.
 ///
 /// # Errors
 /// When there is nothing to show, or a plot has no finite value.
@@ -72,6 +80,7 @@ pub fn panels(plots: &[Plot]) -> Result<String, Diagnostic> {
     Ok(text.replacen(&size(WIDTH * DOTS, height * DOTS), &size(WIDTH, height), 1))
 }
 
+/// Draws all panels on a backend, with their axes aligned.
 fn draw(
     plots: &[Plot],
     ranges: &[(Range, Range)],
@@ -81,7 +90,7 @@ fn draw(
     let root = SVGBackend::with_string(text, size).into_drawing_area();
     root.fill(&WHITE)?;
     let mut area = root.margin(14 * DOTS, 12 * DOTS, 14 * DOTS, 26 * DOTS);
-    // The axes of all panels stand below each other.
+    // the axes of all panels are aligned
     let left = ranges
         .iter()
         .map(|(_, y)| y_labels_width(*y, tick_step(*y)))
@@ -102,7 +111,7 @@ fn draw(
     let last = plots.len() - 1;
     for (k, (plot, &(x, y))) in plots.iter().zip(ranges).enumerate() {
         let height = area.dim_in_pixel().1 / (plots.len() - k) as u32;
-        // The last panel has the name of x below it; all have curves of one height.
+        // the last panel has the name of x below it; all have curves of one height
         let name = 24 * DOTS;
         let shorter = if k == last {
             0
@@ -117,6 +126,7 @@ fn draw(
     Ok(())
 }
 
+/// Draws one panel: axes, legend, curves.
 fn draw_panel<B: DrawingBackend>(
     plot: &Plot,
     area: &DrawingArea<B, Shift>,
@@ -156,7 +166,7 @@ where
     .draw()?;
     for (curve, colour) in plot.curves.iter().zip(COLOURS.iter().cycle()) {
         for mut piece in pieces(&curve.points, x, WIDTH) {
-            // The range may be narrower than the largest numbers, which have no place in pixels.
+            // the range may be narrower than the largest numbers, which have no place in pixels
             piece
                 .iter_mut()
                 .for_each(|p| *p = (p.0.clamp(x.0, x.1), p.1.clamp(y.0, y.1)));
@@ -170,7 +180,7 @@ where
     Ok(())
 }
 
-/// Draws the names of curves in rows from `top` on; where the rows end.
+/// Draws the names of curves in rows from `top` on; returns the end of the rows.
 fn draw_legend<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     names: &[String],
@@ -208,7 +218,8 @@ where
     })
 }
 
-/// Distance of ticks that leaves about eight in a range: 1, 2 or 5 times a power of ten.
+/// Returns the distance of ticks that leaves about eight in a range: 1, 2 or 5 times a power of
+/// ten.
 fn tick_step((low, high): (f64, f64)) -> f64 {
     let rough = (high - low) / 8.0;
     let power = 10f64.powf(rough.log10().floor());
@@ -219,7 +230,7 @@ fn tick_step((low, high): (f64, f64)) -> f64 {
         .unwrap_or(rough)
 }
 
-/// A number beside an axis: as many digits as the distance of ticks needs.
+/// Prints a number beside an axis, with as many digits as the distance of ticks needs.
 pub(super) fn tick(value: f64, step: f64) -> String {
     if value.abs() < 1e-9 * step {
         return "0".into();
@@ -231,7 +242,7 @@ pub(super) fn tick(value: f64, step: f64) -> String {
             text.to_owned()
         }
     };
-    // One place more than the step has, for ticks at halves of it; what is not needed is cut.
+    // one place more than the step has, for ticks at halves of it; trailing zeros are cut
     let (size, finest) = (
         value.abs().log10().floor() as i32,
         step.log10().floor() as i32 - 1,
@@ -250,7 +261,7 @@ pub(super) fn tick(value: f64, step: f64) -> String {
     format!("{}e{exponent}", trim(mantissa))
 }
 
-/// Room for the numbers and the name of the y axis.   [dots]
+/// Returns the width of the numbers and the name of the y axis, in dots.
 fn y_labels_width(y: (f64, f64), step: f64) -> u32 {
     let longest = [y.0, 0.5 * (y.0 + y.1), y.1]
         .map(|v| tick((v / step).round() * step, step).len())

@@ -1,11 +1,12 @@
-//! A [`Plot`] as text: curves in braille characters, each of which holds two by four dots, with ranges at the edges and names below.
+//! A [`Plot`] as text: curves in braille characters of two by four dots each, with ranges at the
+//! edges and names below.
 
 use super::plot::{Plot, pieces};
 use super::svg::{COLOURS, tick};
 use crate::diagnostic::Diagnostic;
 use plotters::style::RGBColor;
 
-/// How large a picture is, and whether the terminal has colours.
+/// The size of a picture, and whether the terminal has colours.
 #[derive(Clone, Copy, Debug)]
 pub struct Style {
     /// characters in a line, with the numbers at the left
@@ -16,7 +17,7 @@ pub struct Style {
     pub colour: bool,
 }
 
-/// The plot as lines of text.
+/// Draws a plot as lines of text.
 ///
 /// # Errors
 /// When there is no finite value to show.
@@ -81,6 +82,7 @@ pub fn terminal(plot: &Plot, style: Style) -> Result<String, Diagnostic> {
     Ok(text)
 }
 
+/// Returns the line above the picture: title and name of the y axis.
 fn heading(plot: &Plot) -> String {
     let words: Vec<String> = [plot.title.clone(), plot.y_axis()]
         .into_iter()
@@ -97,7 +99,7 @@ fn heading(plot: &Plot) -> String {
 struct Canvas {
     columns: usize,
     lines: usize,
-    /// bits of each character and the colour that set the last of them   (lines × columns)
+    /// bits of each character, and the colour that set the last of them   (lines × columns)
     cells: Vec<(u8, usize)>,
 }
 
@@ -112,7 +114,7 @@ impl Canvas {
             cells: vec![(0, 0); columns * lines],
         }
     }
-    /// The dot at a place in the unit square, whose origin is the lower left.
+    /// Returns the dot at a place in the unit square, whose origin is the lower left.
     fn place(&self, x: f64, y: f64) -> (i64, i64) {
         let (right, bottom) = ((2 * self.columns - 1) as f64, (4 * self.lines - 1) as f64);
         (
@@ -133,6 +135,7 @@ impl Canvas {
             }
         }
     }
+    /// Prints a line of characters.
     fn text(&self, line: usize, colour: bool) -> String {
         let mut text = String::new();
         for &(bits, which) in &self.cells[line * self.columns..(line + 1) * self.columns] {

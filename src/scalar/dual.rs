@@ -1,6 +1,6 @@
 //! A number with its derivatives along `N` directions (first order, forward mode).
 
-use super::{Mask, Scalar, elementary_functions, operators};
+use super::{Mask, Scalar, elementary_functions, operators, value_part_comparisons};
 
 /// `re + Σ eps[k] εₖ` with εᵢ εⱼ = 0: a value and `N` partial derivatives.
 ///
@@ -90,32 +90,8 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
 operators!([const N: usize, S: Scalar] Dual<N, S>);
 
 impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
-    type Mask = S::Mask;
+    value_part_comparisons!(S);
 
-    #[inline(always)]
-    fn constant(x: f64) -> Self {
-        Self::from_value(S::constant(x))
-    }
-    #[inline(always)]
-    fn known(&self) -> Option<f64> {
-        if self.is_value_only() {
-            self.re.known()
-        } else {
-            None
-        }
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> S::Mask {
-        self.re.lt(other.re)
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> S::Mask {
-        self.re.le(other.re)
-    }
-    #[inline(always)]
-    fn same(self, other: Self) -> S::Mask {
-        self.re.same(other.re)
-    }
     #[inline(always)]
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
         yes.map2(no, S::select(mask, yes.re, no.re), |x, y| {

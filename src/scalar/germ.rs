@@ -38,6 +38,7 @@ struct Term {
 /// A function just beside a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Germ {
+    /// number of terms that count
     len: usize,
     /// terms by increasing exponent; the first `n` count
     terms: [Term; MOST_TERMS],
@@ -207,6 +208,7 @@ impl Germ {
         germ.settled()
     }
 
+    /// Returns the product.
     fn product(self, b: Self) -> Self {
         if self.below == f64::NEG_INFINITY || b.below == f64::NEG_INFINITY {
             return Self::undefined();
@@ -228,6 +230,7 @@ impl Germ {
         germ.settled()
     }
 
+    /// Returns τ to the power `by` times the germ.
     fn shifted(mut self, by: f64) -> Self {
         for term in &mut self.terms[..self.len] {
             term.exponent += by;
@@ -239,6 +242,7 @@ impl Germ {
         self.settled()
     }
 
+    /// Returns the germ times a factor.
     fn scaled(mut self, factor: f64) -> Self {
         if !factor.is_finite() {
             return Self::undefined();
@@ -341,6 +345,7 @@ impl Germ {
         result.shifted(alpha * e)
     }
 
+    /// Returns the derivative with respect to τ.
     fn derivative(self) -> Self {
         let mut germ = Self::zero_germ();
         germ.below = self.below - 1.0;

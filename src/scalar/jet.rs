@@ -1,6 +1,6 @@
 //! A number with its first and second derivative in time: value, rate, acceleration.
 
-use super::{Mask, Scalar, elementary_functions, operators};
+use super::{Mask, Scalar, elementary_functions, operators, value_part_comparisons};
 
 /// A value with its first two derivatives along one direction, usually time.
 ///
@@ -73,6 +73,8 @@ impl<S: Scalar> Jet<S> {
     fn negative(self) -> Self {
         Self::new(-self.value, -self.first, -self.second)
     }
+    /// Applies a function by the chain rule, from its value, first and second derivative at the
+    /// value part.
     #[inline(always)]
     fn chain(self, f: S, d1: S, d2: impl FnOnce() -> S) -> Self {
         if self.is_value_only() {
@@ -116,32 +118,8 @@ impl<S: Scalar> Jet<S> {
 operators!([S: Scalar] Jet<S>);
 
 impl<S: Scalar> Scalar for Jet<S> {
-    type Mask = S::Mask;
+    value_part_comparisons!(S);
 
-    #[inline(always)]
-    fn constant(x: f64) -> Self {
-        Self::from_value(S::constant(x))
-    }
-    #[inline(always)]
-    fn known(&self) -> Option<f64> {
-        if self.is_value_only() {
-            self.value.known()
-        } else {
-            None
-        }
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> S::Mask {
-        self.value.lt(other.value)
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> S::Mask {
-        self.value.le(other.value)
-    }
-    #[inline(always)]
-    fn same(self, other: Self) -> S::Mask {
-        self.value.same(other.value)
-    }
     #[inline(always)]
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
         Self::new(

@@ -384,6 +384,38 @@ macro_rules! operators {
 }
 use operators;
 
+/// Implements constants and comparisons of a number type over its value part of type `$S`.
+macro_rules! value_part_comparisons {
+    ($S:ty) => {
+        type Mask = <$S as Scalar>::Mask;
+
+        #[inline(always)]
+        fn constant(x: f64) -> Self {
+            Self::from_value(<$S>::constant(x))
+        }
+        #[inline(always)]
+        fn known(&self) -> Option<f64> {
+            if self.is_value_only() {
+                self.value_part().known()
+            } else {
+                None
+            }
+        }
+        #[inline(always)]
+        fn lt(self, other: Self) -> Self::Mask {
+            self.value_part().lt(other.value_part())
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> Self::Mask {
+            self.value_part().le(other.value_part())
+        }
+        #[inline(always)]
+        fn same(self, other: Self) -> Self::Mask {
+            self.value_part().same(other.value_part())
+        }
+    };
+}
+
 /// Implements the elementary functions of a number type from one chain rule: `chain(f, f′, f″)` at
 /// the value part.
 ///
@@ -572,3 +604,4 @@ macro_rules! elementary_functions {
     };
 }
 use elementary_functions;
+use value_part_comparisons;

@@ -1,4 +1,5 @@
-//! Help while typing: completion, colours, the signature of the function at hand, and lines that go on.
+//! Help while typing: completion, colours, the signature of the function at hand, and lines that go
+//! on.
 
 use super::session::{COMMANDS, Session, words};
 use crate::expr::ast::{Callee, Dialect};
@@ -10,7 +11,7 @@ use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Result};
 use std::borrow::Cow;
 
-/// What the editor asks while a line is typed.
+/// The state of the editor while a line is typed.
 pub struct Helper {
     dialect: Dialect,
     /// names defined with `:let`
@@ -19,7 +20,7 @@ pub struct Helper {
 }
 
 impl Helper {
-    /// For the next line of a session.
+    /// Prepares for the next line of a session.
     pub fn new(session: &Session, colour: bool) -> Self {
         Self {
             dialect: session.setting.dialect,
@@ -31,7 +32,7 @@ impl Helper {
 
 impl rustyline::Helper for Helper {}
 
-/// Start of the word that ends at the cursor.
+/// Returns the start of the word that ends at the cursor.
 fn word_start(line: &str, at: usize) -> usize {
     let before = line.get(..at).unwrap_or(line);
     let word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == ':';
@@ -113,7 +114,8 @@ impl Hinter for Helper {
     }
 }
 
-/// Colours of the terminal's own palette: functions, constants and names, numbers, commands, unknown names.
+/// Colours of the terminal's own palette: functions, constants and names, numbers, commands,
+/// unknown names.
 const FUNCTION: &str = "\x1b[34m";
 const NAME: &str = "\x1b[35m";
 const NUMBER: &str = "\x1b[36m";
@@ -157,6 +159,7 @@ impl Highlighter for Helper {
 }
 
 impl Helper {
+    /// Returns the colour of a word.
     fn colour_of(&self, word: &str) -> &'static str {
         match word.chars().next() {
             Some(c) if c.is_ascii_digit() || c == '.' => NUMBER,
@@ -166,7 +169,7 @@ impl Helper {
                     Some(Symbol::Constant(_)) => NAME,
                     Some(Symbol::If | Symbol::Callee(_)) => FUNCTION,
                     None if self.defined.iter().any(|n| n.eq_ignore_ascii_case(word)) => NAME,
-                    // While it is being typed a name may still become a known one.
+                    // while it is being typed a name may still become a known one
                     None if names(self.dialect).iter().any(|n| {
                         n.0.to_ascii_uppercase()
                             .starts_with(&word.to_ascii_uppercase())
@@ -185,7 +188,7 @@ impl Helper {
 impl Validator for Helper {
     fn validate(&self, context: &mut ValidationContext<'_>) -> Result<ValidationResult> {
         let mut session = Session::new(self.dialect);
-        // Defined names are numbers as far as completeness goes.
+        // defined names count as numbers for completeness
         session.names = self
             .defined
             .iter()

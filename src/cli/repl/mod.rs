@@ -1,7 +1,8 @@
 //! `cognate repl`: expressions and their values, one after another.
 //!
-//! `session.rs` is what a line does, whoever typed it; `editor.rs` is the help while typing. At a terminal lines come from the
-//! editor; piped in, they are read as they are, nothing but results is printed, and the exit code tells whether all went well.
+//! `session.rs` executes a line, whatever its origin; `editor.rs` helps while typing. At a terminal
+//! lines come from the editor; piped in, they are read as they are, only results are printed, and
+//! the exit code tells whether all went well.
 
 mod editor;
 mod session;
@@ -29,6 +30,10 @@ pub struct Args {
     dialect: super::eval::DialectName,
 }
 
+/// Evaluates expressions at a prompt, or from standard input.
+///
+/// # Errors
+/// When the terminal fails.
 pub fn run(args: &Args) -> Outcome {
     let mut session = Session::new(args.dialect.into());
     if std::io::stdin().is_terminal() {
@@ -38,7 +43,7 @@ pub fn run(args: &Args) -> Outcome {
     }
 }
 
-/// Reads statements until the end; whether all could be done.
+/// Executes statements until the end; returns the exit code.
 fn from_pipe(session: &mut Session, input: impl BufRead) -> Exit {
     let mut exit = Exit::Done;
     let mut statement = String::new();
@@ -65,7 +70,7 @@ fn from_pipe(session: &mut Session, input: impl BufRead) -> Exit {
     exit
 }
 
-/// Prints a reply; whether the session ends.
+/// Prints a reply; returns whether the session ends.
 fn answer(reply: Reply, exit: &mut Exit) -> bool {
     match reply {
         Reply::Text(text) => say(&text),
@@ -82,6 +87,7 @@ fn answer(reply: Reply, exit: &mut Exit) -> bool {
     false
 }
 
+/// Reads lines from the editor of a terminal until the end.
 fn at_terminal(session: &mut Session) -> Outcome {
     let trouble = |e: ReadlineError| {
         crate::diagnostic::Diagnostic::error(
@@ -96,7 +102,7 @@ fn at_terminal(session: &mut Session) -> Outcome {
         Editor::with_config(config).map_err(trouble)?;
     let history = history_file();
     if let Some(file) = &history {
-        // The first session has none.
+        // the first session has no history
         let _ = editor.load_history(file);
     }
     say(&format!(
@@ -107,7 +113,7 @@ fn at_terminal(session: &mut Session) -> Outcome {
         editor.set_helper(Some(Helper::new(session, render::colour_on_stdout())));
         match editor.readline("> ") {
             Ok(line) => {
-                // A history that cannot grow is no reason to stop.
+                // a history that cannot grow is no reason to stop
                 let _ = editor.add_history_entry(line.as_str());
                 if answer(session.execute(&line), &mut Exit::Done) {
                     break;
@@ -124,7 +130,7 @@ fn at_terminal(session: &mut Session) -> Outcome {
     Ok(Exit::Done)
 }
 
-/// Where the lines typed are kept: COGNATE_HISTORY, or a file in the home folder.
+/// Returns the file of the lines typed so far: COGNATE_HISTORY, or a file in the home folder.
 fn history_file() -> Option<PathBuf> {
     let named = std::env::var_os("COGNATE_HISTORY").map(PathBuf::from);
     let home = || std::env::var_os("HOME").or_else(|| std::env::var_os("USERPROFILE"));

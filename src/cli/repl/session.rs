@@ -1,4 +1,5 @@
-//! What a line at the prompt does: an expression is evaluated, a command (`:name`) changes or shows something.
+//! The execution of a line at the prompt: an expression is evaluated, a command (`:name`) changes
+//! or shows something.
 
 use crate::cli::anatomy;
 use crate::cli::eval::DialectName;
@@ -15,17 +16,17 @@ use std::path::Path;
 
 /// The answer to a line.
 pub enum Reply {
-    /// to be printed; may be empty
+    /// text to print; may be empty
     Text(String),
-    /// what is probably not meant, the text its places refer to, and what is to be printed nevertheless
+    /// warnings, the text that their places refer to, and the text to print nevertheless
     Doubtful(Vec<Diagnostic>, String, String),
-    /// what is wrong, and the text its place refers to
+    /// a mistake, and the text that its place refers to
     Mistake(Box<Diagnostic>, String),
-    /// the session is over
+    /// the end of the session
     Quit,
 }
 
-/// TABLE of commands: name, arguments, what it does.
+/// The TABLE of commands: name, arguments, effect.
 pub const COMMANDS: [(&str, &str, &str); 12] = [
     (
         ":help",
@@ -65,23 +66,23 @@ pub const COMMANDS: [(&str, &str, &str); 12] = [
     (":quit", "", "end the session"),
 ];
 
-/// Samples of a plot.
+/// Number of samples of a plot.
 const SAMPLES: f64 = 400.0;
 
-/// Everything that lines change.
+/// The state that lines change.
 pub struct Session {
     /// language and data
     pub setting: Setting,
-    /// TIME
+    /// TIME, in s
     time: f64,
-    /// highest derivative shown
+    /// highest derivative that is shown
     order: usize,
     /// names for parts of expressions: as defined, with earlier names replaced
     pub names: BTreeMap<String, String>,
 }
 
 impl Session {
-    /// A session where nothing is known yet, at time 0.
+    /// Creates a session without any numbers, at time 0.
     pub fn new(dialect: Dialect) -> Self {
         let setting = Setting {
             dialect,
@@ -96,7 +97,8 @@ impl Session {
         }
     }
 
-    /// Whether an expression ends too early, so that more lines should follow. A blank line ends it all the same.
+    /// Returns whether an expression ends too early, so that more lines should follow. A blank line
+    /// ends it all the same.
     pub fn is_incomplete(&self, text: &str) -> bool {
         let empty = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('!');
         let last_is_blank = (text.lines().next_back()).is_some_and(|l| l.trim().is_empty());
@@ -113,7 +115,7 @@ impl Session {
         !ends && error().is_some_and(|d| d.code == "unexpected_end")
     }
 
-    /// Does what a line says.
+    /// Executes a line.
     pub fn execute(&mut self, line: &str) -> Reply {
         let line = line.trim();
         if line.is_empty() || line.starts_with('!') {
@@ -156,6 +158,7 @@ impl Session {
         }
     }
 
+    /// Evaluates an expression at the time of the session.
     fn evaluate(&self, text: &str) -> Reply {
         let expanded = self.expanded(text);
         let done = Formula::new(&expanded, &self.setting).and_then(|mut f| {
@@ -182,6 +185,7 @@ impl Session {
         }
     }
 
+    /// Shows the card of a name, or the list of commands.
     fn help(&self, name: &str) -> Result<String, Diagnostic> {
         let line = |(name, arguments, what): &(&str, &str, &str)| {
             format!("  {:52}  {what}\n", format!("{name} {arguments}"))
@@ -242,6 +246,7 @@ impl Session {
         }
     }
 
+    /// Checks that a name is free to be defined.
     fn may_define(&self, name: &str) -> Result<(), Diagnostic> {
         let known = |dialect| symbol(name, dialect, Profile::Ideas).is_some();
         let letters = name.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -261,6 +266,7 @@ impl Session {
         }
     }
 
+    /// Sets the time.
     fn set_time(&mut self, text: &str) -> Reply {
         if text.is_empty() {
             return Reply::Text(format!("{}\n", digits(self.time)));
@@ -277,6 +283,7 @@ impl Session {
         }
     }
 
+    /// Sets the highest derivative.
     fn set_order(&mut self, text: &str) -> Result<String, Diagnostic> {
         match text {
             "" => return Ok(format!("{}\n", self.order)),
@@ -288,6 +295,7 @@ impl Session {
         Ok(String::new())
     }
 
+    /// Sets the language.
     fn set_dialect(&mut self, text: &str) -> Result<String, Diagnostic> {
         let name = match text {
             "" => {
@@ -306,6 +314,7 @@ impl Session {
         Ok(String::new())
     }
 
+    /// Sets the state of a marker.
     fn marker(&mut self, text: &str) -> Result<String, Diagnostic> {
         if text.is_empty() {
             let place = |(id, m): (&u32, &crate::space::MarkerState<f64>)| {
@@ -358,6 +367,7 @@ impl Session {
         shown.map_or_else(|d| Reply::Mistake(Box::new(d), expanded), Reply::Text)
     }
 
+    /// Draws an expression over a range of times.
     fn picture(
         &self,
         expanded: &str,
@@ -398,7 +408,7 @@ impl Session {
         }
         let (text, interval) = match range_at_the_end(text) {
             Some((rest, first, last)) => (rest, first..=last),
-            None => (text, anatomy::INTERVAL),
+            None => (text, anatomy::BREAKPOINT_INTERVAL),
         };
         let expanded = self.expanded(text);
         match Formula::new(&expanded, &self.setting) {
@@ -412,7 +422,7 @@ impl Session {
         }
     }
 
-    /// The text with defined names replaced by what they stand for, in parentheses.
+    /// Returns the text with defined names replaced by their definitions, in parentheses.
     pub fn expanded(&self, text: &str) -> String {
         if self.names.is_empty() {
             return text.to_owned();
@@ -430,7 +440,7 @@ impl Session {
     }
 }
 
-/// An expression and the two numbers behind it.
+/// Splits off the two numbers behind an expression.
 fn range_at_the_end(text: &str) -> Option<(&str, f64, f64)> {
     let last_word = |text: &'_ str| -> Option<(usize, f64)> {
         let (rest, word) = text.rsplit_once(char::is_whitespace)?;
@@ -441,7 +451,8 @@ fn range_at_the_end(text: &str) -> Option<(&str, f64, f64)> {
     Some((&text[..end], first, last))
 }
 
-/// The text in pieces: words that begin with a letter, numbers with exponent and suffix, and what is between them.
+/// Iterates over the pieces of a text: words that begin with a letter, numbers with exponent and
+/// suffix, and the rest.
 pub fn words(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = text;
     std::iter::from_fn(move || {
@@ -471,6 +482,7 @@ fn usage(command: &str) -> Diagnostic {
     Diagnostic::error("usage", format!("{command} is used like this: {form}"))
 }
 
+/// Returns the mistake of a command that does not exist, with near names.
 fn unknown_command(name: &str) -> Diagnostic {
     let near = near_names(name, COMMANDS.iter().map(|c| c.0));
     let d = Diagnostic::error("usage", format!("there is no command {name}"));

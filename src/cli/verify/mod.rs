@@ -1,4 +1,4 @@
-//! `cognate verify`: how many freedoms a model has, what fixes something twice, and what is free.
+//! `cognate verify`: the freedoms of a model, its redundant constraints, and its free motions.
 
 mod text;
 
@@ -28,6 +28,10 @@ pub struct Args {
     json: bool,
 }
 
+/// Counts the freedoms of a model and prints the findings.
+///
+/// # Errors
+/// When a file cannot be read, or has mistakes.
 pub fn run(args: &Args) -> Outcome {
     let (model, dataset) = model_of(&args.model)?;
     let found = verify(&model).map_err(|d| Failure::in_model(&dataset, d))?;
@@ -43,7 +47,11 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Model)
 }
 
-/// The model of a dataset, or of a command file as its commands leave it before the first simulation, and the dataset as written.
+/// Returns the model of a dataset, or of a command file as its commands leave it before the first
+/// simulation, and the dataset as written.
+///
+/// # Errors
+/// When a file cannot be read, or has mistakes.
 pub fn model_of(path: &Path) -> Result<(Model, Dataset), Failure> {
     if !has_commands(path) {
         let reading = read(path)?;
@@ -74,6 +82,7 @@ fn finding(d: &Diagnostic) -> Value {
     json!({ "row": d.element, "message": d.message, "advice": d.help })
 }
 
+/// Returns the findings as JSON.
 fn as_json(v: &Verification) -> Value {
     let dependent: Vec<Value> = (v.dependent.iter())
         .map(|d| {

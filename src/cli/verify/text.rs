@@ -1,12 +1,14 @@
-//! A verification as a person reads it: the count line by line, then what there is to say, what says the same of many elements said once.
+//! A verification as text: the count line by line, then the findings; equal findings about many
+//! elements are given once.
 
 use crate::analysis::verify::{Advice, Dependent, Undetermined, Verification};
 use std::fmt::Write;
 
-/// More findings of one sort than this are told by their kinds: one in full, of the others the names.
-const MANY: usize = 6;
+/// Number of findings of one sort above which they are grouped: one in full, the names of the
+/// others.
+const MOST_UNGROUPED: usize = 6;
 
-/// The text.
+/// Prints a verification.
 pub fn of(v: &Verification) -> String {
     let mut out = String::new();
     let mut line = |text: String| {
@@ -63,10 +65,10 @@ pub fn of(v: &Verification) -> String {
     out
 }
 
-/// How many free directions are told.
+/// Most free directions that are listed.
 const MOST_FREE: usize = 40;
 
-/// What is fixed twice.
+/// Prints the redundant constraints.
 fn redundant(all: &[Dependent]) -> Vec<String> {
     let by_element = groups(all, |a, b| {
         (&a.element, &a.fixed_by, a.only_here) == (&b.element, &b.fixed_by, b.only_here)
@@ -76,7 +78,7 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
         let words = first.sentence_of(group);
         format!("redundant: {words} ({})", rows.join(", "))
     };
-    if by_element.len() <= MANY {
+    if by_element.len() <= MOST_UNGROUPED {
         return by_element.iter().map(sentence).collect();
     }
     // rotations or translations, as many of them, fixed by one other element or around a loop
@@ -112,7 +114,7 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
     lines
 }
 
-/// Reactions that are not unique.
+/// Prints the reactions that are not unique.
 fn not_unique(all: &[Undetermined]) -> Vec<String> {
     let tell = |first: &Undetermined, group: &[&Undetermined], axes: &str| {
         let elements: Vec<&str> = group.iter().map(|u| u.element.as_str()).collect();
@@ -125,7 +127,7 @@ fn not_unique(all: &[Undetermined]) -> Vec<String> {
     let exact = groups(all, |a, b| {
         (&a.components, &a.axes) == (&b.components, &b.axes)
     });
-    if exact.len() <= MANY {
+    if exact.len() <= MOST_UNGROUPED {
         let tell = |(first, group): &(&Undetermined, Vec<&Undetermined>)| {
             tell(first, group, &format!("axes of {}", first.axes))
         };
@@ -138,9 +140,9 @@ fn not_unique(all: &[Undetermined]) -> Vec<String> {
     alike.iter().map(tell).collect()
 }
 
-/// What could be changed; where that is much, what is the same for many elements stands once.
+/// Prints the advice; equal advice about many elements is given once.
 fn advice(all: &[Advice]) -> Vec<String> {
-    if all.len() <= MANY {
+    if all.len() <= MOST_UNGROUPED {
         return all.iter().map(|a| format!("advice: {a}")).collect();
     }
     let mut lines = Vec::new();
@@ -155,7 +157,7 @@ fn advice(all: &[Advice]) -> Vec<String> {
     lines
 }
 
-/// What belongs together, in the order of the first of each group.
+/// Groups equal entries, in the order of the first of each group.
 fn groups<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<(&T, Vec<&T>)> {
     let mut found: Vec<(&T, Vec<&T>)> = Vec::new();
     for x in all {

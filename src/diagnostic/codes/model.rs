@@ -1,8 +1,9 @@
-//! TABLE of codes of datasets, models, command files and simulations, explained at length for `cognate explain CODE`.
+//! The TABLE of codes of datasets, models, command files and simulations, explained at length for
+//! `cognate explain CODE`.
 
 use super::Code;
 
-/// All of them: those of reading, of what is said together, of solving.
+/// All these codes: those of reading, of checks across statements, of solving.
 pub static MODEL_CODES: &[Code] = &[
     Code {
         name: "cannot_open",

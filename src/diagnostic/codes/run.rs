@@ -1,4 +1,4 @@
-//! Codes of what a run says about itself: why it ended early, and what it warns of.
+//! The TABLE of codes of runs: reasons to end early, and warnings.
 
 use super::Code;
 

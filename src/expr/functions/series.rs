@@ -52,6 +52,7 @@ pub fn sines<S: Scalar, A: Copy>(theta: S, a: &[A], of: impl Fn(A) -> S) -> S {
     harmonics(theta, a, of, |(_, sine)| sine)
 }
 
+/// Sums harmonics; `part` of each power of `e^(i θ)` counts, its real or imaginary part.
 #[inline(always)]
 fn harmonics<S: Scalar, A: Copy>(
     theta: S,

@@ -105,8 +105,11 @@ pub(super) enum Newton {
 
 /// Sizes of the corrections made so far in one iteration.
 struct Progress {
+    /// Θ/(1 − Θ), as known so far
     rate_factor: f64,
+    /// size of the correction before
     previous_size: f64,
+    /// ratio of the two corrections before
     previous_ratio: f64,
 }
 

@@ -109,13 +109,19 @@ pub struct Radau {
     end: Point,
     /// whether `end` is the state, or `begin`
     advanced: bool,
+    /// length of the next step
     control: StepControl,
     /// 1/(tolerance · magnitude) for this step   (n)
     scale: Vec<f64>,
+    /// stages of the step in work
     stages: Stages,
+    /// limits and rate of the Newton iteration
     convergence: Convergence,
+    /// the last accepted step, for guesses and interpolation
     polynomial: Polynomial,
+    /// the linear systems of the iteration
     systems: Systems,
+    /// age of the matrices
     freshness: Freshness,
     /// estimate (3)   (n)
     error: Vec<f64>,

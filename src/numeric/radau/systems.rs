@@ -42,6 +42,7 @@ enum Kind {
 #[derive(Clone, Debug)]
 struct Sparse {
     pattern: Arc<Pattern>,
+    /// factors of the real system of (1)
     real: Factors,
     /// factors of (2)
     complex: Factors,
@@ -52,6 +53,7 @@ struct Sparse {
 }
 
 impl Sparse {
+    /// Prepares both factorizations for a Jacobian of the given pattern.
     fn new(pattern: Arc<Pattern>) -> Self {
         let n = pattern.n_columns();
         let diagonal = (0..n).map(|i| (i, i));
@@ -73,6 +75,7 @@ impl Sparse {
         }
     }
 
+    /// Factors both matrices.
     fn factor(&mut self, jacobian: &[f64], gamma: f64, alpha: f64, beta: f64) -> Result<(), usize> {
         let n = self.pattern.n_columns();
         let values = &mut self.values;
@@ -86,6 +89,7 @@ impl Sparse {
         self.complex.factor(values).map_err(|column| column / 2)
     }
 
+    /// Solves the complex system as (2).
     fn solve_complex(&mut self, re: &mut [f64], im: &mut [f64]) {
         for ((b, re), im) in self.both.chunks_exact_mut(2).zip(&*re).zip(&*im) {
             b.copy_from_slice(&[*re, *im]);

@@ -99,6 +99,7 @@ fn beyond<S: Scalar>(x: S, [low, high]: [Option<f64>; 2]) -> S {
     out
 }
 
+/// Measures from the half space below z = 0, or from the rectangle within bounds.
 fn plane<S: Scalar>(x: [Option<f64>; 2], y: [Option<f64>; 2], p: Vec3<S>) -> (S, Vec3<S>) {
     let z = p.0[2];
     if x == [None; 2] && y == [None; 2] {
@@ -114,6 +115,7 @@ fn plane<S: Scalar>(x: [Option<f64>; 2], y: [Option<f64>; 2], p: Vec3<S>) -> (S,
     (S::select(above, z, length), direction)
 }
 
+/// Measures from a box between two corners.
 fn cuboid<S: Scalar>(low: &[f64; 3], high: &[f64; 3], p: Vec3<S>) -> (S, Vec3<S>) {
     // beyond the faces along each axis, 0 within
     let out = Vec3([0, 1, 2].map(|k| beyond(p.0[k], [Some(low[k]), Some(high[k])])));

@@ -17,7 +17,7 @@
 //! straight sides face each other a little farther, with a share that fades, so that a box stands
 //! on both its lower corners. Touches that are near each other share the force of one.
 //!
-//! A solid is no deeper than [`SOLID_DEPTH`] of the smaller outline: anything deeper comes from the
+//! A solid is no deeper than `SOLID_DEPTH` of the smaller outline: anything deeper comes from the
 //! other side. The line between the two points must not cross either outline elsewhere: then it
 //! belongs to another touch. Two touches of smooth sides that merge, as those of a rounded edge do
 //! that comes to lie in a hollow of its own radius, end as one: they share by the barrier between
@@ -52,7 +52,9 @@ const MOST_PAIRS: usize = 1_000_000;
 /// The search for the touches of a pair of outlines.
 #[derive(Debug)]
 pub struct Curves {
+    /// outline of I
     i: Arc<Outline>,
+    /// outline of J
     j: Arc<Outline>,
     /// radius of the smaller outline, in length units
     size: f64,
@@ -61,8 +63,11 @@ pub struct Curves {
 /// The position of I's plane relative to J's.
 #[derive(Clone, Copy)]
 struct Pose {
+    /// origin of I's plane
     at: Flat,
+    /// x axis of I's plane
     x: Flat,
+    /// y axis of I's plane
     y: Flat,
 }
 
@@ -99,11 +104,15 @@ impl Pose {
 /// A touch, expressed in J's plane.
 #[derive(Clone, Copy, Debug)]
 struct Found {
+    /// point on I's outline
     on_i: Flat,
+    /// point on J's outline
     on_j: Flat,
     /// from J's solid into I's
     normal: Flat,
+    /// overlap, in length units
     depth: f64,
+    /// weight before it shares with others
     weight: f64,
     /// parameter of I's outline, for a touch of smooth sides
     smooth: Option<f64>,
@@ -476,6 +485,7 @@ fn share(
 
 /// The point of an outline that is nearest to another point.
 struct Foot {
+    /// the point
     at: Flat,
     /// outward
     normal: Flat,
@@ -485,6 +495,8 @@ struct Foot {
     straight: bool,
 }
 
+/// Finds the point of an outline nearest to `p`, within `limit`; `hint` is a point that may be
+/// close.
 fn nearest(outline: &Outline, p: Flat, limit: f64, hint: Option<Flat>) -> Option<Foot> {
     let (cell, s, at) = outline.nearest(p, limit, hint)?;
     let c = &outline.cells[cell];

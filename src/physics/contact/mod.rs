@@ -8,13 +8,13 @@
 //!
 //! | pair | points |
 //! |---|---|
-//! | ball – ball, plane, box, cylinder, frustum, torus | 1, from the distance of the centre (`ball.rs`) |
+//! | ball – ball, plane, box, cylinder, frustum, torus | 1, from the centre (`ball.rs`) |
 //! | plane – box, hull | the corners (`plane.rs`) |
-//! | plane – cylinder, frustum | on each rim the deepest point, and those ¼ and ½ turn further |
+//! | plane – cylinder, frustum | the deepest point of each rim and three more |
 //! | plane – torus | the same four of its ring |
 //! | plane – ellipsoid | 1, the deepest |
 //! | point | a ball without radius |
-//! | torus – every solid but a ball or a plane | nearest points and 12 fixed points of its ring (`wire/`) |
+//! | torus – every solid but a ball or a plane | nearest and 12 fixed points of it (`wire/`) |
 //! | curve, circle, arc – solid | the same of a wire without thickness |
 //! | point – ellipsoid, hull | 1, from its distance (`ellipsoid.rs`) |
 //! | curve, circle, arc, point with each other | up to 8, in a plane (`outline.rs`, `curves.rs`) |

@@ -7,7 +7,7 @@
 //! axis of the floating markers of CVCV.)
 //!
 //! - A **cell** lies between two parameters, within one polynomial, and turns by at most
-//!   [`CELL_TURN`].
+//!   `CELL_TURN`.
 //! - A **corner** is a jump of the tangent, or an end of an open curve: a point that touches with
 //!   every normal between those of its sides. Behind an end the outside turns by a quarter turn.
 //! - Cells are the leaves of a binary **tree**; each node has a circle about its cells and the
@@ -126,6 +126,7 @@ pub(super) struct Corner {
 /// A node of the tree: adjacent cells.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
+    /// the range of the cells
     pub cells: Range<usize>,
     /// centre of a circle about the cells
     pub centre: Flat,
@@ -144,10 +145,13 @@ pub(super) struct Node {
 /// A plane curve as the rim of a solid.
 #[derive(Clone, Debug)]
 pub struct Outline {
+    /// the curve
     rim: Rim,
     /// +1 if outside is to the left of its direction, else −1
     side: f64,
+    /// cells, in the order of the parameter
     pub(super) cells: Vec<Cell>,
+    /// corners, in the order of the parameter
     pub(super) corners: Vec<Corner>,
     /// nodes of the tree; the last is the root
     pub(super) nodes: Vec<Node>,
@@ -162,9 +166,13 @@ pub struct Outline {
 /// Place, tangent, second derivative and normal of a point of an outline.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
+    /// the point
     pub at: Flat,
+    /// first derivative with respect to the parameter
     pub tangent: Flat,
+    /// second derivative with respect to the parameter
     pub bend: Flat,
+    /// outward unit normal
     pub normal: Flat,
 }
 
@@ -231,6 +239,7 @@ impl Outline {
         self.cells.is_empty()
     }
 
+    /// Evaluates the outline at a parameter.
     pub(super) fn spot(&self, s: f64) -> Spot {
         let [at, tangent, bend] = [0, 1, 2].map(|k| self.rim.at(s, k));
         Spot {
@@ -307,6 +316,7 @@ impl Outline {
         }
     }
 
+    /// Finds the corners between cells and at the ends.
     fn find_corners(&mut self) {
         let n = self.cells.len();
         let last = if self.closed { n } else { n + 1 };

@@ -24,6 +24,7 @@ pub struct Body {
 
 /// The side of a solid that faces some direction: a polygon, a line or a point.
 pub(super) struct Face {
+    /// points of its outline, in order around it
     pub outline: Vec<Vector>,
     /// numbers of the corners, the same in whichever face of the solid they are
     pub ids: Vec<usize>,

@@ -33,13 +33,17 @@ struct Place {
 
 /// The two faces in J's frame, with their projections.
 struct Faces {
+    /// I's face that looks at J
     i: Face,
+    /// J's face that looks at I
     j: Face,
     /// direction from J's solid to I's
     n: Vector,
     /// axes of the plane perpendicular to n
     axes: [Vector; 2],
+    /// projected outline of I's face
     flat_i: Vec<Flat>,
+    /// projected outline of J's face
     flat_j: Vec<Flat>,
 }
 

@@ -19,7 +19,9 @@ pub(super) struct Side {
 /// A convex polytope.
 #[derive(Debug)]
 pub(super) struct Polytope {
+    /// corners, in the frame of the solid
     pub corners: Vec<Vector>,
+    /// faces
     pub sides: Vec<Side>,
     /// for each corner, those that share an edge with it
     beside: Vec<Vec<usize>>,

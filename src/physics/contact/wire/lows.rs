@@ -29,9 +29,13 @@ const LEVEL_SLOPE_SQUARED: f64 = 1e-7;
 /// A local minimum of the distance.
 #[derive(Clone, Copy)]
 pub(super) struct Low {
+    /// station before it
     pub station: usize,
+    /// parameter of the curve
     pub s: f64,
+    /// distance from the solid, in length units
     pub d: f64,
+    /// part of a touch
     pub share: f64,
 }
 

@@ -13,7 +13,7 @@
 //! - **Nearest points**, where (1) holds (`lows.rs`).
 //! - **Anchors** are fixed points of the wire that support it where it lies along the solid and (1)
 //!   does not determine a point: the whole ring on a plane, half of it on the end of a box.
-//!   Together they weigh [`ANCHORS_WEIGHT`] touches, and they are lifted where the wire is inclined
+//!   Together they weigh `ANCHORS_WEIGHT` touches, and they are lifted where the wire is inclined
 //!   to the solid on both their sides,
 //!
 //!   ```text
@@ -21,7 +21,7 @@
 //!   ```
 //!
 //! so that an inclined wire touches at its nearest points alone. Half of the weight of an anchor
-//! belongs to either side, and vanishes where that side is inclined ([`INCLINED_SLOPE_SQUARED`]). A
+//! belongs to either side, and vanishes where that side is inclined (`INCLINED_SLOPE_SQUARED`). A
 //! nearest point gets the weight that the anchors of equal depth do not use.
 
 mod lows;
@@ -60,6 +60,7 @@ const SEARCH_DISTANCE: f64 = 1e6;
 struct Station {
     /// parameter of the curve
     s: f64,
+    /// the point, in the frame of the wire
     at: Vec3<f64>,
     /// length of the wire to the next station
     way: f64,
@@ -77,22 +78,26 @@ enum Target {
 /// The search for the touches of a wire and a solid.
 #[derive(Clone, Debug)]
 pub struct Wire {
+    /// the curve
     rim: Rim,
     /// radius of the wire, in length units
     tube: f64,
     /// radius of the curve about the middle of its marker, in length units
     size: f64,
+    /// whether the curve returns to its beginning
     closed: bool,
     /// stations; none of a point
     stations: Vec<Station>,
     /// indices of the anchors among the stations, ascending
     anchors: Vec<usize>,
+    /// the solid
     target: Target,
     /// whether the wire is J's
     turned: bool,
 }
 
 impl Target {
+    /// Prepares a solid; `None` if it gives no distances.
     fn new(solid: &Solid) -> Option<Self> {
         match solid {
             Solid::Ellipsoid { semi } => Some(Self::Ellipsoid(*semi)),
@@ -137,6 +142,7 @@ impl Question {
 }
 
 impl Wire {
+    /// Prepares a wire around a curve, with stations and anchors.
     fn new(rim: Rim, tube: f64, solid: &Solid, turned: bool) -> Option<Self> {
         let target = Target::new(solid)?;
         let closed = rim.is_closed();
