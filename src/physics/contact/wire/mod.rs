@@ -17,12 +17,12 @@
 //!   to the solid on both their sides,
 //!
 //!   ```text
-//! depth − ANCHOR_LIFT · size · q     1/q = 1/q₋ + 1/q₊,   q the mean of d'² up to the next anchor
+//!   depth − ANCHOR_LIFT · size · q     1/q = 1/q₋ + 1/q₊,  q: mean of d'² up to the next anchor
 //!   ```
 //!
-//! so that an inclined wire touches at its nearest points alone. Half of the weight of an anchor
-//! belongs to either side, and vanishes where that side is inclined (`INCLINED_SLOPE_SQUARED`). A
-//! nearest point gets the weight that the anchors of equal depth do not use.
+//!   so that an inclined wire touches at its nearest points alone. Half of the weight of an anchor
+//!   belongs to either side, and vanishes where that side is inclined (`INCLINED_SLOPE_SQUARED`). A
+//!   nearest point gets the weight that the anchors of equal depth do not use.
 
 mod lows;
 
