@@ -2,7 +2,7 @@
 #![cfg(feature = "solver")]
 
 use cognate::analysis::start::assemble;
-use cognate::model::Model;
+use cognate::model::{ElementId, ElementKind, Model};
 use cognate::scene::cams;
 use cognate::scene::configuration::Configuration;
 use cognate::scene::equations::Equations;
@@ -206,7 +206,10 @@ fn motions_and_rows_of_every_tie_agree() {
             let (_, scene, configuration) = compiled(&pair(&mut draw, &relative, &ties), false);
             let rows = scene.rows.len();
             assert!(
-                scene.rows.iter().all(|r| r.element == format!("{k}/2")),
+                scene
+                    .rows
+                    .iter()
+                    .all(|r| r.element.to_string() == format!("{k}/2")),
                 "{kind}: the first carries, the second closes"
             );
             assert_eq!(
@@ -358,7 +361,7 @@ fn gradients_and_rates_are_those_of_the_value() {
 }
 
 /// Numbers that do not depend on how a model is formulated: acceleration of part 3 and the reaction of an element on I.
-fn answers(text: &str, cut_all: bool, element: (&str, u32)) -> [Vec3<f64>; 4] {
+fn answers(text: &str, cut_all: bool, element: ElementId) -> [Vec3<f64>; 4] {
     let (model, scene, mut configuration) = compiled(text, cut_all);
     let mut q = scene.initial_q.clone();
     let found = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).unwrap();
@@ -367,9 +370,9 @@ fn answers(text: &str, cut_all: bool, element: (&str, u32)) -> [Vec3<f64>; 4] {
     let v = assemble::velocities(configured, &model, 0.0, &q, &[]).unwrap();
     let n = all_numbers(&scene, 0.0, &q, &v);
     let at = Equations::<f64>::new(configured, &n);
-    let three = scene.parts.iter().position(|p| p.id == 3).unwrap();
+    let three = scene.parts.iter().position(|p| p.id.number == 3).unwrap();
     let state = at.part(three, true);
-    let reaction = at.action_of(element.0, element.1).unwrap();
+    let reaction = at.action_of(element).unwrap();
     [state.a_GM, state.alpha_GM, reaction.force, reaction.torque]
 }
 
@@ -410,8 +413,8 @@ fn a_forest_and_the_same_joints_cut_give_the_same_motion_and_reactions() {
                 &format!("{k}/1, {kind}, I={i}, J={j}\n"),
             ));
             close(
-                &answers(&text, false, (k, 1)),
-                &answers(&text, true, (k, 1)),
+                &answers(&text, false, k.parse::<ElementKind>().unwrap().id(1)),
+                &answers(&text, true, k.parse::<ElementKind>().unwrap().id(1)),
                 &format!("{kind} {i}-{j}"),
             );
         }
@@ -444,10 +447,10 @@ fn joints_are_what_their_primitives_make() {
             .map(|(k, p)| format!("JPRIM/{}, {p}, I=5, J=4\n", k + 1))
             .collect();
         let split = base.replace('@', &split);
-        let joint = answers(&joint, true, ("JOINT", 1));
-        let mut whole = answers(&split, true, ("JPRIM", 1));
+        let joint = answers(&joint, true, ElementKind::Joint.id(1));
+        let mut whole = answers(&split, true, ElementKind::Jprim.id(1));
         for k in 2..=primitives.len() {
-            let more = answers(&split, true, ("JPRIM", k as u32));
+            let more = answers(&split, true, ElementKind::Jprim.id(k as u32));
             whole[2] += more[2];
             whole[3] += more[3];
         }
@@ -485,8 +488,8 @@ fn exchanging_i_and_j_reverses_the_reaction() {
         let one = base.replace('@', &format!("JOINT/1, {kind}, I=5, J=4{pitch}\n"));
         let other = base.replace('@', &format!("JOINT/1, {kind}, I=4, J=5{pitch}\n"));
         let (one, mut other) = (
-            answers(&one, true, ("JOINT", 1)),
-            answers(&other, true, ("JOINT", 1)),
+            answers(&one, true, ElementKind::Joint.id(1)),
+            answers(&other, true, ElementKind::Joint.id(1)),
         );
         // the origins coincide: no transfer moment
         other[2] = -other[2];
@@ -508,7 +511,7 @@ fn a_screw_falls_slowly() {
         let effective = 2.0 + 0.004 / (per_radian * per_radian);
         let fall = -2.0 * 9.81 / effective;
         for cut_all in [false, true] {
-            let [a, alpha, force, torque] = answers(&text, cut_all, ("JOINT", 2));
+            let [a, alpha, force, torque] = answers(&text, cut_all, ElementKind::Joint.id(2));
             approx::assert_relative_eq!(a.0[2], fall, max_relative = 1e-11);
             approx::assert_relative_eq!(alpha.0[2], fall / per_radian, max_relative = 1e-11);
             // the thread holds what gravity pulls beyond that, and turns the body
@@ -550,7 +553,7 @@ fn gears_turn_by_the_ratio_of_their_radii_and_load_their_bearings() {
         for cut_all in [false, true] {
             // T = (I₁ + I₂ ratio²) α₁
             let alpha1 = 1.0 / (0.01 + 0.08 * ratio * ratio);
-            let [_, alpha, force, torque] = answers(&text, cut_all, ("GEAR", 1));
+            let [_, alpha, force, torque] = answers(&text, cut_all, ElementKind::Gear.id(1));
             approx::assert_relative_eq!(alpha.0[2], ratio * alpha1, max_relative = 1e-11);
             // I₁ α₁ = 1 + arm × force
             let pressure = (0.01 * alpha1 - 1.0) / contact;
@@ -558,7 +561,7 @@ fn gears_turn_by_the_ratio_of_their_radii_and_load_their_bearings() {
             approx::assert_relative_eq!(torque.0[2], contact * pressure, max_relative = 1e-10);
             assert!(force.0[0].abs() < 1e-12 && force.0[2].abs() < 1e-12);
             // the bearing of the first wheel takes the force of the teeth and nothing about its axis
-            let [_, _, bearing, about] = answers(&text, cut_all, ("JOINT", 1));
+            let [_, _, bearing, about] = answers(&text, cut_all, ElementKind::Joint.id(1));
             approx::assert_relative_eq!(bearing.0[1], -pressure, max_relative = 1e-10);
             assert!(about.0[2].abs() < 1e-12);
         }
@@ -575,7 +578,7 @@ fn a_coupler_is_a_gear_without_teeth() {
     for cut_all in [false, true] {
         // θ₁ + 2 θ₂ = 0
         let alpha1 = 1.0 / (0.01 + 0.08 / 4.0);
-        let [_, alpha, force, torque] = answers(&text, cut_all, ("COUPLER", 1));
+        let [_, alpha, force, torque] = answers(&text, cut_all, ElementKind::Coupler.id(1));
         approx::assert_relative_eq!(alpha.0[2], -alpha1 / 2.0, max_relative = 1e-11);
         assert!(force.norm() < 1e-12);
         approx::assert_relative_eq!(torque.0[2], 0.01 * alpha1 - 1.0, max_relative = 1e-10);
@@ -600,7 +603,7 @@ fn a_rack_moves_as_its_pinion_rolls() {
             let r: f64 = pd / 2.0;
             // the rack under a pinion on ground moves against the travel of a rolling pinion: ẋ = −r θ̇
             let alpha = 1.0 / (0.001 + 3.0 * r * r);
-            let [a, _, force, torque] = answers(&rack(pd), cut_all, ("JOINT", 3));
+            let [a, _, force, torque] = answers(&rack(pd), cut_all, ElementKind::Joint.id(3));
             approx::assert_relative_eq!(a.0[0], -r * alpha, max_relative = 1e-10);
             approx::assert_relative_eq!(force.0[0], 3.0 * r * alpha, max_relative = 1e-10);
             approx::assert_relative_eq!(torque.0[2], 0.001 * alpha - 1.0, max_relative = 1e-10);

@@ -3,7 +3,7 @@
 
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
+use cognate::model::{ElementKind, Model};
 use cognate::results::Status;
 
 const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
@@ -247,7 +247,7 @@ fn a_deactivated_contact_does_nothing_and_an_activated_one_does() {
         "ELLIPSOID, CM=2, XSCALE=1, YSCALE=1, ZSCALE=1",
     ) + "ACCGRAV/KGRAV=-10\n";
     let mut s = session(&text, &["DZ(2,1)"], 1e-9);
-    s.model.inactive.insert(("CONTACT".into(), 1));
+    s.model.inactive.insert(ElementKind::Contact.id(1));
     s.simulate(Analysis::Dynamic, 0.1, 4, &mut Unwatched)
         .unwrap();
     // free fall through where the contact would be

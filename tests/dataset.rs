@@ -486,7 +486,7 @@ fn arguments_without_mechanics_are_kept() {
     let extra = &m.joints[&1].place.extra;
     assert_eq!(extra[0], ("DELTA_V".to_owned(), "0.01".to_owned()));
     assert_eq!(
-        m.others[&("MATERIAL".to_owned(), 1)].place.extra[0],
+        m.others[&ElementKind::Material.id(1)].place.extra[0],
         ("NAME".to_owned(), "steel".to_owned())
     );
 }
@@ -780,7 +780,7 @@ fn elements_are_switched_off_and_on_by_number_and_range() {
     for step in &s.steps {
         m.apply(&step.command).unwrap_or_else(|e| panic!("{e}"));
     }
-    let off: Vec<_> = m.inactive.iter().map(|(k, n)| format!("{k}/{n}")).collect();
+    let off: Vec<_> = m.inactive.iter().map(ToString::to_string).collect();
     assert_eq!(off, ["JOINT/1", "SENSOR/1000"]);
 }
 

@@ -20,7 +20,7 @@ fn session(text: &str, columns: &[&str], skip: &[&str], zero_user: bool) -> Sess
     let options = Options {
         columns: columns.iter().map(ToString::to_string).collect(),
         error: Some(1e-10),
-        skip: skip.iter().map(ToString::to_string).collect(),
+        skip: skip.iter().map(|k| k.parse().unwrap()).collect(),
         zero_user,
         ..Options::default()
     };

@@ -12,7 +12,7 @@ use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::start::assemble;
 use cognate::analysis::verify::{Verification, verify};
 use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
+use cognate::model::{ElementKind, Model};
 use cognate::results::Status;
 use cognate::scene::configuration::Configuration;
 use cognate::scene::{Scene, build};
@@ -71,7 +71,7 @@ impl Mechanism {
     fn idle(&self) -> Model {
         let mut model = self.model.clone();
         for id in model.motions.keys() {
-            model.inactive.insert(("MOTION".into(), *id));
+            model.inactive.insert(ElementKind::Motion.id(*id));
         }
         model
     }

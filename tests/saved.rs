@@ -6,7 +6,7 @@ use cognate::analysis::session::state::{Saved, file_name};
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
-use cognate::model::Model;
+use cognate::model::{ElementKind, Model};
 use cognate::results::Status;
 
 /// A pendulum with everything that is carried from one simulation to the next: turns, states, sensors, samples and a past.
@@ -62,7 +62,7 @@ fn last(s: &Session) -> [u64; 5] {
 fn a_run_goes_on_from_a_saved_state_to_the_last_bit() {
     let mut whole = session(Model::from_text(MODEL).unwrap());
     go(&mut whole, 0.5);
-    whole.model.inactive.insert(("JOINT".into(), 2));
+    whole.model.inactive.insert(ElementKind::Joint.id(2));
     let text = whole.save();
     go(&mut whole, 1.5);
     let saved = Saved::read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));

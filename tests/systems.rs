@@ -527,7 +527,7 @@ fn closures_give_all_components_of_vector_forces() {
         );
         together.register("9", &reads, move |call, out| {
             assert_eq!(
-                (call.element, call.constants),
+                (call.element.to_string().as_str(), call.constants),
                 ("GFORCE/1", &[9.0, 8.0][..])
             );
             out[..3].copy_from_slice(&force(call));

@@ -6,6 +6,7 @@ use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
+use crate::model::ElementKind;
 use crate::results::{self, Status, json};
 use std::path::PathBuf;
 
@@ -37,7 +38,7 @@ pub struct Args {
     out: Option<PathBuf>,
     /// Leave out elements of this kind where they are not solved (repeatable)
     #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    skip: Vec<String>,
+    skip: Vec<ElementKind>,
     /// Take what USER(…) would compute as zero
     #[arg(long = "zero-user")]
     zero_user: bool,
@@ -68,7 +69,7 @@ pub fn run(args: &Args) -> Outcome {
         (run::read(&args.model)?, run::stem(&args.model), Vec::new())
     };
     let options = Options {
-        skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
+        skip: args.skip.iter().copied().collect(),
         zero_user: args.zero_user,
         ..Options::default()
     };

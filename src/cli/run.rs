@@ -10,7 +10,7 @@ use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::model::Model;
+use crate::model::{ElementKind, Model};
 use crate::numeric::Stats;
 use crate::results::output_folder::OutputFolder;
 use crate::results::{Event, Status, csv, json, msg, res};
@@ -54,7 +54,7 @@ pub struct Args {
     repeat: usize,
     /// Leave out elements of this kind where they are not solved (repeatable)
     #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    skip: Vec<String>,
+    skip: Vec<ElementKind>,
     /// Take what USER(…) would compute as zero
     #[arg(long = "zero-user")]
     zero_user: bool,
@@ -185,7 +185,7 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
         columns: args.columns.clone(),
         full,
         piecewise: args.piecewise,
-        skip: args.skip.iter().map(|k| k.to_ascii_uppercase()).collect(),
+        skip: args.skip.iter().copied().collect(),
         zero_user: args.zero_user,
     };
     let mut session = Session::new(model, base, options);

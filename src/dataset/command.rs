@@ -5,13 +5,13 @@
 //! the answers to the old prompts (dataset, output name) on the first two lines.
 
 use super::read::{self, Table};
-use super::row::{Argument, Meaning, Problem, Record, Statement, canonical, meaning, near_ids};
+use super::row::{Argument, Meaning, Problem, Record, Statement, meaning, near_ids};
 use super::statement::STATEMENTS;
 use super::syntax::{self, Item, Source, Syntax};
 use super::value::{Kind, Value};
 use super::{Errors, enter, load};
 use crate::diagnostic::{Diagnostic, Severity, Span};
-use crate::model::{Model, Settings};
+use crate::model::{ElementKind, Model};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
@@ -88,8 +88,8 @@ pub enum Command {
     Activate {
         /// ACTIVATE rather than DEACTIVATE
         on: bool,
-        /// full keyword of the statement
-        keyword: String,
+        /// of which kind
+        kind: ElementKind,
         /// ID: numbers one by one
         ids: Vec<u32>,
         /// first and last number
@@ -146,9 +146,6 @@ impl Statement for CommandRow {
     fn keyword(&self) -> &'static str {
         self.keyword
     }
-    fn numbered(&self) -> bool {
-        false
-    }
     fn open(&self) -> bool {
         self.open
     }
@@ -159,9 +156,6 @@ impl Statement for CommandRow {
         Vec::new()
     }
     fn records(&self, _: &Model) -> Vec<Record> {
-        Vec::new()
-    }
-    fn names(&self, _: &Model) -> Vec<(u32, Option<String>)> {
         Vec::new()
     }
 }
@@ -583,14 +577,13 @@ fn activate(record: &Record, a: &Arguments, on: bool) -> Result<Command, Box<Dia
             "no kind of element is named, as in DEACTIVATE/JOINT, ID=3".into(),
         );
     };
-    let keyword = match super::statement::find(word) {
-        Meaning::One(k) if STATEMENTS[k].numbered() => canonical(STATEMENTS[k].keyword()),
-        _ => {
-            return refuse(
-                "unknown_statement",
-                format!("`{word}` is not a kind of element"),
-            );
-        }
+    let kind = match super::statement::find(word) {
+        Meaning::One(k) => STATEMENTS[k].kind(),
+        Meaning::Several(_) | Meaning::Unknown => None,
+    };
+    let Some(kind) = kind else {
+        let message = format!("`{word}` is not a kind of element");
+        return refuse("unknown_statement", message);
     };
     let range = <[u32; 2]>::try_from(a.ids("RANGE")).ok();
     let ids = a.ids("ID");
@@ -602,7 +595,7 @@ fn activate(record: &Record, a: &Arguments, on: bool) -> Result<Command, Box<Dia
     }
     Ok(Command::Activate {
         on,
-        keyword,
+        kind,
         ids,
         range,
     })
@@ -633,10 +626,10 @@ impl Model {
             Command::Change(record) => self.change(record),
             Command::Activate {
                 on,
-                keyword,
+                kind,
                 ids,
                 range,
-            } => self.activate(*on, keyword, ids, *range),
+            } => self.activate(*on, *kind, ids, *range),
             Command::File { .. }
             | Command::Simulate(_)
             | Command::Linear(_)
@@ -658,16 +651,17 @@ impl Model {
                 .given
                 .retain(|g| !matches!(word(g).as_str(), "LIST" | "DEFAULT"));
         }
-        let before = reset.then(|| self.reset(record.row.keyword()));
+        let before = reset.then(|| self.clone());
+        if reset {
+            record.row.reset(self);
+        }
         let mut out = Vec::new();
         enter(&Source::default(), self, &record, true, &mut out);
         if out.is_empty() {
             return Ok(());
         }
-        if let Some((Some(target), settings)) =
-            before.map(|b| (self.settings_of(record.row.keyword()), b))
-        {
-            *target = settings;
+        if let Some(before) = before {
+            *self = before;
         }
         for d in &mut out {
             (d.span, d.line, d.column) =
@@ -676,39 +670,19 @@ impl Model {
         Err(Errors(out))
     }
 
-    /// The settings that DEFAULT resets.
-    fn settings_of(&mut self, keyword: &str) -> Option<&mut Settings> {
-        match keyword {
-            "EQUILIBRIUM" => Some(&mut self.equilibrium),
-            "KINEMATICS" => Some(&mut self.kinematics),
-            "IC" => Some(&mut self.initial_conditions),
-            _ => None,
-        }
-    }
-
-    /// Sets them back, and returns what they were.
-    fn reset(&mut self, keyword: &str) -> Settings {
-        self.settings_of(keyword)
-            .map(std::mem::take)
-            .unwrap_or_default()
-    }
-
     fn activate(
         &mut self,
         on: bool,
-        keyword: &str,
+        kind: ElementKind,
         ids: &[u32],
         range: Option<[u32; 2]>,
     ) -> Result<(), Errors> {
-        let rows = STATEMENTS
-            .iter()
-            .filter(|r| canonical(r.keyword()) == keyword);
-        let known: Vec<u32> = rows.flat_map(|r| r.names(self)).map(|(id, _)| id).collect();
+        let known = self.numbers(kind);
         let missing = |id: &&u32| !known.contains(id);
         let mut out = Vec::new();
         for &id in ids.iter().filter(missing) {
-            let mut d =
-                Diagnostic::error("unknown_element", format!("{keyword}/{id} does not exist"));
+            let message = format!("{} does not exist", kind.id(id));
+            let mut d = Diagnostic::error("unknown_element", message);
             d.help.extend(near_ids(id, known.iter().copied()));
             out.push(d);
         }
@@ -718,7 +692,7 @@ impl Model {
         let in_range = |id: &u32| range.is_some_and(|[a, b]| (a..=b).contains(id));
         let of_range = known.iter().copied().filter(in_range);
         for id in ids.iter().copied().chain(of_range) {
-            let key = (keyword.to_owned(), id);
+            let key = kind.id(id);
             if on {
                 self.inactive.remove(&key);
             } else {

@@ -344,12 +344,17 @@ impl Lens<[bool; 6]> for Exact {
     }
 }
 
-/// An owner that is not solved: its keyword is kept as text.
-pub fn other_owner(marker: &mut Marker, keyword: &str, value: Value) -> Done {
-    let text = value.to_string();
-    id(value, |n| marker.owner = MarkerOwner::Other(n))?;
-    marker.keep(keyword, text);
-    Ok(())
+/// Fastens a marker to an element that is not solved.
+pub fn put_other_owner(marker: &mut Marker, kind: ElementKind, value: Value) -> Done {
+    id(value, |n| marker.owner = MarkerOwner::Other(kind.id(n)))
+}
+
+/// See [`put_other_owner`].
+pub fn other_owner(marker: &Marker, kind: ElementKind) -> Option<Value> {
+    match marker.owner {
+        MarkerOwner::Other(owner) if owner.kind == kind => Some(Value::Id(owner.number)),
+        MarkerOwner::Other(_) | MarkerOwner::Part(_) | MarkerOwner::PointMass(_) => None,
+    }
 }
 
 // ------------------------------------------------------------------------------------------------------- constraints

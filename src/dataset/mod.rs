@@ -18,7 +18,7 @@ pub mod value;
 pub mod write;
 
 use crate::diagnostic::{Diagnostic, Severity, Span};
-use crate::model::{MarkerOwner, Model};
+use crate::model::{ElementKind, MarkerOwner, Model};
 use read::Table;
 use row::Record;
 use std::collections::BTreeSet;
@@ -150,7 +150,7 @@ pub fn read_source(source: Source) -> Reading {
                 mistaken.insert(record.element());
             }
             enter(&source, &mut reading.model, record, false, out);
-            if record.row.keyword() == "PART" {
+            if record.row.kind() == Some(ElementKind::Part) {
                 last_part = record.id;
             }
             adopt_marker(&source, &mut reading.model, record, last_part, out);
@@ -231,7 +231,7 @@ fn adopt_marker(
     part: Option<u32>,
     out: &mut Vec<Diagnostic>,
 ) {
-    if record.row.keyword() != "MARKER" {
+    if record.row.kind() != Some(ElementKind::Marker) {
         return;
     }
     let Some(marker) = record.id.and_then(|id| model.markers.get_mut(&id)) else {

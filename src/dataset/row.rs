@@ -6,7 +6,7 @@
 use super::value::{Field, Kind, Value};
 use crate::diagnostic::{Span, near_names};
 use crate::model::{
-    ById, Formula, IntegratorSettings, Model, OtherElement, Place, Settings, Units,
+    self, ById, ElementKind, Formula, IntegratorSettings, Model, Place, Settings, Units,
 };
 use std::fmt::Debug;
 
@@ -152,21 +152,27 @@ impl Problem {
 pub trait Statement: Sync {
     /// Full keyword, written like [`Argument::name`].
     fn keyword(&self) -> &'static str;
+    /// The kind of element it makes; `None` for statements without a number.
+    fn kind(&self) -> Option<ElementKind> {
+        None
+    }
     /// Whether each has a number.
-    fn numbered(&self) -> bool;
+    fn numbered(&self) -> bool {
+        self.kind().is_some()
+    }
     /// Whether arguments that no row describes are kept rather than refused.
     fn open(&self) -> bool;
     /// Its arguments.
     fn arguments(&self) -> Vec<Argument>;
     /// Puts a record into the model: a new element, or (`change`) new values for arguments of one that is there.
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem>;
+    /// Sets what a statement without a number sets back to what holds without it.
+    fn reset(&self, _: &mut Model) {}
     /// All elements of this kind as records, for writing.
     fn records(&self, model: &Model) -> Vec<Record>;
-    /// Number and name of each element of this kind.
-    fn names(&self, model: &Model) -> Vec<(u32, Option<String>)>;
 }
 
-/// What every element can do for the table.
+/// What the table needs of whatever a statement fills: elements and settings.
 pub trait Element: Clone + Default + PartialEq {
     /// Line and name, for elements that have them.
     fn place(&self) -> Option<&Place>;
@@ -185,25 +191,13 @@ pub trait Element: Clone + Default + PartialEq {
     }
 }
 
-macro_rules! placed {
-    ($($type:ident)+) => { $(
-        impl Element for crate::model::$type {
-            fn place(&self) -> Option<&Place> {
-                Some(&self.place)
-            }
-            fn place_mut(&mut self) -> Option<&mut Place> {
-                Some(&mut self.place)
-            }
-        }
-    )+ };
-}
-
-#[rustfmt::skip]
-placed! {
-    Part Marker Joint Primitive Motion Coupler Gear GeneralConstraint Curve PointOnCurve CurveOnCurve
-    SingleForce VectorForce SpringDamper Bushing Field Beam NodalForce Contact Friction
-    Variable Differential Array SplineData StringData Matrix LinearSystem GeneralSystem TransferFunction Plant Sensor
-    Request ManyRequests Graphics OtherElement
+impl<T: model::Element + Clone + Default + PartialEq> Element for T {
+    fn place(&self) -> Option<&Place> {
+        Some(model::Element::place(self))
+    }
+    fn place_mut(&mut self) -> Option<&mut Place> {
+        Some(model::Element::place_mut(self))
+    }
 }
 
 impl Element for Settings {
@@ -239,8 +233,8 @@ placeless!(IntegratorSettings, Option<Units>, [f64; 3]);
 
 /// A kind of statement of which there are many, each with its number.
 pub struct Numbered<T: 'static> {
-    /// see [`Statement::keyword`]
-    pub keyword: &'static str,
+    /// which
+    pub kind: ElementKind,
     /// where they are kept
     pub list: fn(&Model) -> &ById<T>,
     /// the same, to be changed
@@ -253,10 +247,10 @@ pub struct Numbered<T: 'static> {
 
 impl<T: Element> Statement for Numbered<T> {
     fn keyword(&self) -> &'static str {
-        self.keyword
+        self.kind.keyword()
     }
-    fn numbered(&self) -> bool {
-        true
+    fn kind(&self) -> Option<ElementKind> {
+        Some(self.kind)
     }
     fn open(&self) -> bool {
         false
@@ -313,7 +307,7 @@ impl<T: Element> Statement for Numbered<T> {
 
     fn records(&self, model: &Model) -> Vec<Record> {
         let to_record = |(&id, e): (&u32, &T)| Record {
-            row: row_of(self.keyword),
+            row: row_of(self.kind.keyword()),
             id: Some(id),
             given: given(self.bindings, e),
             kept: e.kept(),
@@ -322,14 +316,6 @@ impl<T: Element> Statement for Numbered<T> {
             mistaken: false,
         };
         (self.list)(model).iter().map(to_record).collect()
-    }
-
-    fn names(&self, model: &Model) -> Vec<(u32, Option<String>)> {
-        let name = |e: &T| e.place().and_then(|p| p.name.clone());
-        (self.list)(model)
-            .iter()
-            .map(|(&id, e)| (id, name(e)))
-            .collect()
     }
 }
 
@@ -352,9 +338,6 @@ pub struct Single<T: 'static> {
 impl<T: Element> Statement for Single<T> {
     fn keyword(&self) -> &'static str {
         self.keyword
-    }
-    fn numbered(&self) -> bool {
-        false
     }
     fn open(&self) -> bool {
         self.open
@@ -379,6 +362,10 @@ impl<T: Element> Statement for Single<T> {
         problems
     }
 
+    fn reset(&self, model: &mut Model) {
+        *(self.value_mut)(model) = T::default();
+    }
+
     fn records(&self, model: &Model) -> Vec<Record> {
         let Some(value) = (self.value)(model) else {
             return Vec::new();
@@ -397,24 +384,20 @@ impl<T: Element> Statement for Single<T> {
             mistaken: false,
         }]
     }
-
-    fn names(&self, _: &Model) -> Vec<(u32, Option<String>)> {
-        Vec::new()
-    }
 }
 
 /// A statement that is only kept, with whatever arguments it has.
 pub struct Opaque {
-    /// see [`Statement::keyword`]
-    pub keyword: &'static str,
+    /// which
+    pub kind: ElementKind,
 }
 
 impl Statement for Opaque {
     fn keyword(&self) -> &'static str {
-        self.keyword
+        self.kind.keyword()
     }
-    fn numbered(&self) -> bool {
-        true
+    fn kind(&self) -> Option<ElementKind> {
+        Some(self.kind)
     }
     fn open(&self) -> bool {
         true
@@ -424,8 +407,8 @@ impl Statement for Opaque {
     }
 
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem> {
-        let key = (canonical(self.keyword), record.id.unwrap_or(0));
-        let element = model.others.entry(key).or_default();
+        let id = self.kind.id(record.id.unwrap_or(0));
+        let element = model.others.entry(id).or_default();
         if !change {
             element.place = record.place.clone();
         }
@@ -436,27 +419,17 @@ impl Statement for Opaque {
     }
 
     fn records(&self, model: &Model) -> Vec<Record> {
-        let mine = |((keyword, id), e): (&(String, u32), &OtherElement)| {
-            (*keyword == canonical(self.keyword)).then(|| Record {
-                row: row_of(self.keyword),
-                id: Some(*id),
-                given: Vec::new(),
-                kept: e.kept(),
-                place: e.place.clone(),
-                head: Span::default(),
-                mistaken: false,
-            })
-        };
-        model.others.iter().filter_map(mine).collect()
-    }
-
-    fn names(&self, model: &Model) -> Vec<(u32, Option<String>)> {
-        let mine = model
-            .others
-            .iter()
-            .filter(|((k, _), _)| *k == canonical(self.keyword));
-        mine.map(|((_, id), e)| (*id, e.place.name.clone()))
-            .collect()
+        let mine = model.others.range(self.kind.id(0)..=self.kind.id(u32::MAX));
+        mine.map(|(id, e)| Record {
+            row: row_of(self.kind.keyword()),
+            id: Some(id.number),
+            given: Vec::new(),
+            kept: e.kept(),
+            place: e.place.clone(),
+            head: Span::default(),
+            mistaken: false,
+        })
+        .collect()
     }
 }
 

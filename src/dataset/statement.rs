@@ -214,9 +214,9 @@ macro_rules! bindings {
     };
 }
 macro_rules! numbered {
-    ($keyword:literal, $list:ident: $t:ty, $finish:expr, { $($rows:tt)* }) => {
+    ($kind:ident, $list:ident: $t:ty, $finish:expr, { $($rows:tt)* }) => {
         &Numbered::<$t> {
-            keyword: $keyword,
+            kind: ElementKind::$kind,
             list: |m| &m.$list,
             list_mut: |m| &mut m.$list,
             bindings: bindings!($t: $($rows)*),
@@ -276,7 +276,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         open: false,
         finish: consistent_units,
     },
-    numbered!("PART", parts: Part, nothing, {
+    numbered!(Part, parts: Part, nothing, {
         field "GROUND" (ground);
         field "QG" (qg);
         lens "REULER" (Euler, orientation);
@@ -293,7 +293,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "WM" (wm);
         lens "EXACT" (Exact, exact);
     }),
-    numbered!("POINT_MASS", point_masses: Part, nothing, {
+    numbered!(PointMass, point_masses: Part, nothing, {
         field "QG" (qg);
         lens "REULER" (Euler, orientation);
         lens "ZG" (PointOnZ, orientation);
@@ -305,14 +305,14 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "VM" (vm);
         lens "EXACT" (Exact, exact);
     }),
-    numbered!("MARKER", markers: Marker, nothing, {
+    numbered!(Marker, markers: Marker, nothing, {
         own "PART" (Kind::Id, |m, v| id(v, |n| m.owner = MarkerOwner::Part(n)),
             |m| match m.owner { MarkerOwner::Part(n) => Some(Value::Id(n)), _ => None });
         own "POINT_MASS" (Kind::Id, |m, v| id(v, |n| m.owner = MarkerOwner::PointMass(n)),
             |m| match m.owner { MarkerOwner::PointMass(n) => Some(Value::Id(n)), _ => None });
-        own "FLEX_BODY" (Kind::Id, |m, v| other_owner(m, "FLEX_BODY", v), |_| None);
-        own "FE_PART" (Kind::Id, |m, v| other_owner(m, "FE_PART", v), |_| None);
-        own "CURVE" (Kind::Id, |m, v| other_owner(m, "CURVE", v), |_| None);
+        own "FLEX_BODY" (Kind::Id, |m, v| put_other_owner(m, ElementKind::FlexBody, v), |m| other_owner(m, ElementKind::FlexBody));
+        own "FE_PART" (Kind::Id, |m, v| put_other_owner(m, ElementKind::FePart, v), |m| other_owner(m, ElementKind::FePart));
+        own "CURVE" (Kind::Id, |m, v| put_other_owner(m, ElementKind::Curve, v), |m| other_owner(m, ElementKind::Curve));
         keep "NODE_LABEL" (Kind::Id);
         keep "NODE_ID" (IDS);
         keep "VALUE" (REAL);
@@ -323,7 +323,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         lens "USEXP" (UseX, orientation);
         lens "REULER" (Euler, orientation);
     }),
-    numbered!("GRAPHICS", graphics: Graphics, nothing, {
+    numbered!(Graphics, graphics: Graphics, nothing, {
         variant "BOX" (shape, Shape::Box { .. } => Shape::Box { corner: 0, size: [0.0; 3] }).required().group("shape");
         variant "CYlinder" (shape, Shape::Cylinder { .. } => Shape::Cylinder { cm: 0, length: 0.0, radius: 0.0 }).required().group("shape");
         variant "FRustum" (shape, Shape::Frustum { .. } => Shape::Frustum { cm: 0, length: 0.0, top: 0.0, bottom: 0.0 }).required().group("shape");
@@ -383,7 +383,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         keep "BITMAP" (Kind::Text);
         keep "MATRIX" (Kind::Id);
     }),
-    numbered!("JOINT", joints: Joint, nothing, {
+    numbered!(Joint, joints: Joint, nothing, {
         choice "FIXED" (kind = JointKind::Fixed).required().group("type");
         choice "Revolute" (kind = JointKind::Revolute).required().group("type");
         choice "Translational" (kind = JointKind::Translational).required().group("type");
@@ -422,7 +422,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         keep "HEIGHT" (REAL);
         keep "WIDTH" (REAL);
     }),
-    numbered!("JPRIM", primitives: Primitive, nothing, {
+    numbered!(Jprim, primitives: Primitive, nothing, {
         choice "ATpoint" (kind = PrimitiveKind::Atpoint).required().group("type");
         choice "INLine" (kind = PrimitiveKind::Inline).required().group("type");
         choice "INPlane" (kind = PrimitiveKind::Inplane).required().group("type");
@@ -432,7 +432,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "I" (i).required();
         field "J" (j).required();
     }),
-    numbered!("MOTION", motions: Motion, motion_form, {
+    numbered!(Motion, motions: Motion, motion_form, {
         own "JOINT" (Kind::Id, put_motion_joint, motion_joint);
         own "I" (Kind::Id, |m, v| put_motion_marker(m, v, false), |m| motion_marker(m, false));
         own "J" (Kind::Id, |m, v| put_motion_marker(m, v, true), |m| motion_marker(m, true));
@@ -454,23 +454,23 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FUNCTION" (function).required();
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("COUPLER", couplers: Coupler, coupler_form, {
+    numbered!(Coupler, couplers: Coupler, coupler_form, {
         field "JOINTS" (joints).required();
         lens "TYPE" (CouplerTypes, rotational);
         field "SCALES" (scales);
         field "FUNCTION" (user);
         lens "ROUTINE" (Routine, user);
     }),
-    numbered!("GEAR", gears: Gear, nothing, {
+    numbered!(Gear, gears: Gear, nothing, {
         field "JOINTS" (joints).required();
         field "CV" (cv).required();
     }),
-    numbered!("GCON", general_constraints: GeneralConstraint, nothing, {
+    numbered!(Gcon, general_constraints: GeneralConstraint, nothing, {
         field "I" (i);
         field "FUNCTION" (function).required();
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("CURVE", curves: Curve, nothing, {
+    numbered!(Curve, curves: Curve, nothing, {
         choice "OPEN" (closed = false).group("ends");
         choice "CLOSED" (closed = true).group("ends");
         field "ORDER" (order);
@@ -483,7 +483,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FUNCTION" (function);
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("PTCV", points_on_curves: PointOnCurve, nothing, {
+    numbered!(Ptcv, points_on_curves: PointOnCurve, nothing, {
         field "I" (i).required();
         field "JFLOAT" (jfloat);
         field "RM" (rm).required();
@@ -492,7 +492,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "VEL" (velocity);
         field "ICM" (start_marker);
     }),
-    numbered!("CVCV", curves_on_curves: CurveOnCurve, nothing, {
+    numbered!(Cvcv, curves_on_curves: CurveOnCurve, nothing, {
         field "ICURVE" (i.curve).required();
         field "IRM" (i.rm).required();
         field "IFLOAT" (i.float);
@@ -506,7 +506,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "JICM" (j.start_marker);
         field "JVEL" (j.velocity);
     }),
-    numbered!("SFORCE", sforces: SingleForce, nothing, {
+    numbered!(Sforce, sforces: SingleForce, nothing, {
         choice "TRANSLATIONAL" (rotational = false).required().group("kind");
         choice "ROTATIONAL" (rotational = true).required().group("kind");
         field "I" (i).required();
@@ -515,7 +515,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FUNCTION" (function).required();
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("VFORCE", vforces: VectorForce, nothing, {
+    numbered!(Vforce, vforces: VectorForce, nothing, {
         field "I" (i).required();
         field "JFLOAT" (jfloat);
         field "RM" (rm);
@@ -523,7 +523,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FUNCTION" (user);
         lens "ROUTINE" (Routine, user);
     }),
-    numbered!("VTORQUE", vtorques: VectorForce, nothing, {
+    numbered!(Vtorque, vtorques: VectorForce, nothing, {
         field "I" (i).required();
         field "JFLOAT" (jfloat);
         field "RM" (rm);
@@ -531,7 +531,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FUNCTION" (user);
         lens "ROUTINE" (Routine, user);
     }),
-    numbered!("GFORCE", gforces: VectorForce, nothing, {
+    numbered!(Gforce, gforces: VectorForce, nothing, {
         field "I" (i).required();
         field "JFLOAT" (jfloat);
         field "RM" (rm);
@@ -540,7 +540,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FUNCTION" (user);
         lens "ROUTINE" (Routine, user);
     }),
-    numbered!("SPRINGDAMPER", spring_dampers: SpringDamper, nothing, {
+    numbered!(SpringDamper, spring_dampers: SpringDamper, nothing, {
         choice "TRANSLATIONAL" (rotational = false).required().group("kind");
         choice "ROTATIONAL" (rotational = true).required().group("kind");
         field "I" (i).required();
@@ -555,7 +555,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         own "ANGLE" (ANGLE, |s, v| put_spring(s, true, v, |s| &mut s.free),
             |s| spring(s, true, s.free).map(|_| Value::Real(Number::angle(s.free))));
     }),
-    numbered!("BUSHING", bushings: Bushing, nothing, {
+    numbered!(Bushing, bushings: Bushing, nothing, {
         field "I" (i).required();
         field "J" (j).required();
         lens "C" (FirstThree, damping);
@@ -565,7 +565,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         lens "KT" (LastThree, stiffness);
         lens "TORQUE" (LastThree, preload);
     }),
-    numbered!("FIELD", fields: crate::model::Field, nothing, {
+    numbered!(Field, fields: crate::model::Field, nothing, {
         field "I" (i).required();
         field "J" (j).required();
         lens "CMATRIX" (Many<36>, damping);
@@ -576,7 +576,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FUNCTION" (function);
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("BEAM", beams: Beam, nothing, {
+    numbered!(Beam, beams: Beam, nothing, {
         field "I" (i).required();
         field "J" (j).required();
         field "LENGTH" (length).required();
@@ -589,7 +589,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         lens "CMATRIX" (Many<21>, damping);
         field "FORMULATION" (formulation);
     }),
-    numbered!("NFORCE", nodal_forces: NodalForce, nothing, {
+    numbered!(Nforce, nodal_forces: NodalForce, nothing, {
         field "IMARKERS" (i).required();
         field "J" (j).required();
         field "KMATRIX" (stiffness).required();
@@ -598,7 +598,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "CMATRIX" (damping);
         field "CRATIO" (damping_ratio);
     }),
-    numbered!("CONTACT", contacts: Contact, contact_form, {
+    numbered!(Contact, contacts: Contact, contact_form, {
         lens "TYPE" (Word, kind);
         field "IGEOM" (i_geometry).required();
         field "JGEOM" (j_geometry).required();
@@ -623,7 +623,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         own "FUNCTION" (Kind::Formula, |c, v| { c.law = ContactLaw::User; c.function.put(v) }, |c| c.function.written()).group("law");
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("FRICTION", frictions: Friction, nothing, {
+    numbered!(Friction, frictions: Friction, nothing, {
         field "JOINT" (joint).required();
         field "MU_STATIC" (mu_static);
         field "MU_DYNAMIC" (mu_dynamic);
@@ -647,19 +647,19 @@ pub static STATEMENTS: &[&dyn Statement] = &[
             |f| f.inactive_in_statics.then(|| Value::Word("STATIC".into())));
         keep "FORMULATION" (WORD);
     }),
-    numbered!("VARIABLE", variables: Variable, nothing, {
+    numbered!(Variable, variables: Variable, nothing, {
         field "IC" (ic);
         field "FUNCTION" (function).required();
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("DIFF", differentials: Differential, nothing, {
+    numbered!(Diff, differentials: Differential, nothing, {
         field "IC" (ic);
         field "STATIC_HOLD" (static_hold);
         field "IMPLICIT" (implicit);
         field "FUNCTION" (function).required();
         lens "ROUTINE" (Routine, function);
     }),
-    numbered!("ARRAY", arrays: Array, nothing, {
+    numbered!(Array, arrays: Array, nothing, {
         variant "IC" (kind, ArrayKind::Ic(_) => ArrayKind::Ic(Vec::new())).required().group("kind");
         variant "X" (kind, ArrayKind::States => ArrayKind::States).required().group("kind");
         variant "Y" (kind, ArrayKind::Outputs => ArrayKind::Outputs).required().group("kind");
@@ -670,7 +670,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         own "VARIABLES" (IDS, |a, v| match &mut a.kind { ArrayKind::Inputs(x) => x.put(v), _ => Err("VARIABLES go with U".into()) },
             |a| match &a.kind { ArrayKind::Inputs(x) => x.written(), _ => None });
     }),
-    numbered!("SPLINE", splines: SplineData, spline_surface, {
+    numbered!(Spline, splines: SplineData, spline_surface, {
         own "X" (REALS, |s, v| { s.y.clear(); s.z.clear(); s.x.put(v) }, |s| s.x.written());
         many "Y" (REALS, put_spline_row, spline_rows).repeated();
         field "FILE" (file);
@@ -678,10 +678,10 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         keep "CHANNEL" (Kind::Text);
         field "LINEAR_EXTRAPOLATE" (linear_extrapolate);
     }),
-    numbered!("STRING", strings: StringData, nothing, {
+    numbered!(String, strings: StringData, nothing, {
         own "STRING" (Kind::Text, |s, v| s.text.put(v), |s| Some(s.text.always())).required();
     }),
-    numbered!("MATRIX", matrices: Matrix, nothing, {
+    numbered!(Matrix, matrices: Matrix, nothing, {
         own "FULL" (Kind::Word(&["RORDER", "CORDER"]), put_matrix_order, matrix_order);
         variant "SPARSE" (layout, MatrixLayout::Sparse { .. } => MatrixLayout::Sparse { rows: Vec::new(), columns: Vec::new() });
         field "ROWS" (rows);
@@ -694,7 +694,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "FILE" (file);
         keep "NAME" (Kind::Text);
     }),
-    numbered!("LSE", linear_systems: LinearSystem, nothing, {
+    numbered!(Lse, linear_systems: LinearSystem, nothing, {
         field "X" (x).required();
         field "IC" (ic);
         field "U" (u);
@@ -705,7 +705,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "D" (d);
         field "STATIC_HOLD" (static_hold);
     }),
-    numbered!("GSE", general_systems: GeneralSystem, nothing, {
+    numbered!(Gse, general_systems: GeneralSystem, nothing, {
         field "NS" (ns);
         field "NO" (no);
         field "X" (x);
@@ -727,7 +727,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         lens "ROUTINE" (Routine, function);
         keep "INTERFACE" (Kind::Text);
     }),
-    numbered!("TFSISO", transfer_functions: TransferFunction, nothing, {
+    numbered!(Tfsiso, transfer_functions: TransferFunction, nothing, {
         field "X" (x).required();
         field "U" (u).required();
         field "Y" (y).required();
@@ -735,13 +735,13 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "DENOMINATOR" (denominator).required();
         field "STATIC_HOLD" (static_hold);
     }),
-    numbered!("PINPUT", plant_inputs: Plant, nothing, {
+    numbered!(Pinput, plant_inputs: Plant, nothing, {
         field "VARIABLES" (variables).required();
     }),
-    numbered!("POUTPUT", plant_outputs: Plant, nothing, {
+    numbered!(Poutput, plant_outputs: Plant, nothing, {
         field "VARIABLES" (variables).required();
     }),
-    numbered!("SENSOR", sensors: Sensor, nothing, {
+    numbered!(Sensor, sensors: Sensor, nothing, {
         own "VALUE" (ANGLE, |s, v| s.value.put(v), |s| Some(s.value.always())).required();
         choice "EQ" (comparison = Comparison::Equal).group("comparison");
         choice "GE" (comparison = Comparison::GreaterOrEqual).group("comparison");
@@ -761,7 +761,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         lens "ROUTINE" (Routine, function);
         field "EVALUATE" (evaluate);
     }),
-    numbered!("REQUEST", requests: Request, nothing, {
+    numbered!(Request, requests: Request, nothing, {
         own "Displacement" (Kind::Flag, |r, _| ask(r, Quantity::Displacement), |r| asked(r, Quantity::Displacement)).group("quantity");
         own "Velocity" (Kind::Flag, |r, _| ask(r, Quantity::Velocity), |r| asked(r, Quantity::Velocity)).group("quantity");
         own "Acceleration" (Kind::Flag, |r, _| ask(r, Quantity::Acceleration), |r| asked(r, Quantity::Acceleration)).group("quantity");
@@ -787,7 +787,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         own "ROUTINE" (Kind::Text, |r, v| <Routine as Lens<Formula>>::put(request_user(r), v),
             |r| match &r.kind { RequestKind::User(f) => <Routine as Lens<Formula>>::get(f), _ => None });
     }),
-    numbered!("MREQUEST", many_requests: ManyRequests, nothing, {
+    numbered!(Mrequest, many_requests: ManyRequests, nothing, {
         choice "Displacement" (quantity = Quantity::Displacement).required().group("quantity");
         choice "Velocity" (quantity = Quantity::Velocity).required().group("quantity");
         choice "Acceleration" (quantity = Quantity::Acceleration).required().group("quantity");
@@ -933,19 +933,19 @@ pub static STATEMENTS: &[&dyn Statement] = &[
     }),
     settings!("LIST", {}),
     settings!("NOLIST", {}),
-    &Opaque { keyword: "MATERIAL" },
-    &Opaque { keyword: "SECTION" },
-    &Opaque { keyword: "FE_PART" },
-    &Opaque { keyword: "FE_NODE" },
-    &Opaque { keyword: "FE_LOAD" },
-    &Opaque { keyword: "FLEX_BODY" },
-    &Opaque { keyword: "FEMDATA" },
-    &Opaque { keyword: "MFORCE" },
-    &Opaque { keyword: "UCON" },
-    &Opaque { keyword: "TIRE" },
-    &Opaque { keyword: "WHEEL" },
-    &Opaque { keyword: "SURFACE" },
-    &Opaque { keyword: "CVSF" },
-    &Opaque { keyword: "PTSF" },
-    &Opaque { keyword: "SFSF" },
+    &Opaque { kind: ElementKind::Material },
+    &Opaque { kind: ElementKind::Section },
+    &Opaque { kind: ElementKind::FePart },
+    &Opaque { kind: ElementKind::FeNode },
+    &Opaque { kind: ElementKind::FeLoad },
+    &Opaque { kind: ElementKind::FlexBody },
+    &Opaque { kind: ElementKind::Femdata },
+    &Opaque { kind: ElementKind::Mforce },
+    &Opaque { kind: ElementKind::Ucon },
+    &Opaque { kind: ElementKind::Tire },
+    &Opaque { kind: ElementKind::Wheel },
+    &Opaque { kind: ElementKind::Surface },
+    &Opaque { kind: ElementKind::Cvsf },
+    &Opaque { kind: ElementKind::Ptsf },
+    &Opaque { kind: ElementKind::Sfsf },
 ];

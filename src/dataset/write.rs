@@ -10,7 +10,7 @@ use super::statement::STATEMENTS;
 use super::syntax::{Item, Source, Token, TokenKind, Tokens};
 use super::value::Value;
 use crate::diagnostic::Span;
-use crate::model::{MarkerOwner, Model};
+use crate::model::{ElementKind, MarkerOwner, Model};
 
 /// Columns that Adams View fills.
 const WIDTH: usize = 80;
@@ -79,25 +79,23 @@ impl Model {
     pub fn to_text(&self) -> String {
         let mut out = Lines::default();
         out.push(self.title.lines().next().unwrap_or_default());
-        let records = |keyword: &str| {
-            let rows = STATEMENTS.iter().filter(move |r| r.keyword() == keyword);
-            rows.flat_map(|r| r.records(self)).collect::<Vec<_>>()
-        };
-        let markers = records("MARKER");
+        const MARKER: Option<ElementKind> = Some(ElementKind::Marker);
+        let rows = STATEMENTS.iter().filter(|r| r.kind() == MARKER);
+        let markers: Vec<Record> = rows.flat_map(|r| r.records(self)).collect();
         let owner = |r: &Record| r.id.and_then(|id| self.markers.get(&id)).map(|m| m.owner);
-        for row in STATEMENTS.iter().filter(|r| r.keyword() != "MARKER") {
+        for row in STATEMENTS.iter().filter(|r| r.kind() != MARKER) {
             for record in row.records(self) {
                 write_named(&mut out, &record);
-                let own = match (row.keyword(), record.id) {
-                    ("PART", Some(id)) => MarkerOwner::Part(id),
-                    ("POINT_MASS", Some(id)) => MarkerOwner::PointMass(id),
+                let own = match (row.kind(), record.id) {
+                    (Some(ElementKind::Part), Some(id)) => MarkerOwner::Part(id),
+                    (Some(ElementKind::PointMass), Some(id)) => MarkerOwner::PointMass(id),
                     _ => continue,
                 };
                 for marker in markers.iter().filter(|m| owner(m) == Some(own)) {
                     write_named(&mut out, marker);
                 }
             }
-            if row.keyword() == "POINT_MASS" {
+            if row.kind() == Some(ElementKind::PointMass) {
                 // The rest: markers of bodies that are not solved, or of parts that do not exist.
                 let homeless = |m: &&Record| match owner(m) {
                     Some(MarkerOwner::Part(n)) => !self.parts.contains_key(&n),

@@ -1,6 +1,7 @@
 //! Bodies and the frames fixed in them: PART, POINT_MASS, MARKER.
 
 use super::Place;
+use super::element::{Element, ElementId, ElementKind, Named, names, placed};
 
 /// The orientation of a part or marker, as written.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,10 +53,23 @@ pub struct Part {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum MarkerOwner {
+    /// a PART, by its number
     Part(u32),
+    /// a POINT_MASS, by its number
     PointMass(u32),
-    /// FLEX_BODY, FE_PART, CURVE …: read, not solved
-    Other(u32),
+    /// a FLEX_BODY, FE_PART or CURVE: read, not solved
+    Other(ElementId),
+}
+
+impl MarkerOwner {
+    /// Returns the part or point mass; `None` for owners that are not solved.
+    pub fn body(self) -> Option<ElementId> {
+        match self {
+            MarkerOwner::Part(n) => Some(ElementKind::Part.id(n)),
+            MarkerOwner::PointMass(n) => Some(ElementKind::PointMass.id(n)),
+            MarkerOwner::Other(_) => None,
+        }
+    }
 }
 
 impl Default for MarkerOwner {
@@ -75,4 +89,25 @@ pub struct Marker {
     pub orientation: Orientation,
     /// its frame is set by the element that owns it
     pub floating: bool,
+}
+
+impl Element for Part {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let markers = [
+            ("CM", self.cm),
+            ("IM", self.im),
+            ("VM", self.vm),
+            ("WM", self.wm),
+        ];
+        names(ElementKind::Marker, markers)
+    }
+}
+
+impl Element for Marker {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let body = self.owner.body();
+        body.map(|b| (b.kind.keyword(), b)).into_iter().collect()
+    }
 }

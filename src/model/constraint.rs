@@ -1,5 +1,6 @@
 //! What ties parts together: JOINT, JPRIM, MOTION, COUPLER, GEAR, GCON, CURVE, PTCV, CVCV.
 
+use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
 
 /// JOINT types.
@@ -8,6 +9,25 @@ use super::{Formula, Place};
 #[rustfmt::skip]
 pub enum JointKind {
     #[default] Fixed, Revolute, Translational, Cylindrical, Spherical, Planar, Universal, Hooke, Convel, Rackpin, Screw,
+}
+
+impl JointKind {
+    /// Returns its keyword.
+    pub fn keyword(self) -> &'static str {
+        match self {
+            JointKind::Fixed => "FIXED",
+            JointKind::Revolute => "REVOLUTE",
+            JointKind::Translational => "TRANSLATIONAL",
+            JointKind::Cylindrical => "CYLINDRICAL",
+            JointKind::Spherical => "SPHERICAL",
+            JointKind::Planar => "PLANAR",
+            JointKind::Universal => "UNIVERSAL",
+            JointKind::Hooke => "HOOKE",
+            JointKind::Convel => "CONVEL",
+            JointKind::Rackpin => "RACKPIN",
+            JointKind::Screw => "SCREW",
+        }
+    }
 }
 
 /// JOINT
@@ -28,6 +48,16 @@ pub struct Joint {
     pub pd: Option<f64>,
 }
 
+impl Element for Joint {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i, self.j])
+    }
+}
+
 /// JPRIM types.
 #[allow(missing_docs)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,6 +72,16 @@ pub struct Primitive {
     pub kind: PrimitiveKind,
     pub i: u32,
     pub j: u32,
+}
+
+impl Element for Primitive {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i, self.j])
+    }
 }
 
 /// What a MOTION drives.
@@ -84,6 +124,27 @@ pub struct Motion {
     pub ic_velocity: Option<f64>,
 }
 
+impl Element for Motion {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        match self.driven {
+            Driven::Joint(n) | Driven::JointRotation(n) | Driven::JointTranslation(n) => {
+                names(ElementKind::Joint, [("JOINT", n)])
+            }
+            Driven::Markers { i, j, .. } => names(ElementKind::Marker, [("I", i), ("J", j)]),
+        }
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        vec![("FUNCTION", &self.function)]
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        match self.driven {
+            Driven::Joint(_) | Driven::JointRotation(_) | Driven::JointTranslation(_) => None,
+            Driven::Markers { i, j, .. } => Some([i, j]),
+        }
+    }
+}
+
 /// COUPLER: r1 q1 + r2 q2 + r3 q3 = constant.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -97,6 +158,16 @@ pub struct Coupler {
     pub user: Option<Formula>,
 }
 
+impl Element for Coupler {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names_each(ElementKind::Joint, "JOINTS", &self.joints)
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        self.user.iter().map(|f| ("FUNCTION", f)).collect()
+    }
+}
+
 /// GEAR
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -106,6 +177,15 @@ pub struct Gear {
     pub cv: u32,
 }
 
+impl Element for Gear {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = names_each(ElementKind::Joint, "JOINTS", &self.joints);
+        all.extend(names(ElementKind::Marker, [("CV", self.cv)]));
+        all
+    }
+}
+
 /// GCON: expression = 0
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -113,6 +193,16 @@ pub struct GeneralConstraint {
     pub place: Place,
     pub i: Option<u32>,
     pub function: Formula,
+}
+
+impl Element for GeneralConstraint {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i)])
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        vec![("FUNCTION", &self.function)]
+    }
 }
 
 /// CURVE: a B-spline through or near the rows of a MATRIX, or computed by a routine.
@@ -135,6 +225,16 @@ pub struct Curve {
     pub maxpar: Option<f64>,
 }
 
+impl Element for Curve {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Matrix, [("MATRIX", self.matrix)])
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        self.function.iter().map(|f| ("FUNCTION", f)).collect()
+    }
+}
+
 /// PTCV: the origin of I stays on a curve.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -152,6 +252,20 @@ pub struct PointOnCurve {
     pub velocity: Option<f64>,
     /// ICM
     pub start_marker: Option<u32>,
+}
+
+impl Element for PointOnCurve {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = names(ElementKind::Curve, [("CURVE", self.curve)]);
+        all.extend(names(ElementKind::Marker, [("I", self.i), ("RM", self.rm)]));
+        let optional = [("JFLOAT", self.jfloat), ("ICM", self.start_marker)];
+        all.extend(names(ElementKind::Marker, optional));
+        all
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i, self.rm])
+    }
 }
 
 /// One of the two sides of a CVCV.
@@ -179,4 +293,25 @@ pub struct CurveOnCurve {
     pub place: Place,
     pub i: CurveSide,
     pub j: CurveSide,
+}
+
+impl Element for CurveOnCurve {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = Vec::new();
+        let words = [
+            ["ICURVE", "IRM", "IFLOAT", "IICM"],
+            ["JCURVE", "JRM", "JFLOAT", "JICM"],
+        ];
+        for (side, [curve, rm, float, icm]) in [&self.i, &self.j].into_iter().zip(words) {
+            all.extend(names(ElementKind::Curve, [(curve, side.curve)]));
+            all.extend(names(ElementKind::Marker, [(rm, side.rm)]));
+            let optional = [(float, side.float), (icm, side.start_marker)];
+            all.extend(names(ElementKind::Marker, optional));
+        }
+        all
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i.rm, self.j.rm])
+    }
 }

@@ -1,5 +1,6 @@
 //! What pushes: SFORCE, VFORCE, VTORQUE, GFORCE, SPRINGDAMPER, BUSHING, FIELD, BEAM, NFORCE, CONTACT, FRICTION.
 
+use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
 
 /// SFORCE
@@ -13,6 +14,19 @@ pub struct SingleForce {
     pub action_only: bool,
     pub function: Formula,
 }
+
+impl Element for SingleForce {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        vec![("FUNCTION", &self.function)]
+    }
+}
+
+/// Arguments that give the components of a force and a torque.
+pub const COMPONENTS: [&str; 6] = ["FX", "FY", "FZ", "TX", "TY", "TZ"];
 
 /// VFORCE, VTORQUE, GFORCE: components in the axes of `rm`, on I; the reaction acts on the part of `jfloat`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +44,25 @@ pub struct VectorForce {
     pub torque: [Option<Formula>; 3],
     /// FUNCTION=USER(…) for all of them
     pub user: Option<Formula>,
+}
+
+impl Element for VectorForce {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = names(ElementKind::Marker, [("I", self.i)]);
+        let optional = [("JFLOAT", self.jfloat), ("RM", self.rm)];
+        all.extend(names(ElementKind::Marker, optional));
+        all
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        let components = COMPONENTS
+            .into_iter()
+            .zip(self.force.iter().chain(&self.torque));
+        let given = components.filter_map(|(name, f)| Some((name, f.as_ref()?)));
+        given
+            .chain(self.user.iter().map(|f| ("FUNCTION", f)))
+            .collect()
+    }
 }
 
 /// SPRINGDAMPER
@@ -50,6 +83,16 @@ pub struct SpringDamper {
     pub free: f64,
 }
 
+impl Element for SpringDamper {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i, self.j])
+    }
+}
+
 /// BUSHING: three translations then three rotations, in J axes
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -63,6 +106,16 @@ pub struct Bushing {
     pub damping: [f64; 6],
     /// FORCE, TORQUE
     pub preload: [f64; 6],
+}
+
+impl Element for Bushing {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i, self.j])
+    }
 }
 
 /// FIELD: six displacements to six forces by full matrices, in J axes.
@@ -84,6 +137,19 @@ pub struct Field {
     pub preload: [f64; 6],
     /// FUNCTION=USER(…)
     pub function: Option<Formula>,
+}
+
+impl Element for Field {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        self.function.iter().map(|f| ("FUNCTION", f)).collect()
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i, self.j])
+    }
 }
 
 /// How a BEAM treats large displacements.
@@ -120,6 +186,16 @@ pub struct Beam {
     pub formulation: BeamFormulation,
 }
 
+impl Element for Beam {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
+    }
+    fn ends(&self) -> Option<[u32; 2]> {
+        Some([self.i, self.j])
+    }
+}
+
 /// NFORCE: the linear law of FIELD between many markers, matrices given as MATRIX numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -132,6 +208,22 @@ pub struct NodalForce {
     pub damping_ratio: Option<f64>,
     pub free: Option<u32>,
     pub preload: Option<u32>,
+}
+
+impl Element for NodalForce {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = names_each(ElementKind::Marker, "IMARKERS", &self.i);
+        all.extend(names(ElementKind::Marker, [("J", self.j)]));
+        all.extend(names(ElementKind::Matrix, [("KMATRIX", self.stiffness)]));
+        let optional = [
+            ("LENGTH", self.free),
+            ("FORCE", self.preload),
+            ("CMATRIX", self.damping),
+        ];
+        all.extend(names(ElementKind::Matrix, optional));
+        all
+    }
 }
 
 /// The normal law of a CONTACT.
@@ -178,6 +270,18 @@ pub struct Contact {
     pub function: Option<Formula>,
 }
 
+impl Element for Contact {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = names_each(ElementKind::Graphics, "IGEOM", &self.i_geometry);
+        all.extend(names_each(ElementKind::Graphics, "JGEOM", &self.j_geometry));
+        all
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        self.function.iter().map(|f| ("FUNCTION", f)).collect()
+    }
+}
+
 /// FRICTION in a joint; `None` = the documented default.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -214,4 +318,11 @@ pub struct Friction {
     pub overlap_delta: Option<String>,
     /// INACTIVE=STATIC
     pub inactive_in_statics: bool,
+}
+
+impl Element for Friction {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Joint, [("JOINT", self.joint)])
+    }
 }

@@ -7,6 +7,7 @@
 mod body;
 pub mod check;
 mod constraint;
+mod element;
 mod force;
 mod output;
 pub mod reference;
@@ -16,6 +17,7 @@ pub mod units;
 
 pub use body::*;
 pub use constraint::*;
+pub use element::{Element, ElementId, ElementKind, Family, Named};
 pub use force::*;
 pub use output::*;
 pub use settings::*;
@@ -120,60 +122,42 @@ impl Default for Formula {
     }
 }
 
-/// The dataset as data.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
-pub struct Model {
-    pub title: String,
-    pub units: Option<Units>,
-    /// along ground x, y, z [length/time²]
-    pub gravity: [f64; 3],
-    pub parts: ById<Part>,
-    pub point_masses: ById<Part>,
-    pub markers: ById<Marker>,
-    pub joints: ById<Joint>,
-    pub primitives: ById<Primitive>,
-    pub motions: ById<Motion>,
-    pub couplers: ById<Coupler>,
-    pub gears: ById<Gear>,
-    pub general_constraints: ById<GeneralConstraint>,
-    pub sforces: ById<SingleForce>,
-    pub vforces: ById<VectorForce>,
-    pub vtorques: ById<VectorForce>,
-    pub gforces: ById<VectorForce>,
-    pub spring_dampers: ById<SpringDamper>,
-    pub bushings: ById<Bushing>,
-    pub variables: ById<Variable>,
-    pub differentials: ById<Differential>,
-    pub arrays: ById<Array>,
-    pub splines: ById<SplineData>,
-    pub curves: ById<Curve>,
-    pub points_on_curves: ById<PointOnCurve>,
-    pub curves_on_curves: ById<CurveOnCurve>,
-    pub fields: ById<Field>,
-    pub beams: ById<Beam>,
-    pub nodal_forces: ById<NodalForce>,
-    pub contacts: ById<Contact>,
-    pub frictions: ById<Friction>,
-    pub strings: ById<StringData>,
-    pub matrices: ById<Matrix>,
-    pub linear_systems: ById<LinearSystem>,
-    pub general_systems: ById<GeneralSystem>,
-    pub transfer_functions: ById<TransferFunction>,
-    pub plant_inputs: ById<Plant>,
-    pub plant_outputs: ById<Plant>,
-    pub sensors: ById<Sensor>,
-    pub graphics: ById<Graphics>,
-    pub requests: ById<Request>,
-    pub many_requests: ById<ManyRequests>,
-    /// MATERIAL, SECTION, FE_PART … by (statement keyword, number)
-    pub others: BTreeMap<(String, u32), OtherElement>,
-    pub integrator: IntegratorSettings,
-    pub equilibrium: Settings,
-    pub kinematics: Settings,
-    pub initial_conditions: Settings,
-    /// OUTPUT, RESULTS, PREFERENCES, DEBUG, LSOLVER … by keyword
-    pub settings: BTreeMap<String, Settings>,
-    /// elements switched off by DEACTIVATE: (statement keyword, number)
-    pub inactive: BTreeSet<(String, u32)>,
+macro_rules! model {
+    (
+        solved { $($(#[$doc:meta])* $kind:ident $keyword:literal $family:ident $list:ident: $type:ident;)* }
+        kept { $($kept:tt)* }
+    ) => {
+        /// The dataset as data: a list for every kind of element, and the settings of the whole model.
+        ///
+        /// The lists are those of the table of elements (`element.rs`).
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct Model {
+            /// the first line of the dataset
+            pub title: String,
+            /// UNITS; `None` when the dataset names none
+            pub units: Option<Units>,
+            /// ACCGRAV: acceleration of gravity along ground x, y, z [length/time²]
+            pub gravity: [f64; 3],
+            $(
+                $(#[$doc])*
+                #[doc = concat!("(", $keyword, ")")]
+                pub $list: ById<$type>,
+            )*
+            /// elements that are kept as text (MATERIAL, SECTION, FE_PART …)
+            pub others: BTreeMap<ElementId, OtherElement>,
+            /// INTEGRATOR
+            pub integrator: IntegratorSettings,
+            /// EQUILIBRIUM
+            pub equilibrium: Settings,
+            /// KINEMATICS
+            pub kinematics: Settings,
+            /// IC
+            pub initial_conditions: Settings,
+            /// OUTPUT, RESULTS, PREFERENCES, DEBUG, LSOLVER … by keyword
+            pub settings: BTreeMap<String, Settings>,
+            /// elements switched off by DEACTIVATE
+            pub inactive: BTreeSet<ElementId>,
+        }
+    };
 }
+element::elements!(model);

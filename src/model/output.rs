@@ -1,5 +1,6 @@
 //! What is asked for and what is shown: REQUEST, MREQUEST, GRAPHICS.
 
+use super::element::{Element, ElementKind, Named, names, placed};
 use super::{Formula, Place};
 
 /// What a REQUEST asks.
@@ -50,6 +51,36 @@ pub struct Request {
     pub clabels: Vec<String>,
 }
 
+impl Element for Request {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        match self.kind {
+            RequestKind::Displacement { i, j, rm }
+            | RequestKind::Velocity { i, j, rm }
+            | RequestKind::Acceleration { i, j, rm }
+            | RequestKind::Force { i, j, rm } => {
+                names(ElementKind::Marker, [("I", Some(i)), ("J", j), ("RM", rm)])
+            }
+            RequestKind::Functions(_) | RequestKind::User(_) => Vec::new(),
+        }
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        const NAMES: [&str; 8] = ["F1", "F2", "F3", "F4", "F5", "F6", "F7", "F8"];
+        match &self.kind {
+            RequestKind::Functions(all) => {
+                let all = NAMES.into_iter().zip(all.iter());
+                all.filter_map(|(name, f)| Some((name, f.as_ref()?)))
+                    .collect()
+            }
+            RequestKind::User(f) => vec![("FUNCTION", f)],
+            RequestKind::Displacement { .. }
+            | RequestKind::Velocity { .. }
+            | RequestKind::Acceleration { .. }
+            | RequestKind::Force { .. } => Vec::new(),
+        }
+    }
+}
+
 /// The four kinds of quantity a MREQUEST asks.
 #[allow(missing_docs)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,6 +99,13 @@ pub struct ManyRequests {
     pub forces: Vec<String>,
     pub rm: Option<u32>,
     pub comment: Option<String>,
+}
+
+impl Element for ManyRequests {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(ElementKind::Marker, [("RM", self.rm)])
+    }
 }
 
 /// What a GRAPHICS statement draws; lengths in model units, `cm` and `rm` are markers.
@@ -151,9 +189,40 @@ pub struct Graphics {
     pub shape: Shape,
 }
 
+impl Element for Graphics {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = Vec::new();
+        let (name, marker) = match self.shape {
+            Shape::Box { corner, .. } => ("CORNER", corner),
+            Shape::Cylinder { cm, .. }
+            | Shape::Frustum { cm, .. }
+            | Shape::Ellipsoid { cm, .. }
+            | Shape::Torus { cm, .. }
+            | Shape::Circle { cm, .. }
+            | Shape::Arc { cm, .. } => ("CM", cm),
+            Shape::Plane { rm, .. }
+            | Shape::Point { rm }
+            | Shape::External { rm, .. }
+            | Shape::Shell { rm, .. } => ("RM", rm),
+            Shape::Curve { curve, rm } => {
+                all.extend(names(ElementKind::Curve, [("CID", curve)]));
+                ("CRM", rm)
+            }
+            Shape::Other(_) | Shape::Nothing => return all,
+        };
+        all.extend(names(ElementKind::Marker, [(name, marker)]));
+        all
+    }
+}
+
 /// A statement that is kept but carries no mechanics here (MATERIAL, SECTION, FE_PART …): arguments in the place's `extra`.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
 pub struct OtherElement {
     pub place: Place,
+}
+
+impl Element for OtherElement {
+    placed!();
 }

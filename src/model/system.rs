@@ -1,5 +1,6 @@
 //! Data and equations of the user: VARIABLE, DIFF, ARRAY, SPLINE, STRING, MATRIX, LSE, GSE, TFSISO, PINPUT, POUTPUT, SENSOR.
 
+use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
 
 /// VARIABLE
@@ -11,6 +12,13 @@ pub struct Variable {
     pub function: Formula,
 }
 
+impl Element for Variable {
+    placed!();
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        vec![("FUNCTION", &self.function)]
+    }
+}
+
 /// DIFF
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -20,6 +28,13 @@ pub struct Differential {
     pub static_hold: bool,
     pub implicit: bool,
     pub function: Formula,
+}
+
+impl Element for Differential {
+    placed!();
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        vec![("FUNCTION", &self.function)]
+    }
 }
 
 /// ARRAY kinds.
@@ -47,6 +62,16 @@ pub struct Array {
     pub kind: ArrayKind,
 }
 
+impl Element for Array {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        match &self.kind {
+            ArrayKind::Inputs(all) => names_each(ElementKind::Variable, "VARIABLES", all),
+            ArrayKind::Ic(_) | ArrayKind::States | ArrayKind::Outputs => Vec::new(),
+        }
+    }
+}
+
 /// SPLINE
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -61,12 +86,20 @@ pub struct SplineData {
     pub file: Option<String>,
 }
 
+impl Element for SplineData {
+    placed!();
+}
+
 /// STRING
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
 pub struct StringData {
     pub place: Place,
     pub text: String,
+}
+
+impl Element for StringData {
+    placed!();
 }
 
 /// How the numbers of a MATRIX are laid out.
@@ -98,6 +131,10 @@ pub struct Matrix {
     pub values: Vec<f64>,
     /// FILE and NAME: the numbers stand in a file
     pub file: Option<String>,
+}
+
+impl Element for Matrix {
+    placed!();
 }
 
 impl Matrix {
@@ -145,6 +182,19 @@ pub struct LinearSystem {
     pub static_hold: bool,
 }
 
+impl Element for LinearSystem {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let mut all = names(ElementKind::Array, [("X", self.x)]);
+        let arrays = [("U", self.u), ("Y", self.y), ("IC", self.ic)];
+        all.extend(names(ElementKind::Array, arrays));
+        all.extend(names(ElementKind::Matrix, [("A", self.a)]));
+        let matrices = [("B", self.b), ("C", self.c), ("D", self.d)];
+        all.extend(names(ElementKind::Matrix, matrices));
+        all
+    }
+}
+
 /// GSE: states and outputs computed by routines of the user's
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -166,6 +216,26 @@ pub struct GeneralSystem {
     pub static_hold: bool,
 }
 
+impl Element for GeneralSystem {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        let arrays = [
+            ("X", self.x),
+            ("U", self.u),
+            ("Y", self.y),
+            ("IC", self.ic),
+            ("XD", self.xd),
+            ("ICD", self.icd),
+        ];
+        names(ElementKind::Array, arrays)
+    }
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        let function = self.function.iter().map(|f| ("FUNCTION", f));
+        let period = self.sample_period.iter().map(|f| ("SAMPLE_PERIOD", f));
+        function.chain(period).collect()
+    }
+}
+
 /// TFSISO: y/u = (b0 + b1 s + …)/(a0 + a1 s + …)
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
@@ -181,12 +251,29 @@ pub struct TransferFunction {
     pub static_hold: bool,
 }
 
+impl Element for TransferFunction {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names(
+            ElementKind::Array,
+            [("X", self.x), ("U", self.u), ("Y", self.y)],
+        )
+    }
+}
+
 /// PINPUT, POUTPUT: VARIABLEs in order
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
 pub struct Plant {
     pub place: Place,
     pub variables: Vec<u32>,
+}
+
+impl Element for Plant {
+    placed!();
+    fn references(&self) -> Vec<Named> {
+        names_each(ElementKind::Variable, "VARIABLES", &self.variables)
+    }
 }
 
 /// How a SENSOR compares.
@@ -223,4 +310,13 @@ pub struct Sensor {
     pub restart: bool,
     pub codgen: bool,
     pub yydump: bool,
+}
+
+impl Element for Sensor {
+    placed!();
+    fn formulas(&self) -> Vec<(&'static str, &Formula)> {
+        let function = std::iter::once(("FUNCTION", &self.function));
+        let evaluate = self.evaluate.iter().map(|f| ("EVALUATE", f));
+        function.chain(evaluate).collect()
+    }
 }

@@ -4,24 +4,22 @@
 //! the accuracy of all else, and Newton's iteration inside the equations has next to nothing to do. Where no time passes (assembly, equilibrium)
 //! it is followed from one position to the next; where nothing is known yet the whole curve is searched.
 
-use super::build::{Builder, active};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::configuration::{Configuration, Configured, ContactStart};
 use super::equations::Equations;
 use super::layout::Layout;
 use super::{ConstraintElement, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
-use crate::model::CurveSide;
+use crate::model::{CurveSide, ElementId, ElementKind};
 use crate::physics::cam::{Contact, Path, ROWS, samples};
 use crate::space::{Frame, Vec3};
 
 /// A PTCV or CVCV.
 #[derive(Clone, Debug)]
 pub struct Cam {
-    /// PTCV or CVCV
-    pub keyword: &'static str,
-    /// user's number
-    pub id: u32,
+    /// which PTCV or CVCV it is
+    pub id: ElementId,
     /// the curves
     pub contact: Contact,
     /// I marker, or the marker in whose coordinates the curve of I is
@@ -40,13 +38,6 @@ pub struct Cam {
     pub velocity: Vec<Option<f64>>,
 }
 
-impl Cam {
-    /// "PTCV/3"
-    pub fn name(&self) -> String {
-        format!("{}/{}", self.keyword, self.id)
-    }
-}
-
 /// Conditions of a contact count as holding below this.
 const HOLDS: f64 = 1e-9;
 /// Largest change of a parameter from one iterate to the next; a whole curve is 2.
@@ -58,9 +49,9 @@ impl Builder<'_> {
     /// Two rows for each PTCV and CVCV.
     pub(super) fn cams(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, p) in active(model, "PTCV", &model.points_on_curves) {
-            let name = format!("PTCV/{id}");
-            let (i, j) = (c.marker(p.i, &name), c.marker(p.rm, &name));
+        for (id, p) in model.active(ElementKind::Ptcv, &model.points_on_curves) {
+            let name = ElementKind::Ptcv.id(id);
+            let (i, j) = (c.marker(p.i, name), c.marker(p.rm, name));
             let side = CurveSide {
                 curve: p.curve,
                 rm: p.rm,
@@ -72,19 +63,12 @@ impl Builder<'_> {
             let path = self.path(c, p.curve);
             if let (Some(i), Some(j), Some(path)) = (i, j, path) {
                 let between = (p.i, p.jfloat.unwrap_or(p.rm));
-                self.cam(
-                    c,
-                    ("PTCV", id),
-                    Contact::Point(path),
-                    (i, j),
-                    between,
-                    &[&side],
-                );
+                self.cam(c, name, Contact::Point(path), (i, j), between, &[&side]);
             }
         }
-        for (id, cc) in active(model, "CVCV", &model.curves_on_curves) {
-            let name = format!("CVCV/{id}");
-            let (i, j) = (c.marker(cc.i.rm, &name), c.marker(cc.j.rm, &name));
+        for (id, cc) in model.active(ElementKind::Cvcv, &model.curves_on_curves) {
+            let name = ElementKind::Cvcv.id(id);
+            let (i, j) = (c.marker(cc.i.rm, name), c.marker(cc.j.rm, name));
             let (path_i, path_j) = (self.path(c, cc.i.curve), self.path(c, cc.j.curve));
             let (Some(i), Some(j), Some(path_i), Some(path_j)) = (i, j, path_i, path_j) else {
                 continue;
@@ -97,14 +81,14 @@ impl Builder<'_> {
                         "CURVE/{curve} leaves the x-y plane of its marker by {:.4} along z",
                         path.height
                     );
-                    c.errors.push(not_coplanar(&name, what));
+                    c.errors.push(not_coplanar(name, what));
                 }
             }
             if planar {
                 let float = |s: &CurveSide| s.float.unwrap_or(s.rm);
                 let between = (float(&cc.i), float(&cc.j));
                 let contact = Contact::Curves(path_i, path_j);
-                self.cam(c, ("CVCV", id), contact, (i, j), between, &[&cc.i, &cc.j]);
+                self.cam(c, name, contact, (i, j), between, &[&cc.i, &cc.j]);
             }
         }
     }
@@ -124,16 +108,15 @@ impl Builder<'_> {
     fn cam(
         &mut self,
         c: &mut Compiler,
-        (keyword, id): (&'static str, u32),
+        id: ElementId,
         contact: Contact,
         (i, j): (usize, usize),
         between: (u32, u32),
         sides: &[&CurveSide],
     ) {
-        let name = format!("{keyword}/{id}");
         let mut start = Vec::new();
         for side in sides {
-            let marker = c.marker(side.start_marker.unwrap_or(side.rm), &name);
+            let marker = c.marker(side.start_marker.unwrap_or(side.rm), id);
             start.push(side.start.zip(marker).map(|(p, m)| (Vec3(p), m)));
         }
         let n = contact.n_parameters();
@@ -148,7 +131,6 @@ impl Builder<'_> {
             }
         }
         self.scene.cams.push(Cam {
-            keyword,
             id,
             contact,
             i,
@@ -161,13 +143,12 @@ impl Builder<'_> {
         });
         for (component, equation) in equations.iter().enumerate() {
             self.scene.rows.push(Row {
-                element: name.clone(),
+                element: id,
                 equation: (*equation).into(),
                 kind: RowKind::Cam { cam, component },
             });
         }
         self.scene.constraints.push(ConstraintElement {
-            keyword,
             id,
             markers: Some((i, j)),
             acts_on: vec![i],
@@ -179,7 +160,7 @@ impl Builder<'_> {
     }
 }
 
-fn not_coplanar(name: &str, what: String) -> Diagnostic {
+fn not_coplanar(name: ElementId, what: String) -> Diagnostic {
     Diagnostic::error("curves_not_coplanar", what)
         .element(name)
         .help("the curves of a CVCV must lie in the x-y planes of IRM and JRM, which joints hold together")
@@ -397,8 +378,8 @@ fn closest_pair(
 /// What keeps the contacts of an instant from being contacts: (element, code, sentence, advice) of the first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broken {
-    /// "PTCV/3"
-    pub element: String,
+    /// which contact
+    pub element: ElementId,
     /// of the diagnostic
     pub code: &'static str,
     /// what is wrong
@@ -418,7 +399,7 @@ pub fn broken(scene: Configured<'_>, numbers: &[f64], until: Option<f64>) -> Opt
         let (i, j) = (at.frame(cam.i), at.frame(cam.j));
         let start = &scene.configuration.contacts[c];
         let s = (cam.contact).refined(&i, &j, parameters(cam, start, x), 2);
-        let element = cam.name();
+        let element = cam.id;
         for (k, path) in cam.contact.paths().iter().enumerate() {
             let beyond = path.beyond(s[k]);
             if beyond <= 0.0 || beyond.is_nan() {

@@ -6,7 +6,7 @@ use super::{
     RowKind, Source,
 };
 use crate::diagnostic::Diagnostic;
-use crate::model::{MarkerOwner, Model, Orientation, Part};
+use crate::model::{ElementId, ElementKind, Model, Orientation, Part};
 use crate::physics::joint::{Motion, Tie, quarter_x};
 use crate::space::{Frame, Mat3, Vec3, rotation};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub(super) struct Compiler<'m> {
     pub model: &'m Model,
     pub errors: Vec<Diagnostic>,
     pub parts: Vec<PartOnLink>,
-    pub part_of: BTreeMap<MarkerOwnerKey, Option<usize>>,
+    pub part_of: BTreeMap<ElementId, Option<usize>>,
     pub markers: Vec<MarkerOnLink>,
     pub marker_of: BTreeMap<u32, usize>,
     pub links: Vec<Link>,
@@ -33,16 +33,12 @@ pub(super) struct Compiler<'m> {
     pub joint_coordinates: BTreeMap<u32, Vec<usize>>,
 }
 
-/// Key of a part: (is a point mass, number).
-pub(super) type MarkerOwnerKey = (bool, u32);
-
 /// A tie of the model: what it is, where, and its name.
 pub(super) struct NamedTie {
     pub kind: Tie,
     pub i: u32,
     pub j: u32,
-    pub name: String,
-    pub id: u32,
+    pub id: ElementId,
     pub joint: Option<u32>,
 }
 
@@ -101,7 +97,7 @@ impl<'m> Compiler<'m> {
         }
     }
 
-    pub fn error(&mut self, element: &str, message: impl Into<String>) {
+    pub fn error(&mut self, element: impl Into<String>, message: impl Into<String>) {
         self.errors
             .push(Diagnostic::error("model", message).element(element));
     }
@@ -109,11 +105,9 @@ impl<'m> Compiler<'m> {
     /// Parts and markers with the frames of the dataset; nothing is carried yet.
     pub fn frames(&mut self) {
         let model = self.model;
-        let all = model.parts.iter().map(|(id, p)| (false, *id, p));
-        let all = all.chain(model.point_masses.iter().map(|(id, p)| (true, *id, p)));
-        for (point_mass, id, part) in all {
+        for (id, part) in model.bodies() {
             if part.ground {
-                self.part_of.insert((point_mass, id), None);
+                self.part_of.insert(id, None);
                 continue;
             }
             let initial = match orientation(&part.orientation, part.qg) {
@@ -122,15 +116,13 @@ impl<'m> Compiler<'m> {
                     position: Vec3(part.qg),
                 },
                 Err(why) => {
-                    self.error(&part_name(point_mass, id), why);
+                    self.error(id, why);
                     Frame::identity()
                 }
             };
-            self.part_of
-                .insert((point_mass, id), Some(self.parts.len()));
+            self.part_of.insert(id, Some(self.parts.len()));
             self.parts.push(PartOnLink {
                 id,
-                point_mass,
                 link: None,
                 frame: Frame::identity(),
                 initial,
@@ -140,17 +132,12 @@ impl<'m> Compiler<'m> {
             if marker.floating {
                 continue;
             }
-            let key = match marker.owner {
-                MarkerOwner::Part(p) => (false, p),
-                MarkerOwner::PointMass(p) => (true, p),
-                MarkerOwner::Other(_) => continue,
+            let Some(body) = marker.owner.body() else {
+                continue;
             };
-            let name = format!("MARKER/{id}");
-            let Some(&part) = self.part_of.get(&key) else {
-                self.error(
-                    &name,
-                    format!("its part {} does not exist", part_name(key.0, key.1)),
-                );
+            let name = ElementKind::Marker.id(id);
+            let Some(&part) = self.part_of.get(&body) else {
+                self.error(name, format!("its part {body} does not exist"));
                 continue;
             };
             match orientation(&marker.orientation, marker.qp) {
@@ -167,13 +154,13 @@ impl<'m> Compiler<'m> {
                         part,
                     });
                 }
-                Err(why) => self.error(&name, why),
+                Err(why) => self.error(name, why),
             }
         }
     }
 
     /// Index of a marker; an error names the element that asks when there is none.
-    pub fn marker(&mut self, id: u32, asked_by: &str) -> Option<usize> {
+    pub fn marker(&mut self, id: u32, asked_by: ElementId) -> Option<usize> {
         let found = self.marker_of.get(&id).copied();
         if found.is_none() {
             let why = match self.model.markers.get(&id) {
@@ -181,9 +168,9 @@ impl<'m> Compiler<'m> {
                 Some(_) => "belongs to something that is not solved here",
                 None => "does not exist",
             };
-            self.errors.push(
-                Diagnostic::error("unknown_marker", format!("MARKER/{id} {why}")).element(asked_by),
-            );
+            let what = format!("{} {why}", ElementKind::Marker.id(id));
+            let error = Diagnostic::error("unknown_marker", what);
+            self.errors.push(error.element(asked_by));
         }
         found
     }
@@ -204,13 +191,12 @@ impl<'m> Compiler<'m> {
     ) {
         let mut candidates = Vec::new();
         for (tie, t) in ties.iter().enumerate() {
-            let (Some(i), Some(j)) = (self.marker(t.i, &t.name), self.marker(t.j, &t.name)) else {
+            let (Some(i), Some(j)) = (self.marker(t.i, t.id), self.marker(t.j, t.id)) else {
                 continue;
             };
             let point = |m: usize| {
-                self.markers[m]
-                    .part
-                    .is_some_and(|p| self.parts[p].point_mass)
+                let part = self.markers[m].part;
+                part.is_some_and(|p| self.parts[p].is_point_mass())
             };
             candidates.push(Candidate {
                 tie,
@@ -254,11 +240,6 @@ impl<'m> Compiler<'m> {
                 .copied()
                 .zip(self.marker_of.get(&tie.j).copied());
             self.constraints.push(ConstraintElement {
-                keyword: if tie.joint.is_some() {
-                    "JOINT"
-                } else {
-                    "JPRIM"
-                },
                 id: tie.id,
                 markers,
                 acts_on: markers.iter().map(|m| m.0).collect(),
@@ -334,7 +315,7 @@ impl<'m> Compiler<'m> {
                 .copied();
             let fixed_axis = matches!(chain[k], Motion::Slide(2) | Motion::Turn(2));
             for f in 0..chain[k].freedoms() {
-                let name = format!("{} {}", tie.name, variable_name(chain, k, f));
+                let name = format!("{} {}", tie.id, variable_name(chain, k, f));
                 let source = match drive {
                     Some(motion) if fixed_axis => Source::Driven(motion),
                     _ => {
@@ -391,9 +372,7 @@ impl<'m> Compiler<'m> {
 
     /// Links for a part that nothing carries: three slides along ground axes and a ball at its centre of mass.
     fn carry_free(&mut self, part: usize) -> (LinkIx, Frame<f64>) {
-        let p = &self.parts[part];
-        let (id, point_mass) = (p.id, p.point_mass);
-        let name = part_name(point_mass, id);
+        let name = self.parts[part].id;
         let data = self.part_data(part);
         let cm = data
             .cm
@@ -426,7 +405,7 @@ impl<'m> Compiler<'m> {
             };
             parent = self.push_link(parent, Frame::identity(), motion, &[coordinate]);
         }
-        if point_mass {
+        if self.parts[part].is_point_mass() {
             let rotation = start.rotation;
             let x = Frame {
                 rotation,
@@ -493,12 +472,9 @@ impl<'m> Compiler<'m> {
     }
 
     pub fn part_data(&self, part: usize) -> &'m Part {
-        let p = &self.parts[part];
-        if p.point_mass {
-            &self.model.point_masses[&p.id]
-        } else {
-            &self.model.parts[&p.id]
-        }
+        let id = self.parts[part].id;
+        let body = self.model.body(id);
+        body.unwrap_or_else(|| unreachable!("{id} comes from this model"))
     }
 
     /// Puts a part with its inertia on its link.
@@ -510,7 +486,7 @@ impl<'m> Compiler<'m> {
         self.parts[part].link = link;
         self.parts[part].frame = frame;
         let data = self.part_data(part);
-        let name = part_name(self.parts[part].point_mass, self.parts[part].id);
+        let name = self.parts[part].id;
         if data.mass == 0.0 && data.ip == [0.0; 6] {
             return;
         }
@@ -518,22 +494,22 @@ impl<'m> Compiler<'m> {
         let Some(cm) = data.cm.or(data.im) else {
             if data.mass > 0.0 {
                 self.error(
-                    &name,
+                    name,
                     "has mass but no CM marker: say where its centre of mass is",
                 );
             }
             return;
         };
         let (Some(c), Some(i)) = (
-            self.marker(cm, &name),
-            self.marker(data.im.unwrap_or(cm), &name),
+            self.marker(cm, name),
+            self.marker(data.im.unwrap_or(cm), name),
         ) else {
             return;
         };
         let (X_PC, X_PI) = (self.markers[c].frame, self.markers[i].frame);
         if self.markers[c].part != Some(part) {
             self.error(
-                &name,
+                name,
                 format!("its CM marker MARKER/{cm} belongs to another part"),
             );
             return;
@@ -570,7 +546,7 @@ impl<'m> Compiler<'m> {
                 motion: None,
             };
             self.rows.push(Row {
-                element: tie.name.clone(),
+                element: tie.id,
                 equation: law.name(),
                 kind,
             });
@@ -584,11 +560,6 @@ fn steiner(mass: f64, d: Vec3<f64>) -> Mat3<f64> {
     Mat3(std::array::from_fn(|i| {
         std::array::from_fn(|j| mass * (if i == j { n2 } else { 0.0 } - d.0[i] * d.0[j]))
     }))
-}
-
-/// "PART/3" or "POINT_MASS/3"
-pub(crate) fn part_name(point_mass: bool, id: u32) -> String {
-    format!("{}/{id}", if point_mass { "POINT_MASS" } else { "PART" })
 }
 
 /// What the `k`-th motion of a chain measures.

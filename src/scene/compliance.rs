@@ -1,10 +1,10 @@
 //! FIELD, BEAM and NFORCE of a model as force elements of the scene.
 
-use super::build::{Builder, active};
+use super::build::{Builder, Owner};
 use super::compile::Compiler;
 use super::forces::{ForceElement, ForceLaw};
 use crate::diagnostic::Diagnostic;
-use crate::model::BeamFormulation;
+use crate::model::{BeamFormulation, ElementKind};
 use crate::physics::beam::Section;
 use crate::physics::field::{self, Field};
 use crate::physics::nodal_force::NodalForce;
@@ -16,19 +16,19 @@ const BEAM_DAMPING: f64 = 0.01;
 impl Builder<'_> {
     pub(super) fn fields(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, f) in active(model, "FIELD", &model.fields) {
-            let name = format!("FIELD/{id}");
+        for (id, f) in model.active(ElementKind::Field, &model.fields) {
+            let name = ElementKind::Field.id(id);
             if let Some(user) = &f.function {
                 // a closure computes the force and torque on I, in the axes of J
-                let all = self.user(c, &format!("{name} FUNCTION"), user, 6, &[]);
+                let all = self.user(c, &Owner::of(name, "FUNCTION"), user, 6, &[]);
                 let formulas = std::array::from_fn(|k| Some(all[k]));
-                let rm = c.marker(f.j, &name);
+                let rm = c.marker(f.j, name);
                 let law = ForceLaw::Vector { rm, formulas };
-                self.between(c, "FIELD", id, (f.i, f.j), law);
+                self.between(c, name, (f.i, f.j), law);
                 continue;
             }
             let Some(stiffness) = field::by_columns(&f.stiffness) else {
-                c.error(&name, "KMATRIX needs 36 numbers, by columns");
+                c.error(name, "KMATRIX needs 36 numbers, by columns");
                 continue;
             };
             let damping = match (f.damping.as_slice(), f.damping_ratio) {
@@ -36,7 +36,7 @@ impl Builder<'_> {
                 (numbers, _) => field::by_columns(numbers),
             };
             let Some(damping) = damping else {
-                c.error(&name, "CMATRIX needs 36 numbers, by columns");
+                c.error(name, "CMATRIX needs 36 numbers, by columns");
                 continue;
             };
             let law = Field {
@@ -46,14 +46,14 @@ impl Builder<'_> {
                 preload: f.preload,
             };
             let law = ForceLaw::Field(Box::new(law));
-            self.between(c, "FIELD", id, (f.i, f.j), law);
+            self.between(c, name, (f.i, f.j), law);
         }
     }
 
     pub(super) fn beams(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, b) in active(model, "BEAM", &model.beams) {
-            let name = format!("BEAM/{id}");
+        for (id, b) in model.active(ElementKind::Beam, &model.beams) {
+            let name = ElementKind::Beam.id(id);
             let linear = b.formulation == BeamFormulation::Linear;
             if !linear {
                 let what = format!(
@@ -62,7 +62,7 @@ impl Builder<'_> {
                 );
                 self.scene
                     .warnings
-                    .push(Diagnostic::warning("approximate", what).element(&name));
+                    .push(Diagnostic::warning("approximate", what).element(name));
             }
             let section = Section {
                 length: b.length,
@@ -74,7 +74,7 @@ impl Builder<'_> {
             };
             let stiffness = section.stiffness();
             if !stiffness.iter().flatten().all(|k| k.is_finite()) {
-                c.error(&name, "its numbers make no stiffness: LENGTH, and with shear also AREA and GMODULUS, must be positive");
+                c.error(name, "its numbers make no stiffness: LENGTH, and with shear also AREA and GMODULUS, must be positive");
                 continue;
             }
             let damping = match (b.damping.as_slice(), b.damping_ratio) {
@@ -82,10 +82,7 @@ impl Builder<'_> {
                 (numbers, _) => field::by_lower_triangle(numbers),
             };
             let Some(damping) = damping else {
-                c.error(
-                    &name,
-                    "CMATRIX needs 21 numbers: the lower triangle by rows",
-                );
+                c.error(name, "CMATRIX needs 21 numbers: the lower triangle by rows");
                 continue;
             };
             let law = Field {
@@ -95,16 +92,16 @@ impl Builder<'_> {
                 preload: [0.0; 6],
             };
             let law = ForceLaw::Field(Box::new(law));
-            self.between(c, "BEAM", id, (b.i, b.j), law);
+            self.between(c, name, (b.i, b.j), law);
         }
     }
 
     pub(super) fn nodal_forces(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, f) in active(model, "NFORCE", &model.nodal_forces) {
-            let name = format!("NFORCE/{id}");
-            let markers: Vec<usize> = f.i.iter().filter_map(|&i| c.marker(i, &name)).collect();
-            let Some(j) = c.marker(f.j, &name) else {
+        for (id, f) in model.active(ElementKind::Nforce, &model.nodal_forces) {
+            let name = ElementKind::Nforce.id(id);
+            let markers: Vec<usize> = f.i.iter().filter_map(|&i| c.marker(i, name)).collect();
+            let Some(j) = c.marker(f.j, name) else {
                 continue;
             };
             if markers.len() < f.i.len() {
@@ -125,7 +122,7 @@ impl Builder<'_> {
                         Some(m) if m.file.is_some() => "stands in a file, which is not read".into(),
                         Some(m) => format!("is {} × {}", m.rows, m.columns),
                     };
-                    c.error(&name, format!("{what}: MATRIX/{matrix} {why}, but {n} × {columns} numbers are needed: six for each I marker"));
+                    c.error(name, format!("{what}: MATRIX/{matrix} {why}, but {n} × {columns} numbers are needed: six for each I marker"));
                 }
                 found
             };
@@ -156,8 +153,7 @@ impl Builder<'_> {
             let reaction = Some(self.scene.markers[j].link);
             for (place, &i) in markers.iter().enumerate() {
                 self.scene.forces.push(ForceElement {
-                    keyword: "NFORCE",
-                    id,
+                    id: name,
                     i,
                     j: Some(j),
                     floating: 0,

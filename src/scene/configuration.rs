@@ -157,7 +157,7 @@ impl Configured<'_> {
         let (i, j) = element.markers?;
         let (mut scene, mut configuration) = (self.scene.clone(), self.configuration.clone());
         let row = |law: Law| Row {
-            element: String::new(),
+            element: element.id,
             equation: law.name(),
             kind: RowKind::Markers {
                 law,

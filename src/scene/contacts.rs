@@ -1,12 +1,12 @@
 //! CONTACT statements: which solids, which formula for each pair, which law.
 
-use super::build::{Builder, active};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, HookKind, SceneHook};
 use super::forces::{ForceLaw, Touching};
 use super::tunnelling::ThicknessBound;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Contact, ContactLaw, CoulombFriction, Shape};
+use crate::model::{Contact, ContactLaw, CoulombFriction, ElementId, ElementKind, Shape};
 use crate::physics::contact::extent::Extent;
 use crate::physics::contact::law::{Coulomb, Law, Normal};
 use crate::physics::contact::outline::{Outline, Rim};
@@ -224,10 +224,10 @@ fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
 
 impl Builder<'_> {
     /// CONTACT: a force element for each pair of its solids.
-    pub(super) fn contacts(&mut self, c: &mut Compiler, skipped: &BTreeSet<String>) {
+    pub(super) fn contacts(&mut self, c: &mut Compiler, skipped: &BTreeSet<ElementKind>) {
         let model = self.model;
-        for (id, contact) in active(model, "CONTACT", &model.contacts) {
-            let name = format!("CONTACT/{id}");
+        for (id, contact) in model.active(ElementKind::Contact, &model.contacts) {
+            let name = ElementKind::Contact.id(id);
             if let (ContactLaw::User, Some(_)) = (contact.law, &contact.function) {
                 // a routine of contacts is called for incidents that only its own solver finds
                 if !self.zero_user {
@@ -236,16 +236,16 @@ impl Builder<'_> {
                         "give it an IMPACT or POISSON law, or take what USER would compute as zero (--zero-user)",
                     ));
                 } else {
-                    self.leave_out("CONTACT", id, "its force is computed by a routine");
+                    self.leave_out(name, "its force is computed by a routine");
                 }
                 continue;
             }
             match self.couples(c, contact) {
                 Ok(couples) => {
-                    let law = match self.law(&name, contact) {
+                    let law = match self.law(name, contact) {
                         Ok(law) => law,
                         Err(why) => {
-                            c.error(&name, why);
+                            c.error(name, why);
                             continue;
                         }
                     };
@@ -255,7 +255,7 @@ impl Builder<'_> {
                         how,
                     } in couples
                     {
-                        let [i, j] = markers.map(|m| c.marker(m, &name));
+                        let [i, j] = markers.map(|m| c.marker(m, name));
                         if let ([Some(a), Some(b)], Some(i), Some(j)) = (extents, i, j) {
                             let outlines = matches!(how, How::Question(Question::Outlines(_)));
                             let reach =
@@ -264,17 +264,17 @@ impl Builder<'_> {
                         }
                         let touching = match how {
                             How::Formula(pair) => Touching::Formula(pair),
-                            How::Question(q) => match self.asked(c, &name, markers, q) {
+                            How::Question(q) => match self.asked(c, name, markers, q) {
                                 Some(touching) => touching,
                                 None => continue,
                             },
                         };
                         let law = ForceLaw::Contact(Box::new((touching, law)));
-                        self.between(c, "CONTACT", id, (markers[0], markers[1]), law);
+                        self.between(c, name, (markers[0], markers[1]), law);
                     }
                 }
-                Err(why) if skipped.contains("CONTACT") => {
-                    self.leave_out("CONTACT", id, &why);
+                Err(why) if skipped.contains(&ElementKind::Contact) => {
+                    self.leave_out(name, &why);
                 }
                 Err(why) => {
                     let help = "--skip-unsupported CONTACT leaves out the contacts that cannot be solved; the results are then those of another model";
@@ -290,7 +290,7 @@ impl Builder<'_> {
     fn asked(
         &mut self,
         c: &mut Compiler,
-        name: &str,
+        name: ElementId,
         ids: [u32; 2],
         question: Question,
     ) -> Option<Touching> {
@@ -318,7 +318,7 @@ impl Builder<'_> {
             .collect();
         self.scene.hooks.push(SceneHook {
             kind: HookKind::Touches { question, markers },
-            element: name.to_string(),
+            element: name,
             constants: Vec::new(),
             n,
             place: places[0],
@@ -342,7 +342,8 @@ impl Builder<'_> {
         if *outside > 0.0 {
             what += &format!("; the shell stands out of it by {outside:.3e} at most");
         }
-        let warning = Diagnostic::warning("approximate", what).element(format!("GRAPHICS/{id}"));
+        let warning =
+            Diagnostic::warning("approximate", what).element(ElementKind::Graphics.id(id));
         if !self.scene.warnings.contains(&warning) {
             self.scene.warnings.push(warning);
         }
@@ -438,7 +439,7 @@ impl Builder<'_> {
     }
 
     /// The law of a contact.
-    fn law(&mut self, name: &str, contact: &Contact) -> Result<Law, String> {
+    fn law(&mut self, name: ElementId, contact: &Contact) -> Result<Law, String> {
         let fit = |what: &str, x: f64| {
             if x.is_finite() && x >= 0.0 {
                 Ok(x)

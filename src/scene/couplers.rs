@@ -5,14 +5,14 @@
 //! counted turns. Whether a displacement is one is asked of the scene itself: its gradient along the
 //! freedoms of the forest is the same at several configurations drawn at random only if it is the same everywhere, for an analytic function of the coordinates.
 
-use super::build::{Builder, active};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::sweep::{self, Coordinates, LinkState};
 use super::{
     ConstraintElement, Displacement, JointVariable, LinkMotion, MarkerOnLink, Row, RowKind, Scene,
     Source, Sum,
 };
-use crate::model::{Joint, JointKind, MarkerOwner};
+use crate::model::{ElementId, ElementKind, Joint, JointKind, MarkerOwner};
 use crate::physics::coupler::{Gauge, GearedJoint, gear_factors};
 use crate::scalar::{Dual, Jet};
 use crate::space::{Frame, Mat3, Vec3};
@@ -24,20 +24,20 @@ impl Builder<'_> {
     /// Rows for all equations between displacements.
     pub(super) fn couplers(&mut self, c: &mut Compiler, strict: bool) {
         let model = self.model;
-        for (id, joint) in active(model, "JOINT", &model.joints) {
+        for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
             if matches!(joint.kind, JointKind::Screw | JointKind::Rackpin) {
                 self.single(c, id, joint, strict);
             }
         }
-        for (id, coupler) in active(model, "COUPLER", &model.couplers) {
-            let name = format!("COUPLER/{id}");
+        for (id, coupler) in model.active(ElementKind::Coupler, &model.couplers) {
+            let name = ElementKind::Coupler.id(id);
             if coupler.user.is_some() {
-                c.error(&name, "FUNCTION=USER needs a routine that is not part of the dataset: give SCALES, or write the relation as a GCON");
+                c.error(name, "FUNCTION=USER needs a routine that is not part of the dataset: give SCALES, or write the relation as a GCON");
                 continue;
             }
             let joints = coupler.joints.iter().zip(&coupler.rotational);
             let displacements: Option<Vec<Displacement>> = joints
-                .map(|(&joint, &turn)| self.joint_displacement(c, &name, joint, turn))
+                .map(|(&joint, &turn)| self.joint_displacement(c, name, joint, turn))
                 .collect();
             let Some(displacements) = displacements else {
                 continue;
@@ -49,9 +49,9 @@ impl Builder<'_> {
                 held: !strict,
                 contact: None,
             };
-            self.relation("COUPLER", id, None, receiver, receiver, sum);
+            self.relation(name, None, receiver, receiver, sum);
         }
-        for (id, gear) in active(model, "GEAR", &model.gears) {
+        for (id, gear) in model.active(ElementKind::Gear, &model.gears) {
             self.gear(c, id, gear.joints, gear.cv);
         }
     }
@@ -59,13 +59,13 @@ impl Builder<'_> {
     /// What joints measure, for those who ask to see it.
     pub(super) fn joint_variables(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, joint) in active(model, "JOINT", &model.joints) {
-            let name = format!("JOINT/{id}");
+        for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
+            let name = ElementKind::Joint.id(id);
             let variables = crate::physics::joint::variables(joint.kind);
             if variables.is_empty() {
                 continue;
             }
-            let (Some(i), Some(j)) = (c.marker(joint.i, &name), c.marker(joint.j, &name)) else {
+            let (Some(i), Some(j)) = (c.marker(joint.i, name), c.marker(joint.j, name)) else {
                 continue;
             };
             for &(name, gauge) in variables {
@@ -81,8 +81,8 @@ impl Builder<'_> {
 
     /// SCREW and RACKPIN: one equation between the two markers.
     fn single(&mut self, c: &mut Compiler, id: u32, joint: &Joint, strict: bool) {
-        let name = format!("JOINT/{id}");
-        let (Some(i), Some(j)) = (c.marker(joint.i, &name), c.marker(joint.j, &name)) else {
+        let name = ElementKind::Joint.id(id);
+        let (Some(i), Some(j)) = (c.marker(joint.i, name), c.marker(joint.j, name)) else {
             return;
         };
         let (keyword, about, per_radian) = match joint.kind {
@@ -94,7 +94,7 @@ impl Builder<'_> {
             _ => ("PD", 0, joint.pd.map(|pd| pd / 2.0)),
         };
         let Some(per_radian) = per_radian else {
-            c.error(&name, format!("needs {keyword}"));
+            c.error(name, format!("needs {keyword}"));
             return;
         };
         let distance = displacement(&self.scene, Gauge::Distance, i, j);
@@ -105,14 +105,14 @@ impl Builder<'_> {
             held: !strict,
             contact: None,
         };
-        self.relation("JOINT", id, Some((i, j)), Some(i), Some(i), sum);
+        self.relation(name, Some((i, j)), Some(i), Some(i), sum);
     }
 
     /// The displacement of a joint that something refers to; `turn`: its angle or its distance, where it must be said.
     fn joint_displacement(
         &self,
         c: &mut Compiler,
-        name: &str,
+        name: ElementId,
         id: u32,
         turn: Option<bool>,
     ) -> Option<Displacement> {
@@ -153,10 +153,10 @@ impl Builder<'_> {
 
     /// GEAR: factors from where CV stands in the carrier.
     fn gear(&mut self, c: &mut Compiler, id: u32, joints: [u32; 2], cv: u32) {
-        let name = format!("GEAR/{id}");
+        let name = ElementKind::Gear.id(id);
         let owner = |m: u32| c.model.markers.get(&m).map(|m| m.owner);
         let carrier = owner(cv);
-        let Some(cv_marker) = c.marker(cv, &name) else {
+        let Some(cv_marker) = c.marker(cv, name) else {
             return;
         };
         let cv_frame = self.in_part(cv);
@@ -164,7 +164,7 @@ impl Builder<'_> {
         let mut bodies = Vec::new();
         let mut first_j = None;
         for (joint_id, sign) in joints.into_iter().zip([1.0, -1.0]) {
-            let Some(joint) = active_joint(c, &name, joint_id) else {
+            let Some(joint) = active_joint(c, name, joint_id) else {
                 return;
             };
             let (turns, slides) = match joint.kind {
@@ -172,15 +172,14 @@ impl Builder<'_> {
                 JointKind::Translational => (false, true),
                 JointKind::Cylindrical => (true, true),
                 _ => {
-                    c.error(&name, format!("JOINT/{joint_id} cannot carry a gear: it must be revolute, translational or cylindrical"));
+                    c.error(name, format!("JOINT/{joint_id} cannot carry a gear: it must be revolute, translational or cylindrical"));
                     return;
                 }
             };
             if owner(joint.j) != carrier {
-                let on = |o: Option<MarkerOwner>| match o {
-                    Some(MarkerOwner::Part(p)) => format!("PART/{p}"),
-                    Some(MarkerOwner::PointMass(p)) => format!("POINT_MASS/{p}"),
-                    _ => "no part".into(),
+                let on = |o: Option<MarkerOwner>| {
+                    let body = o.and_then(MarkerOwner::body);
+                    body.map_or_else(|| "no part".into(), String::from)
                 };
                 let advice = if owner(joint.i) == carrier {
                     format!("exchange I and J of JOINT/{joint_id}")
@@ -196,12 +195,12 @@ impl Builder<'_> {
                             on(carrier)
                         ),
                     )
-                    .element(name.as_str())
+                    .element(name)
                     .help(advice),
                 );
                 return;
             }
-            let (Some(i), Some(j)) = (c.marker(joint.i, &name), c.marker(joint.j, &name)) else {
+            let (Some(i), Some(j)) = (c.marker(joint.i, name), c.marker(joint.j, name)) else {
                 return;
             };
             let geared = GearedJoint {
@@ -220,7 +219,7 @@ impl Builder<'_> {
                         "gear_line_of_action",
                         format!("JOINT/{joint_id} gives CV (MARKER/{cv}) no velocity along its z axis: {why}"),
                     )
-                    .element(name.as_str())
+                    .element(name)
                     .help("place CV where the pitch circles touch, with z along the common tangent"),
                 );
                 return;
@@ -240,7 +239,7 @@ impl Builder<'_> {
             held: true,
             contact: Some((cv_marker, bodies)),
         };
-        self.relation("GEAR", id, None, Some(bodies[0]), first_j, sum);
+        self.relation(name, None, Some(bodies[0]), first_j, sum);
     }
 
     /// Frame of a marker in its part, as the dataset has it; the reader has checked that there is one.
@@ -257,8 +256,7 @@ impl Builder<'_> {
 
     fn relation(
         &mut self,
-        keyword: &'static str,
-        id: u32,
+        id: ElementId,
         markers: Option<(usize, usize)>,
         receiver: Option<usize>,
         about: Option<usize>,
@@ -266,12 +264,11 @@ impl Builder<'_> {
     ) {
         let first = self.scene.rows.len();
         self.scene.rows.push(Row {
-            element: format!("{keyword}/{id}"),
+            element: id,
             equation: "displacements".into(),
             kind: RowKind::Displacements(sum),
         });
         self.scene.constraints.push(ConstraintElement {
-            keyword,
             id,
             markers,
             acts_on: receiver.into_iter().collect(),
@@ -284,11 +281,11 @@ impl Builder<'_> {
 }
 
 /// A joint that is there and switched on; says so when it is not.
-fn active_joint<'m>(c: &mut Compiler<'m>, name: &str, id: u32) -> Option<&'m Joint> {
+fn active_joint<'m>(c: &mut Compiler<'m>, name: ElementId, id: u32) -> Option<&'m Joint> {
     let joint = c.model.joints.get(&id);
     match joint {
         None => c.error(name, format!("JOINT/{id} does not exist")),
-        Some(_) if c.model.inactive.contains(&("JOINT".to_string(), id)) => {
+        Some(_) if !c.model.is_active(ElementKind::Joint.id(id)) => {
             c.error(name, format!("JOINT/{id} is switched off"));
             return None;
         }

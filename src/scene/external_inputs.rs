@@ -4,7 +4,7 @@
 //! They have places of their own at the end of the row that programs read. Whoever fills the row computes them from what stands
 //! before them, so that the programs need not know where they come from.
 
-use crate::model::{Comparison, Formula};
+use crate::model::{Comparison, ElementId, Formula};
 use crate::physics::contact::Question;
 
 /// One number from outside, in the order of the places.
@@ -60,10 +60,8 @@ pub struct SceneSensor {
 /// The discrete states of a GSE.
 #[derive(Clone, Debug)]
 pub struct SceneSampler {
-    /// user's number
-    pub id: u32,
-    /// "GSE/3"
-    pub name: String,
+    /// which GSE it belongs to
+    pub id: ElementId,
     /// time between samples: index in the formulas
     pub period: usize,
     /// how many states
@@ -98,11 +96,11 @@ pub struct HookName {
 
 impl HookName {
     /// Whether it computes this USER of this element.
-    pub fn stands_for(&self, element: &str, user: &Formula) -> bool {
+    pub fn stands_for(&self, element: ElementId, user: &Formula) -> bool {
         let Formula::User { constants, routine } = user else {
             return false;
         };
-        self.name.eq_ignore_ascii_case(element)
+        self.name.eq_ignore_ascii_case(&element.to_string())
             || (routine.as_ref()).is_some_and(|r| r.trim().eq_ignore_ascii_case(&self.name))
             || constants
                 .first()
@@ -135,8 +133,8 @@ pub enum HookKind {
 pub struct SceneHook {
     /// what is called
     pub kind: HookKind,
-    /// the element: "SFORCE/3"
-    pub element: String,
+    /// the element that asks
+    pub element: ElementId,
     /// the numbers of USER
     pub constants: Vec<f64>,
     /// how many numbers it yields

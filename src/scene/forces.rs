@@ -3,6 +3,7 @@
 use super::LinkIx;
 use super::equations::Equations;
 use crate::expr::measures::Measure;
+use crate::model::ElementId;
 use crate::physics::action::{self, Action};
 use crate::physics::bushing::{self, Bushing};
 use crate::physics::contact;
@@ -18,10 +19,8 @@ use std::sync::Arc;
 /// A force between markers.
 #[derive(Clone, Debug)]
 pub struct ForceElement {
-    /// statement keyword: SFORCE, BUSHING …
-    pub keyword: &'static str,
-    /// user's number
-    pub id: u32,
+    /// which element it is
+    pub id: ElementId,
     /// marker acted on
     pub i: usize,
     /// J marker; `None` where the element has a floating one, which moves with I
@@ -161,7 +160,7 @@ impl ForceElement {
 
     /// The joint's reaction on I as far as friction in it depends on it: unknowns, as it depends on the friction in turn.
     fn pressing<S: Scalar>(&self, at: &Equations<'_, S>, law: &Friction, joint: u32) -> Action<S> {
-        let name = format!("FRICTION/{}", self.id);
+        let name = self.id.to_string();
         let part = |first: u32, needed: bool| {
             Vec3([0, 1, 2].map(|k| {
                 if needed {

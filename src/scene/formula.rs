@@ -8,7 +8,7 @@ use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use crate::expr::parse;
 use crate::expr::program::Program;
 use crate::expr::spline::{Ends, Extrapolation};
-use crate::model::Model;
+use crate::model::{ElementKind, Model};
 use std::sync::Arc;
 
 /// The splines of a model, for the expressions that name them; what is wrong with those that cannot be used.
@@ -32,7 +32,8 @@ pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
                 bindings.splines.insert(id, Arc::new(spline));
             }
             Err(why) => errors.push(
-                Diagnostic::error("spline_data", why.to_string()).element(format!("SPLINE/{id}")),
+                Diagnostic::error("spline_data", why.to_string())
+                    .element(ElementKind::Spline.id(id)),
             ),
         }
     }
@@ -54,7 +55,7 @@ pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
 pub(super) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
     let unfit = |what: String| {
         Diagnostic::error("curve_data", what)
-            .element(format!("CURVE/{id}"))
+            .element(ElementKind::Curve.id(id))
             .help("give a MATRIX with one row x, y, z for each point")
     };
     let data = (model.curves.get(&id)).ok_or_else(|| unfit("does not exist".into()))?;

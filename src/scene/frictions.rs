@@ -3,11 +3,11 @@
 //! The reaction depends on the friction and the friction on the reaction: an algebraic loop like any other (`loops.rs`), whose
 //! unknowns are the components of `JOINT(id, 0, …)` that the law reads.
 
-use super::build::{Builder, active};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::forces::ForceLaw;
 use crate::diagnostic::Diagnostic;
-use crate::model::{self, JointKind};
+use crate::model::{self, ElementKind, JointKind};
 use crate::physics::contact::law::Coulomb;
 use crate::physics::friction::{Friction, Kind, Overlap};
 
@@ -17,13 +17,13 @@ const DYNAMIC: f64 = 1.5;
 impl Builder<'_> {
     pub(super) fn frictions(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, f) in active(model, "FRICTION", &model.frictions) {
-            let name = format!("FRICTION/{id}");
+        for (id, f) in model.active(ElementKind::Friction, &model.frictions) {
+            let name = ElementKind::Friction.id(id);
             let Some(joint) = model.joints.get(&f.joint) else {
-                c.error(&name, format!("JOINT/{} does not exist", f.joint));
+                c.error(name, format!("JOINT/{} does not exist", f.joint));
                 continue;
             };
-            if model.inactive.contains(&("JOINT".to_string(), f.joint)) {
+            if !model.is_active(ElementKind::Joint.id(f.joint)) {
                 continue;
             }
             let kind = match joint.kind {
@@ -36,7 +36,7 @@ impl Builder<'_> {
                 JointKind::Universal => Kind::Pins { i: 2, j: 2 },
                 _ => {
                     c.error(
-                        &name,
+                        name,
                         format!("JOINT/{}: there is no friction law for its kind", f.joint),
                     );
                     continue;
@@ -45,15 +45,15 @@ impl Builder<'_> {
             match friction(f, kind) {
                 Ok(law) => {
                     let what = "what should stick creeps below the stiction velocity, and at rest there is no friction";
-                    let warning = Diagnostic::warning("approximate", what).element(&name);
+                    let warning = Diagnostic::warning("approximate", what).element(name);
                     self.scene.warnings.push(warning);
                     let law = ForceLaw::Friction {
                         law: Box::new(law),
                         joint: f.joint,
                     };
-                    self.between(c, "FRICTION", id, (joint.i, joint.j), law);
+                    self.between(c, name, (joint.i, joint.j), law);
                 }
-                Err(why) => c.error(&name, why),
+                Err(why) => c.error(name, why),
             }
         }
     }

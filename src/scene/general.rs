@@ -12,7 +12,7 @@
 //! *Reaction*: λ ∂e/∂(twist), in the units of force where e is a length. The reaction of a GCON is what acts on the part of its I marker,
 //! about that marker, and is read as FX(I, J) … with J the other marker that e reads.
 
-use super::build::{Builder, active};
+use super::build::{Builder, Owner};
 use super::compile::Compiler;
 use super::configuration::Configuration;
 use super::equations::Equations;
@@ -21,15 +21,16 @@ use super::{ConstraintElement, Entry, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
+use crate::model::ElementKind;
 use std::collections::BTreeSet;
 
 impl Builder<'_> {
     /// One row for each GCON.
     pub(super) fn general(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (id, gcon) in active(model, "GCON", &model.general_constraints) {
-            let name = format!("GCON/{id}");
-            let formula = self.formula(c, &format!("{name} FUNCTION"), &gcon.function);
+        for (id, gcon) in model.active(ElementKind::Gcon, &model.general_constraints) {
+            let name = ElementKind::Gcon.id(id);
+            let formula = self.formula(c, &Owner::of(name, "FUNCTION"), &gcon.function);
             if formula >= self.scene.formulas.len() {
                 continue;
             }
@@ -47,7 +48,7 @@ impl Builder<'_> {
             }
             let read = markers_read(&self.scene, formula);
             let about = match gcon.i {
-                Some(i) => c.marker(i, &name),
+                Some(i) => c.marker(i, name),
                 None => None,
             };
             let part = |m: usize| self.scene.markers[m].part;
@@ -74,8 +75,7 @@ impl Builder<'_> {
                 },
             });
             self.scene.constraints.push(ConstraintElement {
-                keyword: "GCON",
-                id,
+                id: name,
                 markers,
                 acts_on,
                 about,

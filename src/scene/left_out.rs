@@ -6,48 +6,46 @@
 
 use super::build::Builder;
 use crate::diagnostic::Diagnostic;
-use crate::expr::measures::{Family, Measure};
+use crate::expr::measures::{Family as MeasureFamily, Measure};
 use crate::expr::program::Input;
-use crate::model::reference::Target;
-use crate::model::{Formula, MarkerOwner, Model};
+use crate::model::{ElementId, ElementKind, Family, Formula, MarkerOwner, Model};
+use crate::physics::joint::Tie;
 use std::collections::BTreeSet;
-
-/// Statements that are not solved, whatever they say.
-const UNSOLVED: [&str; 9] = [
-    "FLEX_BODY",
-    "FE_PART",
-    "FE_LOAD",
-    "MFORCE",
-    "UCON",
-    "TIRE",
-    "WHEEL",
-    "PTSF",
-    "CVSF",
-];
-
-/// Statements that go on existing when a marker they name is gone: they ask, they are drawn, or they are the body itself.
-const PASSIVE: [&str; 6] = [
-    "PART",
-    "POINT_MASS",
-    "MARKER",
-    "REQUEST",
-    "MREQUEST",
-    "SENSOR",
-];
 
 /// A constraint of which nobody knows what it holds.
 #[derive(Clone, Debug)]
 pub struct Unknown {
-    /// its statement
-    pub keyword: &'static str,
-    /// its number
-    pub id: u32,
+    /// which
+    pub id: ElementId,
     /// how many equations it stands for
     pub equations: usize,
     /// why: "CURVE/3 is computed by a routine"
     pub why: String,
     /// a routine would tell
     pub routine: bool,
+}
+
+/// Returns how many equations a constraint stands for; `None` for what is no constraint, or not solved.
+pub fn equations(model: &Model, id: ElementId) -> Option<usize> {
+    use ElementKind as E;
+    match id.kind {
+        E::Joint => Some(Tie::Joint(model.joints.get(&id.number)?.kind).removes()),
+        E::Jprim => Some(Tie::Primitive(model.primitives.get(&id.number)?.kind).removes()),
+        E::Motion | E::Coupler | E::Gear | E::Gcon => Some(1),
+        E::Ptcv | E::Cvcv => Some(2),
+        // not solved
+        E::Ucon | E::Ptsf | E::Cvsf => None,
+        // no constraints
+        E::Part | E::PointMass | E::Marker | E::FlexBody | E::FePart => None,
+        E::Sforce | E::Vforce | E::Vtorque | E::Gforce => None,
+        E::SpringDamper | E::Bushing | E::Field | E::Beam | E::Nforce => None,
+        E::Contact | E::Friction | E::FeLoad | E::Mforce | E::Tire | E::Wheel => None,
+        E::Variable | E::Diff | E::Lse | E::Tfsiso | E::Gse => None,
+        E::Pinput | E::Poutput | E::Sensor => None,
+        E::Array | E::Curve | E::Spline | E::String | E::Matrix => None,
+        E::Material | E::Section | E::FeNode | E::Surface | E::Sfsf => None,
+        E::Request | E::Mrequest | E::Graphics | E::Femdata => None,
+    }
 }
 
 /// Constraints that a routine computes, or whose curve does not stand in the dataset; inactive ones do not count.
@@ -63,10 +61,9 @@ pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
         Some((why, false))
     };
     let mut found = Vec::new();
-    let mut add = |keyword, id, equations, (why, routine): (String, bool)| {
+    let mut add = |kind: ElementKind, number, equations, (why, routine): (String, bool)| {
         found.push(Unknown {
-            keyword,
-            id,
+            id: kind.id(number),
             equations,
             why,
             routine,
@@ -74,34 +71,34 @@ pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
     };
     for (&id, p) in &model.points_on_curves {
         if let Some(why) = curve(p.curve) {
-            add("PTCV", id, 2, why);
+            add(ElementKind::Ptcv, id, 2, why);
         }
     }
     for (&id, c) in &model.curves_on_curves {
         if let Some(why) = curve(c.i.curve).or_else(|| curve(c.j.curve)) {
-            add("CVCV", id, 2, why);
+            add(ElementKind::Cvcv, id, 2, why);
         }
     }
     let routine = || ("its function is computed by a routine".to_string(), true);
     for (&id, g) in &model.general_constraints {
         if matches!(g.function, Formula::User { .. }) {
-            add("GCON", id, 1, routine());
+            add(ElementKind::Gcon, id, 1, routine());
         }
     }
     for (&id, c) in &model.couplers {
         if c.user.is_some() {
-            add("COUPLER", id, 1, routine());
+            add(ElementKind::Coupler, id, 1, routine());
         }
     }
-    found.retain(|u| !model.inactive.contains(&(u.keyword.to_string(), u.id)));
+    found.retain(|u| model.is_active(u.id));
     found
 }
 
 /// What is left out of a model.
 #[derive(Clone, Debug, Default)]
 pub struct LeftOut {
-    /// elements, by keyword and number
-    pub elements: BTreeSet<(String, u32)>,
+    /// elements
+    pub elements: BTreeSet<ElementId>,
     /// markers without a frame
     pub markers: BTreeSet<u32>,
     /// errors for what is not solved, warnings for what is left out
@@ -109,40 +106,36 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Of a model; `skip`: keywords of statements that are left out where they are not solved, `zero_user`: also constraints that
+    /// Of a model; `skip`: kinds of elements that are left out where they are not solved, `zero_user`: also constraints that
     /// routines compute.
-    pub fn of(model: &Model, skip: &BTreeSet<String>, zero_user: bool) -> Self {
+    pub fn of(model: &Model, skip: &BTreeSet<ElementKind>, zero_user: bool) -> Self {
         let mut this = Self::default();
-        for (keyword, id) in model.others.keys() {
-            let off = model.inactive.contains(&(keyword.clone(), *id));
-            if off || !UNSOLVED.contains(&keyword.as_str()) {
+        for &id in model.others.keys() {
+            let kind = id.kind;
+            if !model.is_active(id) || !kind.is_unsolved() {
                 continue;
             }
-            if skip.contains(keyword) {
-                this.leave(keyword, *id, "it is not solved");
+            if skip.contains(&kind) {
+                this.leave(id, "it is not solved");
                 continue;
             }
-            let error = Diagnostic::error("unsupported", "is read, but not solved yet")
-                .element(format!("{keyword}/{id}"));
-            this.told.push(error.help(format!(
-                "--skip-unsupported {keyword} leaves all of its kind out; the results are then those of another model"
+            let error = Diagnostic::error("unsupported", "is read, but not solved yet");
+            this.told.push(error.element(id).help(format!(
+                "--skip-unsupported {kind} leaves all of its kind out; the results are then those of another model"
             )));
         }
         for unknown in unknown_constraints(model) {
-            let Unknown {
-                keyword, id, why, ..
-            } = &unknown;
-            let curve = matches!(*keyword, "PTCV" | "CVCV") && skip.contains("CURVE");
-            if skip.contains(*keyword) || curve || zero_user && unknown.routine {
-                this.leave(keyword, *id, why);
+            let Unknown { id, why, .. } = &unknown;
+            let on_curve = matches!(id.kind, ElementKind::Ptcv | ElementKind::Cvcv);
+            let curve = on_curve && skip.contains(&ElementKind::Curve);
+            if skip.contains(&id.kind) || curve || zero_user && unknown.routine {
+                this.leave(*id, why);
             }
         }
         for (&id, marker) in &model.markers {
-            let MarkerOwner::Other(owner) = marker.owner else {
-                continue;
-            };
-            let gone = |k: &str| this.elements.contains(&(k.to_string(), owner));
-            if UNSOLVED.iter().any(|k| gone(k)) {
+            if let MarkerOwner::Other(owner) = marker.owner
+                && this.elements.contains(&owner)
+            {
                 this.markers.insert(id);
             }
         }
@@ -150,10 +143,25 @@ impl LeftOut {
         this
     }
 
-    fn leave(&mut self, keyword: &str, id: u32, why: &str) {
-        if self.elements.insert((keyword.to_string(), id)) {
+    fn leave(&mut self, id: ElementId, why: &str) {
+        if self.elements.insert(id) {
             let warning = Diagnostic::warning("skipped", format!("is left out: {why}"));
-            self.told.push(warning.element(format!("{keyword}/{id}")));
+            self.told.push(warning.element(id));
+        }
+    }
+
+    /// Leaves out an element that names one that is gone, unless it goes on existing without it.
+    fn without(&mut self, element: ElementId, target: ElementId) {
+        match element.kind.family() {
+            // shapes are gone silently: contacts ask for them
+            Family::Output if element.kind == ElementKind::Graphics => {
+                self.elements.insert(element);
+            }
+            // these ask, or are the body itself
+            Family::Body | Family::Output => {}
+            Family::Constraint | Family::Force | Family::System | Family::Data => {
+                self.leave(element, &format!("{target} is left out"));
+            }
         }
     }
 
@@ -171,22 +179,13 @@ impl LeftOut {
             }
             let before = self.elements.len();
             for r in &references {
-                let element = (r.keyword.to_string(), r.id);
-                if PASSIVE.contains(&r.keyword) || model.inactive.contains(&element) {
-                    continue;
-                }
-                let target = r.target.keyword();
-                let gone = if target == Target::Marker.keyword() {
-                    self.markers.contains(&r.number)
+                let gone = if r.target.kind == ElementKind::Marker {
+                    self.markers.contains(&r.target.number)
                 } else {
-                    self.elements.contains(&(target.to_string(), r.number))
+                    self.elements.contains(&r.target)
                 };
-                if gone && r.keyword == "GRAPHICS" {
-                    // what is drawn there; contacts ask for it
-                    self.elements.insert(element);
-                } else if gone {
-                    let why = format!("{target}/{} is left out", r.number);
-                    self.leave(r.keyword, r.id, &why);
+                if gone && model.is_active(r.element) {
+                    self.without(r.element, r.target);
                 }
             }
             if self.elements.len() == before {
@@ -197,15 +196,15 @@ impl LeftOut {
 }
 
 /// The floating markers that contacts of curves place.
-fn floats(model: &Model) -> Vec<((String, u32), Vec<u32>)> {
+fn floats(model: &Model) -> Vec<(ElementId, Vec<u32>)> {
     let floating = |m: Option<u32>| m.filter(|m| model.markers.get(m).is_some_and(|m| m.floating));
     let points = model.points_on_curves.iter().map(|(&id, p)| {
         let all = floating(p.jfloat).into_iter().collect();
-        (("PTCV".to_string(), id), all)
+        (ElementKind::Ptcv.id(id), all)
     });
     let curves = model.curves_on_curves.iter().map(|(&id, c)| {
         let all = [c.i.float, c.j.float].into_iter().filter_map(floating);
-        (("CVCV".to_string(), id), all.collect())
+        (ElementKind::Cvcv.id(id), all.collect())
     });
     points.chain(curves).collect()
 }
@@ -213,32 +212,34 @@ fn floats(model: &Model) -> Vec<((String, u32), Vec<u32>)> {
 /// The markers among the numbers of a measure.
 fn markers_of(measure: Measure, ids: &[u32; 4]) -> &[u32] {
     match measure.row().family {
-        Family::Displacement | Family::Velocity | Family::Acceleration | Family::GenericForce => {
+        MeasureFamily::Displacement
+        | MeasureFamily::Velocity
+        | MeasureFamily::Acceleration
+        | MeasureFamily::GenericForce => {
             let first = if measure == Measure::Orient { 2 } else { 0 };
             &ids[first..]
         }
-        Family::ElementForce | Family::System => &[],
+        MeasureFamily::ElementForce | MeasureFamily::System => &[],
     }
 }
 
 impl super::Scene {
-    /// What of a measure is left out: "CONTACT/3", "MARKER/12"; it is zero then.
-    pub(super) fn gone(&self, measure: Measure, ids: &[u32; 4]) -> Option<String> {
-        if let Some(keyword) = super::equations::keyword_of(measure) {
-            let left = self.left_out.elements.contains(&(keyword.into(), ids[0]));
-            return left.then(|| format!("{keyword}/{}", ids[0]));
+    /// Returns the element of a measure that is left out; the measure is zero then.
+    pub(super) fn gone(&self, measure: Measure, ids: &[u32; 4]) -> Option<ElementId> {
+        if let Some(element) = super::equations::element_of(measure, ids[0]) {
+            return Some(element).filter(|e| self.left_out.elements.contains(e));
         }
         let mut markers = markers_of(measure, ids).iter();
         let gone = markers.find(|m| self.left_out.markers.contains(m));
-        gone.map(|m| format!("MARKER/{m}"))
+        gone.map(|&m| ElementKind::Marker.id(m))
     }
 }
 
 impl Builder<'_> {
     /// Leaves out one more element, for a reason that only compiling it tells.
-    pub(super) fn leave_out(&mut self, keyword: &str, id: u32, why: &str) {
-        self.scene.left_out.leave(keyword, id, why);
-        self.scene.inactive.insert((keyword.to_string(), id));
+    pub(super) fn leave_out(&mut self, id: ElementId, why: &str) {
+        self.scene.left_out.leave(id, why);
+        self.scene.inactive.insert(id);
         self.scene.warnings.append(&mut self.scene.left_out.told);
     }
 

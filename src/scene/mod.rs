@@ -30,7 +30,7 @@ pub mod tunnelling;
 
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
-use crate::model::Level;
+use crate::model::{ElementId, ElementKind, Level};
 use crate::physics::coupler::Gauge;
 use crate::physics::row::Law;
 use crate::space::{Frame, Mat3, Vec3};
@@ -126,16 +126,21 @@ pub enum Source {
 /// A part: where it sits on its link.
 #[derive(Clone, Debug)]
 pub struct PartOnLink {
-    /// user's number
-    pub id: u32,
-    /// POINT_MASS rather than PART
-    pub point_mass: bool,
+    /// which PART or POINT_MASS it is
+    pub id: ElementId,
     /// what carries it
     pub link: LinkIx,
     /// part frame in the link's frame
     pub frame: Frame<f64>,
     /// part frame in ground as the dataset has it
     pub initial: Frame<f64>,
+}
+
+impl PartOnLink {
+    /// Returns whether it is a POINT_MASS, which does not turn.
+    pub fn is_point_mass(&self) -> bool {
+        self.id.kind == ElementKind::PointMass
+    }
 }
 
 /// A marker: where it sits on its link.
@@ -154,8 +159,8 @@ pub struct MarkerOnLink {
 /// One scalar constraint equation.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// the element it comes from: "JOINT/7"
-    pub element: String,
+    /// the element it comes from
+    pub element: ElementId,
     /// Adams' name of the equation: "Zi.Xj"
     pub equation: String,
     /// what it says
@@ -258,6 +263,8 @@ pub enum Counted {
 /// An expression of the model, compiled.
 #[derive(Clone, Debug)]
 pub struct Formula {
+    /// the element it belongs to; `None`: it is asked for beside those of the model
+    pub element: Option<ElementId>,
     /// where it stands: "SFORCE/3 FUNCTION"
     pub name: String,
     /// its text, for messages
@@ -320,10 +327,8 @@ pub struct SceneDifferential {
 /// A constraint element: whose reaction can be asked for.
 #[derive(Clone, Debug)]
 pub struct ConstraintElement {
-    /// statement keyword: JOINT, JPRIM, MOTION …
-    pub keyword: &'static str,
-    /// user's number
-    pub id: u32,
+    /// which element it is
+    pub id: ElementId,
     /// I and J markers, where it has them
     pub markers: Option<(usize, usize)>,
     /// the markers at which its rows act on what I stands for
@@ -375,8 +380,8 @@ pub struct Scene {
     pub variables: BTreeMap<u32, usize>,
     /// user's ARRAY number → entries
     pub arrays: BTreeMap<u32, Vec<Entry>>,
-    /// (POUTPUT rather than PINPUT, user's number) → formulas
-    pub plants: BTreeMap<(bool, u32), Vec<usize>>,
+    /// PINPUT or POUTPUT → formulas
+    pub plants: BTreeMap<ElementId, Vec<usize>>,
     /// sensors
     pub sensors: Vec<external_inputs::SceneSensor>,
     /// bodies that could pass through each other within a step
@@ -395,8 +400,8 @@ pub struct Scene {
     pub formulas: Vec<Formula>,
     /// of these, the ones asked for beside those of the model
     pub extra: Vec<usize>,
-    /// elements that are switched off, by keyword and number: they exert nothing
-    pub inactive: BTreeSet<(String, u32)>,
+    /// elements that are switched off: they exert nothing
+    pub inactive: BTreeSet<ElementId>,
     /// elements that are left out because they are not solved
     pub left_out: left_out::LeftOut,
     /// angles whose turns are counted, in the order of their places in the layout

@@ -10,13 +10,15 @@
 //!
 //! So circles through inputs and outputs, derivatives, statics and messages are those of all formulas.
 
-use super::build::{Builder, active};
+use super::build::{Builder, Owner};
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, SceneSampler, SceneSensor};
 use super::{Entry, Formula, SceneDifferential};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program, Sym};
-use crate::model::{ArrayKind, GeneralSystem, LinearSystem, TransferFunction};
+use crate::model::{
+    ArrayKind, ElementId, ElementKind, GeneralSystem, LinearSystem, TransferFunction,
+};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
@@ -40,24 +42,24 @@ impl Builder<'_> {
     /// All system elements. `changing`: VARIABLEs whose functions, where these are numbers, are not written into the equations.
     pub(super) fn systems(&mut self, c: &mut Compiler, changing: &BTreeSet<u32>) {
         let model = self.model;
-        for (id, variable) in active(model, "VARIABLE", &model.variables) {
-            let name = format!("VARIABLE/{id} FUNCTION");
+        for (id, variable) in model.active(ElementKind::Variable, &model.variables) {
+            let owner = Owner::of(ElementKind::Variable.id(id), "FUNCTION");
             let f = match variable.function.constant() {
                 Some(_) if changing.contains(&id) => {
                     let place = self.supply(ExternalInput::Constant(id));
-                    self.supplied_formula(&name, "a number that commands change", place)
+                    self.supplied_formula(&owner, "a number that commands change", place)
                 }
-                _ => self.formula(c, &name, &variable.function),
+                _ => self.formula(c, &owner, &variable.function),
             };
             self.scene.variables.insert(id, f);
         }
         self.input_arrays(c);
-        for (id, d) in active(model, "DIFF", &model.differentials) {
-            let name = format!("DIFF/{id}");
-            let formula = self.formula(c, &format!("{name} FUNCTION"), &d.function);
+        for (id, d) in model.active(ElementKind::Diff, &model.differentials) {
+            let name = ElementKind::Diff.id(id);
+            let formula = self.formula(c, &Owner::of(name, "FUNCTION"), &d.function);
             self.scene.differentials.push(SceneDifferential {
                 id,
-                name,
+                name: name.to_string(),
                 state: None,
                 formula,
                 initial: d.ic.map(|x| x.unwrap_or(0.0)),
@@ -73,19 +75,19 @@ impl Builder<'_> {
                 self.scene.layout.n_x += 1;
             }
         }
-        for (id, s) in active(model, "LSE", &model.linear_systems) {
-            if let Err(why) = self.linear_system(id, s) {
-                c.error(&format!("LSE/{id}"), why);
+        for (id, s) in model.active(ElementKind::Lse, &model.linear_systems) {
+            if let Err(why) = self.linear_system(ElementKind::Lse.id(id), s) {
+                c.error(ElementKind::Lse.id(id), why);
             }
         }
-        for (id, s) in active(model, "TFSISO", &model.transfer_functions) {
-            if let Err(why) = self.transfer_function(id, s) {
-                c.error(&format!("TFSISO/{id}"), why);
+        for (id, s) in model.active(ElementKind::Tfsiso, &model.transfer_functions) {
+            if let Err(why) = self.transfer_function(ElementKind::Tfsiso.id(id), s) {
+                c.error(ElementKind::Tfsiso.id(id), why);
             }
         }
-        for (id, s) in active(model, "GSE", &model.general_systems) {
-            if let Err(why) = self.general_system(c, id, s) {
-                c.error(&format!("GSE/{id}"), why);
+        for (id, s) in model.active(ElementKind::Gse, &model.general_systems) {
+            if let Err(why) = self.general_system(c, ElementKind::Gse.id(id), s) {
+                c.error(ElementKind::Gse.id(id), why);
             }
         }
         self.plants(c);
@@ -103,7 +105,7 @@ impl Builder<'_> {
                     let entries = entries.into_iter().map(Entry::Formula).collect();
                     self.scene.arrays.insert(id, entries);
                 }
-                Err(why) => c.error(&format!("ARRAY/{id}"), why),
+                Err(why) => c.error(ElementKind::Array.id(id), why),
             }
         }
     }
@@ -120,16 +122,16 @@ impl Builder<'_> {
     /// PINPUT, POUTPUT.
     fn plants(&mut self, c: &mut Compiler) {
         let model = self.model;
-        for (output, keyword, all) in [
-            (false, "PINPUT", &model.plant_inputs),
-            (true, "POUTPUT", &model.plant_outputs),
+        for (kind, all) in [
+            (ElementKind::Pinput, &model.plant_inputs),
+            (ElementKind::Poutput, &model.plant_outputs),
         ] {
-            for (id, plant) in active(model, keyword, all) {
+            for (id, plant) in model.active(kind, all) {
                 match self.values_of(&plant.variables) {
                     Ok(entries) => {
-                        self.scene.plants.insert((output, id), entries);
+                        self.scene.plants.insert(kind.id(id), entries);
                     }
-                    Err(why) => c.error(&format!("{keyword}/{id}"), why),
+                    Err(why) => c.error(kind.id(id), why),
                 }
             }
         }
@@ -149,22 +151,22 @@ impl Builder<'_> {
                     }
                 }
             }
-            Err(why) => c.error("PINPUT", why),
+            Err(why) => c.error(ElementKind::Pinput.keyword(), why),
         }
     }
 
     fn sensors(&mut self, c: &mut Compiler) {
         let model = self.model;
         for (&id, s) in &model.sensors {
-            if model.inactive.contains(&("SENSOR".to_string(), id)) {
+            if !model.is_active(ElementKind::Sensor.id(id)) {
                 // it watches nothing, but keeps what it has seen
                 self.supply(ExternalInput::Kept(id));
                 continue;
             }
-            let name = format!("SENSOR/{id}");
-            let formula = self.formula(c, &format!("{name} FUNCTION"), &s.function);
+            let name = ElementKind::Sensor.id(id);
+            let formula = self.formula(c, &Owner::of(name, "FUNCTION"), &s.function);
             let evaluate =
-                (s.evaluate.as_ref()).map(|e| self.formula(c, &format!("{name} EVALUATE"), e));
+                (s.evaluate.as_ref()).map(|e| self.formula(c, &Owner::of(name, "EVALUATE"), e));
             let index = self.scene.sensors.len();
             self.supply(ExternalInput::Sensor(index));
             self.scene.sensors.push(SceneSensor {
@@ -226,14 +228,15 @@ impl Builder<'_> {
     }
 
     /// `Σ factor · entry` as a formula.
-    fn sum(&mut self, name: String, terms: &[Term]) -> usize {
+    fn sum(&mut self, owner: Owner, terms: &[Term]) -> usize {
         let program = sum(terms);
         let shown = terms
             .iter()
             .map(|(f, array, k)| format!("{f:+}*ARYVAL({array},{k})"));
         let text = shown.collect();
         self.scene.formulas.push(Formula {
-            name,
+            element: owner.element,
+            name: owner.name,
             text,
             program,
             gradient: None,
@@ -322,7 +325,7 @@ impl Builder<'_> {
         ))
     }
 
-    fn linear_system(&mut self, id: u32, s: &LinearSystem) -> Result<(), String> {
+    fn linear_system(&mut self, id: ElementId, s: &LinearSystem) -> Result<(), String> {
         let a = self.matrix(s.a, None, None)?;
         let n = a.rows;
         if a.columns != n {
@@ -354,8 +357,9 @@ impl Builder<'_> {
         for (i, &value) in initial.iter().enumerate() {
             let mut terms = row(&a, i, s.x);
             terms.extend(row(&b, i, u));
-            let name = format!("LSE/{id} state {}", i + 1);
-            let rate = self.sum(name.clone(), &terms);
+            let owner = Owner::of(id, format_args!("state {}", i + 1));
+            let name = owner.name.clone();
+            let rate = self.sum(owner, &terms);
             let start = Start {
                 value,
                 hold: s.static_hold,
@@ -367,9 +371,8 @@ impl Builder<'_> {
         for i in 0..outputs {
             let mut terms = row(&cc, i, s.x);
             terms.extend(row(&d, i, u));
-            values.push(Entry::Formula(
-                self.sum(format!("LSE/{id} output {}", i + 1), &terms),
-            ));
+            let owner = Owner::of(id, format_args!("output {}", i + 1));
+            values.push(Entry::Formula(self.sum(owner, &terms)));
         }
         match s.y {
             Some(y) => self.filled(y, false, values),
@@ -377,7 +380,7 @@ impl Builder<'_> {
         }
     }
 
-    fn transfer_function(&mut self, id: u32, s: &TransferFunction) -> Result<(), String> {
+    fn transfer_function(&mut self, id: ElementId, s: &TransferFunction) -> Result<(), String> {
         let trimmed = |c: &[f64]| c.iter().rposition(|x| *x != 0.0).map_or(0, |k| k + 1);
         let a = &s.denominator[..trimmed(&s.denominator)];
         let b = &s.numerator[..trimmed(&s.numerator)];
@@ -405,8 +408,9 @@ impl Builder<'_> {
                 terms.push((1.0 / an, s.u, 1));
                 terms
             };
-            let name = format!("TFSISO/{id} state {}", i + 1);
-            let rate = self.sum(name.clone(), &terms);
+            let owner = Owner::of(id, format_args!("state {}", i + 1));
+            let name = owner.name.clone();
+            let rate = self.sum(owner, &terms);
             let start = Start {
                 value: 0.0,
                 hold: s.static_hold,
@@ -422,7 +426,7 @@ impl Builder<'_> {
         if through != 0.0 {
             terms.push((through, s.u, 1));
         }
-        let y = Entry::Formula(self.sum(format!("TFSISO/{id} output"), &terms));
+        let y = Entry::Formula(self.sum(Owner::of(id, "output"), &terms));
         self.filled(s.y, false, vec![y])
     }
 
@@ -430,10 +434,9 @@ impl Builder<'_> {
     fn general_system(
         &mut self,
         c: &mut Compiler,
-        id: u32,
+        id: ElementId,
         s: &GeneralSystem,
     ) -> Result<(), String> {
-        let name = format!("GSE/{id}");
         let initial = self.initial(s.ic, s.ns)?;
         let m = self.length_of_inputs(s.u)?;
         let discrete = if s.xd.is_some() { s.nd } else { 0 };
@@ -462,7 +465,7 @@ impl Builder<'_> {
         let reads: Vec<String> = array(s.x, s.ns).chain(array(s.u, m)).collect();
         let n = s.ns + s.no + s.nd;
         let said = c.errors.len();
-        let results = self.user_reading(c, &format!("{name} FUNCTION"), function, n, &reads, &held);
+        let results = self.user_reading(c, &Owner::of(id, "FUNCTION"), function, n, &reads, &held);
         if s.nd > 0 && c.errors.len() == said {
             self.sampler(c, id, s, &held, &results[s.ns + s.no..])?;
         }
@@ -473,7 +476,7 @@ impl Builder<'_> {
                 hold: s.static_hold,
             };
             states.push(Entry::State(self.state(
-                format!("{name} state {}", i + 1),
+                format!("{id} state {}", i + 1),
                 results[i],
                 &start,
             )));
@@ -495,18 +498,18 @@ impl Builder<'_> {
 
 impl Builder<'_> {
     /// Places for the discrete states of a GSE, as formulas.
-    fn discrete_states(&mut self, id: u32, s: &GeneralSystem) -> Result<Vec<usize>, String> {
+    fn discrete_states(&mut self, id: ElementId, s: &GeneralSystem) -> Result<Vec<usize>, String> {
         if s.nd == 0 {
             return Ok(Vec::new());
         }
         let sampler = self.scene.samplers.len();
-        let name = |k: usize| format!("GSE/{id} discrete state {}", k + 1);
+        let owner = |k: usize| Owner::of(id, format_args!("discrete state {}", k + 1));
         let places: Vec<usize> = (0..s.nd)
             .map(|k| self.supply(ExternalInput::Sample(sampler, k)))
             .collect();
         let states = places.into_iter().enumerate();
         let held: Vec<usize> = states
-            .map(|(k, place)| self.supplied_formula(&name(k), "XD", place))
+            .map(|(k, place)| self.supplied_formula(&owner(k), "XD", place))
             .collect();
         if let Some(xd) = s.xd {
             let entries = held.iter().copied().map(Entry::Formula).collect();
@@ -519,22 +522,20 @@ impl Builder<'_> {
     fn sampler(
         &mut self,
         c: &mut Compiler,
-        id: u32,
+        id: ElementId,
         s: &GeneralSystem,
         held: &[usize],
         results: &[usize],
     ) -> Result<(), String> {
-        let name = format!("GSE/{id}");
         let Some(period) = &s.sample_period else {
             return Err("its discrete states need a SAMPLE_PERIOD".into());
         };
-        let period = self.formula(c, &format!("{name} SAMPLE_PERIOD"), period);
+        let period = self.formula(c, &Owner::of(id, "SAMPLE_PERIOD"), period);
         let place = |f: &usize| self.scene.formulas[*f].delayed[0];
         let (states, results) = (place(&held[0]), place(&results[0]));
         let initial = self.initial(s.icd, s.nd)?;
         self.scene.samplers.push(SceneSampler {
             id,
-            name,
             period,
             n: s.nd,
             states,

@@ -495,7 +495,7 @@ fn a_gear_selector_settles_as_well_as_it_is_asked_to() {
         .steps
         .truncate(until.expect("it moves after it has settled"));
     let options = Options {
-        skip: ["CONTACT".to_string()].into(),
+        skip: [cognate::model::ElementKind::Contact].into(),
         ..options(1e-4)
     };
     let session = obeyed(&script.model_file().unwrap(), &script, options);
@@ -621,7 +621,7 @@ fn models_that_lack_something_stand_without_it() {
         let model = Model::read(root.join(file)).unwrap_or_else(|e| panic!("{e}"));
         let options = Options {
             zero_user: true,
-            skip: ["CONTACT".to_string()].into(),
+            skip: [cognate::model::ElementKind::Contact].into(),
             ..Options::default()
         };
         let mut session = Session::new(model, "run", options);

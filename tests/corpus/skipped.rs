@@ -13,7 +13,7 @@ fn options(error: f64, columns: Vec<String>) -> Options {
         error: Some(error),
         full: true,
         columns,
-        skip: [String::from("CONTACT")].into(),
+        skip: [cognate::model::ElementKind::Contact].into(),
         ..Options::default()
     }
 }

@@ -18,7 +18,7 @@ use crate::analysis::system::slopes::{self, Direction};
 use crate::analysis::system::{System, complaints};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
-use crate::model::Model;
+use crate::model::{ElementKind, Model};
 use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::layout::Layout;
@@ -100,17 +100,17 @@ pub struct Linearization {
 
 /// The VARIABLEs of plants, in order.
 fn variables(model: &Model, output: bool, one: Option<u32>) -> Result<Vec<u32>, Diagnostic> {
-    let (keyword, all) = if output {
-        ("POUTPUT", &model.plant_outputs)
+    let (kind, all) = if output {
+        (ElementKind::Poutput, &model.plant_outputs)
     } else {
-        ("PINPUT", &model.plant_inputs)
+        (ElementKind::Pinput, &model.plant_inputs)
     };
     match one {
         Some(id) => match all.get(&id) {
             Some(plant) => Ok(plant.variables.clone()),
             None => Err(Diagnostic::error(
                 "model",
-                format!("LINEAR names {keyword}/{id}, which does not exist"),
+                format!("LINEAR names {}, which does not exist", kind.id(id)),
             )),
         },
         None => Ok(all.values().flat_map(|p| p.variables.clone()).collect()),
@@ -243,7 +243,7 @@ pub fn linearize(
             None => {
                 let d =
                     Diagnostic::error("model", "is an output but does not exist or is not active");
-                return Err(vec![d.element(format!("VARIABLE/{id}"))]);
+                return Err(vec![d.element(ElementKind::Variable.id(*id))]);
             }
         }
     }
@@ -319,7 +319,11 @@ pub fn linearize(
     let own = a.columns(0, n_z).into_owned();
     let names = build::unknown_names(&system.scene);
     let modes = modes::modes(system, model, &small, &own, wanted)?;
-    let named = |ids: &[u32]| ids.iter().map(|id| format!("VARIABLE/{id}")).collect();
+    let named = |ids: &[u32]| {
+        ids.iter()
+            .map(|&id| ElementKind::Variable.id(id).to_string())
+            .collect()
+    };
     Ok(Linearization {
         time: system.numbers[Layout::TIME],
         states: state_names(&system.scene, &small, &names),

@@ -141,12 +141,7 @@ impl PartMotion {
             let mut all = Vec::with_capacity(6 * scene.parts.len());
             for (k, part) in scene.parts.iter().enumerate() {
                 let state = at.part(k, false);
-                let parts = if part.point_mass {
-                    &model.point_masses
-                } else {
-                    &model.parts
-                };
-                let cm = parts.get(&part.id).and_then(|p| p.cm);
+                let cm = model.body(part.id).and_then(|p| p.cm);
                 let cm = cm.and_then(|cm| scene.marker_of.get(&cm));
                 let cm = cm.map_or(state.p_GM, |&m| at.marker(m).p_GM);
                 let v = state.v_GM + state.w_GM.cross(cm - state.p_GM);
@@ -161,10 +156,8 @@ impl PartMotion {
                 jacobian[(i, k)] = x - none[i];
             }
         }
-        let name =
-            |p: &crate::scene::PartOnLink| crate::scene::compile::part_name(p.point_mass, p.id);
         Self {
-            parts: scene.parts.iter().map(name).collect(),
+            parts: scene.parts.iter().map(|p| p.id.to_string()).collect(),
             map: jacobian * &small.z,
             n: small.z.ncols(),
             layout: l,

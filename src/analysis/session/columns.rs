@@ -2,7 +2,7 @@
 
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{Formula, Model, RequestKind};
+use crate::model::{ElementId, ElementKind, Formula, Model, Part, Place, RequestKind};
 use crate::physics::kinematic;
 use crate::results::{Component, Entity, Run, Units};
 use crate::scalar::Scalar;
@@ -20,21 +20,13 @@ enum What {
     Text(usize),
     /// a component of a part's motion: 0–2 position, 3–5 ψ θ φ, 6–8 velocity, 9–11 angular velocity, 12–14 acceleration,
     /// 15–17 angular acceleration; of the part frame, ground axes
-    Part {
-        point_mass: bool,
-        id: u32,
-        quantity: usize,
-    },
+    Part { id: ElementId, quantity: usize },
     /// a component of a REQUEST that a closure computes, from 0
     Request { id: u32, component: usize },
     /// a variable of a joint
     JointVariable { joint: u32, variable: &'static str },
     /// a component of the action of an element on its I marker, ground axes: 0–2 force, 3–5 torque
-    Action {
-        keyword: &'static str,
-        id: u32,
-        component: usize,
-    },
+    Action { id: ElementId, component: usize },
 }
 
 /// The columns of a run in the order of its table of all columns, time left out.
@@ -225,25 +217,16 @@ impl Columns {
     fn parts(&mut self, model: &Model, run: &mut Run) {
         let u = run.units.clone();
         let first = run.entities.len();
-        let all: Vec<(bool, u32, &crate::model::Part)> = model
-            .parts
-            .iter()
-            .filter(|(_, p)| !p.ground)
-            .map(|(&id, p)| (false, id, p))
-            .chain(model.point_masses.iter().map(|(&id, p)| (true, id, p)))
-            .collect();
-        for &(point_mass, id, part) in &all {
-            let entity = name_of(
-                &part.place,
-                if point_mass { "POINT_MASS" } else { "PART" },
-                id,
-            );
+        let moving = |(id, p): &(ElementId, &Part)| id.kind == ElementKind::PointMass || !p.ground;
+        let all: Vec<(ElementId, &Part)> = model.bodies().filter(moving).collect();
+        for &(id, part) in &all {
+            let entity = name_of(&part.place, id);
             let name = format!("{entity}_XFORM");
             run.entities.push(Entity {
                 name,
                 entity,
                 kind: "Part".into(),
-                id: u64::from(id),
+                id: u64::from(id.number),
                 components: Vec::new(),
             });
         }
@@ -259,11 +242,10 @@ impl Columns {
                 format!("/{}**2", u.time),
             ][level]
                 .clone();
-            for (k, &(point_mass, id, _)) in all.iter().enumerate() {
+            for (k, &(id, _)) in all.iter().enumerate() {
                 for (c, component) in names.iter().enumerate() {
                     let unit = format!("{}{rate}", if c < 3 { &u.length } else { &u.angle });
                     let what = What::Part {
-                        point_mass,
                         id,
                         quantity: 6 * level + c,
                     };
@@ -281,31 +263,16 @@ impl Columns {
     /// Reactions of joints and actions of forces.
     fn elements(&mut self, model: &Model, run: &mut Run) {
         let u = run.units.clone();
-        let mut all: Vec<(&'static str, u32, String, &str)> = Vec::new();
-        all.extend(
-            model
-                .joints
-                .iter()
-                .map(|(&id, x)| ("JOINT", id, name_of(&x.place, "JOINT", id), "Joint")),
-        );
-        all.extend(model.primitives.iter().map(|(&id, x)| {
-            (
-                "JPRIM",
-                id,
-                name_of(&x.place, "JPRIM", id),
-                "Primitive_Joint",
-            )
-        }));
-        all.extend(model.sforces.iter().map(|(&id, x)| {
-            (
-                "SFORCE",
-                id,
-                name_of(&x.place, "SFORCE", id),
-                "Single_Component_Force",
-            )
-        }));
+        let shown_kinds = [
+            (ElementKind::Joint, "Joint"),
+            (ElementKind::Jprim, "Primitive_Joint"),
+            (ElementKind::Sforce, "Single_Component_Force"),
+        ];
         for (&id, joint) in &model.joints {
-            let entity = format!("{}_VARIABLES", name_of(&joint.place, "JOINT", id));
+            let entity = format!(
+                "{}_VARIABLES",
+                name_of(&joint.place, ElementKind::Joint.id(id))
+            );
             let mut components = Vec::new();
             for &(variable, gauge) in crate::physics::joint::variables(joint.kind) {
                 let unit = if gauge.is_angle() {
@@ -326,7 +293,14 @@ impl Columns {
                 shown(run, "Joint_Variables", entity, id, components);
             }
         }
-        for (keyword, id, entity, kind) in all {
+        let all = shown_kinds.into_iter().flat_map(|(kind, word)| {
+            let numbers = model.numbers(kind).into_iter();
+            numbers.filter_map(move |n| {
+                let id = kind.id(n);
+                Some((id, name_of(model.element(id)?.place(), id), word))
+            })
+        });
+        for (id, entity, kind) in all {
             let mut components = Vec::new();
             for (c, component) in ["FX", "FY", "FZ", "TX", "TY", "TZ"].iter().enumerate() {
                 let unit = if c < 3 {
@@ -334,21 +308,17 @@ impl Columns {
                 } else {
                     format!("{}-{}", u.force, u.length)
                 };
-                let what = What::Action {
-                    keyword,
-                    id,
-                    component: c,
-                };
+                let what = What::Action { id, component: c };
                 let column = self.push(run, format!("{entity}.{component}"), unit, what);
                 components.push(Component {
                     name: (*component).into(),
                     column,
                 });
             }
-            shown(run, kind, entity, id, components);
+            shown(run, kind, entity, id.number, components);
         }
         for (&id, variable) in &model.variables {
-            let entity = name_of(&variable.place, "VARIABLE", id);
+            let entity = name_of(&variable.place, ElementKind::Variable.id(id));
             let column = self.text(run, format!("{entity}.Q"), &format!("VARVAL({id})"), &u);
             let components = vec![Component {
                 name: "Q".into(),
@@ -371,7 +341,7 @@ impl Columns {
             let entity = request
                 .results_name
                 .clone()
-                .unwrap_or_else(|| name_of(&request.place, "REQUEST", id));
+                .unwrap_or_else(|| name_of(&request.place, ElementKind::Request.id(id)));
             let by_closure = matches!(request.kind, RequestKind::User(_));
             let mut columns = Vec::new();
             for component in components(id, &request.kind, computed) {
@@ -399,15 +369,8 @@ impl Columns {
     fn value<S: Scalar>(&self, what: &What, scene: &Scene, at: &Equations<'_, S>) -> S {
         match what {
             What::Text(k) => at.formula(scene.extra[*k]),
-            What::Part {
-                point_mass,
-                id,
-                quantity,
-            } => {
-                let part = scene
-                    .parts
-                    .iter()
-                    .position(|p| p.point_mass == *point_mass && p.id == *id);
+            What::Part { id, quantity } => {
+                let part = scene.parts.iter().position(|p| p.id == *id);
                 let Some(part) = part else {
                     return S::constant(f64::NAN);
                 };
@@ -438,11 +401,7 @@ impl Columns {
                 let found = all.position(|v| v.joint == *joint && v.name == *variable);
                 found.map_or_else(S::zero, |k| at.joint_variable(k))
             }
-            What::Action {
-                keyword,
-                id,
-                component,
-            } => match at.action_of(keyword, *id) {
+            What::Action { id, component } => match at.action_of(*id) {
                 Some(a) if *component < 3 => a.force.0[*component],
                 Some(a) => a.torque.0[component - 3],
                 None => S::zero(),
@@ -482,9 +441,7 @@ pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
 }
 
 /// The name given in the dataset, or `KEYWORD_id`.
-pub fn name_of(place: &crate::model::Place, keyword: &str, id: u32) -> String {
-    place
-        .name
-        .clone()
-        .unwrap_or_else(|| format!("{keyword}_{id}"))
+pub fn name_of(place: &Place, id: ElementId) -> String {
+    let name = place.name.clone();
+    name.unwrap_or_else(|| format!("{}_{}", id.kind, id.number))
 }

@@ -23,7 +23,7 @@ use crate::analysis::time::output::Output;
 use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
-use crate::model::Model;
+use crate::model::{ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
 use outcome::units;
@@ -61,8 +61,8 @@ pub struct Options {
     pub full: bool,
     /// run motions whose displacement or velocity jumps, piece by piece
     pub piecewise: bool,
-    /// keywords of statements that are left out where they are not solved
-    pub skip: std::collections::BTreeSet<String>,
+    /// kinds of elements that are left out where they are not solved
+    pub skip: std::collections::BTreeSet<ElementKind>,
     /// take what `USER(…)` would compute as zero
     pub zero_user: bool,
 }
@@ -159,8 +159,8 @@ impl Session {
             .map(external_inputs::Hook::as_name)
             .collect();
         let known = |id: u32, user: &crate::model::Formula| {
-            let element = format!("REQUEST/{id}");
-            names.iter().any(|n| n.stands_for(&element, user))
+            let element = ElementKind::Request.id(id);
+            names.iter().any(|n| n.stands_for(element, user))
         };
         let (run, options) = (&mut self.run, &self.options);
         self.columns = Columns::new(&self.model, run, &options.columns, options.full, &known);

@@ -188,7 +188,12 @@ impl Session {
             let equations = assembly
                 .redundant
                 .iter()
-                .map(|r| (rows[r.row].equation.clone(), rows[r.row].element.clone()))
+                .map(|r| {
+                    (
+                        rows[r.row].equation.clone(),
+                        rows[r.row].element.to_string(),
+                    )
+                })
                 .collect();
             self.run.log.push(Event::Redundant {
                 time: self.time(),

@@ -7,6 +7,7 @@ use crate::analysis::time::output::Output;
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::Diagnostic;
+use crate::model::ElementKind;
 use crate::results::{Event, Status};
 
 /// Output steps where a command gives neither STEPS nor DTOUT.
@@ -88,7 +89,7 @@ pub fn obey(
 ) -> Result<Status, Vec<Diagnostic>> {
     let mut status = Status::Completed;
     let changed = steps.iter().filter_map(|s| match &s.command {
-        Command::Change(record) if record.row.keyword() == "VARIABLE" => record.id,
+        Command::Change(record) if record.row.kind() == Some(ElementKind::Variable) => record.id,
         _ => None,
     });
     session.will_change(changed);

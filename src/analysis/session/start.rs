@@ -8,7 +8,7 @@ use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{external_inputs, samples};
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
-use crate::model::{Formula, Model, Orientation, Place};
+use crate::model::{ElementId, ElementKind, Formula, Model, Orientation, Place};
 use crate::physics::kinematic::kinematic;
 use crate::scene::Scene;
 use crate::scene::build::{self, unknown_names};
@@ -32,7 +32,7 @@ pub(super) struct Carried {
     /// it came to rest: velocities are those of the dataset again, not zero
     pub(super) at_rest: bool,
     /// place and motion of every part (point masses: true), for when the unknowns are others
-    pub(super) parts: Vec<(bool, u32, MarkerState<f64>)>,
+    pub(super) parts: Vec<(ElementId, MarkerState<f64>)>,
     /// turns that angles have counted
     pub(super) turns: Vec<f64>,
     /// what sensors evaluated last, by their numbers
@@ -371,9 +371,7 @@ impl Session {
     pub(super) fn keep(&mut self, system: &System, numbers: Vec<f64>) {
         let at = Equations::new(system.configured(), &numbers);
         let parts = system.scene.parts.iter().enumerate();
-        let parts = parts
-            .map(|(k, p)| (p.point_mass, p.id, at.part(k, false)))
-            .collect();
+        let parts = parts.map(|(k, p)| (p.id, at.part(k, false))).collect();
         self.carried = Some(Carried {
             t: numbers[Layout::TIME],
             turns: numbers[system.scene.layout.turns()].to_vec(),
@@ -424,14 +422,14 @@ pub(super) fn moved(model: &Model, carried: &Carried) -> Model {
         (joint.ic_translation, joint.ic_rotation) = ([None; 2], [None; 2]);
     }
     let ground = MarkerState::ground();
-    for (point_mass, id, state) in &carried.parts {
+    for (id, state) in &carried.parts {
         let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);
-        let parts = if *point_mass {
+        let parts = if id.kind == ElementKind::PointMass {
             &mut model.point_masses
         } else {
             &mut model.parts
         };
-        let Some(part) = parts.get_mut(id) else {
+        let Some(part) = parts.get_mut(&id.number) else {
             continue;
         };
         part.qg = state.p_GM.0;

@@ -9,10 +9,11 @@ use crate::analysis::system::external_inputs::Past;
 use crate::analysis::system::samples::Held;
 use crate::dataset;
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::model::Model;
+use crate::model::{ElementId, ElementKind, Model};
 use crate::space::{MarkerState, Mat3, Vec3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use std::str::FromStr;
 
 /// The mark of these files, and which form they have.
 const MARK: &str = "cognate_state";
@@ -69,11 +70,12 @@ impl Saved {
         }
         let mut model = reading.model;
         for pair in value["inactive"].as_array().into_iter().flatten() {
-            let id = pair[1].as_u64().and_then(|id| u32::try_from(id).ok());
-            let (Some(keyword), Some(id)) = (pair[0].as_str(), id) else {
+            let number = pair[1].as_u64().and_then(|id| u32::try_from(id).ok());
+            let kind = pair[0].as_str().and_then(|k| ElementKind::from_str(k).ok());
+            let (Some(kind), Some(number)) = (kind, number) else {
                 return Err(wrong("inactive elements"));
             };
-            model.inactive.insert((keyword.to_string(), id));
+            model.inactive.insert(kind.id(number));
         }
         let carried = match &value["state"] {
             Value::Null => None,
@@ -92,7 +94,7 @@ impl Session {
     /// Where the session stands, as a text.
     pub fn save(&self) -> String {
         let inactive: Vec<Value> = (self.model.inactive.iter())
-            .map(|(keyword, id)| json!([keyword, id]))
+            .map(|id| json!([id.kind.keyword(), id.number]))
             .collect();
         let value = json!({
             MARK: VERSION,
@@ -159,11 +161,11 @@ fn as_numbers(v: &Value) -> Option<Vec<f64>> {
 
 fn state(c: &Carried) -> Value {
     let parts: Vec<Value> = (c.parts.iter())
-        .map(|(point_mass, id, s)| {
+        .map(|(id, s)| {
             let axes: Vec<f64> = s.R_GM.0.iter().flatten().copied().collect();
             let vectors = [s.p_GM, s.w_GM, s.v_GM, s.alpha_GM, s.a_GM];
             let vectors: Vec<f64> = vectors.iter().flat_map(|v| v.0).collect();
-            json!({ "point_mass": point_mass, "id": id, "axes": numbers(&axes), "vectors": numbers(&vectors) })
+            json!({ "point_mass": id.kind == ElementKind::PointMass, "id": id.number, "axes": numbers(&axes), "vectors": numbers(&vectors) })
         })
         .collect();
     let sensors: Map<String, Value> = (c.sensors.iter())
@@ -243,7 +245,7 @@ fn carried(v: &Value) -> Option<Carried> {
     })
 }
 
-fn part(v: &Value) -> Option<(bool, u32, MarkerState<f64>)> {
+fn part(v: &Value) -> Option<(ElementId, MarkerState<f64>)> {
     let axes: [f64; 9] = as_numbers(&v["axes"])?.try_into().ok()?;
     let vectors: [f64; 15] = as_numbers(&v["vectors"])?.try_into().ok()?;
     let vector = |k: usize| Vec3([vectors[3 * k], vectors[3 * k + 1], vectors[3 * k + 2]]);
@@ -256,6 +258,10 @@ fn part(v: &Value) -> Option<(bool, u32, MarkerState<f64>)> {
         alpha_GM: vector(3),
         a_GM: vector(4),
     };
-    let id = u32::try_from(v["id"].as_u64()?).ok()?;
-    Some((v["point_mass"].as_bool()?, id, state))
+    let kind = if v["point_mass"].as_bool()? {
+        ElementKind::PointMass
+    } else {
+        ElementKind::Part
+    };
+    Some((kind.id(u32::try_from(v["id"].as_u64()?).ok()?), state))
 }

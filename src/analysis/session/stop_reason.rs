@@ -165,7 +165,7 @@ impl StopReason {
     pub(super) fn worst(&self) -> Vec<String> {
         let name = match self {
             StopReason::Interrupted | StopReason::Sensor { .. } => "",
-            StopReason::Contact { broken, .. } => &broken.element,
+            StopReason::Contact { broken, .. } => return vec![broken.element.to_string()],
             StopReason::Function { lost, .. } => &lost.function,
             StopReason::Locked { lock, .. } => &lock.row,
             StopReason::Method { worst, .. } => worst,

@@ -631,12 +631,9 @@ fn part_velocities(
     let mut values = Vec::new();
     let mut wanted = Vec::new();
     for part in &scene.parts {
-        let data = if part.point_mass {
-            model.point_masses.get(&part.id)
-        } else {
-            model.parts.get(&part.id)
+        let Some(data) = model.body(part.id) else {
+            continue;
         };
-        let Some(data) = data else { continue };
         let frame = |m: Option<u32>| {
             m.and_then(|m| scene.marker_of.get(&m))
                 .map(|&m| at.marker(m))

@@ -8,6 +8,7 @@
 //! force points: the model has to.
 
 use crate::diagnostic::Diagnostic;
+use crate::model::ElementKind;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::forces::{ForceElement, ForceLaw};
@@ -30,10 +31,10 @@ pub fn lines(scene: Configured<'_>, numbers: &[f64]) -> Result<Vec<String>, Vec<
         if between.norm() > COINCIDENT * scene.length || !magnitude.is_finite() {
             continue;
         }
-        let name = format!("{}/{}", force.keyword, force.id);
+        let name = force.id;
         let id = |place: usize| {
             let found = scene.marker_of.iter().find(|(_, m)| **m == place);
-            found.map_or_else(String::new, |(id, _)| format!("MARKER/{id}"))
+            found.map_or_else(String::new, |(id, _)| ElementKind::Marker.id(*id).into())
         };
         let what = format!(
             "its markers {} and {} coincide: the line between them has no direction",

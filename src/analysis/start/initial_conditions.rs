@@ -15,12 +15,11 @@ use crate::analysis::start::assemble::{self, Mover, least_change, rows_at};
 use crate::analysis::system::slopes::{Direction, along};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{JointKind, Model};
+use crate::model::{ElementKind, JointKind, Model};
 use crate::physics::cam::Contact;
 use crate::physics::coupler::Gauge;
 use crate::physics::kinematic::kinematic;
 use crate::scalar::Scalar;
-use crate::scene::build::is_active;
 use crate::scene::cams::{self, Start};
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
@@ -60,10 +59,7 @@ pub struct Wish {
 /// The joints of a model that have an initial displacement or rate, with what it is of: (number, gauge, displacement, rate).
 pub(in crate::analysis) fn of_joints(model: &Model) -> Vec<(u32, Gauge, [Option<f64>; 2])> {
     let mut found = Vec::new();
-    for (&id, joint) in &model.joints {
-        if !is_active(model, "JOINT", id) {
-            continue;
-        }
+    for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
         let slides = matches!(
             joint.kind,
             JointKind::Translational | JointKind::Cylindrical
@@ -94,7 +90,7 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
         });
         if let ([Some(i), Some(j)], Some(value), false) = (markers, given[0], driven) {
             wishes.push(Wish {
-                name: format!("JOINT/{id} IC"),
+                name: format!("{} IC", ElementKind::Joint.id(id)),
                 wanted: Wanted::Joint { gauge, i, j },
                 value,
                 angle: gauge.is_angle(),
@@ -102,15 +98,10 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
         }
     }
     for (k, part) in scene.parts.iter().enumerate() {
-        let parts = if part.point_mass {
-            &model.point_masses
-        } else {
-            &model.parts
-        };
-        let Some(exact) = parts.get(&part.id).map(|p| p.exact) else {
+        let Some(exact) = model.body(part.id).map(|p| p.exact) else {
             continue;
         };
-        let name = crate::scene::compile::part_name(part.point_mass, part.id);
+        let name = part.id;
         let mut wish = |component: usize, what: &str, wanted: Wanted, value: f64| {
             wishes.push(Wish {
                 name: format!("{name} EXACT {what}"),
@@ -348,7 +339,7 @@ pub fn unmet(
                 let off = crate::analysis::start::quantity::length(off, &scene.length_unit);
                 told.push(format!(
                     "{} {} cannot be met: the constraints put the contact {off} away from the point of CURVE/{} next to it",
-                    cam.name(),
+                    cam.id,
                     names[k],
                     cam.curves[k]
                 ));

@@ -2,11 +2,10 @@
 
 use crate::analysis::start::direction::Axis;
 use crate::analysis::start::quantity::{length, short};
-use crate::model::{JointKind, Model, PrimitiveKind};
+use crate::model::{ElementId, ElementKind, JointKind, Model, PrimitiveKind};
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
 use crate::scene::Scene;
-use crate::scene::compile::part_name;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::space::Vec3;
@@ -17,18 +16,12 @@ const WORTH_TELLING: f64 = 1e-5;
 const TURNED: f64 = 2.0;
 
 /// All ties of a model that are switched on: name, kind, I and J.
-fn ties(model: &Model) -> Vec<(String, Tie, u32, u32)> {
-    let on = |keyword: &str, id: u32| !model.inactive.contains(&(keyword.to_string(), id));
-    let joints = model
-        .joints
-        .iter()
-        .filter(|(id, _)| on("JOINT", **id))
-        .map(|(id, j)| (format!("JOINT/{id}"), Tie::Joint(j.kind), j.i, j.j));
-    let primitives = model
-        .primitives
-        .iter()
-        .filter(|(id, _)| on("JPRIM", **id))
-        .map(|(id, p)| (format!("JPRIM/{id}"), Tie::Primitive(p.kind), p.i, p.j));
+fn ties(model: &Model) -> Vec<(ElementId, Tie, u32, u32)> {
+    use ElementKind::{Joint, Jprim};
+    let joints = model.active(Joint, &model.joints);
+    let joints = joints.map(|(id, j)| (Joint.id(id), Tie::Joint(j.kind), j.i, j.j));
+    let primitives = model.active(Jprim, &model.primitives);
+    let primitives = primitives.map(|(id, p)| (Jprim.id(id), Tie::Primitive(p.kind), p.i, p.j));
     joints.chain(primitives).collect()
 }
 
@@ -152,7 +145,12 @@ fn is_directed(tie: Tie) -> bool {
 pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<String> {
     let at = Equations::new(scene, numbers);
     let mut told = Vec::new();
-    for (k, part) in scene.parts.iter().enumerate().filter(|p| !p.1.point_mass) {
+    for (k, part) in scene
+        .parts
+        .iter()
+        .enumerate()
+        .filter(|p| !p.1.is_point_mass())
+    {
         let now = at.part(k, false).R_GM;
         let between = part.initial.rotation.transpose() * now;
         let trace: f64 = (0..3).map(|k| between.0[k][k]).sum();
@@ -160,7 +158,7 @@ pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<Stri
         if angle > TURNED {
             told.push(format!(
                 "{} is assembled on another branch: turned by {} deg against the dataset",
-                part_name(false, part.id),
+                part.id,
                 short(angle.to_degrees())
             ));
         }

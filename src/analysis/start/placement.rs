@@ -10,7 +10,7 @@
 //! that turns about another axis all change. Gauss–Newton: `Δ = Δ₀ + N z`, with `Δ₀` closing the rows, N what they leave free, and z least squares.
 
 use crate::analysis::start::assemble::{self, Mover};
-use crate::model::{JointKind, Model};
+use crate::model::{ElementKind, JointKind, Model};
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
 use crate::scalar::{Jet, Scalar};
@@ -136,8 +136,10 @@ impl Asked {
         if !joints {
             return asked;
         }
-        for element in scene.constraints.iter().filter(|c| c.keyword == "JOINT") {
-            let Some(joint) = model.joints.get(&element.id) else {
+        let joints = scene.constraints.iter();
+        for element in joints.filter(|c| c.id.kind == ElementKind::Joint) {
+            let id = element.id.number;
+            let Some(joint) = model.joints.get(&id) else {
                 continue;
             };
             let has = match joint.kind {
@@ -154,7 +156,7 @@ impl Asked {
                 let own = scene
                     .coordinates
                     .iter()
-                    .find(|c| c.joint == Some(element.id) && c.angular == turn);
+                    .find(|c| c.joint == Some(id) && c.angular == turn);
                 match (own.map(|c| c.source), element.markers) {
                     (Some(Source::Free { v, .. }), _) => asked.coordinates.push((v, value)),
                     (None, Some(markers)) => {
@@ -190,12 +192,7 @@ fn wishes(
     let mut residual = Vec::new();
     let mut weight = Vec::new();
     for (part, now) in scene.parts.iter().zip(&still) {
-        let data = if part.point_mass {
-            model.point_masses.get(&part.id)
-        } else {
-            model.parts.get(&part.id)
-        };
-        let exact = data.map_or([false; 6], |d| d.exact);
+        let exact = model.body(part.id).map_or([false; 6], |d| d.exact);
         let firm = |exact: bool| if exact { FIRM } else { 1.0 };
         let off = now.p_GM - part.initial.position;
         for (exact, off) in exact.into_iter().zip(off.0) {
@@ -204,7 +201,7 @@ fn wishes(
         }
         let turned = log(&(now.R_GM * part.initial.rotation.transpose()));
         for k in 0..3 {
-            weight.push(if part.point_mass {
+            weight.push(if part.is_point_mass() {
                 0.0
             } else {
                 firm(exact[3] || exact[4] || exact[5])

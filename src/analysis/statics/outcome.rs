@@ -156,9 +156,7 @@ impl Settler<'_> {
         let way = axis.times(f64::signum(force));
         let part = (scene.parts.iter())
             .find(|part| part.link.is_some_and(|l| carries(scene, f.link, l)))
-            .map_or_else(String::new, |part| {
-                crate::scene::compile::part_name(part.point_mass, part.id)
-            });
+            .map_or_else(String::new, |part| part.id.to_string());
         NoEquilibrium::Unbalanced(Imbalance::Load {
             torque: f.turn,
             size: force.abs(),

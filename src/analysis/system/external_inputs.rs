@@ -13,6 +13,7 @@
 use crate::analysis::system::System;
 use crate::analysis::system::algebraic_loops::WIDTH;
 use crate::expr::program::{Program, Work};
+use crate::model::ElementId;
 use crate::numeric::{Failure, Method, Step};
 use crate::physics::contact::Question;
 use crate::physics::contact::curves::Curves;
@@ -31,8 +32,8 @@ use std::sync::Arc;
 pub struct Call<'a> {
     /// TIME
     pub time: f64,
-    /// for which element: "SFORCE/3"
-    pub element: &'a str,
+    /// for which element
+    pub element: ElementId,
     /// the numbers of `USER(…)`
     pub constants: &'a [f64],
     /// values of the expressions that the closure was registered with; for a GSE followed by its states, inputs and discrete states
@@ -166,7 +167,7 @@ impl fmt::Debug for Callable {
 }
 
 /// What computes the numbers of a hook.
-fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<Unsupported>> {
+fn law(kind: &HookKind, element: ElementId, hooks: &[Hook]) -> Result<Callable, Vec<Unsupported>> {
     match kind {
         HookKind::User { closure, .. } => Ok(Callable(hooks[*closure].law.clone())),
         HookKind::Touches { question, .. } => match question {
@@ -201,7 +202,7 @@ fn law(kind: &HookKind, element: &str, hooks: &[Hook]) -> Result<Callable, Vec<U
 #[derive(Debug)]
 struct Bound {
     law: Callable,
-    element: String,
+    element: ElementId,
     constants: Vec<f64>,
     places: Range<usize>,
     inputs: Program,
@@ -232,7 +233,7 @@ impl Bound {
         self.results.fill(0.0);
         let call = Call {
             time,
-            element: &self.element,
+            element: self.element,
             constants: &self.constants,
             values: &self.values,
         };
@@ -313,7 +314,7 @@ impl ExternalInputs {
                     })?;
                     let places = l.external_at(hook.place)..l.external_at(hook.place + hook.n);
                     if places.clone().any(|place| inputs.reads(place)) {
-                        return Err(vec![Unsupported::new(&hook.element, Lack::OwnResult)]);
+                        return Err(vec![Unsupported::new(hook.element, Lack::OwnResult)]);
                     }
                     let reads = match &hook.kind {
                         HookKind::User { .. } => vec![true; inputs.n_outputs()],
@@ -322,8 +323,8 @@ impl ExternalInputs {
                         }
                     };
                     this.hooks.push(Bound {
-                        law: law(&hook.kind, &hook.element, hooks)?,
-                        element: hook.element.clone(),
+                        law: law(&hook.kind, hook.element, hooks)?,
+                        element: hook.element,
                         constants: hook.constants.clone(),
                         values: vec![0.0; inputs.n_outputs()],
                         results: vec![0.0; hook.n],

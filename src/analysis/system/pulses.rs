@@ -13,6 +13,7 @@ use crate::analysis::system::time_events::TimeEvents;
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
+use crate::model::ElementKind;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
@@ -102,10 +103,9 @@ impl Pulses {
 
 /// Whether a formula acts on what moves, and reads time alone.
 fn acts(scene: &Scene, f: usize) -> bool {
-    const ASK: [&str; 2] = ["REQUEST/", "SENSOR/"];
-    let name = &scene.formulas[f].name;
-    let element = name.split(' ').next().unwrap_or_default();
-    let acts = element.contains('/') && !ASK.iter().any(|ask| element.starts_with(ask));
+    let asks = [ElementKind::Request, ElementKind::Sensor];
+    let element = scene.formulas[f].element;
+    let acts = element.is_some_and(|e| !asks.contains(&e.kind));
     let mut open = Vec::new();
     acts && scene.formulas[f].program.inputs().contains(&Input::Time) && timed(scene, f, &mut open)
 }

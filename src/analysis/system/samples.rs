@@ -12,6 +12,7 @@ use crate::analysis::system::System;
 use crate::analysis::system::external_inputs::Law;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
+use crate::model::ElementId;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
@@ -38,8 +39,7 @@ pub struct Held {
 
 #[derive(Debug)]
 struct Sampled {
-    id: u32,
-    name: String,
+    id: ElementId,
     /// places of the states, and of what computes them, in the row of numbers
     states: Range<usize>,
     results: Range<usize>,
@@ -70,7 +70,6 @@ impl Samples {
         for s in &scene.samplers {
             all.push(Sampled {
                 id: s.id,
-                name: s.name.clone(),
                 states: l.external_at(s.states)..l.external_at(s.states + s.n),
                 results: l.external_at(s.results)..l.external_at(s.results + s.n),
                 period: record(scene, |at| vec![at.formula(s.period)])?,
@@ -104,7 +103,7 @@ impl Samples {
                 next: s.next.clone(),
                 due: s.due,
             };
-            (s.id, held)
+            (s.id.number, held)
         };
         self.all.iter().map(one).collect()
     }
@@ -116,7 +115,7 @@ pub fn before(scene: &Scene, supplied: ExternalInput, held: &BTreeMap<u32, Held>
         return None;
     };
     let s = scene.samplers.get(sampler)?;
-    let kept = held.get(&s.id).filter(|h| h.states.len() == s.n);
+    let kept = held.get(&s.id.number).filter(|h| h.states.len() == s.n);
     kept.map_or(s.initial.get(k), |h| h.states.get(k)).copied()
 }
 
@@ -136,9 +135,11 @@ impl System {
             if !(length > 0.0 && length.is_finite()) {
                 let what =
                     format!("its SAMPLE_PERIOD is {length}, which is no time between samples");
-                return Err(Diagnostic::error("unfit_value", what).element(s.name.clone()));
+                return Err(Diagnostic::error("unfit_value", what).element(s.id));
             }
-            let kept = held.get(&s.id).filter(|h| h.next.len() == s.next.len());
+            let kept = held
+                .get(&s.id.number)
+                .filter(|h| h.next.len() == s.next.len());
             let begun = kept.cloned().unwrap_or_else(|| Held {
                 states: self.numbers[s.states.clone()].to_vec(),
                 next: self.numbers[s.results.clone()].to_vec(),

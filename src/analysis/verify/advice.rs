@@ -107,7 +107,7 @@ pub(super) fn advice(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly
                 },
             };
             Advice {
-                element: format!("{}/{}", element.keyword, element.id),
+                element: element.id.to_string(),
                 change,
             }
         })

@@ -7,7 +7,6 @@ use crate::analysis::start::direction::Axis;
 use crate::analysis::start::quantity::point;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
-use crate::scene::compile::part_name;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
@@ -94,7 +93,7 @@ pub(super) fn motions(
             let parts: Vec<Moving> = parts
                 .into_iter()
                 .map(|(k, p, state, angular, linear, _)| Moving {
-                    part: part_name(scene.parts[k].point_mass, scene.parts[k].id),
+                    part: scene.parts[k].id.to_string(),
                     words: how(&scene, p, &state, angular, linear),
                     angular: angular.0,
                     linear: linear.0,
@@ -129,12 +128,8 @@ pub(super) fn motions(
 /// The centre of mass of a part, else its origin, in ground.
 fn centre(scene: &Scene, model: &Model, part: usize, state: &MarkerState<f64>) -> Vec3<f64> {
     let p = &scene.parts[part];
-    let data = if p.point_mass {
-        model.point_masses.get(&p.id)
-    } else {
-        model.parts.get(&p.id)
-    };
-    let cm = data
+    let cm = model
+        .body(p.id)
         .and_then(|d| d.cm)
         .and_then(|m| scene.marker_of.get(&m))
         .map_or(Vec3::zero(), |&m| match scene.markers[m].part {

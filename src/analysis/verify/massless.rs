@@ -28,10 +28,10 @@ const SINGULAR: f64 = 1e-13;
 
 /// Whether some part lacks mass or a principal inertia: otherwise every motion is resisted.
 pub(crate) fn possible(scene: &Scene, model: &Model) -> bool {
-    scene.parts.iter().any(|p| match p.point_mass {
-        true => model.point_masses.get(&p.id).is_none_or(|m| m.mass <= 0.0),
-        false => (model.parts.get(&p.id))
-            .is_none_or(|m| m.mass <= 0.0 || m.ip[..3].iter().any(|&i| i <= 0.0)),
+    scene.parts.iter().any(|p| {
+        let turns = !p.is_point_mass();
+        let body = model.body(p.id);
+        body.is_none_or(|m| m.mass <= 0.0 || turns && m.ip[..3].iter().any(|&i| i <= 0.0))
     })
 }
 

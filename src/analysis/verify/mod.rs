@@ -22,13 +22,12 @@ use crate::analysis::start::direction::Direction;
 use crate::analysis::start::nearby::Place;
 use crate::analysis::start::{initial_conditions, misalignment, placement};
 use crate::diagnostic::Diagnostic;
-use crate::model::{Formula, Level, Model};
-use crate::physics::joint::Tie;
+use crate::model::{ElementId, ElementKind, Family, Formula, Level, Model};
 use crate::scene::Scene;
 use crate::scene::build::Options;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
-use crate::scene::left_out::{Unknown, unknown_constraints};
+use crate::scene::left_out::{Unknown, equations, unknown_constraints};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Stress in an element, relative to the largest in the state, below which it takes no part.
@@ -128,24 +127,16 @@ impl Verification {
 /// The model without what has no influence on its freedoms.
 fn skeleton(model: &Model) -> Model {
     let mut model = model.clone();
-    model.sforces.clear();
-    model.vforces.clear();
-    model.vtorques.clear();
-    model.gforces.clear();
-    model.spring_dampers.clear();
-    model.bushings.clear();
-    model.fields.clear();
-    model.beams.clear();
-    model.nodal_forces.clear();
-    model.contacts.clear();
-    model.frictions.clear();
-    model.differentials.clear();
-    model.linear_systems.clear();
-    model.general_systems.clear();
-    model.transfer_functions.clear();
-    model.sensors.clear();
-    model.requests.clear();
-    model.many_requests.clear();
+    let idle = |kind: &ElementKind| match kind.family() {
+        // what motions and constraints read
+        Family::Body | Family::Constraint | Family::Data => false,
+        Family::System => *kind != ElementKind::Variable,
+        Family::Force | Family::Output => true,
+    };
+    let solved = ElementKind::ALL.iter().copied().filter(|k| k.is_solved());
+    for kind in solved.filter(idle) {
+        model.clear(kind);
+    }
     model
 }
 
@@ -197,7 +188,6 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
 fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<String>) {
     for unknown in unknown_constraints(model) {
         let Unknown {
-            keyword,
             id,
             equations: n,
             why,
@@ -205,10 +195,21 @@ fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<String>) {
         } = unknown;
         let plural = if n == 1 { "" } else { "s" };
         warnings.push(format!(
-            "{keyword}/{id} is counted with {n} equation{plural}, but what it holds is unknown: {why}; \
+            "{id} is counted with {n} equation{plural}, but what it holds is unknown: {why}; \
              the freedom from the rank is that without it, and up to {n} too large"
         ));
-        model.inactive.insert((keyword.into(), id));
+        model.inactive.insert(id);
+    }
+}
+
+/// The statement of a constraint, with its type where it has several.
+fn statement(model: &Model, id: ElementId) -> String {
+    let joint = model.joints.get(&id.number);
+    let primitive = model.primitives.get(&id.number);
+    match (id.kind, joint, primitive) {
+        (ElementKind::Joint, Some(joint), _) => format!("{} {}", id.kind, joint.kind.keyword()),
+        (ElementKind::Jprim, _, Some(p)) => format!("{} {}", id.kind, words::primitive(p.kind)),
+        _ => id.kind.to_string(),
     }
 }
 
@@ -219,28 +220,14 @@ fn counted(model: &Model) -> Vec<(String, usize, usize)> {
         let entry = found.entry(what).or_default();
         *entry = (entry.0 + 1, entry.1 + equations);
     };
-    let on = |keyword: &str, id: u32| !model.inactive.contains(&(keyword.to_string(), id));
-    for (_, joint) in model.joints.iter().filter(|(id, _)| on("JOINT", **id)) {
-        add(
-            format!("JOINT {}", format!("{:?}", joint.kind).to_uppercase()),
-            Tie::Joint(joint.kind).removes(),
-        );
-    }
-    for (_, p) in model.primitives.iter().filter(|(id, _)| on("JPRIM", **id)) {
-        let kind = words::primitive(p.kind);
-        add(format!("JPRIM {kind}"), Tie::Primitive(p.kind).removes());
-    }
-    macro_rules! kinds {
-        ($($keyword:literal $field:ident $equations:literal),* $(,)?) => { $(
-            for _ in model.$field.keys().filter(|id| on($keyword, **id)) {
-                add($keyword.into(), $equations);
+    for kind in ElementKind::of(Family::Constraint) {
+        let all = model.numbers(kind).into_iter().map(|n| kind.id(n));
+        for id in all.filter(|&id| model.is_active(id)) {
+            if let Some(equations) = equations(model, id) {
+                add(statement(model, id), equations);
             }
-        )* };
+        }
     }
-    kinds!(
-        "MOTION" motions 1, "COUPLER" couplers 1, "GEAR" gears 1, "GCON" general_constraints 1,
-        "PTCV" points_on_curves 2, "CVCV" curves_on_curves 2,
-    );
     found.into_iter().map(|(k, (n, e))| (k, n, e)).collect()
 }
 
@@ -254,7 +241,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     stand_still(&mut model, &mut warnings);
     let options = Options {
         mode: 4,
-        skip: outline::FORCES.map(str::to_string).into_iter().collect(),
+        skip: outline::pushing(),
         ..Options::default()
     };
     let counted = counted(&model);
@@ -265,14 +252,13 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         let element = d.element.clone().unwrap_or_default();
         warnings.push(format!("{element} {}", d.message));
     }
-    let moving = |parts: &BTreeMap<u32, crate::model::Part>, keyword: &str| {
-        let on = |id: &u32| !model.inactive.contains(&(keyword.to_string(), *id));
-        parts.iter().filter(|(id, p)| !p.ground && on(id)).count()
+    let moving = |kind: ElementKind| {
+        let bodies = model.bodies().filter(|(id, _)| id.kind == kind);
+        let moving = bodies.filter(|(id, part)| !part.ground && model.is_active(*id));
+        moving.count()
     };
-    let (parts, point_masses) = (
-        moving(&model.parts, "PART"),
-        moving(&model.point_masses, "POINT_MASS"),
-    );
+    let parts = moving(ElementKind::Part);
+    let point_masses = moving(ElementKind::PointMass);
     let equations: usize = counted.iter().map(|c| c.2).sum();
     let mut found = Verification {
         parts,
@@ -394,20 +380,20 @@ fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &
                 open[c][k + 3] |= e.dot(action.torque).abs() > NONE * largest * scene.length;
             }
             if own != Some(c) {
-                fixed_by.push(format!("{}/{}", element.keyword, element.id));
+                fixed_by.push(element.id.to_string());
             }
         }
         let row = &scene.rows[d.row];
         found.dependent.push(Dependent {
             row: d.name.clone(),
-            element: row.element.clone(),
+            element: row.element.to_string(),
             direction: Direction::of_row(&scene, &at, d.row),
             fixed_by,
             combination: (d.combination.iter())
                 .map(|&(r, f)| (row_name(&scene.rows[r]), f))
                 .collect(),
             only_here: here_only.contains(&d.row),
-            drives: own.is_some_and(|c| scene.constraints[c].keyword == "MOTION"),
+            drives: own.is_some_and(|c| scene.constraints[c].id.kind == ElementKind::Motion),
         });
     }
     const COMPONENTS: [&str; 6] = ["FX", "FY", "FZ", "TX", "TY", "TZ"];
@@ -415,7 +401,7 @@ fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &
         let components: Vec<&str> = (0..6).filter(|&k| open[k]).map(|k| COMPONENTS[k]).collect();
         if !components.is_empty() {
             found.undetermined.push(Undetermined {
-                element: format!("{}/{}", element.keyword, element.id),
+                element: element.id.to_string(),
                 components,
                 axes: words::axes(&at, element.markers.map(|m| m.1)).0,
             });

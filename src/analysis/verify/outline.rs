@@ -4,12 +4,12 @@ use crate::analysis::start::{assemble, initial_conditions, misalignment, placeme
 use crate::analysis::system::System;
 use crate::analysis::verify::start;
 use crate::diagnostic::Diagnostic;
-use crate::model::Model;
+use crate::model::{ElementKind, Family, Model};
 use crate::scene::build::{Options, unknown_names};
-use crate::scene::compile::part_name;
 use crate::scene::configuration::Configuration;
 use crate::scene::equations::row_name;
 use crate::scene::{Scene, Source};
+use std::collections::BTreeSet;
 
 /// How a part is carried.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,24 +49,11 @@ pub struct Outline {
     pub warnings: Vec<String>,
 }
 
-/// Statements of forces and systems that may be read without being solved.
-pub(in crate::analysis) const FORCES: [&str; 15] = [
-    "FIELD",
-    "BEAM",
-    "NFORCE",
-    "CONTACT",
-    "FRICTION",
-    "LSE",
-    "GSE",
-    "TFSISO",
-    "SENSOR",
-    "FLEX_BODY",
-    "FE_PART",
-    "FE_LOAD",
-    "MFORCE",
-    "TIRE",
-    "WHEEL",
-];
+/// Returns the kinds of elements that a model may hold without being solved, where only its freedoms are asked for.
+pub(in crate::analysis) fn pushing() -> BTreeSet<ElementKind> {
+    let families = [Family::Body, Family::Force, Family::System];
+    families.into_iter().flat_map(ElementKind::of).collect()
+}
 
 /// Compiles and assembles a model, and tells what came out.
 ///
@@ -75,7 +62,7 @@ pub(in crate::analysis) const FORCES: [&str; 15] = [
 pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     let options = Options {
         mode: 4,
-        skip: FORCES.map(str::to_string).into_iter().collect(),
+        skip: pushing(),
         ..Options::default()
     };
     let scene = Scene::compile(model, &options)?;
@@ -88,8 +75,8 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         let element = d.element.clone().unwrap_or_default();
         out.left_out.push(format!("{element} {}", d.message));
     }
-    for (keyword, id) in &model.inactive {
-        out.left_out.push(format!("{keyword}/{id} is switched off"));
+    for id in &model.inactive {
+        out.left_out.push(format!("{id} is switched off"));
     }
     let mut q = scene.initial_q.clone();
     let x = start(&scene, model, &mut q);
@@ -149,7 +136,7 @@ fn forest(scene: &Scene, out: &mut Outline) {
     order.sort_by_key(|&k| scene.parts[k].link);
     for k in order {
         let part = &scene.parts[k];
-        let name = part_name(part.point_mass, part.id);
+        let name = part.id.to_string();
         let carrying = scene
             .constraints
             .iter()
@@ -168,11 +155,9 @@ fn forest(scene: &Scene, out: &mut Outline) {
             coordinates.splice(0..0, own.map(|c| c.name.clone()));
             at = scene.links[l].parent;
         }
-        let carrier = carrier.map_or_else(
-            || "ground".to_string(),
-            |p| part_name(scene.parts[p].point_mass, scene.parts[p].id),
-        );
-        let by = carrying.map(|c| format!("{}/{}", c.keyword, c.id));
+        let carrier =
+            carrier.map_or_else(|| "ground".to_string(), |p| scene.parts[p].id.to_string());
+        let by = carrying.map(|c| c.id.to_string());
         if let (Some(by), true) = (&by, coordinates.is_empty()) {
             out.welded.push(format!("{name} to {carrier} by {by}"));
         }

@@ -1,6 +1,5 @@
 //! Parts, point masses and markers: one ground, mass with a place, inertia that a body can have, axes, owners of floating markers.
 
-use super::constraints::{constraint_pairs, joint_word, spring_pairs};
 use super::*;
 use nalgebra::Matrix3;
 
@@ -14,30 +13,37 @@ pub(super) fn one_ground(model: &Model, out: &mut Out) {
     }
     for &(&id, part) in grounds.iter().skip(1) {
         let message = format!("a second ground; PART/{} is GROUND already", grounds[0].0);
-        error(out, "several_grounds", ("PART", id, &part.place), message);
+        error(
+            out,
+            "several_grounds",
+            (ElementKind::Part.id(id), &part.place),
+            message,
+        );
     }
     for &(&id, part) in &grounds {
         if part.mass != 0.0 {
             let message = "ground has a mass, which means nothing".to_owned();
-            warn(out, "mass_of_ground", ("PART", id, &part.place), message);
+            warn(
+                out,
+                "mass_of_ground",
+                (ElementKind::Part.id(id), &part.place),
+                message,
+            );
         }
     }
 }
 
-/// Parts and point masses with their statement.
-fn bodies(model: &Model) -> impl Iterator<Item = (&'static str, u32, &Part)> {
-    let parts = model.parts.iter().map(|(&id, p)| ("PART", id, p));
-    parts.chain(
-        model
-            .point_masses
-            .iter()
-            .map(|(&id, p)| ("POINT_MASS", id, p)),
-    )
+/// Parts and point masses.
+fn bodies(model: &Model) -> impl Iterator<Item = (ElementId, &Part)> {
+    let parts = model.parts.iter();
+    let points = model.point_masses.iter();
+    let parts = parts.map(|(&id, p)| (ElementKind::Part.id(id), p));
+    parts.chain(points.map(|(&id, p)| (ElementKind::PointMass.id(id), p)))
 }
 
 pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
-    for (keyword, id, part) in bodies(model) {
-        let who = (keyword, id, &part.place);
+    for (id, part) in bodies(model) {
+        let who = (id, &part.place);
         if part.mass < 0.0 {
             error(
                 out,
@@ -67,8 +73,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
             let Some(m) = marker.and_then(|m| model.markers.get(&m).map(|_| m)) else {
                 continue;
             };
-            let own = (keyword == "POINT_MASS", id);
-            if model.body_of(m).is_some_and(|b| b != own) {
+            if model.body_of(m).is_some_and(|body| body != id) {
                 error(
                     out,
                     "marker_of_another_part",
@@ -91,8 +96,8 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
 /// The inertia tensor is that of some distribution of mass: positive, and no moment larger than the two others together.
 pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
     const TOLERANCE: f64 = 1e-3;
-    for (keyword, id, part) in bodies(model) {
-        let who = (keyword, id, &part.place);
+    for (id, part) in bodies(model) {
+        let who = (id, &part.place);
         let scale = part.ip.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         if scale == 0.0 || !scale.is_finite() {
             continue;
@@ -125,10 +130,7 @@ pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
 }
 
 pub(super) fn axes_have_directions(model: &Model, out: &mut Out) {
-    let mut check = |who: (&str, u32, &Place),
-                     origin: [f64; 3],
-                     orientation: &Orientation,
-                     names: [&str; 3]| {
+    let mut check = |who: Who, origin: [f64; 3], orientation: &Orientation, names: [&str; 3]| {
         let Orientation::Points { z, x, .. } = orientation else {
             return;
         };
@@ -143,17 +145,12 @@ pub(super) fn axes_have_directions(model: &Model, out: &mut Out) {
             error(out, "no_direction", who, message);
         }
     };
-    for (keyword, id, p) in bodies(model) {
-        check(
-            (keyword, id, &p.place),
-            p.qg,
-            &p.orientation,
-            ["ZG", "XG", "QG"],
-        );
+    for (id, p) in bodies(model) {
+        check((id, &p.place), p.qg, &p.orientation, ["ZG", "XG", "QG"]);
     }
     for (&id, m) in &model.markers {
         check(
-            ("MARKER", id, &m.place),
+            (ElementKind::Marker.id(id), &m.place),
             m.qp,
             &m.orientation,
             ["ZP", "XP", "QP"],
@@ -164,55 +161,66 @@ pub(super) fn axes_have_directions(model: &Model, out: &mut Out) {
 /// A floating marker gets its frame from the one element that owns it.
 pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
     const OWNING: &[&str] = &["JFLOAT", "IFLOAT"];
-    let mut owners: BTreeMap<u32, String> = BTreeMap::new();
+    let mut owners: BTreeMap<u32, ElementId> = BTreeMap::new();
     for r in model
         .references()
         .iter()
         .filter(|r| OWNING.contains(&r.argument))
     {
-        let Some(marker) = model.markers.get(&r.number) else {
+        let Some(marker) = model.markers.get(&r.target.number) else {
             continue;
         };
-        let who = (r.keyword, r.id, r.place);
+        let who = (r.element, r.place);
         if !marker.floating {
-            let message = format!("{} = {1}: MARKER/{1} is not FLOATING", r.argument, r.number);
+            let message = format!(
+                "{} = {1}: MARKER/{1} is not FLOATING",
+                r.argument, r.target.number
+            );
             warn(out, "not_floating", who, message);
             continue;
         }
-        let owner = format!("{}/{}", r.keyword, r.id);
-        if let Some(first) = owners.get(&r.number).filter(|f| **f != owner) {
+        let owner = r.element;
+        if let Some(first) = owners.get(&r.target.number).filter(|f| **f != owner) {
             let message = format!(
                 "{} = {1}: the floating MARKER/{1} belongs to {first} already",
-                r.argument, r.number
+                r.argument, r.target.number
             );
             error(out, "floating_marker_shared", who, message);
             advise(out, "each such element needs a floating marker of its own");
         }
-        owners.entry(r.number).or_insert(owner);
+        owners.entry(r.target.number).or_insert(owner);
     }
-    for (keyword, id, place, i, j) in constraint_pairs(model)
-        .into_iter()
-        .chain(spring_pairs(model))
-    {
+    for (id, element) in model.elements() {
+        let Some([i, j]) = element.ends() else {
+            continue;
+        };
         for (name, m) in [("I", i), ("J", j)] {
             if model.markers.get(&m).is_some_and(|m| m.floating) {
                 let message =
                     format!("{name} = {m}: MARKER/{m} is FLOATING and has no frame of its own");
-                error(out, "floating_marker", (keyword, id, place), message);
+                error(out, "floating_marker", (id, element.place()), message);
             }
         }
     }
 }
 
 pub(super) fn point_masses_do_not_turn(model: &Model, out: &mut Out) {
-    let is_point = |m: u32| matches!(model.body_of(m), Some((true, _)));
+    let is_point = |m: u32| {
+        let body = model.body_of(m);
+        body.is_some_and(|b| b.kind == ElementKind::PointMass)
+    };
     for (&id, j) in &model.joints {
         if !matches!(j.kind, JointKind::Spherical) && (is_point(j.i) || is_point(j.j)) {
             let message = format!(
                 "a {} joint holds the orientation of a point mass, which has none",
-                joint_word(j.kind)
+                j.kind.keyword()
             );
-            error(out, "turns_point_mass", ("JOINT", id, &j.place), message);
+            error(
+                out,
+                "turns_point_mass",
+                (ElementKind::Joint.id(id), &j.place),
+                message,
+            );
             advise(
                 out,
                 "a point mass takes SPHERICAL joints and the primitives ATPOINT, INLINE, INPLANE",
@@ -226,7 +234,12 @@ pub(super) fn point_masses_do_not_turn(model: &Model, out: &mut Out) {
         );
         if holds && (is_point(j.i) || is_point(j.j)) {
             let message = "it holds the orientation of a point mass, which has none".to_owned();
-            error(out, "turns_point_mass", ("JPRIM", id, &j.place), message);
+            error(
+                out,
+                "turns_point_mass",
+                (ElementKind::Jprim.id(id), &j.place),
+                message,
+            );
         }
     }
 }

@@ -2,89 +2,32 @@
 
 use super::*;
 
-/// The two markers of an element with their owner.
-pub(super) type Pair<'a> = (&'static str, u32, &'a Place, u32, u32);
-
-pub(super) fn constraint_pairs(model: &Model) -> Vec<Pair<'_>> {
-    let joints = model
-        .joints
-        .iter()
-        .map(|(&id, j)| ("JOINT", id, &j.place, j.i, j.j));
-    let primitives = model
-        .primitives
-        .iter()
-        .map(|(&id, j)| ("JPRIM", id, &j.place, j.i, j.j));
-    let motions = model.motions.iter().filter_map(|(&id, m)| match m.driven {
-        Driven::Markers { i, j, .. } => Some(("MOTION", id, &m.place, i, j)),
-        _ => None,
-    });
-    let cams = model
-        .points_on_curves
-        .iter()
-        .map(|(&id, p)| ("PTCV", id, &p.place, p.i, p.rm));
-    let rolls = model
-        .curves_on_curves
-        .iter()
-        .map(|(&id, c)| ("CVCV", id, &c.place, c.i.rm, c.j.rm));
-    joints
-        .chain(primitives)
-        .chain(motions)
-        .chain(cams)
-        .chain(rolls)
-        .collect()
-}
-
-pub(super) fn spring_pairs(model: &Model) -> Vec<Pair<'_>> {
-    let springs = model
-        .spring_dampers
-        .iter()
-        .map(|(&id, f)| ("SPRINGDAMPER", id, &f.place, f.i, f.j));
-    let bushings = model
-        .bushings
-        .iter()
-        .map(|(&id, f)| ("BUSHING", id, &f.place, f.i, f.j));
-    let fields = model
-        .fields
-        .iter()
-        .map(|(&id, f)| ("FIELD", id, &f.place, f.i, f.j));
-    let beams = model
-        .beams
-        .iter()
-        .map(|(&id, f)| ("BEAM", id, &f.place, f.i, f.j));
-    springs.chain(bushings).chain(fields).chain(beams).collect()
-}
-
 pub(super) fn constraints_join_two_parts(model: &Model, out: &mut Out) {
-    let same = |i, j| {
-        model
-            .body_of(i)
-            .is_some_and(|b| model.body_of(j) == Some(b))
-    };
-    let body = |i| match model.body_of(i) {
-        Some((false, n)) => format!("PART/{n}"),
-        Some((true, n)) => format!("POINT_MASS/{n}"),
-        None => "the same body".into(),
-    };
-    for (keyword, id, place, i, j) in constraint_pairs(model) {
-        if same(i, j) {
-            let message = format!(
-                "both its markers belong to {}: it constrains nothing",
-                body(i)
+    for (id, element) in model.elements() {
+        let Some([i, j]) = element.ends() else {
+            continue;
+        };
+        let Some(body) = model.body_of(i).filter(|&b| model.body_of(j) == Some(b)) else {
+            continue;
+        };
+        let who = (id, element.place());
+        let both = format!("both its markers belong to {body}");
+        if id.kind.family() == Family::Constraint {
+            error(
+                out,
+                "same_part",
+                who,
+                format!("{both}: it constrains nothing"),
             );
-            error(out, "same_part", (keyword, id, place), message);
-        }
-    }
-    for (keyword, id, place, i, j) in spring_pairs(model) {
-        if same(i, j) {
-            let message = format!("both its markers belong to {}: it never acts", body(i));
-            warn(out, "same_part", (keyword, id, place), message);
+        } else {
+            warn(out, "same_part", who, format!("{both}: it never acts"));
         }
     }
 }
 
 pub(super) fn joints_are_complete(model: &Model, out: &mut Out) {
     for (&id, j) in &model.joints {
-        let who = ("JOINT", id, &j.place);
+        let who = (ElementKind::Joint.id(id), &j.place);
         match j.kind {
             JointKind::Screw if j.pitch.is_none() => {
                 error(
@@ -117,33 +60,17 @@ pub(super) fn joints_are_complete(model: &Model, out: &mut Out) {
         if !turns && j.ic_rotation != [None; 2] || !slides && j.ic_translation != [None; 2] {
             let message = format!(
                 "{} has no such freedom: its initial condition is not used",
-                joint_word(j.kind)
+                j.kind.keyword()
             );
             warn(out, "unused_initial_condition", who, message);
         }
     }
 }
 
-pub(super) fn joint_word(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Fixed => "FIXED",
-        JointKind::Revolute => "REVOLUTE",
-        JointKind::Translational => "TRANSLATIONAL",
-        JointKind::Cylindrical => "CYLINDRICAL",
-        JointKind::Spherical => "SPHERICAL",
-        JointKind::Planar => "PLANAR",
-        JointKind::Universal => "UNIVERSAL",
-        JointKind::Hooke => "HOOKE",
-        JointKind::Convel => "CONVEL",
-        JointKind::Rackpin => "RACKPIN",
-        JointKind::Screw => "SCREW",
-    }
-}
-
 pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
     let mut driven: BTreeMap<(u32, bool), u32> = BTreeMap::new();
     for (&id, m) in &model.motions {
-        let who = ("MOTION", id, &m.place);
+        let who = (ElementKind::Motion.id(id), &m.place);
         let (joint, rotation) = match m.driven {
             Driven::Joint(n) => (n, None),
             Driven::JointRotation(n) => (n, Some(true)),
@@ -164,7 +91,7 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
         let Some(kind) = model.joints.get(&joint).map(|j| j.kind) else {
             continue;
         };
-        let word = joint_word(kind);
+        let word = kind.keyword();
         let turns = match (kind, rotation) {
             (JointKind::Revolute, None | Some(true)) => true,
             (JointKind::Translational, None | Some(false)) => false,
@@ -199,11 +126,8 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
                 continue;
             }
         };
-        let inactive = |n: u32| model.inactive.contains(&("MOTION".to_owned(), n));
-        if let Some(&first) = driven
-            .get(&(joint, turns))
-            .filter(|&&f| !inactive(f) && !inactive(id))
-        {
+        let on = |n: u32| model.is_active(ElementKind::Motion.id(n));
+        if let Some(&first) = driven.get(&(joint, turns)).filter(|&&f| on(f) && on(id)) {
             error(
                 out,
                 "driven_twice",

@@ -1,11 +1,10 @@
 //! Couplers and gears: sums of displacements that their joints have, on a carrier that they share.
 
-use super::constraints::joint_word;
 use super::*;
 
 pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
     for (&id, c) in &model.couplers {
-        let who = ("COUPLER", id, &c.place);
+        let who = (ElementKind::Coupler.id(id), &c.place);
         for (k, joint) in c.joints.iter().enumerate() {
             if c.joints[..k].contains(joint) {
                 error(
@@ -18,7 +17,7 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
             let Some(kind) = model.joints.get(joint).map(|j| j.kind) else {
                 continue;
             };
-            let word = joint_word(kind);
+            let word = kind.keyword();
             match (kind, c.rotational.get(k).copied().flatten()) {
                 (JointKind::Revolute, Some(false)) => {
                     error(
@@ -61,7 +60,7 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
 
 pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
     for (&id, g) in &model.gears {
-        let who = ("GEAR", id, &g.place);
+        let who = (ElementKind::Gear.id(id), &g.place);
         if g.joints[0] == g.joints[1] {
             error(
                 out,
@@ -80,10 +79,7 @@ pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
                 JointKind::Revolute | JointKind::Translational | JointKind::Cylindrical
             );
             if !geared {
-                let message = format!(
-                    "JOINT/{n} is {}: it cannot be geared",
-                    joint_word(joint.kind)
-                );
+                let message = format!("JOINT/{n} is {}: it cannot be geared", joint.kind.keyword());
                 error(out, "wrong_joint", who, message);
             }
             let of_j = model.body_of(joint.j);

@@ -1,6 +1,5 @@
 //! Forces: what their laws need.
 
-use super::constraints::joint_word;
 use super::*;
 
 pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
@@ -9,13 +8,13 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
             error(
                 out,
                 "missing_argument",
-                ("FIELD", id, &f.place),
+                (ElementKind::Field.id(id), &f.place),
                 "KMATRIX is needed".into(),
             );
         }
     }
     for (&id, b) in &model.beams {
-        let who = ("BEAM", id, &b.place);
+        let who = (ElementKind::Beam.id(id), &b.place);
         if b.length <= 0.0 {
             error(out, "unfit_value", who, "LENGTH must be positive".into());
         }
@@ -29,10 +28,10 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
             }
         }
     }
-    for (keyword, list) in [
-        ("VFORCE", &model.vforces),
-        ("VTORQUE", &model.vtorques),
-        ("GFORCE", &model.gforces),
+    for (kind, list) in [
+        (ElementKind::Vforce, &model.vforces),
+        (ElementKind::Vtorque, &model.vtorques),
+        (ElementKind::Gforce, &model.gforces),
     ] {
         for (&id, f) in list {
             let none = f.force.iter().chain(&f.torque).all(Option::is_none);
@@ -40,7 +39,7 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
                 warn(
                     out,
                     "no_effect",
-                    (keyword, id, &f.place),
+                    (kind.id(id), &f.place),
                     "no component is given: it does nothing".into(),
                 );
             }
@@ -64,9 +63,14 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
             let message = format!(
                 "JOINT/{} is {}: there is no friction law for it",
                 f.joint,
-                joint_word(kind)
+                kind.keyword()
             );
-            error(out, "wrong_joint", ("FRICTION", id, &f.place), message);
+            error(
+                out,
+                "wrong_joint",
+                (ElementKind::Friction.id(id), &f.place),
+                message,
+            );
         }
     }
 }

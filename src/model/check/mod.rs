@@ -80,33 +80,21 @@ impl Model {
     }
 }
 
-fn about(d: Diagnostic, keyword: &str, id: u32, place: &Place) -> Diagnostic {
-    let mut d = d.element(format!("{keyword}/{id}"));
+/// The element that a finding is about, and where it stands.
+type Who<'a> = (ElementId, &'a Place);
+
+fn about(d: Diagnostic, (id, place): Who) -> Diagnostic {
+    let mut d = d.element(id);
     (d.line, d.column) = (place.line, usize::from(place.line > 0));
     d
 }
 
-fn error(
-    out: &mut Out,
-    code: &'static str,
-    (keyword, id, place): (&str, u32, &Place),
-    message: String,
-) {
-    out.push(about(Diagnostic::error(code, message), keyword, id, place));
+fn error(out: &mut Out, code: &'static str, who: Who, message: String) {
+    out.push(about(Diagnostic::error(code, message), who));
 }
 
-fn warn(
-    out: &mut Out,
-    code: &'static str,
-    (keyword, id, place): (&str, u32, &Place),
-    message: String,
-) {
-    out.push(about(
-        Diagnostic::warning(code, message),
-        keyword,
-        id,
-        place,
-    ));
+fn warn(out: &mut Out, code: &'static str, who: Who, message: String) {
+    out.push(about(Diagnostic::warning(code, message), who));
 }
 
 fn advise(out: &mut Out, advice: impl Into<String>) {

@@ -4,7 +4,7 @@ use super::*;
 
 pub(super) fn requests_ask_something(model: &Model, out: &mut Out) {
     for (&id, r) in &model.requests {
-        let who = ("REQUEST", id, &r.place);
+        let who = (ElementKind::Request.id(id), &r.place);
         match &r.kind {
             RequestKind::Functions(f) if f.iter().all(Option::is_none) => {
                 warn(out, "no_effect", who, "it asks nothing".into());

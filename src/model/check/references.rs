@@ -5,19 +5,18 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::Expr;
 use crate::expr::ast::Node;
 use crate::expr::signature;
-use crate::model::reference::Target;
-use crate::model::{Formula, Model};
+use crate::model::{ElementId, ElementKind, Formula, Model};
 use std::collections::BTreeMap;
 
 pub(super) fn references_exist(model: &Model, out: &mut Out) {
     for r in model.references() {
-        if model.has(r.target, r.number) {
+        if model.has(r.target) {
             continue;
         }
-        let what = r.target.keyword();
-        let message = format!("{} = {1}: {what}/{1} does not exist", r.argument, r.number);
-        error(out, "unknown_element", (r.keyword, r.id, r.place), message);
-        if let Some(advice) = near(r.number, &model.numbers(r.target)) {
+        let number = r.target.number;
+        let message = format!("{} = {number}: {} does not exist", r.argument, r.target);
+        error(out, "unknown_element", (r.element, r.place), message);
+        if let Some(advice) = near(number, &model.numbers(r.target.kind)) {
             advise(out, advice);
         }
     }
@@ -30,7 +29,7 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
             continue;
         };
         let who = |d: Diagnostic| {
-            let d = about(d, owned.keyword, owned.id, owned.place);
+            let d = about(d, (owned.element, owned.place));
             Diagnostic {
                 message: format!("{}: {}", owned.argument, d.message),
                 ..d
@@ -57,13 +56,14 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
                     let at = d.span.map_or(0, |s| s.start);
                     out.push(placed(who(strip(d)), owned.formula, at));
                 }
-                for (at, target, number) in named(&expr) {
-                    if known.has(model, target, number) {
+                for (at, target) in named(&expr) {
+                    if known.has(model, target) {
                         continue;
                     }
-                    let message = format!("{}/{number} does not exist", target.keyword());
+                    let message = format!("{target} does not exist");
                     let mut d = who(Diagnostic::error("unknown_element", message));
-                    d.help.extend(near(number, &model.numbers(target)));
+                    d.help
+                        .extend(near(target.number, &model.numbers(target.kind)));
                     out.push(placed(d, owned.formula, at));
                 }
             }
@@ -108,20 +108,18 @@ fn continued_by_comma(formula: &Formula, offset: usize, out: &mut Out) {
 
 /// Numbers in use, looked up once per kind.
 #[derive(Default)]
-struct Known(BTreeMap<Target, Vec<u32>>);
+struct Known(BTreeMap<ElementKind, Vec<u32>>);
 
 impl Known {
-    fn has(&mut self, model: &Model, target: Target, number: u32) -> bool {
-        let list = self
-            .0
-            .entry(target)
-            .or_insert_with(|| model.numbers(target));
-        list.binary_search(&number).is_ok()
+    fn has(&mut self, model: &Model, id: ElementId) -> bool {
+        let numbers = self.0.entry(id.kind);
+        let numbers = numbers.or_insert_with(|| model.numbers(id.kind));
+        numbers.binary_search(&id.number).is_ok()
     }
 }
 
-/// The elements an expression names: byte, kind, number. Zeros that stand for ground are left out.
-fn named(expr: &Expr) -> Vec<(usize, Target, u32)> {
+/// The elements an expression names: byte and element. Zeros that stand for ground are left out.
+fn named(expr: &Expr) -> Vec<(usize, ElementId)> {
     let ast = expr.ast();
     let mut all = Vec::new();
     for node in &ast.nodes {
@@ -137,7 +135,7 @@ fn named(expr: &Expr) -> Vec<(usize, Target, u32)> {
                 && *literal <= f64::from(u32::MAX)
             {
                 let at = ast.spans.get(arg as usize).map_or(0, |s| s.start);
-                all.push((at, Target::Named(element), *literal as u32));
+                all.push((at, ElementKind::from(element).id(*literal as u32)));
             }
         }
     }

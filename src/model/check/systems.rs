@@ -1,11 +1,10 @@
 //! Data and system elements: splines, arrays, curves, and the arrays that systems fill and read.
 
 use super::*;
-use crate::model::reference::Target;
 
 pub(super) fn splines_are_functions(model: &Model, out: &mut Out) {
     for (&id, s) in &model.splines {
-        let who = ("SPLINE", id, &s.place);
+        let who = (ElementKind::Spline.id(id), &s.place);
         if s.file.is_some() {
             continue;
         }
@@ -56,7 +55,7 @@ pub(super) fn arrays_have_their_size(model: &Model, out: &mut Out) {
             ArrayKind::Inputs(x) => (x.len(), "VARIABLES"),
             ArrayKind::States | ArrayKind::Outputs => continue,
         };
-        let who = ("ARRAY", id, &a.place);
+        let who = (ElementKind::Array.id(id), &a.place);
         if n == 0 {
             error(out, "missing_argument", who, format!("{name} is needed"));
         }
@@ -70,7 +69,7 @@ pub(super) fn arrays_have_their_size(model: &Model, out: &mut Out) {
         }
     }
     for (&id, m) in &model.matrices {
-        let who = ("MATRIX", id, &m.place);
+        let who = (ElementKind::Matrix.id(id), &m.place);
         if m.file.is_some() {
             continue;
         }
@@ -114,7 +113,7 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
         })
     };
     for r in model.references() {
-        if r.target == Target::Array && !fits(r.number, r.argument) {
+        if r.target.kind == ElementKind::Array && !fits(r.target.number, r.argument) {
             let kind = match r.argument {
                 "XD" => "X",
                 "ICD" => "IC",
@@ -122,13 +121,13 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
             };
             let message = format!(
                 "{} = {1}: ARRAY/{1} is not of the kind {kind}",
-                r.argument, r.number
+                r.argument, r.target.number
             );
-            error(out, "wrong_array", (r.keyword, r.id, r.place), message);
+            error(out, "wrong_array", (r.element, r.place), message);
         }
     }
     for (&id, t) in &model.transfer_functions {
-        let who = ("TFSISO", id, &t.place);
+        let who = (ElementKind::Tfsiso.id(id), &t.place);
         if t.numerator.len() > t.denominator.len() {
             let message = "the degree of NUMERATOR is higher than that of DENOMINATOR".to_owned();
             error(out, "improper_transfer_function", who, message);
@@ -146,7 +145,7 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
 
 pub(super) fn curves_have_points(model: &Model, out: &mut Out) {
     for (&id, c) in &model.curves {
-        let who = ("CURVE", id, &c.place);
+        let who = (ElementKind::Curve.id(id), &c.place);
         if c.matrix.is_none() && c.function.is_none() {
             error(
                 out,

@@ -128,7 +128,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// The contact that a constraint is.
     pub(super) fn cam_of(&self, element: &ConstraintElement) -> Option<usize> {
         let mut cams = self.scene.cams.iter();
-        cams.position(|c| c.keyword == element.keyword && c.id == element.id)
+        cams.position(|c| c.id == element.id)
     }
 
     /// How far states of contacts are from where the contacts are, in the order of the contacts.

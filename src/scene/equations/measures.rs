@@ -3,6 +3,7 @@
 use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure, orientation_components};
 use crate::expr::program::Input;
+use crate::model::ElementKind;
 use crate::physics::kinematic;
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
@@ -93,51 +94,37 @@ impl<S: Scalar> Equations<'_, S> {
         match measure {
             Measure::Varval => match scene.variables.get(&id) {
                 Some(&f) => self.formula(f),
-                None => self.complain(asked_by, Lack::Element("VARIABLE", id)),
+                None => self.complain(asked_by, Lack::Element(ElementKind::Variable.id(id))),
             },
             Measure::Aryval => match self.entry(id, k) {
                 Some(Entry::Number(x)) => S::constant(x),
                 Some(Entry::State(d)) => self.state_of(d),
                 Some(Entry::Formula(f)) => self.formula(f),
                 None => {
-                    let keyword = "ARRAY";
-                    self.complain(
-                        asked_by,
-                        Lack::Entry {
-                            keyword,
-                            id,
-                            entry: k,
-                        },
-                    )
+                    let element = ElementKind::Array.id(id);
+                    self.complain(asked_by, Lack::Entry { element, entry: k })
                 }
             },
             Measure::Pinval | Measure::Pouval => {
-                let output = measure == Measure::Pouval;
-                let plant = scene.plants.get(&(output, id));
+                let element = match measure {
+                    Measure::Pouval => ElementKind::Poutput.id(id),
+                    _ => ElementKind::Pinput.id(id),
+                };
+                let plant = scene.plants.get(&element);
                 match plant.and_then(|p| p.get((k as usize).wrapping_sub(1))) {
                     Some(&f) => self.formula(f),
-                    None => {
-                        let keyword = if output { "POUTPUT" } else { "PINPUT" };
-                        self.complain(
-                            asked_by,
-                            Lack::Entry {
-                                keyword,
-                                id,
-                                entry: k,
-                            },
-                        )
-                    }
+                    None => self.complain(asked_by, Lack::Entry { element, entry: k }),
                 }
             }
             Measure::Senval => match scene.sensor_place(id) {
                 Some(place) => self.external[place],
-                None => self.complain(asked_by, Lack::Element("SENSOR", id)),
+                None => self.complain(asked_by, Lack::Element(ElementKind::Sensor.id(id))),
             },
             Measure::Dif | Measure::Dif1 => {
                 match scene.differentials.iter().position(|d| d.id == id) {
                     Some(d) if measure == Measure::Dif => self.state_of(d),
                     Some(d) => self.rate_of(d),
-                    None => self.complain(asked_by, Lack::Element("DIFF", id)),
+                    None => self.complain(asked_by, Lack::Element(ElementKind::Diff.id(id))),
                 }
             }
             _ => self.complain(asked_by, Lack::Measure(measure)),

@@ -19,7 +19,7 @@ mod undetermined_reactions;
 mod unsupported;
 
 pub use dynamics::Solved;
-pub(in crate::scene) use reactions::keyword_of;
+pub(in crate::scene) use reactions::element_of;
 pub use rows::{RowValue, row_name};
 pub use undetermined_reactions::Share;
 pub use unsupported::{Lack, Unsupported};
@@ -32,7 +32,7 @@ use super::sweep::{self, Coordinates, LinkState};
 use super::{Entry, Scene};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Work};
-use crate::model::Level;
+use crate::model::{ElementId, Level};
 use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
 use crate::space::MarkerState;
@@ -303,8 +303,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     /// Action of an element on its I marker; `None` when there is no such active element.
-    pub fn action_of(&self, keyword: &str, id: u32) -> Option<Action<S>> {
-        self.element(keyword, id).map(|found| found.0)
+    pub fn action_of(&self, id: ElementId) -> Option<Action<S>> {
+        self.element(id).map(|found| found.0)
     }
 
     /// A marker with all its accelerations.

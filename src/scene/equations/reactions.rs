@@ -1,7 +1,9 @@
 //! What elements exert, as measures: reactions of constraints, actions of forces, sums between two markers.
 
 use super::{Equations, Lack};
-use crate::expr::measures::Measure;
+use crate::expr::measures::{Family, Measure};
+use crate::expr::signature;
+use crate::model::{ElementId, ElementKind};
 use crate::physics::action::Action;
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
@@ -22,12 +24,12 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// Action of an element on its I marker, with the points of I and J; `None` when there is no such element.
-    pub(super) fn element(&self, keyword: &str, id: u32) -> Option<(Action<S>, Vec3<S>, Vec3<S>)> {
+    pub(super) fn element(&self, id: ElementId) -> Option<(Action<S>, Vec3<S>, Vec3<S>)> {
         let scene = self.scene;
         let mut total: Option<(Action<S>, Vec3<S>, Vec3<S>)> = None;
         // an element of several pairs or markers is given about the first
         for (f, force) in scene.forces.iter().enumerate() {
-            if force.keyword != keyword || force.id != id {
+            if force.id != id {
                 continue;
             }
             let action = self.force_action(f);
@@ -40,10 +42,7 @@ impl<S: Scalar> Equations<'_, S> {
         if total.is_some() {
             return total;
         }
-        let c = scene
-            .constraints
-            .iter()
-            .position(|c| c.keyword == keyword && c.id == id)?;
+        let c = scene.constraints.iter().position(|c| c.id == id)?;
         let about = scene.constraints[c].about?;
         let j = scene.constraints[c].markers.map_or(about, |(_, j)| j);
         let action = if self.discovering {
@@ -130,8 +129,7 @@ impl<S: Scalar> Equations<'_, S> {
             let mut on_carried = at_i(link, &carried[link]);
             // the part along a driven coordinate belongs to its MOTION
             for (k, coordinate) in scene.coordinates.iter().enumerate() {
-                if coordinate.joint == Some(element.id)
-                    && element.keyword == "JOINT"
+                if coordinate.joint.map(|j| ElementKind::Joint.id(j)) == Some(element.id)
                     && matches!(coordinate.source, Source::Driven(_))
                 {
                     on_carried = on_carried.plus(&negative(&drive(k)));
@@ -149,10 +147,11 @@ impl<S: Scalar> Equations<'_, S> {
     /// NFORCE(id, at, comp, rm): the action on one of its markers, I or J.
     fn nodal_force(&self, [id, at, comp, rm]: [u32; 4], asked_by: &str) -> S {
         let scene = self.scene;
+        let element = ElementKind::Nforce.id(id);
         let number = |m: usize| scene.markers[m].id;
         let mut found = None;
         let nodes = scene.forces.iter().enumerate();
-        for (f, force) in nodes.filter(|(_, f)| f.keyword == "NFORCE" && f.id == id) {
+        for (f, force) in nodes.filter(|(_, f)| f.id == element) {
             let mut add = |action: Action<S>| {
                 found = Some(found.map_or(action, |sum: Action<S>| sum.plus(&action)));
             };
@@ -173,10 +172,10 @@ impl<S: Scalar> Equations<'_, S> {
     /// FRICTION(id, index), in the axes of the joint's J marker.
     fn friction(&self, id: u32, index: u32, asked_by: &str) -> S {
         let scene = self.scene;
-        let mut all = scene.forces.iter();
-        let found = all.find(|f| f.keyword == "FRICTION" && f.id == id);
+        let element = ElementKind::Friction.id(id);
+        let found = scene.forces.iter().find(|f| f.id == element);
         let Some((slip, j)) = found.and_then(|f| Some((f.slip(self)?, f.j?))) else {
-            return self.complain(asked_by, Lack::ActiveElement("FRICTION", id));
+            return self.complain(asked_by, Lack::ActiveElement(element));
         };
         let axes = self.marker(j).R_GM;
         let k = index as usize;
@@ -196,8 +195,8 @@ impl<S: Scalar> Equations<'_, S> {
         asked_by: &str,
     ) -> S {
         // what is switched off exerts nothing
-        let inactive = |keyword: &str| self.scene.inactive.contains(&(keyword.to_string(), id));
-        if keyword_of(measure).is_some_and(inactive) {
+        let element = element_of(measure, id);
+        if element.is_some_and(|e| self.scene.inactive.contains(&e)) {
             return S::zero();
         }
         if measure == Measure::Nforce {
@@ -206,21 +205,15 @@ impl<S: Scalar> Equations<'_, S> {
         if measure == Measure::Friction {
             return self.friction(id, jflag, asked_by);
         }
-        let Some(keyword) = keyword_of(measure) else {
+        let Some(element) = element else {
             return self.complain(asked_by, Lack::Measure(measure));
         };
-        if self.solving.get()
-            && self
-                .scene
-                .constraints
-                .iter()
-                .any(|c| c.keyword == keyword && c.id == id)
-        {
+        if self.solving.get() && self.scene.constraints.iter().any(|c| c.id == element) {
             let key = Key::Measure(measure, [id, jflag, comp, rm]);
             return self.too_early(key, asked_by, Lack::OwnReaction(measure));
         }
-        let Some((action, p_I, p_J)) = self.element(keyword, id) else {
-            return self.complain(asked_by, Lack::ActiveElement(keyword, id));
+        let Some((action, p_I, p_J)) = self.element(element) else {
+            return self.complain(asked_by, Lack::ActiveElement(element));
         };
         let action = if jflag == 1 {
             action.reaction(p_I, p_J)
@@ -237,7 +230,7 @@ impl<S: Scalar> Equations<'_, S> {
         } else {
             match self.marker_by_id(rm, false) {
                 Some(m) => m.R_GM,
-                None => return self.complain(asked_by, Lack::Element("MARKER", rm)),
+                None => return self.complain(asked_by, Lack::Element(ElementKind::Marker.id(rm))),
             }
         };
         let length = |v: Vec3<S>| {
@@ -343,26 +336,14 @@ fn negative<S: Scalar>(a: &Action<S>) -> Action<S> {
     }
 }
 
-/// Keyword of the statement whose force a measure returns.
-pub(in crate::scene) fn keyword_of(measure: Measure) -> Option<&'static str> {
-    use Measure as M;
-    Some(match measure {
-        M::Joint => "JOINT",
-        M::Jprim => "JPRIM",
-        M::Motion => "MOTION",
-        M::Sforce => "SFORCE",
-        M::Vforce => "VFORCE",
-        M::Vtorq => "VTORQUE",
-        M::Gforce => "GFORCE",
-        M::Spdp => "SPRINGDAMPER",
-        M::Bush => "BUSHING",
-        M::Beam => "BEAM",
-        M::Field => "FIELD",
-        M::Ptcv => "PTCV",
-        M::Cvcv => "CVCV",
-        M::Contact => "CONTACT",
-        M::Nforce => "NFORCE",
-        M::Friction => "FRICTION",
-        _ => return None,
-    })
+/// Returns the element whose force a measure returns; `None` for measures of other families.
+pub(in crate::scene) fn element_of(measure: Measure, number: u32) -> Option<ElementId> {
+    let row = measure.row();
+    if row.family != Family::ElementForce {
+        return None;
+    }
+    match row.arguments.first()?.kind {
+        signature::Kind::Identifier { element, .. } => Some(ElementKind::from(element).id(number)),
+        signature::Kind::Number | signature::Kind::Selector(_) => None,
+    }
 }

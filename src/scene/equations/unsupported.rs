@@ -2,6 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::{Measure, orientation_components};
+use crate::model::ElementId;
 use std::fmt;
 
 /// A number that somebody asks for and that the equations cannot supply.
@@ -28,10 +29,10 @@ pub enum Lack {
     OwnReaction(Measure),
     /// the rate of a measure, without accelerations
     Rate(Measure),
-    /// an element of this keyword and number
-    Element(&'static str, u32),
-    /// an active element of this keyword and number
-    ActiveElement(&'static str, u32),
+    /// an element
+    Element(ElementId),
+    /// an active element
+    ActiveElement(ElementId),
     /// an active NFORCE of this number that acts on a marker
     NodalForce {
         /// user's number of the NFORCE
@@ -41,10 +42,8 @@ pub enum Lack {
     },
     /// an entry of an ARRAY, PINPUT or POUTPUT
     Entry {
-        /// its keyword
-        keyword: &'static str,
-        /// user's number
-        id: u32,
+        /// which
+        element: ElementId,
         /// from 1 on
         entry: u32,
     },
@@ -103,15 +102,15 @@ impl fmt::Display for Lack {
                 "{} has no rate that is known here, which DIF1 asks for",
                 measure.name()
             ),
-            Lack::Element(keyword, id) => write!(f, "{keyword}/{id} does not exist"),
-            Lack::ActiveElement(keyword, id) => {
-                write!(f, "{keyword}/{id} does not exist or is not active")
+            Lack::Element(element) => write!(f, "{element} does not exist"),
+            Lack::ActiveElement(element) => {
+                write!(f, "{element} does not exist or is not active")
             }
             Lack::NodalForce { id, marker } => write!(
                 f,
                 "NFORCE/{id} does not exist, is not active, or does not act on MARKER/{marker}"
             ),
-            Lack::Entry { keyword, id, entry } => write!(f, "{keyword}/{id} has no entry {entry}"),
+            Lack::Entry { element, entry } => write!(f, "{element} has no entry {entry}"),
             Lack::Marker(measure) => write!(
                 f,
                 "{} names a marker that does not exist or is left out",
