@@ -1,14 +1,15 @@
 //! Analyses of a scene: assemble, move, balance, integrate, linearize, verify.
 //!
-//! Each folder is a room that knows only the rooms below it:
+//! Each folder is a room; its files name those of the rooms below it, and of none above:
 //!
 //! ```text
 //! session      one simulation after another; commands; columns of results
 //! verify       freedoms, redundancy; what becomes of a model
-//! time         the loop over time: kinematics and dynamics
-//! statics      rest       linear      eigenvalues, state matrices
+//! time         kinematics and dynamics: the loop over steps, switches, ranks
+//! statics      rest                      linear   eigenvalues, state matrices
 //! system       a scene as ẏ = f(t, y) and as F(t, y, ẏ) = 0; everything its programs read
 //! start        assembly, placement, initial conditions
+//! watch        the hooks of a caller
 //! ```
 
 pub mod linear;

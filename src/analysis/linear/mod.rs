@@ -1,4 +1,5 @@
-//! Small motions about a state: eigenvalues, mode shapes, and the matrices of the linear system between plant inputs and outputs.
+//! Small motions about a state: eigenvalues, mode shapes, and the matrices of the linear system
+//! between plant inputs and outputs.
 //!
 //! The rate is differentiated as it stands, and restricted to what the rows allow:
 //!
@@ -7,14 +8,14 @@
 //! ż = A z + B u,  y = C z + D u    z = (ξ, η, x)
 //! ```
 //!
-//! With every position free, ξ are the changes of the coordinates themselves. An input is a number added to its VARIABLE, so
-//! that whatever else the VARIABLE does goes on. Motions keep moving; about a state in which things move, A is that of the instant.
+//! With every position free, ξ are the changes of the coordinates themselves. An input is a number
+//! added to its VARIABLE, so that whatever else the VARIABLE does goes on. Motions keep moving;
+//! about a state in which things move, A is that of the instant.
 
 mod modes;
 mod write;
 
 use crate::analysis::start::assemble;
-use crate::analysis::system::slopes::{self, Direction};
 use crate::analysis::system::{System, complaints};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
@@ -23,23 +24,25 @@ use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
+use crate::scene::slopes::{self, Direction};
 use crate::scene::{Scene, build};
 use nalgebra::{DMatrix, DVector};
 
-/// What is wanted of a linearization.
+/// The options of LINEAR.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wanted {
-    /// PINPUT and POUTPUT whose VARIABLEs are u and y; `None`: all there are, in the order of their numbers
+    /// PINPUT and POUTPUT whose VARIABLEs are u and y; `None`: all there are, in the order of their
+    /// numbers
     pub inputs: Option<u32>,
     /// see `inputs`
     pub outputs: Option<u32>,
-    /// leave out what depends on velocities
+    /// leave out all that depends on velocities
     pub no_damping: bool,
     /// first and last mode whose shape is wanted, from 1; `None`: all
     pub shapes: Option<[usize; 2]>,
 }
 
-/// How a part moves in a mode; real and imaginary parts.
+/// The motion of a part in a mode; real and imaginary parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartShape {
     /// "PART/2"
@@ -57,18 +60,19 @@ pub struct Mode {
     pub re: f64,
     /// rad per time
     pub im: f64,
-    /// how the parts move; the largest translation (or, without any, rotation or state) is 1. Empty when it was not wanted.
+    /// motions of the parts; the largest translation (or, without any, rotation or state) is 1.
+    /// Empty when it was not wanted.
     pub parts: Vec<PartShape>,
-    /// how the states move: name, real and imaginary part
+    /// motions of the states: name, real and imaginary part
     pub states: Vec<(String, [f64; 2])>,
 }
 
 impl Mode {
-    /// |λ|/2π, cycles per time
+    /// Returns |λ|/2π, cycles per time.
     pub fn frequency(&self) -> f64 {
         self.re.hypot(self.im) / std::f64::consts::TAU
     }
-    /// −Re λ/|λ|
+    /// Returns −Re λ/|λ|.
     pub fn damping_ratio(&self) -> f64 {
         let size = self.re.hypot(self.im);
         if self.re == 0.0 { 0.0 } else { -self.re / size }
@@ -78,7 +82,7 @@ impl Mode {
 /// A linear system about a state of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Linearization {
-    /// when
+    /// time of the state
     pub time: f64,
     /// names of z
     pub states: Vec<String>,
@@ -98,7 +102,7 @@ pub struct Linearization {
     pub modes: Vec<Mode>,
 }
 
-/// The VARIABLEs of plants, in order.
+/// Returns the VARIABLEs of plants, in order.
 fn variables(model: &Model, output: bool, one: Option<u32>) -> Result<Vec<u32>, Diagnostic> {
     let (kind, all) = if output {
         (ElementKind::Poutput, &model.plant_outputs)
@@ -117,7 +121,7 @@ fn variables(model: &Model, output: bool, one: Option<u32>) -> Result<Vec<u32>, 
     }
 }
 
-/// The VARIABLEs that are inputs, for the options of a scene.
+/// Returns the VARIABLEs that are inputs, for the options of a scene.
 ///
 /// # Errors
 /// When a PINPUT does not exist.
@@ -125,7 +129,7 @@ pub fn inputs(model: &Model, wanted: &Wanted) -> Result<Vec<u32>, Diagnostic> {
     variables(model, false, wanted.inputs)
 }
 
-/// Derivatives of a program along some directions; the unknowns of the system follow.
+/// Returns the derivatives of a program along some directions; the unknowns of loops follow.
 fn along(
     system: &mut System,
     program: &Program,
@@ -156,6 +160,7 @@ struct Small {
 }
 
 impl Small {
+    /// Finds the subspace at the present numbers.
     fn at(system: &mut System) -> Result<Self, Vec<Diagnostic>> {
         let l = system.scene.layout;
         let n = l.n_v;
@@ -202,7 +207,7 @@ impl Small {
     }
 }
 
-/// Directions along the tangents of positions.
+/// Returns the directions along the tangents of positions.
 fn tangents(system: &System) -> Vec<Vec<(usize, f64)>> {
     let l = system.scene.layout;
     let mut moves = vec![Vec::new(); l.n_v];
@@ -230,76 +235,118 @@ pub fn linearize(
     model: &Model,
     wanted: &Wanted,
 ) -> Result<Linearization, Vec<Diagnostic>> {
-    let l = system.scene.layout;
-    let n_x = l.n_x;
     let output_ids = variables(model, true, wanted.outputs).map_err(|d| vec![d])?;
     let input_ids = variables(model, false, wanted.inputs).map_err(|d| vec![d])?;
+    // the subspace, and the program of rates and outputs
     let small = Small::at(system)?;
-    let n = small.z.ncols();
-    let mut watched = Vec::with_capacity(output_ids.len());
-    for id in &output_ids {
-        match system.scene.variables.get(id) {
-            Some(&f) => watched.push(f),
-            None => {
-                let d =
-                    Diagnostic::error("model", "is an output but does not exist or is not active");
-                return Err(vec![d.element(ElementKind::Variable.id(*id))]);
-            }
-        }
-    }
+    let watched = watched(&system.scene, &output_ids)?;
     let program = record(system.configured(), |at| {
         let mut out = at.rates();
         out.extend(watched.iter().map(|&f| at.formula(f)));
         out
     })
     .map_err(complaints)?;
-    // z: tangents with the velocities that they bring about, velocities, states; then inputs
+    // its derivatives along z and u
+    let directions = directions(system, &small, &input_ids, wanted.no_damping);
+    let slopes = along(system, &program, &directions).map_err(|k| undetermined(system, k))?;
+    if slopes.iter().any(|x| !x.is_finite()) {
+        let what = "the equations have no finite derivatives in this state";
+        return Err(vec![Diagnostic::error("linear", what)]);
+    }
+    // the matrices, and the modes
+    let n_z = 2 * small.z.ncols() + system.scene.layout.n_x;
+    let state = state_rows(system, &small, &slopes, wanted.no_damping);
+    let outputs = slopes.rows(system.scene.layout.n_y(), watched.len());
+    let a = state.columns(0, n_z).into_owned();
+    let names = build::unknown_names(&system.scene);
+    let modes = modes::modes(system, model, &small, &a, wanted)?;
+    let named = |ids: &[u32]| {
+        let name = |&id: &u32| ElementKind::Variable.id(id).to_string();
+        ids.iter().map(name).collect()
+    };
+    Ok(Linearization {
+        time: system.numbers[Layout::TIME],
+        states: state_names(&system.scene, &small, &names),
+        inputs: named(&input_ids),
+        outputs: named(&output_ids),
+        b: rows(&state.columns(n_z, input_ids.len()).into_owned()),
+        c: rows(&outputs.columns(0, n_z).into_owned()),
+        d: rows(&outputs.columns(n_z, input_ids.len()).into_owned()),
+        a: rows(&a),
+        modes,
+    })
+}
+
+/// Returns the formulas of VARIABLEs.
+///
+/// # Errors
+/// The first that the scene does not have.
+fn watched(scene: &Scene, ids: &[u32]) -> Result<Vec<usize>, Vec<Diagnostic>> {
+    let formula = |id: &u32| {
+        scene.variables.get(id).copied().ok_or_else(|| {
+            let what = "is an output but does not exist or is not active";
+            vec![Diagnostic::error("model", what).element(ElementKind::Variable.id(*id))]
+        })
+    };
+    ids.iter().map(formula).collect()
+}
+
+/// Returns the directions of z, then of u: tangents with the velocities that they bring about,
+/// velocities (which count for nothing without damping), states; inputs.
+fn directions(
+    system: &System,
+    small: &Small,
+    input_ids: &[u32],
+    no_damping: bool,
+) -> Vec<Direction> {
+    let scene = &system.scene;
+    let l = scene.layout;
+    let n = small.z.ncols();
     let moves = tangents(system);
-    let mut directions: Vec<Vec<(usize, f64)>> = Vec::new();
-    let speeds = |column: &[f64]| -> Vec<(usize, f64)> {
+    let speeds = |column: &[f64]| -> Direction {
         let all = column.iter().enumerate().filter(|(_, s)| **s != 0.0);
         all.map(|(v, s)| (l.v_at(v), *s)).collect()
     };
+    let mut directions: Vec<Direction> = Vec::new();
     for k in 0..n {
         let mut direction = speeds(small.p.column(k).as_slice());
-        for (v, s) in small
-            .z
-            .column(k)
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| **s != 0.0)
-        {
+        let column = small.z.column(k);
+        for (v, s) in column.iter().enumerate().filter(|(_, s)| **s != 0.0) {
             direction.extend(moves[v].iter().map(|(place, slope)| (*place, slope * s)));
         }
         directions.push(direction);
     }
     for k in 0..n {
-        directions.push(if wanted.no_damping {
+        directions.push(if no_damping {
             Vec::new()
         } else {
             speeds(small.z.column(k).as_slice())
         });
     }
-    directions.extend((0..n_x).map(|k| vec![(l.x_at(k), 1.0)]));
-    for id in &input_ids {
-        let own = |s: &ExternalInput| matches!(s, ExternalInput::Input(f) if system.scene.variables.get(id) == Some(f));
-        let place = system.scene.external_inputs.iter().position(own);
+    directions.extend((0..l.n_x).map(|k| vec![(l.x_at(k), 1.0)]));
+    for id in input_ids {
+        let own = |s: &ExternalInput| matches!(s, ExternalInput::Input(f) if scene.variables.get(id) == Some(f));
+        let place = scene.external_inputs.iter().position(own);
         directions.push(place.map_or_else(Vec::new, |p| vec![(l.external_at(p), 1.0)]));
     }
-    let slopes = along(system, &program, &directions).map_err(|k| undetermined(system, k))?;
-    if slopes.iter().any(|x| !x.is_finite()) {
-        return Err(vec![Diagnostic::error(
-            "linear",
-            "the equations have no finite derivatives in this state",
-        )]);
-    }
-    let n_z = 2 * n + n_x;
-    let mut a = DMatrix::zeros(n_z, slopes.ncols());
-    let q = system.numbers[l.q()].to_vec();
+    directions
+}
+
+/// Returns the rows of ż, [A B], from the derivatives of the rates.
+fn state_rows(
+    system: &System,
+    small: &Small,
+    slopes: &DMatrix<f64>,
+    no_damping: bool,
+) -> DMatrix<f64> {
+    let l = system.scene.layout;
+    let (n_x, n) = (l.n_x, small.z.ncols());
+    let q = &system.numbers[l.q()];
+    let mut a = DMatrix::zeros(2 * n + n_x, slopes.ncols());
     for k in 0..slopes.ncols() {
         let column: Vec<f64> = slopes.column(k).iter().copied().collect();
         let rates = l.state(&column);
-        let tangent = DVector::from_vec(system.mover().tangent(&q, rates.q, l.n_v));
+        let tangent = DVector::from_vec(system.mover().tangent(q, rates.q, l.n_v));
         let speed = DVector::from_column_slice(rates.v);
         a.view_mut((0, k), (n, 1))
             .copy_from(&small.z.tr_mul(&tangent));
@@ -309,35 +356,16 @@ pub fn linearize(
             a[(2 * n + i, k)] = rates.x[i];
         }
     }
-    if wanted.no_damping {
+    if no_damping {
         // δξ̇ = η still holds
         for k in 0..n {
             a[(k, n + k)] = 1.0;
         }
     }
-    let y = slopes.rows(l.n_y(), watched.len()).into_owned();
-    let own = a.columns(0, n_z).into_owned();
-    let names = build::unknown_names(&system.scene);
-    let modes = modes::modes(system, model, &small, &own, wanted)?;
-    let named = |ids: &[u32]| {
-        ids.iter()
-            .map(|&id| ElementKind::Variable.id(id).to_string())
-            .collect()
-    };
-    Ok(Linearization {
-        time: system.numbers[Layout::TIME],
-        states: state_names(&system.scene, &small, &names),
-        inputs: named(&input_ids),
-        outputs: named(&output_ids),
-        b: rows(&a.columns(n_z, input_ids.len()).into_owned()),
-        c: rows(&y.columns(0, n_z).into_owned()),
-        d: rows(&y.columns(n_z, input_ids.len()).into_owned()),
-        a: rows(&own),
-        modes,
-    })
+    a
 }
 
-/// Names of z: coordinates where all are free, else combinations of them.
+/// Returns the names of z: coordinates where all are free, else combinations of them.
 fn state_names(scene: &Scene, small: &Small, names: &[String]) -> Vec<String> {
     let l = scene.layout;
     let n = small.z.ncols();

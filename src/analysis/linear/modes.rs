@@ -1,7 +1,8 @@
 //! Eigenvalues and mode shapes of a linear system.
 //!
-//! Eigenvalues are those of the balanced matrix, so that slow modes keep their digits beside fast ones. Shapes come from inverse
-//! iteration, `(A − λ') x ← x` with λ' beside λ; those of equal eigenvalues are kept apart.
+//! Eigenvalues are those of the balanced matrix, so that slow modes keep their digits beside fast
+//! ones. Shapes come from inverse iteration, `(A − λ') x ← x` with λ' beside λ; those of equal
+//! eigenvalues are kept apart.
 
 use super::{Mode, PartShape, Small, Wanted};
 use crate::analysis::system::System;
@@ -13,10 +14,10 @@ use crate::scene::layout::Layout;
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Iterations with the inverse: each takes away all but a rounding of the other modes.
-const ITERATIONS: usize = 4;
+/// Inverse iterations: each takes away all but a rounding of the other modes.
+const INVERSE_ITERATIONS: usize = 4;
 
-/// Eigenvalues of A by size, one of each conjugate pair, with their shapes.
+/// Returns the eigenvalues of A by size, one of each conjugate pair, with their shapes.
 pub(super) fn modes(
     system: &System,
     model: &Model,
@@ -81,7 +82,7 @@ pub(super) fn modes(
     Ok(found)
 }
 
-/// An eigenvector by inverse iteration, apart from those found before for the same value.
+/// Finds an eigenvector by inverse iteration, apart from those found before for the same value.
 fn eigenvector(
     a: &DMatrix<f64>,
     value: Complex<f64>,
@@ -103,7 +104,7 @@ fn eigenvector(
             (2.3 * k as f64 + 3.0 * seed).cos() * 0.3,
         )
     });
-    for _ in 0..ITERATIONS {
+    for _ in 0..INVERSE_ITERATIONS {
         for b in before {
             let part = b.dotc(&x);
             x -= *b * part;
@@ -118,7 +119,7 @@ fn eigenvector(
     Some(x)
 }
 
-/// How parts move with z: centre of mass and rotation, ground axes.
+/// The motions of parts with z: centre of mass and rotation, ground axes.
 struct PartMotion {
     parts: Vec<String>,
     /// (6 n_parts × n_free)
@@ -164,7 +165,7 @@ impl PartMotion {
         }
     }
 
-    /// Fills in a mode's shape: scaled so that its largest number is 1.
+    /// Puts its shape into a mode, scaled so that its largest number is 1.
     fn show(&self, mode: &mut Mode, z: &DVector<Complex<f64>>, names: &[String]) {
         let map = self.map.map(|x| Complex::new(x, 0.0));
         let moved = map * z.rows(0, self.n);

@@ -5,7 +5,7 @@ use serde_json::json;
 use std::fmt::Write;
 
 impl Linearization {
-    /// The eigenvalues as a table.
+    /// Writes the eigenvalues as a table.
     pub fn table(&self) -> String {
         let mut text = format!(
             "Modes at time {}\n{:>6} {:>22} {:>22} {:>22} {:>14}\n",

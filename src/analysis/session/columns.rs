@@ -18,8 +18,8 @@ use crate::space::MarkerState;
 enum What {
     /// an expression: index among the extra formulas of the scene
     Text(usize),
-    /// a component of a part's motion: 0–2 position, 3–5 ψ θ φ, 6–8 velocity, 9–11 angular velocity, 12–14 acceleration,
-    /// 15–17 angular acceleration; of the part frame, ground axes
+    /// a component of a part's motion: 0–2 position, 3–5 ψ θ φ, 6–8 velocity, 9–11 angular
+    /// velocity, 12–14 acceleration, 15–17 angular acceleration; of the part frame, ground axes
     Part { id: ElementId, quantity: usize },
     /// a component of a REQUEST that a closure computes, from 0
     Request { id: u32, component: usize },
@@ -139,8 +139,8 @@ fn function(place: usize, text: &str) -> RequestComponent {
     }
 }
 
-/// Returns a magnitude and three components that measures between markers I and J yield, those of RM
-/// resolving the components.
+/// Returns a magnitude and three components that measures between markers I and J yield, those of
+/// RM resolving the components.
 fn measured(
     first: usize,
     magnitude: &str,
@@ -174,8 +174,9 @@ fn both(
 }
 
 impl Columns {
-    /// Declares all columns of a run: those of the parts, joints and forces when `full`, requests, and `user` expressions.
-    /// `computed` tells whether there is a closure for a REQUEST of this number with this USER.
+    /// Declares all columns of a run: those of the parts, joints and forces when `full`, requests,
+    /// and `user` expressions. `computed` tells whether there is a closure for a REQUEST of this
+    /// number with this USER.
     pub fn new(
         model: &Model,
         run: &mut Run,

@@ -5,7 +5,7 @@ use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Analysis, Session};
 use crate::analysis::time::output::Output;
 use crate::analysis::watch::Watch;
-use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
+use crate::dataset::command::{Command, Linear, Simulate, SimulationKind, Step};
 use crate::diagnostic::Diagnostic;
 use crate::model::ElementKind;
 use crate::results::{Event, Status};
@@ -14,7 +14,8 @@ use crate::results::{Event, Status};
 pub const DEFAULT_STEPS: usize = 50;
 
 impl Simulate {
-    /// Whether its END is the time that the clock shows: a command after one that was to end there at the latest.
+    /// Whether its END is the time that the clock shows: a command after one that was to end there
+    /// at the latest.
     fn is_over(&self, now: f64) -> bool {
         let over_time = !matches!(
             self.kind,
@@ -77,7 +78,7 @@ fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
 
 /// Obeys commands until one of them ends the run; how the last simulation ended.
 ///
-/// `before` is told of each simulation: its start and end.
+/// `before` is called before each simulation with its start and its end.
 ///
 /// # Errors
 /// What is wrong in a command or in the model as the commands have left it.
@@ -95,28 +96,12 @@ pub fn obey(
     session.will_change(changed);
     for step in steps {
         session.run.log.push(Event::Command(step.text.clone()));
-        let located = |mut d: Diagnostic| {
-            d.element.get_or_insert_with(|| step.text.clone());
-            if d.file.is_none() && d.line == 0 {
-                (d.line, d.column) = (step.line, usize::from(step.line > 0));
-            }
-            d
-        };
+        let located = |d: Diagnostic| located(d, step);
         match &step.command {
-            Command::Simulate(simulate) if simulate.is_over(session.time()) => {
-                let now = session.time();
-                session.warn(&format!(
-                    "{}: the clock shows {now} already, there is nothing to simulate",
-                    step.text
-                ));
-            }
             Command::Simulate(simulate) => {
-                let (analysis, end, output) = simulate
-                    .resolved(session.time())
-                    .map_err(|d| vec![located(d)])?;
-                before(session.time(), end);
-                status = session.simulate_with(analysis, end, output, watch)?;
-                if status != Status::Completed || session.halted() {
+                let simulated = session.obey_simulate(simulate, step, &mut before, watch)?;
+                status = simulated.unwrap_or(status);
+                if simulated.is_some() && (status != Status::Completed || session.halted()) {
                     return Ok(status);
                 }
             }
@@ -126,22 +111,7 @@ pub fn obey(
             }
             Command::Stop => break,
             Command::Show(_) => {}
-            Command::Linear(command) => {
-                let shapes = match command.coords[..] {
-                    [] => None,
-                    [only] => Some([only as usize; 2]),
-                    [first, last, ..] => Some([first as usize, last as usize]),
-                };
-                let wanted = Wanted {
-                    inputs: command.pinput,
-                    outputs: command.poutput,
-                    no_damping: command.no_damping,
-                    shapes,
-                };
-                let found = session.linearize(&wanted)?;
-                let matrices = command.state_matrices || !command.eigensolution;
-                session.linear.push((command.file.clone(), matrices, found));
-            }
+            Command::Linear(command) => session.obey_linear(command)?,
             Command::Save(Some(name)) => {
                 let file = state::file_name(name);
                 session.saved.insert(file, session.save());
@@ -156,16 +126,67 @@ pub fn obey(
                 let d = Diagnostic::error("missing_argument", "SYSTEM = file is needed");
                 return Err(vec![located(d)]);
             }
-            Command::File { .. } => {
-                let d = Diagnostic::error(
-                    "unsupported",
-                    "a run has one dataset and one table of results",
-                );
-                return Err(vec![located(d.help(
-                    "FILE belongs at the beginning; another dataset needs a command file of its own, a saved state RELOAD/SYSTEM=file",
-                ))]);
-            }
+            Command::File { .. } => return Err(vec![located(second_file())]),
         }
     }
     Ok(status)
+}
+
+/// Gives a diagnostic the place of its command, unless it has a better one.
+fn located(mut d: Diagnostic, step: &Step) -> Diagnostic {
+    d.element.get_or_insert_with(|| step.text.clone());
+    if d.file.is_none() && d.line == 0 {
+        (d.line, d.column) = (step.line, usize::from(step.line > 0));
+    }
+    d
+}
+
+fn second_file() -> Diagnostic {
+    let what = "a run has one dataset and one table of results";
+    Diagnostic::error("unsupported", what).help(
+        "FILE belongs at the beginning; another dataset needs a command file of its own, a saved state RELOAD/SYSTEM=file",
+    )
+}
+
+impl Session {
+    /// Obeys SIMULATE; `None`: there was nothing to simulate.
+    fn obey_simulate(
+        &mut self,
+        simulate: &Simulate,
+        step: &Step,
+        before: &mut impl FnMut(f64, f64),
+        watch: &mut dyn Watch,
+    ) -> Result<Option<Status>, Vec<Diagnostic>> {
+        let now = self.time();
+        if simulate.is_over(now) {
+            self.warn(&format!(
+                "{}: the clock shows {now} already, there is nothing to simulate",
+                step.text
+            ));
+            return Ok(None);
+        }
+        let resolved = simulate.resolved(now);
+        let (analysis, end, output) = resolved.map_err(|d| vec![located(d, step)])?;
+        before(now, end);
+        self.simulate_with(analysis, end, output, watch).map(Some)
+    }
+
+    /// Obeys LINEAR.
+    fn obey_linear(&mut self, command: &Linear) -> Result<(), Vec<Diagnostic>> {
+        let shapes = match command.coords[..] {
+            [] => None,
+            [only] => Some([only as usize; 2]),
+            [first, last, ..] => Some([first as usize, last as usize]),
+        };
+        let wanted = Wanted {
+            inputs: command.pinput,
+            outputs: command.poutput,
+            no_damping: command.no_damping,
+            shapes,
+        };
+        let found = self.linearize(&wanted)?;
+        let matrices = command.state_matrices || !command.eigensolution;
+        self.linear.push((command.file.clone(), matrices, found));
+        Ok(())
+    }
 }

@@ -1,4 +1,5 @@
-//! The shells of contacts that stand in files: found beside the dataset, read, and made into the corners of their convex hulls.
+//! The shells of contacts that stand in files: found beside the dataset, read, and made into the
+//! corners of their convex hulls.
 
 use crate::dataset::mesh;
 use crate::model::{Model, Shape};
@@ -69,7 +70,8 @@ fn hull(_: &[[f64; 3]]) -> Result<(Vec<[f64; 3]>, f64), String> {
     Err("this program was built without the feature geometry".into())
 }
 
-/// The file of this name, as given or beside the dataset; of a path of another machine its last part.
+/// The file of this name, as given or beside the dataset; of a path of another machine its last
+/// part.
 fn find(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let here = [PathBuf::new()];

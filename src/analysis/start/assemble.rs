@@ -14,8 +14,9 @@ use crate::physics::row::Law;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
+use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
-use crate::scene::{RowKind, Scene, Source};
+use crate::scene::{RowKind, Scene};
 use crate::space::Frame;
 use nalgebra::{DMatrix, DVector};
 
@@ -170,18 +171,7 @@ pub fn rows_at(
 
 /// Size of a row's residual as compared with [`CLOSED`].
 fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
-    (value / natural(scene, r)).abs()
-}
-
-/// What counts as one for a row.
-pub(in crate::analysis) fn natural(scene: &Scene, r: usize) -> f64 {
-    match &scene.rows[r].kind {
-        RowKind::Markers { law, .. } if law.is_length() => scene.length,
-        RowKind::Markers { .. } => 1.0,
-        RowKind::Displacements(sum) => sum.scale(scene.length),
-        RowKind::Formula { scale, .. } => *scale,
-        RowKind::Cam { .. } => scene.length,
-    }
+    (value / scene.row_scale(r)).abs()
 }
 
 /// The rows of a matrix, columns scaled by √w.
@@ -412,7 +402,7 @@ pub fn rank(
         .map(|&r| {
             // a row that moves nothing there says nothing about what its direction is
             let size = all[r].iter().map(|x| x * x).sum::<f64>().sqrt();
-            let empty = size <= EMPTY * natural(scene, r).min(longest);
+            let empty = size <= EMPTY * scene.row_scale(r).min(longest);
             if empty {
                 vec![0.0; w.len()]
             } else {
@@ -674,118 +664,4 @@ fn part_velocities(
         wanted.push((Level::Constraint, rate));
     }
     (values, wanted)
-}
-
-/// Moves positions along tangents.
-#[derive(Debug)]
-pub struct Mover {
-    simple: Vec<(usize, usize)>,
-    balls: Vec<(usize, usize)>,
-}
-
-impl Mover {
-    /// For the coordinates of a scene.
-    pub fn new(scene: &Scene) -> Self {
-        let mut this = Self {
-            simple: Vec::new(),
-            balls: Vec::new(),
-        };
-        for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
-            if let (Source::Free { q, v }, false) = (c.source, f.in_ball) {
-                this.simple.push((q, v));
-            }
-        }
-        for link in &scene.links {
-            if let crate::scene::LinkMotion::Ball {
-                coordinate,
-                quaternion,
-            } = link.motion
-                && let Some(v) = scene.freedoms[coordinate].v
-            {
-                this.balls.push((quaternion, v));
-            }
-        }
-        this
-    }
-
-    /// `q ← q ⊕ Δ`; Δ as velocities over a unit of time   (n_v)
-    pub fn displace(&self, q: &mut [f64], change: &[f64]) {
-        for &(k, v) in &self.simple {
-            q[k] += change[v];
-        }
-        for &(k, v) in &self.balls {
-            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
-            let (a, b, c) = (0.5 * change[v], 0.5 * change[v + 1], 0.5 * change[v + 2]);
-            q[k] = w - x * a - y * b - z * c;
-            q[k + 1] = x + w * a + y * c - z * b;
-            q[k + 2] = y + w * b + z * a - x * c;
-            q[k + 3] = z + w * c + x * b - y * a;
-        }
-        self.normalize(q);
-    }
-
-    /// How positions change along each velocity: (velocity, position, slope), by velocities.
-    pub fn tangents(&self, q: &[f64]) -> Vec<(usize, usize, f64)> {
-        let mut all: Vec<(usize, usize, f64)> =
-            self.simple.iter().map(|&(k, v)| (v, k, 1.0)).collect();
-        for &(k, v) in &self.balls {
-            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
-            let columns = [[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]];
-            for (c, column) in columns.iter().enumerate() {
-                all.extend(
-                    column
-                        .iter()
-                        .enumerate()
-                        .map(|(i, slope)| (v + c, k + i, 0.5 * slope)),
-                );
-            }
-        }
-        all.sort_by_key(|t| t.0);
-        all
-    }
-
-    /// The tangent of a small change of positions   (n_v)
-    pub fn tangent(&self, q: &[f64], change: &[f64], n_v: usize) -> Vec<f64> {
-        let mut out = vec![0.0; n_v];
-        for &(k, v) in &self.simple {
-            out[v] = change[k];
-        }
-        for &(k, v) in &self.balls {
-            // 2 q* ∘ δq
-            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
-            let (a, b, c, d) = (change[k], change[k + 1], change[k + 2], change[k + 3]);
-            out[v] = 2.0 * (w * b - x * a - y * d + z * c);
-            out[v + 1] = 2.0 * (w * c + x * d - y * a - z * b);
-            out[v + 2] = 2.0 * (w * d - x * c + y * b - z * a);
-        }
-        out
-    }
-
-    /// The small change of positions that a tangent stands for   (n_q)
-    pub fn untangent(&self, q: &[f64], tangent: &[f64], change: &mut [f64]) {
-        for &(k, v) in &self.simple {
-            change[k] = tangent[v];
-        }
-        for &(k, v) in &self.balls {
-            let rate = crate::space::rotation::quaternion_rate(
-                [q[k], q[k + 1], q[k + 2], q[k + 3]],
-                crate::space::Vec3([tangent[v], tangent[v + 1], tangent[v + 2]]),
-            );
-            change[k..k + 4].copy_from_slice(&rate);
-        }
-    }
-
-    /// Scales quaternions to unit length; tells whether that changed any.
-    pub fn normalize(&self, q: &mut [f64]) -> bool {
-        let mut changed = false;
-        for &(k, _) in &self.balls {
-            let n2: f64 = q[k..k + 4].iter().map(|x| x * x).sum();
-            if (n2 - 1.0).abs() > 4.0 * f64::EPSILON {
-                let f = 1.0 / n2.sqrt();
-                q[k..k + 4].iter_mut().for_each(|x| *x *= f);
-                changed = true;
-            }
-        }
-        changed
-    }
 }

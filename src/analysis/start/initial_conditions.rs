@@ -11,8 +11,7 @@
 //! that is told. Only dynamic simulations ask for wishes of joints and parts: kinematics and statics find their own configuration.
 //! Where contacts begin is asked for always: that chooses among the ways in which the parts can be put together.
 
-use crate::analysis::start::assemble::{self, Mover, least_change, rows_at};
-use crate::analysis::system::slopes::{Direction, along};
+use crate::analysis::start::assemble::{self, least_change, rows_at};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
 use crate::model::{ElementKind, JointKind, Model};
@@ -23,7 +22,9 @@ use crate::scalar::Scalar;
 use crate::scene::cams::{self, Start};
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
+use crate::scene::mover::Mover;
 use crate::scene::programs::{record_with_complaints, weights};
+use crate::scene::slopes::{Direction, along};
 use crate::scene::{RowKind, Scene};
 use crate::space::{Frame, MarkerState};
 use nalgebra::{DMatrix, DVector};

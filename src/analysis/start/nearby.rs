@@ -3,11 +3,12 @@
 //! A step along random free directions, with all motions at slightly different values, is closed again; rows that are independent there were dependent in
 //! passing only (a folded parallelogram, a four-bar at its dead point). When no other position can be reached, what was found stands.
 
-use crate::analysis::start::assemble::{self, CLOSED, Mover, Redundant};
+use crate::analysis::start::assemble::{self, CLOSED, Redundant};
 use crate::numeric::rank::Rank;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
+use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
 
 /// Another position: values of the motions and positions of the forest there.

@@ -9,13 +9,14 @@
 //! coordinates, so that the answer does not depend on what carries what. An Euler angle that EXACT names holds the whole orientation: the angles of a part
 //! that turns about another axis all change. Gauss–Newton: `Δ = Δ₀ + N z`, with `Δ₀` closing the rows, N what they leave free, and z least squares.
 
-use crate::analysis::start::assemble::{self, Mover};
+use crate::analysis::start::assemble;
 use crate::model::{ElementKind, JointKind, Model};
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
 use crate::scalar::{Jet, Scalar};
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
+use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
 use crate::scene::{Scene, Source};
 use crate::space::{Mat3, Vec3};
@@ -73,9 +74,7 @@ pub fn settle(
             g[r] = 0.0;
             gradient.row_mut(r).fill(0.0);
         }
-        let off = (0..g.len()).fold(0.0, |m: f64, r| {
-            m.max((g[r] / assemble::natural(&scene, r)).abs())
-        });
+        let off = (0..g.len()).fold(0.0, |m: f64, r| m.max((g[r] / scene.row_scale(r)).abs()));
         if k == 0 && off < 1e-9 && residual.amax() < 1e-9 {
             return true;
         }

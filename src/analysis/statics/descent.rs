@@ -72,8 +72,8 @@ impl Course {
         self.polishing > MAX_POLISHING || asked && self.idle > MAX_IDLE
     }
 
-    /// Takes a step into account; whether what is stiff has arrived while what is soft still goes, so
-    /// that neither gets better.
+    /// Takes a step into account; whether what is stiff has arrived while what is soft still goes,
+    /// so that neither gets better.
     fn advance(&mut self, p: &Point, step: &Taken, small: bool, longest: f64) -> bool {
         let (next, full) = (&step.point, step.length >= longest);
         let same = (next.left[0] - p.left[0]).abs() <= 1e-6 * p.left[0];
@@ -282,8 +282,8 @@ impl Settler<'_> {
         scale / total_mass(&scene).sqrt()
     }
 
-    /// Returns what the last digits of the positions make of stiff forces, in each coordinate, as it is
-    /// met:
+    /// Returns what the last digits of the positions make of stiff forces, in each coordinate, as
+    /// it is met:
     ///
     /// ```text
     /// n_i = ε √Σ (∂f_i/∂q_v u_v)²      u: a radian, or the size of the mechanism
@@ -308,8 +308,8 @@ impl Settler<'_> {
         unit
     }
 
-    /// Returns whether what is left is what the last digits of the positions make of stiff forces: in
-    /// every coordinate by its size, and in soft directions, where stiff forces cancel, by what
+    /// Returns whether what is left is what the last digits of the positions make of stiff forces:
+    /// in every coordinate by its size, and in soft directions, where stiff forces cancel, by what
     /// Newton's step would still do about it.
     fn is_rounding(&mut self, p: &Point, jacobian: &DMatrix<f64>, noise: &DVector<f64>) -> bool {
         let unit = self.units();
@@ -363,8 +363,8 @@ impl Settler<'_> {
         if fastest > 0.0 { 0.01 / fastest } else { 1.0 }
     }
 
-    /// Returns the length of a step that is Newton's but for the part of the mass that STABILITY asks
-    /// for, small against all stiffness.
+    /// Returns the length of a step that is Newton's but for the part of the mass that STABILITY
+    /// asks for, small against all stiffness.
     pub(super) fn longest(&self, p: &Point, jacobian: &DMatrix<f64>) -> f64 {
         let n = self.n_v();
         let mut least = f64::INFINITY;

@@ -1,10 +1,14 @@
-//! How forces are measured while a model falls: by the accelerations they would cause.
+//! The measure of forces during a descent: the accelerations that they would cause.
 
 use crate::scene::solve::MassFactor;
 use crate::scene::{Scene, Source};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// D: the mass matrix and a millionth of the whole mass in every direction, so that nothing is without any.
+/// Part of the whole mass that is added in every direction.
+const ADDED_MASS: f64 = 1e-6;
+
+/// D: the mass matrix, and a millionth of the whole mass in every direction, so that none is
+/// without mass.
 pub(super) struct Metric {
     /// rows of the lower triangle, own entry first   (n_v)
     rows: Vec<Vec<(usize, f64)>>,
@@ -14,10 +18,10 @@ pub(super) struct Metric {
 }
 
 impl Metric {
-    /// From the rows of the mass matrix; `None` where it is not positive.
+    /// Factors the mass matrix, given by its rows; `None` where it is not positive.
     pub fn new(scene: &Scene, mut rows: Vec<Vec<(usize, f64)>>) -> Option<Self> {
         let mass = rows.iter().map(|row| row[0].1).collect();
-        let own = 1e-6 * total_mass(scene);
+        let own = ADDED_MASS * total_mass(scene);
         for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
             if let (Source::Free { v, .. }, true) = (c.source, f.v.is_some()) {
                 rows[v][0].1 += if c.angular {
@@ -32,7 +36,7 @@ impl Metric {
         (factor.inverse_d.iter().all(positive)).then_some(Self { rows, factor, mass })
     }
 
-    /// D x
+    /// Returns D x.
     pub fn times(&self, x: &[f64]) -> DVector<f64> {
         let mut y = DVector::zeros(self.rows.len());
         for (i, row) in self.rows.iter().enumerate() {
@@ -46,7 +50,7 @@ impl Metric {
         y
     }
 
-    /// D⁻¹ f
+    /// Returns D⁻¹ f.
     pub fn solve(&self, f: &DVector<f64>) -> DVector<f64> {
         let mut x = f.clone();
         self.factor.half(x.as_mut_slice());
@@ -54,7 +58,7 @@ impl Metric {
         x
     }
 
-    /// `√(fᵀ D⁻¹ f)`
+    /// Returns `√(fᵀ D⁻¹ f)`.
     pub fn size(&self, f: &DVector<f64>) -> f64 {
         let mut x = f.clone();
         self.factor.half(x.as_mut_slice());
@@ -62,7 +66,7 @@ impl Metric {
         squares.sum::<f64>().sqrt()
     }
 
-    /// `a ← a + factor D` in its first rows and columns.
+    /// Adds `factor` D to the first rows and columns of a matrix.
     pub fn add_to(&self, a: &mut DMatrix<f64>, factor: f64) {
         for (i, row) in self.rows.iter().enumerate() {
             for &(j, d) in row {
@@ -75,7 +79,7 @@ impl Metric {
     }
 }
 
-/// The gradients of the rows, with what finds multipliers.
+/// The gradients of the rows, with the matrix that finds multipliers.
 pub(super) struct Rows {
     /// G   (m × n_v)
     pub gradient: DMatrix<f64>,
@@ -87,7 +91,7 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// From G.
+    /// Prepares the search for multipliers from G.
     pub fn new(gradient: DMatrix<f64>, metric: &Metric) -> Self {
         let (m, n) = gradient.shape();
         let mut moved = DMatrix::zeros(n, m);
@@ -104,7 +108,7 @@ impl Rows {
         }
     }
 
-    /// λ that makes `f + Gᵀλ` smallest in the metric, and that.
+    /// Returns λ that makes `f + Gᵀλ` smallest in the metric, and that sum.
     pub fn balanced(&self, f: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let m = self.gradient.nrows();
         if m == 0 {
@@ -129,7 +133,7 @@ impl Rows {
     }
 }
 
-/// The mass of all parts, or one.
+/// Returns the mass of all parts, or one where there is none.
 pub(super) fn total_mass(scene: &Scene) -> f64 {
     let mass: f64 = scene.links.iter().map(|l| l.mass).sum();
     if mass > 0.0 { mass } else { 1.0 }

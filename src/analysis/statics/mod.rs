@@ -1,22 +1,26 @@
 //! Equilibrium: where loads and reactions balance at rest.
 //!
-//! A damped descent from the present configuration, taken in ever longer implicit steps until it is Newton's iteration:
+//! A damped descent from the present configuration, taken in ever longer implicit steps until it is
+//! Newton's iteration:
 //!
 //! ```text
-//! D q̇ = f(q, x) + Gᵀλ,   ẋ = e(q, x),   g(q) = 0                          D: mass matrix, a little added where there is none
+//! D q̇ = f(q, x) + Gᵀλ,   ẋ = e(q, x),   g(q) = 0      D: mass matrix, a little added everywhere
 //! ⎡ D/h − K   −Gᵀ ⎤ ⎡Δ ⎤   ⎡ f + Gᵀλ ⎤
 //! ⎣    G       0  ⎦ ⎣Δλ⎦ = ⎣   −g    ⎦     K = ∂(f + Gᵀλ)/∂q,  λ balances f as well as rows can
 //! ```
 //!
-//! Short steps follow the descent, which loses energy and therefore ends at a stable place or nowhere; long ones converge
-//! quadratically. A step is kept when the loads found at its end are those that its linear model foretold, and when the matrix
-//! is positive on the motions that the rows leave: then it cannot jump to the top of a hill. A singular stiffness, as of a
-//! body that touches nothing yet, needs no special treatment.
+//! Short steps follow the descent, which loses energy and therefore ends at a stable place or
+//! nowhere; long ones converge quadratically. A step is kept when the loads found at its end are
+//! those that its linear model foretold, and when the matrix is positive on the motions that the
+//! rows leave: then it cannot jump to the top of a hill. A singular stiffness, as of a body that
+//! touches nothing yet, needs no special treatment.
 //!
-//! A state may be the integral of a velocity (a spring that knows how far it was wound): at rest its rate is zero wherever it stands, and no equation of
+//! A state may be the integral of a velocity (a spring that knows how far it was wound): at rest
+//! its rate is zero wherever it stands, and no equation of
 //! the end finds it. Where no equilibrium is found otherwise, such states follow the velocities of the descent, Δ/h:   Δx/h = e + … + ∂e/∂v Δ/h.
 //!
-//! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the model stood there from the start.
+//! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the
+//! model stood there from the start.
 
 mod descent;
 mod metric;
@@ -29,7 +33,6 @@ pub use outcome::Imbalance;
 pub use stability::Stability;
 
 use crate::analysis::system::System;
-use crate::analysis::system::algebraic_loops::WIDTH;
 use crate::analysis::watch::Watch;
 use crate::expr::program::{Program, Work};
 use crate::model;
@@ -38,13 +41,16 @@ use crate::numeric::pattern::Pattern;
 use crate::scalar::Dual;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{record_more, record_moving};
+use crate::scene::slopes::WIDTH;
 use nalgebra::DMatrix;
 use point::Point;
 
 /// Saddles that are left before one is accepted.
 const MAX_SADDLES: usize = 8;
+/// Length of the push off a saddle, as a part of ALIMIT, of one radian at most.
+const PUSH: f64 = 0.01;
 
-/// EQUILIBRIUM.
+/// The settings of EQUILIBRIUM.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// ERROR: largest change of a coordinate in the last iteration
@@ -64,7 +70,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Of a model, defaults where it says nothing.
+    /// Takes the settings of a model, defaults where it says nothing.
     pub fn of(settings: &model::Settings) -> Self {
         let number = |name: &str, default: f64| {
             let given = settings.numbers.get(name).copied();
@@ -85,18 +91,18 @@ impl Settings {
         }
     }
 }
-/// An equilibrium, in the numbers of the system.
+/// An equilibrium; its configuration stands in the numbers of the system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// steps it took
+    /// steps of the descent
     pub iterations: usize,
     /// largest force or torque that is left
     pub imbalance: f64,
-    /// what a push does
+    /// the answers to a push
     pub stability: Stability,
 }
 
-/// Why there is none.
+/// The reason why there is no equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoEquilibrium {
     /// what is not balanced
@@ -105,6 +111,7 @@ pub enum NoEquilibrium {
     Interrupted,
 }
 
+/// The search for an equilibrium.
 struct Settler<'a> {
     system: &'a mut System,
     settings: &'a Settings,
@@ -126,7 +133,8 @@ struct Settler<'a> {
     factorizations: usize,
 }
 
-/// Brings a system to rest from where it is; its numbers end at the equilibrium, or where the search ended.
+/// Brings a system to rest from its present state; its numbers end at the equilibrium, or where the
+/// search ended.
 ///
 /// # Errors
 /// When there is none to be found: what is not balanced.
@@ -140,8 +148,9 @@ pub fn settle(
     let moving = settler.moving.take();
     let begin = settler.system.numbers.clone();
     let mut found = settler.run(watch);
-    // most states that integrate velocities only count: they are wound up where nothing else holds the load
-    if moving.is_some() && matches!(found, Err(NoEquilibrium::Unbalanced(_))) {
+    // most states that integrate velocities only count: they are wound up where nothing else holds
+    // the load
+    if moving.is_some() && matches!(found, Err(NoEquilibrium::Unbalanced(..))) {
         let end = std::mem::replace(&mut settler.system.numbers, begin);
         settler.moving = moving;
         match settler.run(watch) {
@@ -224,7 +233,7 @@ impl<'a> Settler<'a> {
             match descent {
                 Some(descent) if leave => {
                     saddles += 1;
-                    let push = descent * (0.01 * self.settings.angle.min(1.0));
+                    let push = descent * (PUSH * self.settings.angle.min(1.0));
                     match self.moved(&p, &push).and_then(|n| self.point(&n)) {
                         Some(pushed) => p = pushed,
                         None => return Ok(self.equilibrium(&p, iterations, stability)),
@@ -243,7 +252,7 @@ impl<'a> Settler<'a> {
         }
     }
 
-    /// Takes a configuration over into the system.
+    /// Puts a configuration into the system.
     fn keep(&mut self, p: &Point) {
         let y = p.numbers[self.system.scene.layout.y()].to_vec();
         self.system.numbers.copy_from_slice(&p.numbers);

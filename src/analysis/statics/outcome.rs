@@ -1,4 +1,4 @@
-//! What is said where no equilibrium is found.
+//! The reason why no equilibrium is found: the load that nothing carries.
 
 use super::point::Point;
 use super::step::Pace;
@@ -89,11 +89,12 @@ impl fmt::Display for Imbalance {
     }
 }
 
-/// How often a step is made shorter until its matrix is regular.
-const MAX_SHORTER: usize = 8;
+/// Number of times that a step is made shorter until its matrix is regular.
+const MAX_SHORTENINGS: usize = 8;
 
 impl Settler<'_> {
-    /// The loads that keep accelerating the model when whatever gives way has given way as far as it can; `None` where that is not known.
+    /// Returns the loads that keep accelerating the model when all that gives way has given way as
+    /// far as it can; `None` where that is not known.
     ///
     /// ```text
     /// D Δ/h = f + K Δ + Gᵀλ,  h → ∞
@@ -103,7 +104,7 @@ impl Settler<'_> {
         let n = self.n_v();
         // as long as the matrix bears it, with a few digits left
         let mut length = 100.0 * self.longest(p, &jacobian);
-        let step = (0..MAX_SHORTER).find_map(|_| {
+        let step = (0..MAX_SHORTENINGS).find_map(|_| {
             length *= 0.01;
             let pace = Pace::new(length, &jacobian, n);
             self.newton(p, &jacobian, &pace, &p.force)?;
@@ -114,7 +115,8 @@ impl Settler<'_> {
         (p.metric.size(&load) > 1e-3 * p.left[0]).then_some(load)
     }
 
-    /// Names what is not balanced: the largest of the loads that nothing carries, else what would be accelerated most.
+    /// Names what is not balanced: the largest of the loads that nothing carries, else the
+    /// coordinate that would be accelerated most.
     pub(super) fn unbalanced(&mut self, p: &Point) -> NoEquilibrium {
         let uncarried = self.carried_by_nothing(p);
         let scene = &self.system.scene;
@@ -168,7 +170,7 @@ impl Settler<'_> {
     }
 }
 
-/// Whether link `l` is `base` or carried by it.
+/// Returns whether link `l` is `base` or carried by it.
 fn carries(scene: &Scene, base: usize, l: usize) -> bool {
     let mut at = Some(l);
     while let Some(k) = at {

@@ -1,13 +1,13 @@
-//! A configuration with what acts in it, and how that changes.
+//! A configuration with the loads that act in it, and their derivatives.
 
 use super::Settler;
 use super::metric::{Metric, Rows};
-use crate::analysis::system::slopes::{Direction, along};
 use crate::numeric::pattern::Pattern;
 use crate::scene::equations::Equations;
+use crate::scene::slopes::{Direction, along};
 use nalgebra::{DMatrix, DVector};
 
-/// A configuration with what acts in it.
+/// A configuration with the loads that act in it.
 pub(super) struct Point {
     pub numbers: Vec<f64>,
     /// f + Gᵀλ   (n_v)
@@ -23,7 +23,7 @@ pub(super) struct Point {
 }
 
 impl Settler<'_> {
-    /// What acts in a configuration; `None` when it has no value there.
+    /// Evaluates the loads in a configuration; `None` when they have no value there.
     pub(super) fn point(&mut self, numbers: &[f64]) -> Option<Point> {
         self.evaluations += 1;
         let (n, m) = (self.n_v(), self.rows.len());
@@ -59,7 +59,8 @@ impl Settler<'_> {
         })
     }
 
-    /// Derivatives of loads (n_v rows) and e (n_d rows) along coordinates and states, multipliers kept.
+    /// Returns the derivatives of loads (n_v rows) and e (n_d rows) along coordinates and states,
+    /// multipliers kept.
     pub(super) fn jacobian(&mut self, p: &Point) -> DMatrix<f64> {
         let (n, m, d) = (self.n_v(), self.rows.len(), self.states.len());
         let l = self.system.scene.layout;
@@ -96,7 +97,7 @@ impl Settler<'_> {
         slopes.remove_rows(n, m)
     }
 
-    /// Derivatives of e along velocities   (n_d × n_v).
+    /// Returns the derivatives of e along velocities   (n_d × n_v).
     fn drift(&mut self, p: &Point) -> Option<DMatrix<f64>> {
         let moving = self.moving.as_ref()?;
         let places = self.system.scene.layout.v();

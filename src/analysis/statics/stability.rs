@@ -1,4 +1,4 @@
-//! How an equilibrium answers a small push.
+//! The stability of an equilibrium: directions in which a small push is answered, and how.
 
 use super::Settler;
 use super::point::Point;
@@ -6,10 +6,11 @@ use crate::numeric::rank::{Rank, TOLERANCE};
 use nalgebra::linalg::Schur;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Sweeps per eigenvalue of a matrix that is not symmetric: two to four are usual, what takes many more may take for ever.
-const SWEEPS: usize = 30;
+/// Sweeps per eigenvalue of a matrix that is not symmetric: two to four are usual; an iteration
+/// that takes many more may not end.
+const MAX_SWEEPS: usize = 30;
 
-/// How an equilibrium answers a small push.
+/// The answers of an equilibrium to a small push.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stability {
     /// directions in which it is pushed back
@@ -21,7 +22,7 @@ pub struct Stability {
 }
 
 impl Stability {
-    /// In words.
+    /// Writes them: "stable, indifferent in 2 directions".
     pub fn words(&self) -> String {
         let directions = |n: usize| if n == 1 { "direction" } else { "directions" };
         match (self.unstable, self.neutral) {
@@ -33,7 +34,7 @@ impl Stability {
 }
 
 impl Settler<'_> {
-    /// What a push does, and the direction in which it leaves fastest.
+    /// Finds the answers to a push, and the direction in which the model leaves fastest.
     pub(super) fn stability(
         &self,
         p: &Point,
@@ -46,7 +47,8 @@ impl Settler<'_> {
             let own = jacobian.view((n, n), (d, d)).into_owned();
             let mut moved = jacobian.view((n, 0), (d, n)).into_owned();
             let inverse = own.clone().try_inverse().or_else(|| {
-                // integrals of velocities follow what they integrate, in a motion as slow as may be: λ x = e_x x + (e_q + λ e_v) q
+                // integrals of velocities follow these, in a motion as slow as may be:
+                // λ x = e_x x + (e_q + λ e_v) q
                 let slow = 1e-6 * own.amax().max(1.0);
                 moved += self.drift.as_ref()? * slow;
                 (own - DMatrix::identity(d, d) * slow).try_inverse()
@@ -84,8 +86,8 @@ impl Settler<'_> {
         let values: Vec<f64> = if asymmetry(&reduced) < 1e-6 {
             eigen.eigenvalues.iter().copied().collect()
         } else {
-            // the iteration need not end: then the symmetric part says what the work of a push would
-            match Schur::try_new(reduced, f64::EPSILON, SWEEPS * f.max(10)) {
+            // the iteration need not end: then the symmetric part tells the work of a push
+            match Schur::try_new(reduced, f64::EPSILON, MAX_SWEEPS * f.max(10)) {
                 Some(schur) => schur.complex_eigenvalues().iter().map(|c| c.re).collect(),
                 None => eigen.eigenvalues.iter().copied().collect(),
             }
@@ -114,7 +116,7 @@ impl Settler<'_> {
     }
 }
 
-/// Size of the part that is not symmetric, relative to the whole.
+/// Returns the size of the part that is not symmetric, relative to the whole.
 pub(super) fn asymmetry(a: &DMatrix<f64>) -> f64 {
     let size = a.amax();
     if size == 0.0 {

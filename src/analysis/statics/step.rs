@@ -1,4 +1,5 @@
-//! One step of the fall: what it should be, where it leads, and whether the loads found there are those that were foretold.
+//! One step of the descent: its linear system, the configuration at its end, and the test whether
+//! the loads found there are those that were foretold.
 
 use super::Settler;
 use super::point::Point;
@@ -12,23 +13,30 @@ use crate::scene::tunnelling::ThicknessBound;
 use nalgebra::{DMatrix, DVector};
 
 /// Iterations of one implicit step.
-const CORRECTIONS: usize = 8;
+const MAX_CORRECTIONS: usize = 8;
 /// Part of its own rate by which a state that follows lags behind.
-const FOLLOW: f64 = 1e-6;
+const STATE_LAG: f64 = 1e-6;
 
-/// How far a step goes.
+/// The length of a step.
 pub(super) struct Pace {
-    /// its length in the fall's own time
+    /// in the descent's own time
     pub length: f64,
-    /// 1/length for each state: those that come to rest by themselves follow at once, as otherwise a force that they make would come too late
+    /// 1/length for each state: those that come to rest by themselves follow at once, as otherwise
+    /// a force that they make would come too late
     states: Vec<f64>,
 }
 
 impl Pace {
-    /// Of a length, where the derivatives are these   (n_v coordinates).
+    /// Takes a length at a place with these derivatives, `n_v` of whose rows are of coordinates.
     pub fn new(length: f64, jacobian: &DMatrix<f64>, n_v: usize) -> Self {
         let own = (n_v..jacobian.nrows()).map(|k| jacobian[(k, k)]);
-        let follow = |e: f64| if e < 0.0 { FOLLOW * -e } else { f64::INFINITY };
+        let follow = |e: f64| {
+            if e < 0.0 {
+                STATE_LAG * -e
+            } else {
+                f64::INFINITY
+            }
+        };
         Self {
             length,
             states: own.map(|e| follow(e).min(1.0 / length)).collect(),
@@ -37,7 +45,7 @@ impl Pace {
 }
 
 impl Settler<'_> {
-    /// The step of length `h` in the fall's own time: changes of coordinates and states; `None` where it would not go down.
+    /// Returns the changes of coordinates and states in a step; `None` where it would not go down.
     pub(super) fn step(
         &mut self,
         p: &Point,
@@ -48,7 +56,7 @@ impl Settler<'_> {
         self.solved(p, jacobian, pace, rhs, true)
     }
 
-    /// Newton's step against some loads, whichever way it leads.
+    /// Returns Newton's step against some loads, whichever way it leads.
     pub(super) fn newton(
         &mut self,
         p: &Point,
@@ -61,8 +69,8 @@ impl Settler<'_> {
         self.solved(p, jacobian, pace, rhs, false)
     }
 
-    /// Changes of coordinates and states that `rhs` asks for, with the matrix of a step of length `h`; `None` where that matrix is singular, or,
-    /// `downhill`, where it would lead up.
+    /// Solves for the changes of coordinates and states that `rhs` asks for, with the matrix of a
+    /// step; `None` where that matrix is singular, or, `downhill`, where the step would lead up.
     fn solved(
         &mut self,
         p: &Point,
@@ -102,7 +110,7 @@ impl Settler<'_> {
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
 
-    /// How far a step exceeds the limits of its length; at most 1 is permitted.
+    /// Returns the size of a step in units of TLIMIT and ALIMIT; at most 1 is permitted.
     pub(super) fn excess(&self, step: &DVector<f64>) -> f64 {
         let scene = &self.system.scene;
         let translation = self.settings.translation.max(scene.length);
@@ -120,7 +128,8 @@ impl Settler<'_> {
         most
     }
 
-    /// How far the way to other numbers exceeds what bodies of a contact may go at once without coming through each other; at most 1 is permitted.
+    /// Returns the length of the way to other numbers in units of what bodies of a contact may go
+    /// at once without coming through each other; at most 1 is permitted.
     fn through(&self, p: &Point, numbers: &[f64]) -> f64 {
         let scene = self.system.configured();
         if scene.thickness_bounds.is_empty() {
@@ -138,7 +147,7 @@ impl Settler<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// The configuration after a step, on the rows.
+    /// Returns the numbers after a step, on the rows; `None` where the rows cannot be kept.
     pub(super) fn moved(&mut self, p: &Point, step: &DVector<f64>) -> Option<Vec<f64>> {
         let l = self.system.scene.layout;
         let mut numbers = p.numbers.clone();
@@ -158,8 +167,8 @@ impl Settler<'_> {
         Some(numbers)
     }
 
-    /// Tries a step: the point at its end, how far that is from what was foretold (relative to the limit, beyond the `floor` that rounding makes), and
-    /// whether its length had to be limited.
+    /// Tries a step: the point at its end, how far that is from what was foretold (relative to the
+    /// limit, beyond the `floor` that rounding makes), and whether its length had to be limited.
     pub(super) fn attempt(
         &mut self,
         p: &Point,
@@ -202,15 +211,16 @@ impl Settler<'_> {
         (quality <= 1.0).then_some((next, quality, shortened))
     }
 
-    /// Tries a step again whose end is not what was foretold: as an implicit step in earnest, iterated until the loads at its end are
-    /// those that move it there.
+    /// Tries a step again whose end is not what was foretold: as an implicit step, iterated until
+    /// the loads at its end are those that move it there.
     ///
     /// ```text
     /// D Δ/h = f(q + Δ) + Gᵀλ
     /// ```
     ///
-    /// Where stiff parts turn with soft ones (blades with a rotor that swings down) their forces grow with the square of a step
-    /// that never leaves the valley; the iteration leads it back to the bottom.
+    /// Where stiff parts turn with soft ones (blades with a rotor that swings down) their forces
+    /// grow with the square of a step that never leaves the valley; the iteration leads it back to
+    /// the bottom.
     pub(super) fn corrected(
         &mut self,
         p: &Point,
@@ -237,7 +247,7 @@ impl Settler<'_> {
         if self.through(p, &numbers) > 1.0 {
             return None;
         }
-        for _ in 0..CORRECTIONS {
+        for _ in 0..MAX_CORRECTIONS {
             let next = self.point(&numbers)?;
             let moving = p.metric.times(&step.as_slice()[..n]) / h;
             let (_, foretold) = p.rows.balanced(&moving);
@@ -268,7 +278,8 @@ impl Settler<'_> {
             // stiff directions have turned on the way: the derivatives have to be those of the end
             let jacobian = self.jacobian(&next);
             let delta = self.solved(&next, &jacobian, pace, rhs, false)?;
-            // from there on, in the directions of there: in those of the beginning, what is soft for it would be stiff
+            // go on in the directions of the end: those that are soft at the beginning are stiff
+            // there
             step += &delta;
             if self.excess(&step) > 1.0 {
                 return None;
@@ -279,7 +290,7 @@ impl Settler<'_> {
     }
 }
 
-/// Whether the symmetric part of a matrix is positive on what the rows leave free.
+/// Returns whether the symmetric part of a matrix is positive on what the rows leave free.
 fn goes_down(a: &DMatrix<f64>, gradient: &DMatrix<f64>) -> bool {
     let mut s = (a + a.transpose()) * 0.5;
     if gradient.nrows() > 0 {

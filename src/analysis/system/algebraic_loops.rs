@@ -1,4 +1,5 @@
-//! Numbers that stand beside the state and follow from it: unknowns of algebraic loops that are not linear.
+//! Numbers that stand beside the state and follow from it: unknowns of algebraic loops that are not
+//! linear.
 //!
 //! ```text
 //! ρ(z; t, y) = 0:   z ← z − (∂ρ/∂z)⁻¹ ρ,  shortened while ρ would grow        dz/dy = −(∂ρ/∂z)⁻¹ ∂ρ/∂y
@@ -6,31 +7,34 @@
 //!
 //! The iteration begins where the last one ended, so that z follows its branch as the state moves.
 
-use crate::analysis::system::slopes;
+use super::recording::Recording;
 use crate::expr::program::{Program, Work};
 use crate::numeric::dense::Lu;
 use crate::scalar::Dual;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::loops;
+use crate::scene::slopes::{self, WIDTH};
 use std::ops::Range;
 
-/// Directions of a dual number in one sweep.
-pub(in crate::analysis) const WIDTH: usize = 8;
-const ITERATIONS: usize = 60;
+const MAX_ITERATIONS: usize = 60;
+/// Smallest part of a step that is tried.
+const SHORTEST_PART: f64 = 1e-6;
 /// Change of an unknown, relative to its size, that counts as rounding.
 const ROUNDING: f64 = 1e-14;
-/// The same for a step by factors from elsewhere that leads no further, relative to the largest unknown.
+/// The same for a step by factors from elsewhere that leads no further, relative to the largest
+/// unknown.
 const STALLED: f64 = 1e-13;
-/// Factors from elsewhere serve as long as each step leaves no more than this part of the residual.
-const SERVES: f64 = 0.2;
+/// Part of the residual that a step by factors from elsewhere may leave: else new ones are
+/// computed.
+const CONTRACTION: f64 = 0.2;
 
 /// Solves the loops of a scene.
 #[derive(Debug)]
 pub(in crate::analysis) struct AlgebraicLoops {
     residual: Program,
-    /// ∂ρ/∂z by rows, where it is not too long, and its values
-    gradient: Option<(Program, Work, Vec<f64>)>,
+    /// ∂ρ/∂z by rows, where it is not too long   (n × n)
+    gradient: Option<Recording>,
     places: Range<usize>,
     work: Work,
     dual_work: Work<Dual<WIDTH>>,
@@ -44,6 +48,10 @@ pub(in crate::analysis) struct AlgebraicLoops {
     factored: bool,
 }
 
+fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
+}
+
 fn lift(x: f64) -> Dual<WIDTH> {
     Dual {
         re: x,
@@ -51,7 +59,7 @@ fn lift(x: f64) -> Dual<WIDTH> {
     }
 }
 
-/// What a step by factors from elsewhere came to.
+/// The result of a step by factors from elsewhere.
 enum Simplified {
     /// the residual it leaves
     Nearer(f64),
@@ -62,13 +70,12 @@ enum Simplified {
 }
 
 impl AlgebraicLoops {
-    /// Of a scene; `None` when it has no such unknowns.
+    /// Records the loops of a scene; `None` when it has no such unknowns.
     pub fn new(scene: Configured<'_>) -> Result<Option<Self>, Vec<Unsupported>> {
         let n = scene.layout.n_loops;
         let places = scene.layout.loops();
         Ok(loops::program(scene)?.map(|residual| Self {
-            gradient: slopes::recorded(&residual, n, places.clone())
-                .map(|program| (program, Work::default(), vec![0.0; n * n])),
+            gradient: slopes::recorded(&residual, n, places.clone()).map(Recording::new),
             residual,
             places,
             work: Work::default(),
@@ -91,8 +98,8 @@ impl AlgebraicLoops {
     /// Factors ∂ρ/∂z.
     fn factor(&mut self, numbers: &[f64]) -> Result<(), usize> {
         let n = self.rho.len();
-        if let Some((program, work, entries)) = &mut self.gradient {
-            program.run(numbers, work, entries);
+        if let Some(gradient) = &mut self.gradient {
+            let entries = gradient.run(numbers);
             for (i, row) in entries.chunks(n).enumerate() {
                 for (k, &entry) in row.iter().enumerate() {
                     self.lu.matrix_mut()[i + n * k] = entry;
@@ -130,16 +137,16 @@ impl AlgebraicLoops {
     /// # Errors
     /// The index of an unknown whose loop has no solution near.
     pub fn solve(&mut self, numbers: &mut [f64]) -> Result<(), usize> {
-        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let begun = largest(&numbers[self.places.clone()]);
         let mut size = self.evaluate(numbers);
-        for _ in 0..ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             if size == 0.0 {
                 return Ok(());
             }
             if !size.is_finite() {
                 break;
             }
+            // by factors from elsewhere
             if self.factored {
                 match self.simplified(numbers, size) {
                     Simplified::Nearer(next) => {
@@ -150,66 +157,81 @@ impl AlgebraicLoops {
                     Simplified::Fails => {}
                 }
             }
+            // by factors of its own
             self.factor(numbers)?;
             self.step.copy_from_slice(&self.rho);
             self.lu.solve(&mut self.step);
             let z = &numbers[self.places.clone()];
-            let small = z.iter().zip(&self.step);
-            let arrived = small.fold(true, |all, (z, d)| all && d.abs() <= ROUNDING * z.abs());
-            self.trial.copy_from_slice(z);
-            let mut part = 1.0;
-            let better = loop {
-                for ((z, old), d) in numbers[self.places.clone()]
-                    .iter_mut()
-                    .zip(&self.trial)
-                    .zip(&self.step)
-                {
-                    *z = old - part * d;
-                }
-                let next = self.evaluate(numbers);
-                if next < size {
-                    size = next;
-                    break true;
-                }
-                part *= 0.5;
-                if part < 1e-6 || arrived {
-                    numbers[self.places.clone()].copy_from_slice(&self.trial);
-                    break false;
-                }
-            };
+            let small = |(z, d): (&f64, &f64)| d.abs() <= ROUNDING * z.abs();
+            let arrived = z.iter().zip(&self.step).all(small);
+            let better = self.search(numbers, size, arrived);
             if arrived {
                 return Ok(());
             }
-            if !better {
+            match better {
+                Some(next) => size = next,
                 // no better number: rounding, or no solution
-                self.evaluate(numbers);
-                let z = &numbers[self.places.clone()];
-                let largest = z.iter().fold(1e-300, |m: f64, z| m.max(z.abs()));
-                // a number that is zero but for rounding is as exact as the others make it
-                let rounding =
-                    |(z, d): (&f64, &f64)| d.abs() <= 1e-9 * z.abs() || d.abs() <= 1e-13 * largest;
-                if z.iter().zip(&self.step).all(rounding) {
-                    return Ok(());
+                None => {
+                    self.evaluate(numbers);
+                    if self.is_rounding(&numbers[self.places.clone()]) {
+                        return Ok(());
+                    }
+                    break;
                 }
-                break;
             }
         }
-        // a solution that is zero is approached for ever: what is left is nothing beside where it began
+        // a solution that is zero is approached for ever: what is left is nothing beside its
+        // beginning
         let about = begun.max(largest(&numbers[self.places.clone()]));
-        if size.is_finite() && largest(&self.step) <= 1e-14 * about {
+        if size.is_finite() && largest(&self.step) <= ROUNDING * about {
             return Ok(());
         }
-        let worst = (0..self.rho.len()).max_by(|&a, &b| {
-            let size = |k: usize| {
-                if self.rho[k].is_finite() {
-                    self.rho[k].abs()
-                } else {
-                    f64::INFINITY
-                }
-            };
-            size(a).total_cmp(&size(b))
-        });
-        Err(worst.unwrap_or(0))
+        Err(self.worst())
+    }
+
+    /// Goes along the step, shortened while the residual would grow; the residual there, or `None`
+    /// where it is nowhere smaller and the unknowns are what they were.
+    fn search(&mut self, numbers: &mut [f64], size: f64, arrived: bool) -> Option<f64> {
+        let places = self.places.clone();
+        self.trial.copy_from_slice(&numbers[places.clone()]);
+        let mut part = 1.0;
+        loop {
+            let z = numbers[places.clone()].iter_mut();
+            for ((z, old), d) in z.zip(&self.trial).zip(&self.step) {
+                *z = old - part * d;
+            }
+            let next = self.evaluate(numbers);
+            if next < size {
+                return Some(next);
+            }
+            part *= 0.5;
+            if part < SHORTEST_PART || arrived {
+                numbers[places].copy_from_slice(&self.trial);
+                return None;
+            }
+        }
+    }
+
+    /// Returns whether the step is rounding of the unknowns `z`; one that is zero but for rounding
+    /// is as exact as the others make it.
+    fn is_rounding(&self, z: &[f64]) -> bool {
+        let largest = z.iter().fold(1e-300, |m: f64, z| m.max(z.abs()));
+        let rounding =
+            |(z, d): (&f64, &f64)| d.abs() <= 1e-9 * z.abs() || d.abs() <= 1e-13 * largest;
+        z.iter().zip(&self.step).all(rounding)
+    }
+
+    /// Returns the unknown with the largest residual.
+    fn worst(&self) -> usize {
+        let size = |k: usize| {
+            if self.rho[k].is_finite() {
+                self.rho[k].abs()
+            } else {
+                f64::INFINITY
+            }
+        };
+        let worst = (0..self.rho.len()).max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        worst.unwrap_or(0)
     }
 
     /// A step by the factors from where it was last solved.
@@ -222,10 +244,9 @@ impl AlgebraicLoops {
             *z -= d;
         }
         let next = self.evaluate(numbers);
-        if next <= SERVES * size {
+        if next <= CONTRACTION * size {
             return Simplified::Nearer(next);
         }
-        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let arrived = largest(&self.step) <= STALLED * largest(&self.trial);
         if !arrived || next > size || next.is_nan() {
             numbers[self.places.clone()].copy_from_slice(&self.trial);
@@ -239,8 +260,8 @@ impl AlgebraicLoops {
         }
     }
 
-    /// Puts dz along the directions of the other numbers into the places of the unknowns, whose own derivatives are zero;
-    /// the loops are solved at these numbers.
+    /// Puts dz along the directions of the other numbers into the places of the unknowns, whose own
+    /// derivatives are zero; the loops are solved at these numbers.
     ///
     /// # Errors
     /// The index of an unknown that nothing determines.
@@ -263,7 +284,8 @@ impl AlgebraicLoops {
         Ok(())
     }
 
-    /// Tells along which directions the unknowns change: as they are solved for together, those along which any loop does.
+    /// Puts into the places of the unknowns along which directions they change: as they are solved
+    /// for together, those along which any loop does.
     pub fn depend(&self, along: &mut [Vec<u32>]) {
         let mut all: Vec<u32> = self.residual.dependence(along).concat();
         all.sort_unstable();

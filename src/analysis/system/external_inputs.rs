@@ -1,17 +1,19 @@
-//! Numbers that the programs read but do not compute: values of the past (DELAY), results of the user's closures (USER), places
-//! where solids touch that no formula finds.
+//! Numbers that the programs read but do not compute: values of the past (DELAY), results of the
+//! user's closures (USER), places where solids touch that no formula finds.
 //!
 //! The past is kept step by step, as polynomials through the interpolant of each accepted step:
 //!
 //! ```text
-//! e(t*) with t* = t − delay:   before the start: history(t*)   up to the last step: the polynomial there   later: a line to e(t)
+//! e(t*) with t* = t − delay:   before the start        history(t*)
+//!                              up to the last step     the polynomial there
+//!                              later                   a line to e(t)
 //! ```
 //!
-//! Steps are kept no longer than the shortest delay, so that the last case is met only where a delay shrinks to nothing. Closures see
-//! numbers and return numbers; how these change with what they were given is found by differences.
+//! Steps are kept no longer than the shortest delay, so that the last case is met only where a
+//! delay shrinks to nothing. Closures see numbers and return numbers; how these change with what
+//! they were given is found by differences.
 
 use crate::analysis::system::System;
-use crate::analysis::system::algebraic_loops::WIDTH;
 use crate::expr::program::{Program, Work};
 use crate::model::ElementId;
 use crate::numeric::{Failure, Method, Step};
@@ -23,28 +25,31 @@ use crate::scene::equations::{Lack, Unsupported};
 use crate::scene::external_inputs::{ExternalInput, HookKind, HookName};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
+use crate::scene::slopes::WIDTH;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What a closure is called with.
+/// The arguments of a closure.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
     /// TIME
     pub time: f64,
-    /// for which element
+    /// the element that asks
     pub element: ElementId,
     /// the numbers of `USER(…)`
     pub constants: &'a [f64],
-    /// values of the expressions that the closure was registered with; for a GSE followed by its states, inputs and discrete states
+    /// values of the expressions that the closure was registered with; for a GSE followed by its
+    /// states, inputs and discrete states
     pub values: &'a [f64],
 }
 
 /// A closure: fills in the results, which are zero when it is called.
 ///
-/// One number for SFORCE, VARIABLE, DIFF or SENSOR; FX, FY, FZ, TX, TY, TZ for GFORCE, three for VFORCE and VTORQUE; the value and its
-/// first two derivatives in time for MOTION; eight components for REQUEST; rates of the states, then outputs, then what the discrete
-/// states are from the next sample on, for GSE.
+/// One number for SFORCE, VARIABLE, DIFF or SENSOR; FX, FY, FZ, TX, TY, TZ for GFORCE, three for
+/// VFORCE and VTORQUE; the value and its first two derivatives in time for MOTION; eight components
+/// for REQUEST; rates of the states, then outputs, then what the discrete states are from the next
+/// sample on, for GSE.
 pub type Law = dyn Fn(&Call<'_>, &mut [f64]) + Send + Sync;
 
 /// A closure under its name.
@@ -54,12 +59,12 @@ pub struct Hook {
     pub name: String,
     /// expressions whose values it is given
     pub inputs: Vec<String>,
-    /// what it computes
+    /// the closure
     pub law: Arc<Law>,
 }
 
 impl Hook {
-    /// What the scene is to know of it.
+    /// Returns the part of it that the scene knows.
     pub fn as_name(&self) -> HookName {
         HookName {
             name: self.name.clone(),
@@ -85,13 +90,13 @@ struct Piece {
     values: [f64; NODES],
 }
 
-/// Place of node `k` within a step, 0 to 1.
+/// Returns the place of node `k` within a step, 0 to 1.
 fn node(k: usize) -> f64 {
     0.5 * (1.0 - (std::f64::consts::PI * k as f64 / (NODES - 1) as f64).cos())
 }
 
 impl Piece {
-    /// The polynomial through the nodes, by the barycentric formula.
+    /// Evaluates the polynomial through the nodes, by the barycentric formula.
     fn at(&self, t: f64) -> f64 {
         let u = (t - self.t0) / (self.t1 - self.t0);
         let (mut above, mut below) = (0.0, 0.0);
@@ -110,7 +115,7 @@ impl Piece {
     }
 }
 
-/// What a delayed value has been.
+/// The past of a delayed value.
 #[derive(Clone, Debug, Default)]
 pub struct Past {
     /// where it begins
@@ -119,7 +124,7 @@ pub struct Past {
 }
 
 impl Past {
-    /// As lists of numbers: the start, then each piece with its two ends.
+    /// Returns lists of numbers: the start, then each piece with its two ends.
     pub(in crate::analysis) fn numbers(&self) -> Vec<Vec<f64>> {
         let piece = |p: &Piece| [&[p.t0, p.t1][..], &p.values[..]].concat();
         let start = self.start.into_iter().collect();
@@ -128,7 +133,7 @@ impl Past {
             .collect()
     }
 
-    /// From such lists; `None` where they are none.
+    /// Reads such lists; `None` where they are none.
     pub(in crate::analysis) fn of_numbers(lists: &[Vec<f64>]) -> Option<Self> {
         let (start, pieces) = lists.split_first()?;
         let piece = |p: &Vec<f64>| {
@@ -156,7 +161,7 @@ struct Track {
     past: Past,
 }
 
-/// What is called.
+/// A closure that can be printed.
 #[derive(Clone)]
 struct Callable(Arc<Law>);
 
@@ -166,7 +171,7 @@ impl fmt::Debug for Callable {
     }
 }
 
-/// What computes the numbers of a hook.
+/// Returns the closure that computes the numbers of a hook.
 fn law(kind: &HookKind, element: ElementId, hooks: &[Hook]) -> Result<Callable, Vec<Unsupported>> {
     match kind {
         HookKind::User { closure, .. } => Ok(Callable(hooks[*closure].law.clone())),
@@ -207,9 +212,9 @@ struct Bound {
     places: Range<usize>,
     inputs: Program,
     output_only: bool,
-    /// what it is given is the pose of one solid in the frame of another
+    /// its values are the pose of one solid in the frame of another
     is_pose: bool,
-    /// which of its values its results depend on
+    /// whether its results depend on each of its values
     reads: Vec<bool>,
     values: Vec<f64>,
     results: Vec<f64>,
@@ -217,7 +222,7 @@ struct Bound {
     slopes: Vec<f64>,
 }
 
-/// The numbers from outside of a system.
+/// The external inputs of a system.
 #[derive(Debug, Default)]
 pub struct ExternalInputs {
     /// nothing moves but time, so that the past need not be kept
@@ -240,7 +245,7 @@ impl Bound {
         (self.law.0)(&call, &mut self.results);
     }
 
-    /// Differences of the results along each value, at the present ones.
+    /// Finds the slopes of the results along each value, by differences.
     fn differentiate(&mut self, time: f64) {
         let (n, m) = (self.values.len(), self.results.len());
         self.slopes.resize(n * m, 0.0);
@@ -252,7 +257,8 @@ impl Bound {
                 continue;
             }
             let x = self.values[k];
-            // numbers of a pose are measured by its distance and by 1, whichever of them happen to be zero
+            // numbers of a pose are measured by its distance and by 1, whichever of them happen to
+            // be zero
             let unit = match (self.is_pose, k) {
                 (true, 0..3) => distance,
                 (true, _) => 1.0,
@@ -275,7 +281,7 @@ impl Bound {
 }
 
 impl ExternalInputs {
-    /// Of a scene, with the closures that its hooks refer to.
+    /// Records the external inputs of a scene, with the closures that its hooks refer to.
     ///
     /// # Errors
     /// What the equations cannot supply; closures that would read what depends on them.
@@ -342,12 +348,13 @@ impl ExternalInputs {
         Ok(this)
     }
 
-    /// Whether there is nothing to be computed.
+    /// Returns whether there is nothing to be computed.
     pub fn is_empty(&self) -> bool {
         self.tracks.is_empty() && self.hooks.is_empty()
     }
 
-    /// Fills the places of a row of numbers from what stands before them; `output`: also what only results show.
+    /// Fills in the external inputs of a row of numbers; `output`: also those that only results
+    /// show.
     pub fn evaluate(&mut self, numbers: &mut [f64], output: bool) {
         let mut out = [0.0];
         let t = numbers[Layout::TIME];
@@ -401,7 +408,8 @@ impl ExternalInputs {
         }
     }
 
-    /// Derivatives of the closures' results along the directions of a row of numbers, into their places; `first`: at new numbers.
+    /// Puts the derivatives of the closures' results along the directions of a row of numbers into
+    /// their places; `first`: at new numbers.
     pub fn follow(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) {
         let mut out = Vec::new();
         for hook in self.hooks.iter_mut().filter(|h| !h.output_only) {
@@ -428,7 +436,7 @@ impl ExternalInputs {
         }
     }
 
-    /// Tells along which directions the results change: those along which what they are given does.
+    /// Puts in along which directions the results change: those along which their values do.
     pub fn depend(&self, along: &mut [Vec<u32>]) {
         for hook in self.hooks.iter().filter(|h| !h.output_only) {
             let mut all: Vec<u32> = hook.inputs.dependence(along).concat();
@@ -447,12 +455,12 @@ impl ExternalInputs {
         }
     }
 
-    /// Whether the past is asked for.
+    /// Returns whether the past is asked for.
     pub fn remembers(&self) -> bool {
         !self.tracks.is_empty()
     }
 
-    /// The shortest delay at a row of numbers; those that are none do not count.
+    /// Returns the shortest positive delay at a row of numbers.
     pub fn shortest_delay(&mut self, numbers: &[f64]) -> f64 {
         let mut out = [0.0];
         let mut shortest = f64::INFINITY;
@@ -465,26 +473,26 @@ impl ExternalInputs {
         shortest
     }
 
-    /// What has been, for the next simulation.
+    /// Returns the past of all delayed values, for the next simulation.
     pub fn past(&self) -> Vec<Past> {
         self.tracks.iter().map(|t| t.past.clone()).collect()
     }
 
-    /// Goes on from what has been, or begins at time `t`.
+    /// Goes on from a past, or begins at time `t`.
     pub fn begin(&mut self, t: f64, past: &[Past]) {
         let fits = past.len() == self.tracks.len();
         for (k, track) in self.tracks.iter_mut().enumerate() {
             if fits {
                 track.past.clone_from(&past[k]);
             }
-            // what was computed beyond the beginning, in an earlier attempt, has not been
+            // steps beyond the beginning, of an earlier attempt, are no past
             track.past.pieces.retain(|p| p.t0 < t);
             track.past.start.get_or_insert(t);
         }
     }
 }
 
-/// Keeps what an accepted step says of remembered values.
+/// Keeps the values of an accepted step for the past.
 ///
 /// # Errors
 /// Where the interpolant has no value.

@@ -1,15 +1,16 @@
-//! A scene as an implicit system: what the methods for differential-algebraic equations see.
+//! A scene as F(t, y, ẏ) = 0, for methods for differential-algebraic equations.
 //!
 //! ```text
 //! I3    q̇ = N(q) v                  M v̇ + h = f + Gᵀλ      ẋ = s      g(t, q) = 0                     y = q | v | x | λ
 //! SI2   q̇ = N(q) (v + Gᵀμ)          M v̇ + h = f + Gᵀλ      ẋ = s      g = 0,  G v + ġ₀ = 0            y = q | v | x | λ | μ
 //! ```
 //!
-//! Both are recorded from the same equations as the explicit rates. I3 controls the errors of positions only; the second multiplier of
-//! SI2, zero but for the error of the method, lets the rows hold in velocity too, and velocities are controlled.
+//! Both are recorded from the same equations as the explicit rates. I3 controls the errors of
+//! positions only; the second multiplier of SI2, zero but for the error of the method, lets the
+//! rows hold in velocity too, and velocities are controlled.
 //!
-//! Where functions change branch the same is recorded with branches held, as the explicit rates are: a step sees smooth equations, also beyond the end of
-//! a branch.
+//! Where functions change branch the same is recorded with branches held, as the explicit rates
+//! are: a step sees smooth equations, also beyond the end of a branch.
 //!
 //! Source: Gear, Gupta & Leimkuhler 1985 for SI2.
 
@@ -26,7 +27,7 @@ use crate::scene::equations::Equations;
 use crate::scene::programs::{Switching, held_with, record, record_more};
 use written::Written;
 
-/// Which levels of the rows an implicit method sees.
+/// The levels of the rows that an implicit method sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Formulation {
     /// positions alone
@@ -48,7 +49,7 @@ pub struct Implicit {
     held: Option<Written>,
     /// of the Jacobian, whichever is asked for
     pattern: Vec<(usize, usize)>,
-    /// what the residual reads: the numbers, then ẏ, λ, μ, then the sides of the switches
+    /// the inputs of the residual: the numbers, then ẏ, λ, μ, then the sides of the switches
     numbers: Vec<f64>,
 }
 
@@ -164,7 +165,12 @@ impl Implicit {
         Ok(implicit)
     }
 
-    /// How many unknowns there are.
+    /// Returns the levels of the rows that it sees.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
+    }
+
+    /// Returns the number of unknowns.
     pub fn size(&self) -> usize {
         match self.formulation {
             Formulation::Index3 => self.n + self.m,
@@ -182,7 +188,7 @@ impl Implicit {
     }
 }
 
-/// The multipliers of the rows that take part, as the explicit equations have them.
+/// Returns the multipliers of the rows that take part, as the explicit equations have them.
 fn multipliers_at<S: Scalar>(scene: &Scene, at: &Equations<'_, S>) -> Vec<S> {
     let solved = at.solved();
     let active = (0..scene.rows.len()).filter(|&r| at.is_active(r));
@@ -190,7 +196,7 @@ fn multipliers_at<S: Scalar>(scene: &Scene, at: &Equations<'_, S>) -> Vec<S> {
 }
 
 impl System {
-    /// From now on the system is also an implicit one.
+    /// Makes the system an implicit one, too.
     ///
     /// # Errors
     /// Functions that read what is solved for.
@@ -200,30 +206,15 @@ impl System {
             .as_ref()
             .is_none_or(|i| i.formulation != formulation)
         {
-            let more = (&self.external, self.switching.as_ref());
+            let switching = self.recorded.branches.switching.as_ref();
+            let more = (&self.external, switching);
             let implicit = Implicit::new(self.configured(), formulation, more)?;
             self.implicit = Some(Box::new(implicit));
         }
         Ok(())
     }
 
-    /// Writes the implicit equations again for another configuration, if there were any.
-    ///
-    /// # Errors
-    /// Functions that read what is solved for.
-    pub(in crate::analysis) fn renew_implicit(
-        &mut self,
-        scene: Configured<'_>,
-    ) -> Result<(), Vec<Diagnostic>> {
-        if let Some(implicit) = &self.implicit {
-            let formulation = implicit.formulation;
-            let more = (&self.external, self.switching.as_ref());
-            self.implicit = Some(Box::new(Implicit::new(scene, formulation, more)?));
-        }
-        Ok(())
-    }
-
-    /// A state of the explicit system with multipliers; the size of the implicit one.
+    /// Returns the number of unknowns of the implicit system: the state, and multipliers.
     pub fn implicit_size(&self) -> usize {
         self.implicit.as_ref().map_or(0, |i| i.size())
     }
@@ -244,9 +235,9 @@ impl Dae for System {
     fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
         let n = self.implicit().n;
         self.set(t, &y[..n]);
-        let holding = self.holding;
+        let holding = self.recorded.branches.is_holding();
         if let Some(i) = &mut self.implicit {
-            i.set(&self.numbers, y, ydot, &self.sides);
+            i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
             if let (true, Some(held)) = (holding, &mut i.held) {
                 held.residual(&i.numbers, r);
                 // beyond its end a branch may have no value
@@ -278,9 +269,9 @@ impl Dae for System {
         values: &mut [f64],
     ) -> Result<(), Failure> {
         self.set(t, &y[..self.implicit().n]);
-        let holding = self.holding;
+        let holding = self.recorded.branches.is_holding();
         if let Some(i) = &mut self.implicit {
-            i.set(&self.numbers, y, ydot, &self.sides);
+            i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
             let written = match (holding, &mut i.held) {
                 (true, Some(held)) => held,
                 _ => &mut i.free,
@@ -295,9 +286,9 @@ impl Dae for System {
         y[n..].fill(0.0);
         ydot.fill(0.0);
         Ode::rate(self, t, &y[..n], &mut ydot[..n])?;
-        let holding = self.holding;
+        let holding = self.recorded.branches.is_holding();
         if let Some(i) = &mut self.implicit {
-            i.set(&self.numbers, y, ydot, &self.sides);
+            i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
             let lambda = &mut y[n..n + i.m];
             if let (true, Some(held)) = (holding, &mut i.held) {
                 held.multipliers(&i.numbers, lambda);

@@ -1,71 +1,79 @@
-//! The Jacobian of the rates: recorded, by duals, or, where most of it is empty, by duals along groups of columns.
+//! The Jacobian of the rates: recorded, by duals, or, where most of it is empty, by duals along
+//! groups of columns.
 //!
-//! Parts that are free and tied to their neighbours by forces have rates that see their neighbours only. The pattern is read off the recorded rate; columns that
-//! share no row are found along one direction together, eight directions at a time, and methods factor a sparse matrix.
+//! Parts that are free and tied to their neighbours by forces have rates that see their neighbours
+//! only. The pattern is read off the recorded rate; columns that share no row are found along one
+//! direction together, eight directions at a time, and methods factor a sparse matrix.
 
 use super::System;
-use crate::analysis::system::algebraic_loops::WIDTH;
-use crate::analysis::system::slopes;
+use super::recording::Recording;
 use crate::expr::program::{Program, Work};
-use crate::numeric::Failure;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::sparse::DENSE_LIMIT;
+use crate::numeric::{Failure, Ode};
 use crate::scalar::Dual;
-use crate::scene::programs::Switching;
+use crate::scene::slopes::{self, WIDTH};
 use std::sync::Arc;
 
-/// Entries of a Jacobian that counts as mostly empty, as a part of all places.
-const SPARSE: f64 = 0.25;
+/// Entries of a Jacobian that counts as mostly empty, at most, as a part of all places.
+const MAX_DENSITY: f64 = 0.25;
 
 /// Derivatives of all rates with respect to all unknowns, then to time.
 #[derive(Debug)]
-pub(super) enum Gradient {
-    /// recorded: rate by rate
-    Recorded(Box<Program>, Work, Vec<f64>),
+enum Gradient {
+    /// recorded: rate by rate   (n × (n + 1))
+    Recorded(Box<Recording>),
     /// by duals
     Duals,
 }
 
 impl Gradient {
-    /// Of the first `n` outputs of a program, by whichever way takes less.
+    /// Chooses the way that takes less for the first `n` outputs of a program.
     fn new(rate: &Program, n: usize) -> Self {
         // unknowns are numbers 1 … n of the row, time is number 0
         match slopes::recorded(rate, n, (1..=n).chain([0])) {
-            Some(program) => {
-                Gradient::Recorded(Box::new(program), Work::default(), vec![0.0; n * (n + 1)])
-            }
+            Some(program) => Gradient::Recorded(Box::new(Recording::new(program))),
             None => Gradient::Duals,
         }
     }
 }
 
+/// The derivatives of the rates of a configuration, found when they are first asked for.
+#[derive(Debug, Default)]
+pub(super) struct Derivatives {
+    /// those of the rate, and of the one with branches held
+    gradients: [Option<Gradient>; 2],
+    /// entries of the Jacobian, whichever branches are held, where it is mostly empty
+    pattern: Option<Option<Arc<Pattern>>>,
+    work: Work<Dual<WIDTH>>,
+    numbers: Vec<Dual<WIDTH>>,
+    out: Vec<Dual<WIDTH>>,
+}
+
 impl System {
-    /// The program of the rates as they are taken now.
+    /// Returns the program of the rates as they are taken now.
     fn present_rate(&self) -> &Program {
-        match &self.switching {
-            Some(Switching {
-                held: Some(held), ..
-            }) if self.holding => held,
-            _ => &self.rate,
-        }
+        let held = self.recorded.branches.held_rate();
+        held.filter(|_| self.recorded.branches.is_holding())
+            .unwrap_or(&self.recorded.rate.program)
     }
 
-    /// The derivatives of the rates as they are taken now, recorded if that is worth it.
+    /// Chooses the derivatives of the rates as they are taken now: recorded, if that is worth it.
     fn gradient(&mut self, n: usize) -> &mut Gradient {
-        let holding = usize::from(self.holding);
-        if self.gradients[holding].is_none() {
-            let outside = self.unknowns.is_some() || !self.external.is_empty();
-            let gradient = if outside {
+        let holding = usize::from(self.recorded.branches.is_holding());
+        if self.recorded.derivatives.gradients[holding].is_none() {
+            let beside = self.recorded.loops.is_some() || !self.external.is_empty();
+            let gradient = if beside {
                 Gradient::Duals
             } else {
                 Gradient::new(self.present_rate(), n)
             };
-            self.gradients[holding] = Some(gradient);
+            self.recorded.derivatives.gradients[holding] = Some(gradient);
         }
-        self.gradients[holding].get_or_insert(Gradient::Duals)
+        self.recorded.derivatives.gradients[holding].get_or_insert(Gradient::Duals)
     }
 
-    /// All of the Jacobian at the present numbers.
+    /// Evaluates all of the Jacobian at the present numbers.
     pub(super) fn full_jacobian(
         &mut self,
         n: usize,
@@ -73,18 +81,15 @@ impl System {
         dfdt: &mut [f64],
     ) -> Result<(), Failure> {
         self.gradient(n);
-        let (holding, sliding) = (usize::from(self.holding), self.is_sliding());
-        match &mut self.gradients[holding] {
-            Some(Gradient::Recorded(program, work, entries)) if !sliding => {
-                let numbers = if self.holding {
-                    let all = &mut self.switch_numbers;
-                    all.clear();
-                    all.extend(self.numbers.iter().chain(&self.sides));
-                    &all[..]
+        let branches = &mut self.recorded.branches;
+        let (holding, sliding) = (branches.is_holding(), branches.is_sliding());
+        match &mut self.recorded.derivatives.gradients[usize::from(holding)] {
+            Some(Gradient::Recorded(recording)) if !sliding => {
+                let entries = if holding {
+                    recording.run(branches.with_sides(&self.numbers))
                 } else {
-                    &self.numbers[..]
+                    recording.run(&self.numbers)
                 };
-                program.run(numbers, work, entries);
                 for (i, row) in entries.chunks(n + 1).enumerate() {
                     for (j, &entry) in row[..n].iter().enumerate() {
                         jacobian[i + n * j] = entry;
@@ -116,12 +121,13 @@ impl System {
         }
     }
 
-    /// Where the Jacobian has entries, whichever branches are held; `None` where it is full, or small.
+    /// Returns the entries of the Jacobian, whichever branches are held; `None` where it is full,
+    /// or small.
     pub(super) fn jacobian_pattern(&mut self) -> Option<Arc<Pattern>> {
-        if self.pattern.is_none() {
-            self.pattern = Some(self.found_pattern().map(Arc::new));
+        if self.recorded.derivatives.pattern.is_none() {
+            self.recorded.derivatives.pattern = Some(self.found_pattern().map(Arc::new));
         }
-        self.pattern.clone().flatten()
+        self.recorded.derivatives.pattern.clone().flatten()
     }
 
     fn found_pattern(&mut self) -> Option<Pattern> {
@@ -135,21 +141,20 @@ impl System {
             along[l.y_at(j)].push(j as u32);
         }
         self.depend_along(&mut along);
-        let mut rows = self.rate.dependence(&along);
+        let mut rows = self.recorded.rate.program.dependence(&along);
         rows.truncate(n);
-        if let Some(held) = self.switching.as_ref().and_then(|s| s.held.as_ref()) {
+        if let Some(held) = self.recorded.branches.held_rate() {
             for (row, more) in rows.iter_mut().zip(held.dependence(&along)) {
                 row.extend(more);
             }
         }
         let entries = |rows: &[Vec<u32>]| rows.iter().map(Vec::len).sum::<usize>() as f64;
+        let most = MAX_DENSITY * (n * n) as f64;
         let pattern = Pattern::of_rows(n, &rows);
-        (entries(&rows) <= 2.0 * SPARSE * (n * n) as f64
-            && pattern.n_entries() as f64 <= SPARSE * (n * n) as f64)
-            .then_some(pattern)
+        (entries(&rows) <= 2.0 * most && pattern.n_entries() as f64 <= most).then_some(pattern)
     }
 
-    /// The entries of the pattern at the present numbers.
+    /// Evaluates the entries of the pattern at the present numbers.
     pub(super) fn jacobian_by_groups(&mut self, entries: &mut [f64]) -> Result<(), Failure> {
         let Some(pattern) = self.jacobian_pattern() else {
             unreachable!("entries are asked for where there is a pattern");
@@ -166,13 +171,14 @@ impl System {
         })
     }
 
-    /// Derivatives of the rates along sums of numbers, several sums at a time: `take` is given the index of the sum and the derivative of each rate.
+    /// Evaluates the derivatives of the rates along sums of numbers, several sums at a time: `take`
+    /// is given the index of the sum and the derivative of each rate.
     fn along_sums(
         &mut self,
         sums: &[Vec<usize>],
         mut take: impl FnMut(usize, &dyn Fn(usize) -> f64),
     ) -> Result<(), Failure> {
-        if self.is_sliding() {
+        if self.recorded.branches.is_sliding() {
             return self.along_sums_sliding(sums, take);
         }
         let n = self.scene.layout.n_y();
@@ -180,37 +186,65 @@ impl System {
             re: 0.0,
             eps: [0.0; WIDTH],
         };
-        let sides = if self.holding { &self.sides[..] } else { &[] };
+        // the derivatives are taken out, as those of loops and closures come from all of the system
+        let mut own = std::mem::take(&mut self.recorded.derivatives);
+        let sides = self.recorded.branches.held_sides().unwrap_or_default();
         let numbers = self.numbers.iter().chain(sides);
-        self.dual_numbers.clear();
-        self.dual_numbers
-            .extend(numbers.map(|&re| Dual { re, ..constant }));
-        self.dual_out.resize(n + 1, constant);
+        own.numbers.clear();
+        (own.numbers).extend(numbers.map(|&re| Dual { re, ..constant }));
+        own.out.resize(n + 1, constant);
+        let mut outcome = Ok(());
         for (chunk, some) in sums.chunks(WIDTH).enumerate() {
             let mark = |numbers: &mut [Dual<WIDTH>], slope: f64| {
                 for (k, sum) in some.iter().enumerate() {
                     sum.iter().for_each(|&place| numbers[place].eps[k] = slope);
                 }
             };
-            mark(&mut self.dual_numbers, 1.0);
-            self.follow(chunk == 0)?;
-            let rate = match &self.switching {
-                Some(Switching {
-                    held: Some(held), ..
-                }) if self.holding => held,
-                _ => &self.rate,
-            };
-            rate.eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
-            mark(&mut self.dual_numbers, 0.0);
-            let out = &self.dual_out;
-            for k in 0..some.len() {
-                take(chunk * WIDTH + k, &|i| out[i].eps[k]);
+            mark(&mut own.numbers, 1.0);
+            if let Err(k) = self.follow_along(&mut own.numbers, chunk == 0) {
+                outcome = Err(Failure {
+                    what: n + k,
+                    recoverable: true,
+                });
+                break;
             }
-            self.external.forget(&mut self.dual_numbers);
-            if let Some(unknowns) = &self.unknowns {
-                unknowns.forget(&mut self.dual_numbers);
+            (self.present_rate()).eval(&own.numbers, &mut own.work, &mut own.out);
+            mark(&mut own.numbers, 0.0);
+            for k in 0..some.len() {
+                take(chunk * WIDTH + k, &|i| own.out[i].eps[k]);
+            }
+            self.external.forget(&mut own.numbers);
+            if let Some(loops) = &self.recorded.loops {
+                loops.forget(&mut own.numbers);
             }
         }
+        self.recorded.derivatives = own;
+        outcome
+    }
+
+    /// Evaluates the same while something slides, by differences, as α changes with the state.
+    fn along_sums_sliding(
+        &mut self,
+        sums: &[Vec<usize>],
+        mut take: impl FnMut(usize, &dyn Fn(usize) -> f64),
+    ) -> Result<(), Failure> {
+        let mut typical = vec![1.0; self.numbers.len()];
+        let places = self.scene.layout.y();
+        Ode::typical(self, &mut typical[places]);
+        let recorded = &mut self.recorded;
+        recorded.run_rate(&self.numbers);
+        let here = recorded.rate.values.clone();
+        let numbers = self.numbers.clone();
+        for (k, sum) in sums.iter().enumerate() {
+            let size = |&place: &usize| numbers[place].abs().max(typical[place]);
+            let h = f64::EPSILON.sqrt() * sum.iter().map(size).fold(0.0, f64::max);
+            sum.iter().for_each(|&place| self.numbers[place] += h);
+            recorded.run_rate(&self.numbers);
+            let rates = &recorded.rate.values;
+            take(k, &|i| (rates[i] - here[i]) / h);
+            self.numbers.copy_from_slice(&numbers);
+        }
+        recorded.rate.values.copy_from_slice(&here);
         Ok(())
     }
 }

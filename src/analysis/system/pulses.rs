@@ -1,12 +1,14 @@
 //! Smooth pulses of functions of time, which a long step would not notice.
 //!
-//! A step says nothing of what lies between the places where it evaluates. A force that is zero but for a hundredth of a second leaves long
-//! steps no reason to become shorter. Where such a pulse begins with a break, [`TimeEvents`] knows it. Where it is smooth, as a bell curve is, it is
-//! looked for before the first step: functions that read TIME alone are looked at at [`LOOKS`] times, and one that is at rest, or bends as it does
-//! nearly everywhere, moves for a short while, and does so again, has a pulse.
+//! A step says nothing of what lies between the places where it evaluates. A force that is zero but
+//! for a hundredth of a second leaves long steps no reason to become shorter. Where such a pulse
+//! begins with a break, [`TimeEvents`] knows it. A smooth one, such as a bell curve, is looked for
+//! before the first step: functions that read TIME alone are evaluated at [`SAMPLES`] times. A
+//! function has a pulse if it is at rest, or bends as it does nearly everywhere, then moves for a
+//! short while, and then is at rest again.
 //!
-//! Steps end just before such a while and at the looks within it; there error control sees what is going on. Functions that go on moving are seen
-//! without help and left alone.
+//! Steps end just before a pulse and at the samples within it; there error control sees it.
+//! Functions that go on moving are seen without help and left alone.
 
 use crate::analysis::system::complaints;
 use crate::analysis::system::time_events::TimeEvents;
@@ -20,18 +22,18 @@ use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 use std::collections::BTreeSet;
 
-/// Times at which functions are looked at.
-const LOOKS: usize = 4096;
-/// What lasts longer than the simulation divided by this is no pulse.
-const SHORT: usize = 20;
-/// Most ends of steps within one pulse.
-const WITHIN: usize = 24;
-/// Most ends of steps of a simulation.
-const MOST: usize = 20_000;
-/// Bends of a function smaller than this part of its range are rest.
-const REST: f64 = 1e-6;
-/// A function bends unusually by more than this many times its usual bend.
-const UNUSUAL: f64 = 100.0;
+/// Times at which functions are evaluated in search of pulses.
+const SAMPLES: usize = 4096;
+/// Duration of the simulation over that of the longest pulse.
+const RUN_PER_PULSE: usize = 20;
+/// Ends of steps within one pulse, at most.
+const MAX_LANDINGS_PER_PULSE: usize = 24;
+/// Ends of steps of a simulation, at most.
+const MAX_LANDINGS: usize = 20_000;
+/// Second difference of a function at rest, at most, as a part of the range of its values.
+const REST_BEND: f64 = 1e-6;
+/// Second difference within a pulse, at least, in units of the usual one.
+const PULSE_BEND: f64 = 100.0;
 
 /// Functions of a model that read TIME and nothing else.
 #[derive(Debug, Default)]
@@ -41,10 +43,10 @@ pub struct Pulses {
 }
 
 impl Pulses {
-    /// Of a scene.
+    /// Records the functions of a scene that read TIME alone.
     ///
     /// # Errors
-    /// Functions that cannot be written down.
+    /// Functions that cannot be recorded.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
         let timed: Vec<usize> = (0..scene.formulas.len())
             .filter(|&f| acts(&scene, f))
@@ -65,7 +67,7 @@ impl Pulses {
         })
     }
 
-    /// Times between two others at which a step has to end, ascending.
+    /// Returns the times between two others at which a step has to end, ascending.
     pub fn landings(&self, time_events: &mut TimeEvents, start: f64, end: f64) -> Vec<f64> {
         let Some(program) = &self.program else {
             return Vec::new();
@@ -73,35 +75,36 @@ impl Pulses {
         if !(end > start && (end - start).is_finite()) {
             return Vec::new();
         }
-        let time = |k: usize| start + (end - start) * k as f64 / LOOKS as f64;
+        let time = |k: usize| start + (end - start) * k as f64 / SAMPLES as f64;
         let n = program.n_outputs();
-        let mut seen = vec![0.0; n * (LOOKS + 1)];
+        let mut seen = vec![0.0; n * (SAMPLES + 1)];
         let mut work = Work::default();
         for (k, look) in seen.chunks_mut(n).enumerate() {
             program.run(&[time(k)], &mut work, look);
         }
         let mut found = BTreeSet::new();
-        let mut values = vec![0.0; LOOKS + 1];
+        let mut values = vec![0.0; SAMPLES + 1];
         for k in 0..n {
             for (value, look) in values.iter_mut().zip(seen.chunks(n)) {
                 *value = look[k];
             }
             for (from, to) in bends(&values) {
-                // where something breaks a step ends and the next one begins anew, and sees what follows
-                if found.len() > MOST || time_events.next(time(from), time(to)) < time(to) {
+                // a step ends where something breaks, and the next one begins anew and sees the
+                // pulse
+                if found.len() > MAX_LANDINGS || time_events.next(time(from), time(to)) < time(to) {
                     continue;
                 }
-                let stride = (to - from).div_ceil(WITHIN).max(1);
+                let stride = (to - from).div_ceil(MAX_LANDINGS_PER_PULSE).max(1);
                 found.extend((from..to).step_by(stride));
                 found.insert(to);
             }
         }
-        let inner = found.into_iter().filter(|k| (1..LOOKS).contains(k));
+        let inner = found.into_iter().filter(|k| (1..SAMPLES).contains(k));
         inner.map(time).collect()
     }
 }
 
-/// Whether a formula acts on what moves, and reads time alone.
+/// Returns whether a formula acts on the mechanism, and reads time alone.
 fn acts(scene: &Scene, f: usize) -> bool {
     let asks = [ElementKind::Request, ElementKind::Sensor];
     let element = scene.formulas[f].element;
@@ -130,7 +133,7 @@ fn timed(scene: &Scene, f: usize, open: &mut Vec<usize>) -> bool {
     own
 }
 
-/// Looks from just before to just after a short while in which a function bends unusually.
+/// Finds the pulses of a function: from the sample just before to the one just after each.
 fn bends(values: &[f64]) -> Vec<(usize, usize)> {
     let finite = values.iter().filter(|x| x.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| {
@@ -149,7 +152,7 @@ fn bends(values: &[f64]) -> Vec<(usize, usize)> {
         return Vec::new();
     }
     let usual = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let threshold = (UNUSUAL * usual).max(REST * (high - low));
+    let threshold = (PULSE_BEND * usual).max(REST_BEND * (high - low));
     let mut out: Vec<(usize, usize)> = Vec::new();
     // bend k is that at look k + 1
     for k in (0..bend.len()).filter(|&k| bend[k] > threshold) {
@@ -161,7 +164,7 @@ fn bends(values: &[f64]) -> Vec<(usize, usize)> {
     }
     // a single corner is no pulse: what comes after it is seen from there on
     out.retain(|(from, to)| {
-        to - from <= values.len() / SHORT && (to - from > 3 || values[*from] == values[*to])
+        to - from <= values.len() / RUN_PER_PULSE && (to - from > 3 || values[*from] == values[*to])
     });
     out
 }

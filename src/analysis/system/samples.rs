@@ -1,17 +1,18 @@
-//! Sampled systems: the discrete states of a GSE, which change at their samples and hold in between.
+//! Sampled systems: the discrete states of a GSE, which change at their samples and hold in
+//! between.
 //!
 //! ```text
-//! at the sample tₖ:   d ← dₖ,   dₖ₊₁ = f(x, u, dₖ) at tₖ      (waits for the next sample)      tₖ₊₁ = tₖ + SAMPLE_PERIOD
+//! at the sample tₖ:   d ← dₖ,   dₖ₊₁ = f(x, u, dₖ) at tₖ   (waits for the next sample)
+//!                     tₖ₊₁ = tₖ + SAMPLE_PERIOD
 //! ```
 //!
-//! The first sample is the first instant of the first simulation, where d is what ICD says. A sample ends a step, so that no step leads over one, and
-//! the method begins anew where the states have changed. Several systems that are sampled at one instant see each other's states of
-//! before it.
+//! The first sample is the first instant of the first simulation, where d is as ICD says. A sample
+//! ends a step, so that no step leads over one, and the method begins anew where the states have
+//! changed. Several systems that are sampled at one instant see each other's states of before it.
 
-use crate::analysis::system::System;
-use crate::analysis::system::external_inputs::Law;
+use super::external_inputs::Law;
+use super::recording::Recording;
 use crate::diagnostic::Diagnostic;
-use crate::expr::program::{Program, Work};
 use crate::model::ElementId;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
@@ -23,44 +24,49 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Samples nearer to each other than this part of a period are one.
-const TOGETHER: f64 = 1e-9;
+/// Distance of samples that count as one, as a part of a period.
+const SAME_SAMPLE: f64 = 1e-9;
 
-/// Where a sampled system stands: its states, what they are next, and when.
+/// The present state of a sampled system, and the next one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Held {
     /// the states now
     pub states: Vec<f64>,
     /// the states from the next sample on
     pub next: Vec<f64>,
-    /// when that is; infinite: never
+    /// time of the next sample; infinite: never
     pub due: f64,
 }
 
 #[derive(Debug)]
 struct Sampled {
     id: ElementId,
-    /// places of the states, and of what computes them, in the row of numbers
+    /// places of the states, and of the results that they become next, in the row of numbers
     states: Range<usize>,
     results: Range<usize>,
-    period: Program,
+    period: Recording,
     next: Vec<f64>,
     due: f64,
     /// length of the period that is under way
     length: f64,
-    /// where the simulation began
+    /// the state in which the simulation began
     begun: Option<Held>,
+}
+
+impl Sampled {
+    fn is_due(&self, t: f64) -> bool {
+        t >= self.due - SAME_SAMPLE * self.length
+    }
 }
 
 /// The sampled systems of a scene.
 #[derive(Debug, Default)]
 pub struct Samples {
     all: Vec<Sampled>,
-    work: Work,
 }
 
 impl Samples {
-    /// Of a scene.
+    /// Records the sampled systems of a scene.
     ///
     /// # Errors
     /// What the equations cannot supply.
@@ -72,30 +78,27 @@ impl Samples {
                 id: s.id,
                 states: l.external_at(s.states)..l.external_at(s.states + s.n),
                 results: l.external_at(s.results)..l.external_at(s.results + s.n),
-                period: record(scene, |at| vec![at.formula(s.period)])?,
+                period: Recording::new(record(scene, |at| vec![at.formula(s.period)])?),
                 next: vec![0.0; s.n],
                 due: f64::INFINITY,
                 length: 0.0,
                 begun: None,
             });
         }
-        Ok(Self {
-            all,
-            work: Work::default(),
-        })
+        Ok(Self { all })
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
-    /// When the next sample is.
+    /// Returns the time of the next sample.
     pub fn due(&self) -> f64 {
         self.all.iter().fold(f64::INFINITY, |t, s| t.min(s.due))
     }
 
-    /// Where each system stands, by the number of its GSE.
+    /// Returns the state of each system, by the number of its GSE.
     pub fn held(&self, numbers: &[f64]) -> BTreeMap<u32, Held> {
         let one = |s: &Sampled| {
             let held = Held {
@@ -109,7 +112,8 @@ impl Samples {
     }
 }
 
-/// What discrete states are before the first step: as the last simulation left them, else as the dataset says.
+/// Returns a discrete state before the first step: as the last simulation left it, else as the
+/// dataset says; `None` for other numbers.
 pub fn before(scene: &Scene, supplied: ExternalInput, held: &BTreeMap<u32, Held>) -> Option<f64> {
     let ExternalInput::Sample(sampler, k) = supplied else {
         return None;
@@ -119,19 +123,19 @@ pub fn before(scene: &Scene, supplied: ExternalInput, held: &BTreeMap<u32, Held>
     kept.map_or(s.initial.get(k), |h| h.states.get(k)).copied()
 }
 
-impl System {
+impl Samples {
     /// Goes on as the last simulation left the samples, or takes the first ones here.
     ///
     /// # Errors
-    /// A period that is none.
-    pub fn begin_sampling(&mut self, held: &BTreeMap<u32, Held>) -> Result<(), Diagnostic> {
-        let t = self.numbers[Layout::TIME];
-        for k in 0..self.samples.all.len() {
-            let Samples { all, work } = &mut self.samples;
-            let s = &mut all[k];
-            let mut out = [0.0];
-            s.period.run(&self.numbers, work, &mut out);
-            let length = out[0];
+    /// A period that is not positive.
+    pub(super) fn begin(
+        &mut self,
+        numbers: &mut [f64],
+        held: &BTreeMap<u32, Held>,
+    ) -> Result<(), Diagnostic> {
+        let t = numbers[Layout::TIME];
+        for s in &mut self.all {
+            let length = s.period.run(numbers)[0];
             if !(length > 0.0 && length.is_finite()) {
                 let what =
                     format!("its SAMPLE_PERIOD is {length}, which is no time between samples");
@@ -141,72 +145,73 @@ impl System {
                 .get(&s.id.number)
                 .filter(|h| h.next.len() == s.next.len());
             let begun = kept.cloned().unwrap_or_else(|| Held {
-                states: self.numbers[s.states.clone()].to_vec(),
-                next: self.numbers[s.results.clone()].to_vec(),
+                states: numbers[s.states.clone()].to_vec(),
+                next: numbers[s.results.clone()].to_vec(),
                 due: t + length,
             });
             s.length = length;
             s.begun = Some(begun);
         }
-        self.restart_sampling();
+        self.restart(numbers);
         Ok(())
     }
 
     /// Sets the samples back to where the simulation begins.
-    pub fn restart_sampling(&mut self) {
-        for s in &mut self.samples.all {
+    pub(super) fn restart(&mut self, numbers: &mut [f64]) {
+        for s in &mut self.all {
             if let Some(begun) = &s.begun {
                 s.next.clone_from(&begun.next);
                 s.due = begun.due;
-                self.numbers[s.states.clone()].copy_from_slice(&begun.states);
+                numbers[s.states.clone()].copy_from_slice(&begun.states);
             }
         }
     }
 
-    /// Whether a sample is due at this instant.
-    pub fn is_sampled(&self, t: f64) -> bool {
-        let due = |s: &Sampled| t >= s.due - TOGETHER * s.length;
-        self.samples.all.iter().any(due)
+    /// Returns whether a sample is due at this instant.
+    pub fn is_due(&self, t: f64) -> bool {
+        self.all.iter().any(|s| s.is_due(t))
     }
 
-    /// Whether two instants are one beside the times between samples: an output time and a sample that were rounded apart.
+    /// Returns whether two instants are one beside the times between samples: an output time and a
+    /// sample that were rounded apart.
     pub fn is_together(&self, a: f64, b: f64) -> bool {
-        let shortest = self
-            .samples
-            .all
-            .iter()
-            .fold(f64::INFINITY, |h, s| h.min(s.length));
-        (a - b).abs() <= TOGETHER * shortest
+        let shortest = (self.all.iter()).fold(f64::INFINITY, |h, s| h.min(s.length));
+        (a - b).abs() <= SAME_SAMPLE * shortest
     }
 
-    /// Takes the samples that are due at an accepted state; whether a state has changed.
-    pub fn sample(&mut self, t: f64, y: &[f64]) -> bool {
-        let due: Vec<usize> = (0..self.samples.all.len())
-            .filter(|&k| t >= self.samples.all[k].due - TOGETHER * self.samples.all[k].length)
-            .collect();
+    /// Returns the systems whose samples are due at an instant.
+    pub(super) fn due_at(&self, t: f64) -> Vec<usize> {
+        (0..self.all.len())
+            .filter(|&k| self.all[k].is_due(t))
+            .collect()
+    }
+
+    /// Puts the states that were prepared into the numbers; returns whether one has changed.
+    pub(super) fn take(&self, due: &[usize], numbers: &mut [f64]) -> bool {
         let mut changed = false;
-        for &k in &due {
-            let s = &self.samples.all[k];
-            let states = &mut self.numbers[s.states.clone()];
+        for &k in due {
+            let s = &self.all[k];
+            let states = &mut numbers[s.states.clone()];
             changed |= *states != s.next[..];
             states.copy_from_slice(&s.next);
         }
-        self.set(t, y);
-        for &k in &due {
-            let Samples { all, work } = &mut self.samples;
-            let s = &mut all[k];
-            let mut out = [0.0];
-            s.period.run(&self.numbers, work, &mut out);
-            s.next.copy_from_slice(&self.numbers[s.results.clone()]);
-            // a period that comes to nothing was the last
-            s.length = out[0];
-            s.due = if out[0] > 0.0 {
-                s.due + out[0]
+        changed
+    }
+
+    /// Prepares the next states, and the times at which they are taken.
+    pub(super) fn prepare_next(&mut self, due: &[usize], numbers: &[f64]) {
+        for &k in due {
+            let s = &mut self.all[k];
+            let length = s.period.run(numbers)[0];
+            s.next.copy_from_slice(&numbers[s.results.clone()]);
+            // a period that is not positive was the last
+            s.length = length;
+            s.due = if length > 0.0 {
+                s.due + length
             } else {
                 f64::INFINITY
             };
         }
-        changed
     }
 }
 
@@ -229,7 +234,8 @@ pub struct LinearSystem {
 }
 
 impl LinearSystem {
-    /// From its matrices, row after row; n states, m inputs, p outputs. `None`: these are other numbers of numbers.
+    /// Builds a system of n states, m inputs, p outputs from its matrices, row after row; `None`
+    /// where their sizes do not fit.
     pub fn new([n, m, p]: [usize; 3], a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> Option<Self> {
         let fits = a.len() == n * n && b.len() == n * m && c.len() == p * n && d.len() == p * m;
         fits.then(|| Self {
@@ -240,7 +246,8 @@ impl LinearSystem {
         })
     }
 
-    /// Change (or rate) of the states, and the outputs; `None`: the GSE has other numbers of states, inputs or outputs.
+    /// Returns the change (or rate) of the states, and the outputs; `None` where the GSE has other
+    /// numbers of states or inputs.
     fn applied(&self, states: &[f64], inputs: &[f64]) -> Option<(DVector<f64>, DVector<f64>)> {
         if states.len() != self.a.nrows() || inputs.len() != self.b.ncols() {
             return None;
@@ -252,7 +259,7 @@ impl LinearSystem {
         Some((&self.a * &x + &self.b * &u, &self.c * &x + &self.d * &u))
     }
 
-    /// The closure of a GSE with NS states. Where its sizes do not fit the results are not a number.
+    /// Returns the closure of a GSE with NS states. Where its sizes do not fit the results are NaN.
     pub fn continuous(self) -> Box<Law> {
         let n = self.a.nrows();
         Box::new(move |call, out| {
@@ -269,7 +276,8 @@ impl LinearSystem {
         })
     }
 
-    /// The closure of a GSE with ND discrete states. Where its sizes do not fit the results are not a number.
+    /// Returns the closure of a GSE with ND discrete states. Where its sizes do not fit the results
+    /// are NaN.
     pub fn sampled(self) -> Box<Law> {
         let n = self.a.nrows();
         Box::new(move |call, out| {

@@ -1,15 +1,15 @@
-//! Sensors: what is watched while time passes, and what happens when it reaches its value.
+//! Sensors: expressions that are watched while time passes, until they reach their values.
 //!
 //! ```text
 //! EQ: e = VALUE        GE: e ≥ VALUE        LE: e ≤ VALUE              e − VALUE (ANGULAR: modulo 2π) is a switching function
 //! ```
 //!
-//! The instant at which e passes VALUE is located like every switch, so it does not depend on steps or on ERROR; within ERROR of
-//! VALUE an expression counts as there (one that turns back just before it, too). A sensor that holds at the start of a simulation
-//! evaluates its EVALUATE there, and acts only after it has not held once.
+//! The instant at which e passes VALUE is located like every switch, so it does not depend on steps
+//! or on ERROR; within ERROR of VALUE an expression counts as there (one that turns back just
+//! before it, too). A sensor that holds at the start of a simulation evaluates its EVALUATE there,
+//! and acts only after it has not held once.
 
-use crate::analysis::system::System;
-use crate::expr::program::{Program, Work};
+use super::recording::Recording;
 use crate::model::Comparison;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
@@ -20,17 +20,16 @@ use std::f64::consts::{PI, TAU};
 /// The sensors of a system.
 #[derive(Debug, Default)]
 pub struct Sensors {
-    /// what is watched, then what is evaluated (zero where nothing is)   (2 n)
-    program: Option<Program>,
-    work: Work,
-    values: Vec<f64>,
-    /// did not hold when last looked at   (n)
+    /// expressions that are watched, then those that are evaluated (zero where there is none)
+    /// (2 n)
+    recording: Option<Recording>,
+    /// whether each did not hold when last looked at   (n)
     armed: Vec<bool>,
-    /// place of SENVAL in the row of numbers   (n)
+    /// places of SENVAL in the row of numbers   (n)
     places: Vec<usize>,
 }
 
-/// Whether a sensor holds; `near`: what is within ERROR counts.
+/// Returns whether a sensor holds; `near`: a value within ERROR counts.
 fn holds(s: &SceneSensor, e: f64, near: bool) -> bool {
     let mut beyond = e - s.value;
     if s.angular {
@@ -45,7 +44,7 @@ fn holds(s: &SceneSensor, e: f64, near: bool) -> bool {
 }
 
 impl Sensors {
-    /// Of a scene.
+    /// Records the expressions of the sensors of a scene.
     ///
     /// # Errors
     /// What the equations cannot supply.
@@ -69,59 +68,69 @@ impl Sensors {
             scene.layout.external_at(own.unwrap_or(0))
         };
         Ok(Self {
-            program: Some(program),
-            work: Work::default(),
-            values: vec![0.0; 2 * n],
+            recording: Some(Recording::new(program)),
             armed: vec![false; n],
             places: (0..n).map(place).collect(),
         })
     }
 
-    fn look(&mut self, numbers: &[f64]) {
-        if let Some(program) = &self.program {
-            program.run(numbers, &mut self.work, &mut self.values);
-        }
+    /// Returns whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.armed.is_empty()
     }
-}
 
-impl System {
-    /// Takes the sensors as they stand at the start of a simulation.
-    pub fn begin_sensing(&mut self) {
-        self.sensors.look(&self.numbers);
-        let n = self.sensors.armed.len();
-        for (k, sensor) in self.scene.sensors.iter().enumerate() {
-            let here = holds(sensor, self.sensors.values[k], false);
-            self.sensors.armed[k] = !here;
-            if here && sensor.evaluate.is_some() {
-                self.numbers[self.sensors.places[k]] = self.sensors.values[n + k];
+    /// Takes the sensors as they stand at the start of a simulation; one that holds there yields
+    /// its SENVAL.
+    pub(super) fn begin(&mut self, sensors: &[SceneSensor], numbers: &mut [f64]) {
+        self.look(numbers);
+        for (k, sensor) in sensors.iter().enumerate() {
+            let here = holds(sensor, self.values()[k], false);
+            self.armed[k] = !here;
+            if here {
+                self.yield_value(k, sensor, numbers);
             }
         }
     }
 
-    /// The sensors that are triggered at an accepted state, by their places in [`Scene::sensors`]; what SENVAL yields is then
-    /// new. `switched`: the state is one at which a switch was located.
-    pub fn sense(&mut self, t: f64, y: &[f64], switched: bool) -> Vec<usize> {
-        let n = self.sensors.armed.len();
-        if n == 0 {
-            return Vec::new();
-        }
-        self.set(t, y);
-        self.sensors.look(&self.numbers);
+    /// Returns the sensors that are triggered at an accepted state; SENVAL is new then. `switched`:
+    /// a switch was located at this state.
+    pub(super) fn sense(
+        &mut self,
+        sensors: &[SceneSensor],
+        numbers: &mut [f64],
+        switched: bool,
+    ) -> Vec<usize> {
+        self.look(numbers);
         let mut triggered = Vec::new();
-        for (k, sensor) in self.scene.sensors.iter().enumerate() {
-            if holds(sensor, self.sensors.values[k], switched) {
-                if std::mem::replace(&mut self.sensors.armed[k], false) {
+        for (k, sensor) in sensors.iter().enumerate() {
+            if holds(sensor, self.values()[k], switched) {
+                if std::mem::replace(&mut self.armed[k], false) {
                     triggered.push(k);
                 }
             } else {
-                self.sensors.armed[k] = true;
+                self.armed[k] = true;
             }
         }
         for &k in &triggered {
-            if self.scene.sensors[k].evaluate.is_some() {
-                self.numbers[self.sensors.places[k]] = self.sensors.values[n + k];
-            }
+            self.yield_value(k, &sensors[k], numbers);
         }
         triggered
+    }
+
+    fn look(&mut self, numbers: &[f64]) {
+        if let Some(recording) = &mut self.recording {
+            recording.run(numbers);
+        }
+    }
+
+    fn values(&self) -> &[f64] {
+        self.recording.as_ref().map_or(&[], |r| &r.values)
+    }
+
+    /// Puts the value of EVALUATE in place of the last one.
+    fn yield_value(&self, k: usize, sensor: &SceneSensor, numbers: &mut [f64]) {
+        if sensor.evaluate.is_some() {
+            numbers[self.places[k]] = self.values()[self.armed.len() + k];
+        }
     }
 }

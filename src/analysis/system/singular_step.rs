@@ -1,35 +1,48 @@
-//! Passing an instant where rows are dependent: when it is, and steps whose evaluations keep away from it.
+//! Singular steps: steps over an instant where rows are dependent, placed so that no evaluation is
+//! near it.
 //!
-//! There the rates are a quotient of two numbers that vanish together. With σ the square root of the weakest pivot, which grows in
-//! proportion to the time from that instant, rounding and whatever violates the rows is magnified by 1/σ. The solution itself
-//! passes smoothly, so a step may well span the instant: if the instant falls into the widest gap between the evaluations of
-//! the method, none of them is near.
+//! There the rates are a quotient of two numbers that vanish together. With σ the square root of
+//! the weakest pivot, which grows in proportion to the time from that instant, rounding and
+//! violations of the rows are magnified by 1/σ. The solution itself passes smoothly, so a step may
+//! well span the instant: if it falls into the widest gap between the evaluations of the method,
+//! none of them is near.
 
-/// How far from dependence rows were at the evaluations of a step.
+/// The distances of rows from dependence at the evaluations of a step.
 #[derive(Debug, Default)]
 pub struct SingularSteps {
     /// time, σ
     seen: Vec<(f64, f64)>,
+    /// rows have nearly been dependent since somebody last asked
+    weak: bool,
 }
 
-/// Evaluations remembered at most.
-const MOST: usize = 64;
-/// Parts of the gap within which the instant is well placed, from its middle to either side.
-const WELL: f64 = 0.4;
-/// The instant is far enough after the end of a step at this part of its length.
-const AFTER: f64 = 1.2;
+/// Evaluations remembered, at most.
+const MAX_SEEN: usize = 64;
+/// Part of half the gap within which the instant is well placed, from the middle to either side.
+const WELL_PLACED: f64 = 0.4;
+/// Distance of the instant from the beginning of a step that is far enough behind its end, as a
+/// part of its length.
+const FAR_BEHIND: f64 = 1.2;
 
 impl SingularSteps {
-    /// An evaluation with weak rows. `strength`: the weakest pivot as a part of what is usual.
+    /// Takes note of an evaluation with weak rows. `strength`: the weakest pivot over its usual
+    /// size.
     pub fn see(&mut self, t: f64, strength: f64) {
-        if self.seen.len() >= MOST {
+        self.weak = true;
+        if self.seen.len() >= MAX_SEEN {
             self.seen.clear();
         }
         self.seen.push((t, strength.max(0.0).sqrt()));
     }
 
-    /// A better length of the step from `t` that was attempted with `h`; `None`: none is. `gap`: the part of a step without
-    /// evaluations; `harmful`: the strength below which an evaluation is too near. Forgets what was seen after `t`.
+    /// Returns whether an evaluation had weak rows since this was last asked.
+    pub fn take_weak(&mut self) -> bool {
+        std::mem::take(&mut self.weak)
+    }
+
+    /// Returns a better length of the step from `t` that was attempted with `h`, if there is one,
+    /// and forgets the evaluations after `t`. `gap`: the part of a step without evaluations;
+    /// `harmful`: the strength below which an evaluation is too near.
     pub fn place(&mut self, t: f64, h: f64, gap: [f64; 2], harmful: f64) -> Option<f64> {
         if self.seen.is_empty() {
             return None;
@@ -45,10 +58,11 @@ impl SingularSteps {
         seen.dedup_by(|a, b| a.0 - b.0 < 1e-9 * h);
         let (middle, half) = (0.5 * (gap[0] + gap[1]), 0.5 * (gap[1] - gap[0]));
         let part = (instant(&seen)? - t) / h;
-        if !(part > 0.0 && part < AFTER) || (part - middle).abs() <= WELL * half {
+        if !(part > 0.0 && part < FAR_BEHIND) || (part - middle).abs() <= WELL_PLACED * half {
             return None;
         }
-        // a shorter step with the instant in its gap; or one that ends so far before it that the next, as long, has it there
+        // a shorter step with the instant in its gap; or one that ends so far before it that the
+        // next, as long, has it there
         let shorter = part / middle;
         let before = part - middle;
         Some(
@@ -61,7 +75,7 @@ impl SingularSteps {
     }
 }
 
-/// When σ vanishes, from values around or before.
+/// Finds the time at which σ vanishes, from values around or before.
 fn instant(seen: &[(f64, f64)]) -> Option<f64> {
     if seen.len() < 3 {
         return None;

@@ -1,17 +1,19 @@
-//! TimeEvents known beforehand: the next time at which something that depends on time alone breaks.
+//! Time events: the next time at which a function of time alone breaks.
 //!
-//! A pulse of a force over time is invisible to a step whose evaluations all fall beside it, however small an error is asked for. What depends on
-//! time alone can be looked at without the system, and over a whole stretch of time at once: bounds of its values there ([`Interval`]) prove that
+//! A pulse of a force over time is invisible to a step whose evaluations all fall beside it,
+//! however small an error is asked for. A function of time alone can be bounded without the system,
+//! and over a whole stretch of time at once: bounds of its values there ([`Interval`]) prove that
 //! it stays between two of its levels.
 //!
 //! ```text
-//! [t, t + h]   bounds between levels     →  nothing breaks there; go on behind it with 2h
-//!              else                      →  h/2, down to a part of the run that no pulse is shorter than; then the ends are compared, and
-//!                                           a break between them is closed in to the last place
+//! [t, t + h]   bounds between levels   →  nothing breaks there; go on behind it with 2h
+//!              else                    →  h/2, down to a part of the run that no pulse is shorter
+//!                                         than; then the ends are compared, and a break between
+//!                                         them is closed in to the last place
 //! ```
 //!
-//! A step ends just before something breaks, and integration begins anew at the first number behind it: no evaluation of the one
-//! step is on the other's side, and no switch is looked for.
+//! A step ends just before a break, and integration begins anew at the first number behind it: no
+//! evaluation of the one step is on the other's side, and no switch is looked for.
 
 use crate::expr::program::{Levels, Program, Work};
 use crate::scalar::Interval;
@@ -20,19 +22,19 @@ use crate::scene::equations::Unsupported;
 use crate::scene::layout::Layout;
 use crate::scene::programs;
 
-/// Evaluations for one search.
-const BUDGET: usize = 400;
-/// What is left of a search that came to its end may be gone over in so many steps.
-const BLIND: f64 = 100.0;
-/// Distance kept from what breaks, as a part of the time.
-const ROOM: f64 = 4.0 * f64::EPSILON;
-/// Shortest stretch that is looked at, as a part of the run.
-const SHORTEST: f64 = 1e-10;
+/// Evaluations for one search, at most.
+const MAX_EVALUATIONS: usize = 400;
+/// Steps that go over the rest of the run, at least, where a search took too many evaluations.
+const STEPS_UNSEARCHED: f64 = 100.0;
+/// Distance kept from a break, as a part of the time.
+const DISTANCE: f64 = 4.0 * f64::EPSILON;
+/// Shortest stretch that is bounded, as a part of the run.
+const SHORTEST_STRETCH: f64 = 1e-10;
 
-/// The values that depend on time alone, with the next time that matters.
+/// The functions of time alone, with the next time at which one breaks.
 #[derive(Debug, Default)]
 pub struct TimeEvents {
-    /// none: nothing depends on time alone, or nothing of that breaks
+    /// `None`: there are no functions of time alone, or none breaks
     program: Option<Program>,
     levels: Vec<Levels>,
     work: Work<Interval>,
@@ -41,12 +43,12 @@ pub struct TimeEvents {
     values: Vec<Interval>,
     point: Point,
     /// the last answer, and from where it was asked for
-    known: Option<(f64, Moment)>,
+    known: Option<(f64, TimeEvent)>,
 }
 
-/// How far nothing breaks, and the first time behind what breaks there.
+/// The time up to which nothing breaks, and the first one behind a break there.
 #[derive(Clone, Copy, Debug)]
-struct Moment {
+struct TimeEvent {
     before: f64,
     behind: Option<f64>,
 }
@@ -60,7 +62,7 @@ struct Point {
 }
 
 impl TimeEvents {
-    /// Of a scene.
+    /// Records the functions of time alone of a scene.
     ///
     /// # Errors
     /// What the equations cannot supply.
@@ -85,34 +87,35 @@ impl TimeEvents {
         })
     }
 
-    /// A time after `t` just before something breaks, or up to which nothing does; no later than `end`.
+    /// Returns a time after `t` just before a break, or up to which nothing breaks; no later than
+    /// `end`.
     pub fn next(&mut self, t: f64, end: f64) -> f64 {
         if self.program.is_none() || t >= end {
             return end;
         }
         let known = self.known.filter(|(from, m)| *from <= t && t < m.before);
-        let (from, moment) = known.unwrap_or_else(|| (t, self.search(t, end)));
-        self.known = Some((from, moment));
-        moment.before.min(end)
+        let (from, event) = known.unwrap_or_else(|| (t, self.search(t, end)));
+        self.known = Some((from, event));
+        event.before.min(end)
     }
 
-    /// The first time behind what breaks just after `t`, when that has been found.
+    /// Returns the first time behind the break just after `t`, when one has been found.
     pub fn behind(&self, t: f64) -> Option<f64> {
-        let (_, moment) = self.known.filter(|(_, m)| m.before == t)?;
-        moment.behind
+        let (_, event) = self.known.filter(|(_, m)| m.before == t)?;
+        event.behind
     }
 
-    fn search(&mut self, t: f64, end: f64) -> Moment {
-        let clear = |before: f64| Moment {
+    fn search(&mut self, t: f64, end: f64) -> TimeEvent {
+        let clear = |before: f64| TimeEvent {
             before,
             behind: None,
         };
-        let room = ROOM * t.abs().max(end.abs());
-        let shortest = (SHORTEST * (end - t)).max(4.0 * room);
-        // what breaks just here has been seen
-        let mut from = t + (0.01 * shortest).max(2.0 * room);
+        let distance = DISTANCE * t.abs().max(end.abs());
+        let shortest = (SHORTEST_STRETCH * (end - t)).max(4.0 * distance);
+        // a break just here has been seen
+        let mut from = t + (0.01 * shortest).max(2.0 * distance);
         let mut h = end - from;
-        for _ in 0..BUDGET {
+        for _ in 0..MAX_EVALUATIONS {
             if from >= end {
                 return clear(end);
             }
@@ -125,17 +128,17 @@ impl TimeEvents {
             } else {
                 if let Some((before, behind)) = self.crossing(from, to, to >= end) {
                     let behind = Some(behind);
-                    // what evaluates at the end of a step may miss it by a rounding
-                    let before = before - room;
-                    return Moment { before, behind };
+                    // evaluations at the end of a step may miss it by a rounding
+                    let before = before - distance;
+                    return TimeEvent { before, behind };
                 }
                 from = to;
             }
         }
-        clear(from.max(t + (end - t) / BLIND))
+        clear(from.max(t + (end - t) / STEPS_UNSEARCHED))
     }
 
-    /// Whether all values surely stay where they are between two times.
+    /// Returns whether all values surely stay between the same levels from one time to another.
     fn is_clear(&mut self, from: f64, to: f64) -> bool {
         let Some(program) = &self.program else {
             return true;
@@ -149,8 +152,9 @@ impl TimeEvents {
         })
     }
 
-    /// The last time before the first break between two times and the first one behind it, if their ends lie on different sides of one;
-    /// what is on a level counts where nothing comes after it.
+    /// Returns the last time before the first break between two times and the first one behind it,
+    /// if their ends lie on different sides of one; a value on a level counts where nothing comes
+    /// after it.
     fn crossing(&mut self, from: f64, to: f64, last: bool) -> Option<(f64, f64)> {
         let places =
             |point: &mut Point, program: &Program, levels: &[Levels], t: f64| -> Vec<f64> {

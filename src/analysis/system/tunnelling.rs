@@ -1,6 +1,6 @@
-//! Where bodies of contacts could pass through each other within a step: how long the next one may be.
+//! Bounds of a step by thickness: bodies of contacts must not pass through each other unseen.
 
-use crate::expr::program::{Program, Work};
+use super::recording::Recording;
 use crate::numeric::event::SAMPLES;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
@@ -11,15 +11,13 @@ use crate::scene::programs::record;
 #[derive(Debug, Default)]
 pub struct ThicknessBounds {
     /// three numbers per pair; `None`: there are no pairs
-    program: Option<Program>,
-    work: Work,
-    motions: Vec<f64>,
+    motions: Option<Recording>,
     /// rates of the state, for accelerations
     pub(in crate::analysis) rates: Vec<f64>,
 }
 
 impl ThicknessBounds {
-    /// Of a scene, whose state has `n` numbers.
+    /// Records the motions of the pairs of a scene, whose state has `n` numbers.
     ///
     /// # Errors
     /// Accelerations that depend on themselves and cannot be recorded.
@@ -35,28 +33,27 @@ impl ThicknessBounds {
                 .collect()
         })?;
         Ok(Self {
-            motions: vec![0.0; program.n_outputs()],
-            program: Some(program),
-            work: Work::default(),
+            motions: Some(Recording::new(program)),
             rates: vec![0.0; n],
         })
     }
 
-    /// Whether no two bodies can pass through each other.
+    /// Returns whether no two bodies can pass through each other.
     pub fn is_empty(&self) -> bool {
-        self.program.is_none()
+        self.motions.is_none()
     }
 
-    /// How long a step may be from these numbers: at one of the samples within it the bodies still overlap.
+    /// Returns how long a step may be from these numbers: at one of the samples within it the
+    /// bodies still overlap.
     pub fn time(&mut self, scene: &Scene, numbers: &[f64]) -> f64 {
-        let Some(program) = &self.program else {
+        let Some(motions) = &mut self.motions else {
             return f64::INFINITY;
         };
-        program.run(numbers, &mut self.work, &mut self.motions);
+        let motions = motions.run(numbers);
         let pairs = scene
             .thickness_bounds
             .iter()
-            .zip(self.motions.as_chunks::<3>().0);
+            .zip(motions.as_chunks::<3>().0);
         pairs
             .map(|(reach, &motion)| reach.time(motion, (SAMPLES + 1) as f64))
             .filter(|h| !h.is_nan())

@@ -1,8 +1,9 @@
-//! How smooth the motions are over a run.
+//! The smoothness of motions over a run.
 //!
-//! A displacement that jumps asks for an infinite velocity, a slope that jumps for an infinite force; neither is a simulation.
-//! A curvature that jumps is one, with accelerations and forces that jump. A function given as a velocity is one
-//! derivative smoother as a displacement, one given as an acceleration two.
+//! A displacement that jumps asks for an infinite velocity, a slope that jumps for an infinite
+//! force; neither is a simulation. A curvature that jumps is one, with accelerations and forces
+//! that jump. A function given as a velocity is one derivative smoother as a displacement, one
+//! given as an acceleration two.
 
 use crate::analysis::system::complaints;
 use crate::diagnostic::Diagnostic;
@@ -21,7 +22,8 @@ pub struct Break {
     pub motion: u32,
     /// when
     pub at: f64,
-    /// the lowest derivative of its displacement that jumps there: 0 the displacement, 1 the velocity, 2 the acceleration
+    /// the lowest derivative of its displacement that jumps there: 0 the displacement, 1 the
+    /// velocity, 2 the acceleration
     pub order: usize,
     /// by how much; infinite or NaN where there is no limit on a side
     pub by: f64,
@@ -38,7 +40,7 @@ impl From<Break> for Jump {
     }
 }
 
-/// The derivative of a displacement of this order.
+/// Returns the derivative of a displacement of this order.
 fn quantity(order: usize) -> Quantity {
     match order {
         0 => Quantity::Displacement,
@@ -47,10 +49,11 @@ fn quantity(order: usize) -> Quantity {
     }
 }
 
-/// Most breakpoints that a sentence names.
-const TOLD: usize = 5;
+/// Breakpoints that a sentence names, at most.
+const MAX_NAMED: usize = 5;
 
-/// Where displacements, velocities or accelerations that motions prescribe jump between two times.
+/// Finds the jumps of displacements, velocities or accelerations that motions prescribe between two
+/// times.
 ///
 /// # Errors
 /// Functions that cannot be evaluated.
@@ -83,7 +86,8 @@ pub fn breaks(scene: Configured<'_>, start: f64, end: f64) -> Result<Vec<Break>,
     Ok(found)
 }
 
-/// The motions that cannot be run because what they prescribe, or its rate, jumps.
+/// Returns errors for the motions that cannot be run because the displacement that they prescribe,
+/// or its rate, jumps.
 pub fn refused(breaks: &[Break]) -> Vec<Diagnostic> {
     told(breaks, |b| b.order < 2)
         .into_iter()
@@ -123,11 +127,11 @@ fn told(breaks: &[Break], which: impl Fn(&Break) -> bool) -> Vec<(u32, String)> 
                 .collect();
             let worst = own.iter().map(|b| b.order).min()?;
             let what = quantity(worst).word();
-            let mut times: Vec<String> = (own.iter().take(TOLD))
+            let mut times: Vec<String> = (own.iter().take(MAX_NAMED))
                 .map(|b| format!("{} (by {:.6})", b.at, b.by))
                 .collect();
-            if own.len() > TOLD {
-                times.push(format!("{} more times", own.len() - TOLD));
+            if own.len() > MAX_NAMED {
+                times.push(format!("{} more times", own.len() - MAX_NAMED));
             }
             let times = times.join(", ");
             Some((m, format!("the {what} it prescribes jumps at time {times}")))

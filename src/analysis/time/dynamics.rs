@@ -64,7 +64,7 @@ pub fn integrate(
         let mut leg = Leg::new(system, watch, limits, (&mut out, &mut outputs), state.len());
         let finished = leg.run(method.as_mut(), state);
         out.add_cost(method.stats());
-        system.release();
+        system.branches_mut().release();
         // another method, or other rows
         y.truncate(n);
         match finished {

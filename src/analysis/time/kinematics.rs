@@ -1,8 +1,9 @@
-//! Motion of a mechanism without freedom: at each output time the positions that its drives and rows
-//! leave, then velocities; accelerations and reactions follow from the equations when somebody asks.
+//! Motion of a mechanism without freedom: at each output time the positions that its drives and
+//! rows leave, then velocities; accelerations and reactions follow from the equations when somebody
+//! asks.
 //!
-//! A step that does not converge is halved. When halving no longer helps, the mechanism is locked: it
-//! cannot be driven further, and the row that stands in the way is named.
+//! A step that does not converge is halved. When halving no longer helps, the mechanism is locked:
+//! it cannot be driven further, and the row that stands in the way is named.
 
 use crate::analysis::system::System;
 use crate::analysis::time::ranks;
@@ -21,7 +22,8 @@ const SMALL_CORRECTION: f64 = 0.5;
 /// the others.
 const FOLLOWS_TOLERANCE: f64 = 1e-8;
 
-/// Moves through all `outputs` (ascending, after the state's time), in steps no longer than `h_max`.
+/// Moves through all `outputs` (ascending, after the state's time), in steps no longer than
+/// `h_max`.
 pub fn trace(
     system: &mut System,
     outputs: &[f64],

@@ -216,7 +216,7 @@ impl<'a> Leg<'a> {
     /// sample, not over a time event, and not through a body.
     fn horizon(&mut self, method: &dyn Method<System>) -> f64 {
         let (t, y, end) = (method.t(), method.y(), self.limits.end);
-        let turn = self.system.longest_turn(y, method.ydot());
+        let turn = self.system.branches().longest_turn(y, method.ydot());
         let unseen = self.system.longest_unseen(t, y).min(turn);
         let unseen = unseen.max(LEAST_HORIZON * (end - t));
         // however near, it must be further on
@@ -285,8 +285,8 @@ impl<'a> Leg<'a> {
         Some((whole, found))
     }
 
-    /// Puts out what lies within a step; the time from which it goes on: the first one behind a time
-    /// event at its end.
+    /// Puts out what lies within a step; the time from which it goes on: the first one behind a
+    /// time event at its end.
     fn accept(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
         let behind = self.system.time_events.behind(step.t1);
         let anew = behind.unwrap_or(step.t1).min(self.limits.end);
@@ -297,12 +297,12 @@ impl<'a> Leg<'a> {
 
     /// Takes the samples that are due; whether a discrete state has changed.
     fn sample(&mut self, method: &dyn Method<System>, step: &Step) -> bool {
-        if !(self.system.is_sampled(step.t1) && self.system.sample(step.t1, method.y())) {
+        if !(self.system.samples.is_due(step.t1) && self.system.sample(step.t1, method.y())) {
             return false;
         }
         // discrete states are new from the sample on, the sample itself included
         if let (Some(&t), Some(row)) = (self.out.t.last(), self.out.rows.last_mut())
-            && self.system.is_together(t, step.t1)
+            && self.system.samples.is_together(t, step.t1)
         {
             *row = self.system.row(t, method.y());
         }
@@ -315,7 +315,8 @@ impl<'a> Leg<'a> {
             && external_inputs::remember(self.system, method, step).is_err()
     }
 
-    /// Does what triggered sensors ask for; whether the method is to begin anew, and with which step.
+    /// Does what triggered sensors ask for; whether the method is to begin anew, and with which
+    /// step.
     fn sense(
         &mut self,
         method: &dyn Method<System>,

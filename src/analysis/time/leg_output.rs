@@ -26,8 +26,8 @@ impl Looks {
 }
 
 impl Leg<'_> {
-    /// Returns the first output time inside a step at which the interpolant has no value: a step has
-    /// to end there.
+    /// Returns the first output time inside a step at which the interpolant has no value: a step
+    /// has to end there.
     pub(super) fn unreadable(
         &mut self,
         method: &mut dyn Method<System>,

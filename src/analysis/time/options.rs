@@ -83,8 +83,8 @@ impl Options {
 /// own stay as they are.
 ///
 /// GSTIFF, WSTIFF and their kin are backward differentiation of low order. They are taken for stiff
-/// systems with modest requests, which RADAU5 solves with fewer steps and without their damping (BDF
-/// is there by its own name). ABAM and RKF45 are explicit.
+/// systems with modest requests, which RADAU5 solves with fewer steps and without their damping
+/// (BDF is there by its own name). ABAM and RKF45 are explicit.
 pub fn method_named(name: &str) -> String {
     match name.to_ascii_uppercase().as_str() {
         "GSTIFF" | "WSTIFF" | "HASTIFF" | "CONSTANT_BDF" => "RADAU5".into(),

@@ -1,44 +1,58 @@
-//! Watching switches: which branch of each force and differential equation holds, and where in a step it ends.
+//! Switches: which branch of each force and differential equation holds, and where in a step it
+//! ends.
 //!
 //! ```text
 //! branches held → step → near a switch? → scan the interpolant → undo, step up to the switch → branches change, begin anew
 //! ```
 //!
-//! While branches are held the rates are smooth, also where a step leads beyond the end of a branch: no step is rejected
-//! because of a switch inside it, and the interpolant on which the switch is located is as exact as the method.
-//! Most steps are far from all switches; that is seen from values and slopes at both of their ends, without the interpolant:
+//! While branches are held the rates are smooth, also where a step leads beyond the end of a
+//! branch: no step is rejected because of a switch inside it, and the interpolant on which the
+//! switch is located is as exact as the method. Most steps are far from all switches; that is seen
+//! from values and slopes at both of their ends, without the interpolant:
 //!
 //! ```text
 //! |g| > h max |ġ|   at both ends        so that g cannot have come to zero
 //! ```
 //!
-//! Where both branches of a function lead back to where it changes (dry friction by SIGN, at rest), the motion stays there: the switch *slides*, see
-//! `system/sliding.rs`. While it does, its value is how far the mean of the branches is from either of them; it goes on along one when that comes to zero.
+//! Where both branches of a function lead back to where it changes (dry friction by SIGN, at rest),
+//! the motion stays there: the switch *slides*, see `system/sliding.rs`. While it does, its value
+//! is how far the mean of the branches is from either of them; the motion goes on along one when
+//! that comes to zero.
 //!
-//! What switches for ever all the same (a relay that reads a position): after forty switches in hardly any time the branches are let go for twenty steps,
-//! and error control finds its way. The same is done where no step is possible while they are held. Where that leads nowhere, [`Switches::endless`].
+//! Some switch for ever all the same (a relay that reads a position). After a burst of forty
+//! switches the branches are let go for twenty steps, and error control finds its way. The same is
+//! done where no step is possible while they are held. Where that leads nowhere, the run ends:
+//! [`Switches::endless`].
 
 use crate::analysis::system::System;
 use crate::numeric::event::{Locator, sign};
 use crate::numeric::{Failure, Method, Step};
 
-/// Switches in hardly any time that are too many.
-const BURST: usize = 40;
-/// Part of the duration that is hardly any time.
-const HARDLY: f64 = 1e-7;
-/// Distance from zero where a switch was to be, as a part of the way within the step, that is no longer rounding and error.
-const LANDED: f64 = 0.1;
-/// Part of the duration that no step is shorter than because of a switch: at time 0 there is always a shorter one, and a function whose
-/// branches are noise would lead there.
-const SHORTEST: f64 = 1e-13;
-/// Steps without watching after a burst.
-const REST: usize = 20;
-/// Bursts in a row, each beginning hardly any time after the one before, that lead nowhere.
-const ENDLESS: usize = 50;
-/// Part of the duration that is hardly any time for twenty steps.
-const HARDLY_FURTHER: f64 = 1e-3;
+/// Switches in a row, each within [`BURST_DURATION`] of the one before, after which branches are
+/// let go.
+const BURST_SWITCHES: usize = 40;
+/// Time between the switches of a burst, at most, as a part of the duration of the run.
+const BURST_DURATION: f64 = 1e-7;
+/// Steps during which branches are let go.
+const REST_STEPS: usize = 20;
+/// Time from one burst to the next, at most, if they are to count as in a row; a part of the
+/// duration of the run, in which twenty steps should come further.
+const REST_DURATION: f64 = 1e-3;
+/// Bursts in a row after which the run ends.
+const MAX_BURSTS: usize = 50;
+/// Distance from zero where a switch was to be, as a part of the way within the step, that is more
+/// than rounding and error.
+const LANDING_TOLERANCE: f64 = 0.1;
+/// Length below which no step is shortened because of a switch, as a part of the duration of the
+/// run: at time 0 there is always a shorter one, and a function whose branches are noise would lead
+/// there.
+const SHORTEST_STEP: f64 = 1e-13;
+/// Steps that are repeated because of one switch, at most.
+const MAX_REDONE: usize = 30;
+/// Rounds in which the branches are made to fit each other, at most.
+const MAX_SETTLING: usize = 10;
 
-/// What a step means for the switches.
+/// The verdict on a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// no branch ended in it
@@ -70,7 +84,7 @@ pub struct Switches {
     redone: usize,
     burst: usize,
     last: f64,
-    /// bursts in a row, and when the last one was
+    /// bursts in a row, and the time of the last one
     bursts: usize,
     last_burst: f64,
     worst: usize,
@@ -79,9 +93,10 @@ pub struct Switches {
 }
 
 impl Switches {
-    /// For a run of some duration.
+    /// Prepares the switches of a system whose state has `size` numbers, for a run of some
+    /// duration.
     pub fn new(system: &System, size: usize, duration: f64) -> Self {
-        let n = system.n_switches();
+        let n = system.branches().len();
         Self {
             locator: Locator::new(n),
             sides: vec![0; n],
@@ -104,7 +119,7 @@ impl Switches {
         }
     }
 
-    /// Whether there is nothing to watch.
+    /// Returns whether there is nothing to watch.
     pub fn none(&self) -> bool {
         self.sides.is_empty()
     }
@@ -116,43 +131,45 @@ impl Switches {
         }
         self.rest = 0;
         self.landing = None;
-        system.hold(&self.sides);
+        system.branches_mut().hold(&self.sides);
         self.next.fill(0);
         self.slides.fill(false);
         self.settle(system, t, y);
     }
 
-    /// Whether something slides.
+    /// Returns whether something slides.
     pub fn slide(&self) -> bool {
         self.slides.contains(&true)
     }
 
-    /// Where branches change without end and without getting any further, the unknown that they change most.
+    /// Returns the unknown that branches change most where they change without end and the run
+    /// comes no further.
     pub fn endless(&self) -> Option<usize> {
-        (self.bursts > ENDLESS).then_some(self.worst)
+        (self.bursts > MAX_BURSTS).then_some(self.worst)
     }
 
-    /// Takes over the branches from a switch on; to be called before the method begins anew there. Where the motion stays, the state is put there.
+    /// Takes over the branches from a switch on, before the method begins anew there. Where the
+    /// motion stays, the state is put there.
     pub fn change(&mut self, system: &mut System, t: f64, y: &mut [f64]) {
         self.landing = None;
         self.redone = 0;
-        if t - self.last < HARDLY * self.duration {
+        if t - self.last < BURST_DURATION * self.duration {
             self.burst += 1;
         } else {
             self.burst = 0;
         }
         self.last = t;
-        if self.burst > BURST {
-            let further = t - self.last_burst > HARDLY_FURTHER * self.duration;
+        if self.burst > BURST_SWITCHES {
+            let further = t - self.last_burst > REST_DURATION * self.duration;
             self.bursts = if further { 1 } else { self.bursts + 1 };
             self.last_burst = t;
             self.burst = 0;
-            self.rest = REST;
+            self.rest = REST_STEPS;
             self.slides.fill(false);
             if let Some(k) = self.next.iter().position(|&side| side != 0) {
                 self.worst = system.changed_most_by(t, y, k);
             }
-            system.release();
+            system.branches_mut().release();
             return;
         }
         for k in 0..self.sides.len() {
@@ -175,28 +192,31 @@ impl Switches {
 
     /// Holds the branches on their sides, except where they slide.
     fn hold(&self, system: &mut System) {
-        system.hold(&self.sides);
-        system.slide((0..self.slides.len()).filter(|&k| self.slides[k]));
+        system.branches_mut().hold(&self.sides);
+        system
+            .branches_mut()
+            .slide((0..self.slides.len()).filter(|&k| self.slides[k]));
     }
 
-    /// Lets the branches go for a while where no step is possible while they are held: beyond its end a branch may grow without
-    /// bound (a ramp much shorter than any step). False: they were not held.
+    /// Lets the branches go for a while where no step is possible while they are held: beyond its
+    /// end a branch may grow without bound (a ramp much shorter than any step). False: they were
+    /// not held.
     pub fn let_go(&mut self, system: &mut System) -> bool {
-        if self.none() || self.rest > 0 || !system.can_hold() {
+        if self.none() || self.rest > 0 || !system.branches().can_hold() {
             return false;
         }
         self.landing = None;
         self.redone = 0;
-        self.rest = REST;
+        self.rest = REST_STEPS;
         self.slides.fill(false);
-        system.release();
+        system.branches_mut().release();
         true
     }
 
     /// Holds the branches that fit the state: `next` where it says a side, else the sign there.
     fn settle(&mut self, system: &mut System, t: f64, y: &[f64]) {
         self.sides.copy_from_slice(&self.next);
-        for _ in 0..10 {
+        for _ in 0..MAX_SETTLING {
             self.hold(system);
             system.switches(t, y, &mut self.g0);
             let mut changed = false;
@@ -218,7 +238,8 @@ impl Switches {
         self.hold(system);
     }
 
-    /// Values on no side take the one they leave to; slopes at the state. True: a side was taken, the rate is another.
+    /// Puts values on no side onto the one they leave to, and finds the slopes at the state. True:
+    /// a side was taken, the rate is another.
     pub fn look_ahead(&mut self, system: &mut System, t: f64, y: &[f64], ydot: &[f64]) -> bool {
         if self.none() || self.rest > 0 {
             return false;
@@ -248,7 +269,7 @@ impl Switches {
         changed
     }
 
-    /// Values at the state into `g1`, slopes into `slope1`.
+    /// Evaluates values at the state into `g1`, slopes into `slope1`.
     fn slopes(&mut self, system: &mut System, t: f64, y: &[f64], ydot: &[f64], delta: f64) {
         for ((p, y), f) in self.probe.iter_mut().zip(y).zip(ydot) {
             *p = y + delta * f;
@@ -260,7 +281,7 @@ impl Switches {
         }
     }
 
-    /// What the step just taken means.
+    /// Judges the step just taken: whether a branch ended in it.
     pub fn judge(
         &mut self,
         system: &mut System,
@@ -271,47 +292,22 @@ impl Switches {
             return Verdict::Keep;
         }
         if self.rest > 0 {
-            self.rest -= 1;
-            if self.rest == 0 {
-                self.next.fill(0);
-                self.last = step.t1;
-                return Verdict::Switched;
-            }
-            return Verdict::Keep;
+            return self.judge_at_rest(step);
         }
+        // far from all switches, or at one that was to be met
         let landed = self.landing.take() == Some(step.t1);
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
         let landed = landed && self.has_landed(step.h);
-        let near = (0..self.sides.len()).any(|k| {
-            if landed && self.next[k] != 0 {
-                return false;
-            }
-            let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
-            let least = self.g0[k].abs().min(self.g1[k].abs());
-            let far = sign(self.g1[k]) == self.sides[k] && least > step.h * steepest;
-            // a value that stays zero is on no side
-            !(far || self.sides[k] == 0 && self.g1[k] == 0.0 && self.slope1[k] == 0.0)
-        });
-        if !near {
+        if !self.is_near(step.h, landed) {
             if landed {
                 return Verdict::Switched;
             }
             self.keep();
             return Verdict::Keep;
         }
-        let mut state = std::mem::take(&mut self.probe);
-        let event = self.locator.scan(step.t0, step.t1, |t, values| {
-            if t == step.t1 {
-                state.copy_from_slice(method.y());
-            } else {
-                method.interpolate(system, t, &mut state)?;
-            }
-            system.switches(t, &state, values);
-            Ok::<(), Failure>(())
-        });
-        self.probe = state;
-        let at = match event {
+        // the first switch on the interpolant
+        let at = match self.scan(system, method, step) {
             Ok(Some(at)) => at,
             Ok(None) if landed => return Verdict::Switched,
             Ok(None) => {
@@ -325,7 +321,58 @@ impl Switches {
                 return Verdict::Switched;
             }
         };
-        let at = at.max(step.t0 + SHORTEST * self.duration).min(step.t1);
+        self.judge_crossing(at, step, landed)
+    }
+
+    /// Counts a step during which branches are let go; after the last one they are found anew.
+    fn judge_at_rest(&mut self, step: &Step) -> Verdict {
+        self.rest -= 1;
+        if self.rest > 0 {
+            return Verdict::Keep;
+        }
+        self.next.fill(0);
+        self.last = step.t1;
+        Verdict::Switched
+    }
+
+    /// Returns whether a switch may have come to zero within a step; those at which it `landed`
+    /// have.
+    fn is_near(&self, h: f64, landed: bool) -> bool {
+        (0..self.sides.len()).any(|k| {
+            if landed && self.next[k] != 0 {
+                return false;
+            }
+            let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
+            let least = self.g0[k].abs().min(self.g1[k].abs());
+            let far = sign(self.g1[k]) == self.sides[k] && least > h * steepest;
+            // a value that stays zero is on no side
+            !(far || self.sides[k] == 0 && self.g1[k] == 0.0 && self.slope1[k] == 0.0)
+        })
+    }
+
+    /// Finds the first switch within a step on its interpolant.
+    fn scan(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        step: &Step,
+    ) -> Result<Option<f64>, Failure> {
+        let state = &mut self.probe;
+        self.locator.scan(step.t0, step.t1, |t, values| {
+            if t == step.t1 {
+                state.copy_from_slice(method.y());
+            } else {
+                method.interpolate(system, t, state)?;
+            }
+            system.switches(t, state, values);
+            Ok::<(), Failure>(())
+        })
+    }
+
+    /// Decides about a step in which switches were crossed: it stays when they were at its end.
+    fn judge_crossing(&mut self, at: f64, step: &Step, landed: bool) -> Verdict {
+        let shortest = step.t0 + SHORTEST_STEP * self.duration;
+        let at = at.max(shortest).min(step.t1);
         let at_end = step.t1 - at <= 1e-14 * step.t1.abs() + 1e-9 * step.h;
         if !(landed && at_end) {
             self.next.fill(0);
@@ -333,7 +380,7 @@ impl Switches {
         for &k in self.locator.crossed() {
             self.next[k] = self.locator.sides()[k];
         }
-        if at_end || self.redone >= 30 {
+        if at_end || self.redone >= MAX_REDONE {
             return Verdict::Switched;
         }
         self.redone += 1;
@@ -342,19 +389,21 @@ impl Switches {
         Verdict::Redo(at)
     }
 
-    /// Whether what was to switch at the end of a step is there at zero, as far as the steps that said so were right: one of them may have been much
-    /// longer than its method could see, and its interpolant wrong.
+    /// Returns whether what was to switch at the end of a step is there at zero. The steps that
+    /// said so may have been much longer than their method could see, and their interpolants wrong.
     fn has_landed(&mut self, h: f64) -> bool {
         for k in 0..self.next.len() {
             let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
-            if sign(self.g1[k]) == -self.next[k] && self.g1[k].abs() > LANDED * h * steepest {
+            if sign(self.g1[k]) == -self.next[k]
+                && self.g1[k].abs() > LANDING_TOLERANCE * h * steepest
+            {
                 self.next[k] = 0;
             }
         }
         self.next.iter().any(|&side| side != 0)
     }
 
-    /// The end of a step becomes the beginning of the next.
+    /// Makes the end of a step the beginning of the next.
     fn keep(&mut self) {
         self.redone = 0;
         self.next.fill(0);

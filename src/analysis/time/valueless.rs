@@ -1,8 +1,10 @@
-//! Which function of the model has no value where a simulation cannot go on, or grows without bound: the operation, with its numbers.
+//! Functions of the model that have no value where a simulation cannot go on, or grow without
+//! bound: the operation, with its numbers.
 //!
-//! A step that fails is shortened until it ends just before the place where the function loses its value. So all functions are asked
-//! there and a little later, along the rates that were found there. Before a pole the function has values all the time; what it divides by has nearly gone
-//! to zero against what it is a little later.
+//! A step that fails is shortened until it ends just before the place where a function loses its
+//! value. So all functions are evaluated there and a little later, along the rates that were found
+//! there. Before a pole a function has values all the time; its divisor has nearly gone to zero
+//! against that of a little later.
 
 use crate::expr::Expr;
 use crate::expr::ast::{Ast, BinaryOp, Callee, Node, NodeIx};
@@ -14,22 +16,23 @@ use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use std::fmt;
 
-/// How much later, as parts of the time that the clock shows, or of a unit of it.
+/// Times after the last state at which functions are evaluated, as parts of its time, or of a unit
+/// of time.
 const LATER: [f64; 6] = [0.0, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3];
 
-/// A divisor that is smaller than this part of what it is later is that of a pole.
-const VANISHED: f64 = 1e-8;
+/// Divisor at a pole, at most, as a part of the divisor a little later.
+const VANISHING_DIVISOR: f64 = 1e-8;
 
 /// A function that has no value, or soon none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Valueless {
     /// "SFORCE/1 FUNCTION"
     pub function: String,
-    /// how it loses its value
+    /// the way in which it loses its value
     pub loss: Loss,
 }
 
-/// How a function loses its value.
+/// The way in which a function loses its value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Loss {
     /// an operation is asked for what it has no value for: "SQRT of -0.01 has no value"
@@ -65,7 +68,8 @@ impl fmt::Display for Valueless {
     }
 }
 
-/// Finds the function that has no value at the numbers of the last state or just after it; `None`: all have values that stay bounded.
+/// Finds the function that has no value at the numbers of the last state or just after it; `None`:
+/// all have values that stay bounded.
 pub fn find(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
     let rates = Equations::new(scene, numbers).rates();
     let unit = numbers[Layout::TIME].abs().max(1.0);
@@ -106,7 +110,7 @@ fn pole(scene: Configured<'_>, now: &[f64], then: &[f64]) -> Option<Valueless> {
         let ix = (0..here.len() as NodeIx).find(|&ix| {
             let divisor = |values: &[Option<f64>]| divisor(expr.ast(), ix, values);
             match (divisor(&here), divisor(&later)) {
-                (Some(here), Some(later)) => here.abs() < VANISHED * later.abs(),
+                (Some(here), Some(later)) => here.abs() < VANISHING_DIVISOR * later.abs(),
                 _ => false,
             }
         })?;
@@ -121,7 +125,7 @@ fn pole(scene: Configured<'_>, now: &[f64], then: &[f64]) -> Option<Valueless> {
     })
 }
 
-/// What an operation divides by, or would if it were written as a quotient.
+/// Returns the divisor of an operation, also of one that could be written as a quotient.
 fn divisor(ast: &Ast, ix: NodeIx, values: &[Option<f64>]) -> Option<f64> {
     let value = |ix: NodeIx| values[ix as usize];
     match *ast.node(ix) {

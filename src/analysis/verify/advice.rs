@@ -124,7 +124,7 @@ fn fits(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, c: usize, t
     let target = scene.layout.n_v - assembly.freedom;
     let holds = |configuration: &Configuration, numbers: &[f64]| {
         let at = Equations::new(changed.within(configuration), numbers);
-        (own.clone()).all(|r| at.row(r).value.abs() < 1e-8 * assemble::natural(&changed, r))
+        (own.clone()).all(|r| at.row(r).value.abs() < 1e-8 * changed.row_scale(r))
     };
     let ranked = |configuration: &Configuration, numbers: &[f64]| {
         let l = changed.layout;

@@ -121,7 +121,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         system.operations(),
         system.projection_operations().unwrap_or(0),
     );
-    out.switches = system.n_switches();
+    out.switches = system.branches().len();
     out.elimination = if system.configuration.elimination.articulated {
         "articulated bodies"
     } else {

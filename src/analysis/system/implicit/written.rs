@@ -1,13 +1,15 @@
-//! A residual as it is written down once: its program, its derivatives, and the multipliers to begin with.
+//! A residual as it is written down once: its program, its derivatives, and the multipliers to
+//! begin with.
 
-use crate::analysis::system::algebraic_loops::WIDTH;
 use crate::analysis::system::external_inputs::ExternalInputs;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
 use crate::numeric::pattern::Pattern;
 use crate::scalar::{Dual, Scalar};
 use crate::scene::Scene;
+use crate::scene::slopes::WIDTH;
 
-/// Programs of one form of the implicit equations. All read the numbers, then ẏ, λ, μ, and what may come after.
+/// Programs of one form of the implicit equations. All read the numbers, then ẏ, λ, μ, and what may
+/// come after.
 #[derive(Debug)]
 pub(super) struct Written {
     residual: Program,
@@ -16,7 +18,7 @@ pub(super) struct Written {
     jacobian: Jacobian,
     /// unknowns of the explicit system
     n: usize,
-    /// how many numbers there are before ẏ
+    /// number of numbers before ẏ
     first: usize,
     work: Work,
     /// places of the entries among those of a larger pattern   (entries)
@@ -33,7 +35,8 @@ enum Jacobian {
         entries: Vec<(usize, usize, Option<usize>, Option<usize>)>,
         out: Vec<f64>,
     },
-    /// by duals, columns that share no row together: where the program would be too long, and where numbers come from outside
+    /// by duals, columns that share no row together: where the program would be too long, and where
+    /// numbers come from outside
     Duals {
         pattern: Pattern,
         work: Work<Dual<WIDTH>>,
@@ -42,10 +45,11 @@ enum Jacobian {
     },
 }
 
-/// Most operations whose derivatives are recorded, in products with the unknowns.
-const LONGEST: usize = 400_000;
+/// Operations whose derivatives are recorded, times the unknowns, at most.
+const MAX_OPERATIONS: usize = 400_000;
 
-/// Where the residual reads unknown `j`: numbers 1 … n, and of the multipliers those after ẏ, which begins at `first`.
+/// Returns where the residual reads unknown `j`: numbers 1 … n, and of the multipliers those after
+/// ẏ, which begins at `first`.
 fn place(j: usize, n: usize, first: usize) -> usize {
     if j < n { 1 + j } else { first + j }
 }
@@ -77,8 +81,8 @@ impl Jacobian {
                 out: Vec::new(),
             }
         };
-        // what closures and queries yield is differentiated by differences, beside the programs
-        if size * residual.n_operations() > LONGEST || !scene.hooks.is_empty() {
+        // results of closures and queries are differentiated by differences, beside the programs
+        if size * residual.n_operations() > MAX_OPERATIONS || !scene.hooks.is_empty() {
             return by_duals();
         }
         let mut builder = Builder::new(Folding::Structural);
@@ -110,7 +114,7 @@ impl Jacobian {
             }
         }
         let program = builder.finish_with_inputs(&wanted, residual.inputs());
-        if program.n_operations() > LONGEST {
+        if program.n_operations() > MAX_OPERATIONS {
             return by_duals();
         }
         Jacobian::Recorded {
@@ -123,7 +127,8 @@ impl Jacobian {
 }
 
 impl Written {
-    /// The equations of a scene in one form, with `n` unknowns of the explicit system among `size`.
+    /// Records the derivatives of a residual with `size` unknowns, `n` of them of the explicit
+    /// system.
     pub(super) fn new(
         scene: &Scene,
         residual: Program,
@@ -142,7 +147,7 @@ impl Written {
         }
     }
 
-    /// Row and column of every entry of the Jacobian.
+    /// Returns row and column of every entry of the Jacobian.
     pub(super) fn pattern(&self) -> Box<dyn Iterator<Item = (usize, usize)> + '_> {
         match &self.jacobian {
             Jacobian::Recorded { entries, .. } => Box::new(entries.iter().map(|e| (e.0, e.1))),
@@ -150,26 +155,26 @@ impl Written {
         }
     }
 
-    /// Where the entries stand in a pattern that has all of them, sorted by columns.
+    /// Finds the entries in a pattern that has all of them, sorted by columns.
     pub(super) fn place_in(&mut self, all: &[(usize, usize)]) {
         let place = |(i, j): (usize, usize)| all.partition_point(|&(k, l)| (l, k) < (j, i));
         self.places = self.pattern().map(place).collect();
     }
 
-    /// `r = F` of the numbers.
+    /// Evaluates `r = F` of the numbers.
     pub(super) fn residual(&mut self, numbers: &[f64], r: &mut [f64]) {
         let read = self.residual.inputs().len();
         self.residual.run(&numbers[..read], &mut self.work, r);
     }
 
-    /// The multipliers of the numbers.
+    /// Evaluates the multipliers of the numbers.
     pub(super) fn multipliers(&mut self, numbers: &[f64], lambda: &mut [f64]) {
         let read = self.multipliers.inputs().len();
         self.multipliers
             .run(&numbers[..read], &mut self.work, lambda);
     }
 
-    /// `∂F/∂y + cj ∂F/∂ẏ` at the entries of the pattern given to [`Written::place_in`].
+    /// Evaluates `∂F/∂y + cj ∂F/∂ẏ` at the entries of the pattern given to [`Written::place_in`].
     pub(super) fn derivatives(
         &mut self,
         read: &[f64],

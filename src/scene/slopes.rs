@@ -1,22 +1,25 @@
 //! Derivatives of recorded programs along directions, several directions at a time.
 
-use crate::analysis::system::algebraic_loops::WIDTH;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
 use crate::numeric::pattern::Pattern;
 use crate::scalar::{Dual, Scalar};
 use nalgebra::DMatrix;
 
-/// Most operations of a recorded gradient, and of a program whose gradient is recorded at all, in products with its outputs.
-const LONGEST: usize = 60_000;
+/// Directions of a dual number in one sweep.
+pub const WIDTH: usize = 8;
 
-/// The derivatives of the first `n` outputs of a program as a program: output by output, with respect to the numbers at `places`;
-/// `None` where it would take longer than duals.
+/// Operations of a recorded gradient, at most; and a quarter of those of a program times its
+/// outputs whose gradient is recorded at all.
+const MAX_OPERATIONS: usize = 60_000;
+
+/// Records the derivatives of the first `n` outputs of a program: output by output, with respect to
+/// the numbers at `places`; `None` where that program would take longer than duals.
 pub fn recorded(
     program: &Program,
     n: usize,
     places: impl Iterator<Item = usize>,
 ) -> Option<Program> {
-    if n * program.n_operations() > LONGEST * 4 {
+    if n * program.n_operations() > MAX_OPERATIONS * 4 {
         return None;
     }
     let mut builder = Builder::new(Folding::Structural);
@@ -29,15 +32,17 @@ pub fn recorded(
         entries.extend(builder.gradient(output, &places));
     }
     let gradient = builder.finish_with_inputs(&entries, program.inputs());
-    (gradient.n_operations() <= LONGEST).then_some(gradient)
+    (gradient.n_operations() <= MAX_OPERATIONS).then_some(gradient)
 }
 
 /// A direction: places in the row of numbers, each with the slope of its number.
 pub type Direction = Vec<(usize, f64)>;
 
-/// ∂out/∂direction of a program at `numbers`   (outputs × directions). `pattern`: which outputs change along which directions; those of a group
-/// are followed together. `follow` puts into the marked numbers what depends on
-/// them without being part of a direction; its second argument says that the numbers are new.
+/// Returns ∂out/∂direction of a program at `numbers`   (outputs × directions).
+///
+/// `pattern` tells which outputs change along which directions; the directions of a group are
+/// followed together. `follow` puts the derivatives of numbers that depend on others without being
+/// part of a direction into their places; its second argument says that the numbers are new.
 ///
 /// # Errors
 /// Those of `follow`.

@@ -1,0 +1,260 @@
+//! A scene as ẏ = f(t, y): what methods for ordinary differential equations see.
+//!
+//! Within a step the rows hold at acceleration level. Near a position where they become dependent,
+//! violations are magnified by 1/σ, σ² the weakest pivot: there a stage is put onto the rows before
+//! it is evaluated, where that is felt. Each accepted step is projected back onto the rows.
+
+use super::System;
+use super::recording::Recording;
+use super::rows::ROUNDING;
+use crate::numeric::pattern::Pattern;
+use crate::numeric::{Failure, Ode, Relation};
+use crate::scene::Source;
+use crate::scene::layout::Layout;
+use crate::scene::solve::NEAR_SINGULAR_PIVOT;
+use std::sync::Arc;
+
+/// Error of the rates that weak rows magnify, at most, as a part of the permitted local error.
+const MAGNIFIED_ERROR: f64 = 1e-3;
+/// Rounding of the rates where the strength of the rows is one, over the part of the permitted
+/// local error that it may be: a pivot σ² is rounded like one of size one, so that rates are off by
+/// rounding/σ².
+const ROUNDING_OF_RATES: f64 = 1e-13;
+/// Part of the largest angle (or length) that a small one is measured against: measured, chains of
+/// 160 links take a fifth fewer steps and are still a thousand times more exact than asked for.
+const SHARE_OF_LARGEST_POSITION: f64 = 0.1;
+/// The same for speeds, which may differ more: a wheel on a slow arm.
+const SHARE_OF_LARGEST_SPEED: f64 = 0.02;
+/// Iterations of a projection, at most.
+const MAX_PROJECTIONS: usize = 8;
+/// Change of positions, rad or units of length, at which a projection has converged.
+const PROJECTED: f64 = 1e-11;
+/// The same where rows have nearly been dependent: the last digits along them are noise.
+const PROJECTED_WEAKLY: f64 = 1e-9;
+/// Change at the first iteration, at most, of a state that was on the rows.
+const ON_ROWS: f64 = 10.0 * ROUNDING;
+
+impl System {
+    /// Puts the stage `y` of a step onto weak rows before it is evaluated, where violations would
+    /// be felt.
+    fn evaluate_weak(&mut self, t: f64, y: &[f64]) {
+        let n = self.scene.layout.n_y();
+        self.recorded.rows.were_weak = true;
+        let strength = self.recorded.rate.values[n].max(0.0);
+        let permitted = (MAGNIFIED_ERROR * self.precision * strength.sqrt()).max(ROUNDING);
+        let violation = self.worst_violation();
+        if violation.is_nan() || violation > permitted {
+            let mut stage = std::mem::take(&mut self.stage);
+            stage.clear();
+            stage.extend_from_slice(y);
+            if self.project(t, &mut stage).is_ok() {
+                self.set(t, &stage);
+                self.recorded.run_rate(&self.numbers);
+            }
+            self.stage = stage;
+        }
+        self.singular_steps.see(t, self.recorded.rate.values[n]);
+    }
+
+    /// Returns the largest violation of a row at the present numbers.
+    fn worst_violation(&mut self) -> f64 {
+        let v = &self.numbers[self.scene.layout.v()];
+        self.recorded.rows.worst_violation(&self.numbers, v)
+    }
+
+    /// Iterates least changes until a state is on the rows.
+    fn iterate_onto_rows(
+        &mut self,
+        projection: &mut Recording,
+        t: f64,
+        y: &mut [f64],
+    ) -> Result<bool, Failure> {
+        let l = self.scene.layout;
+        let (mut first, mut last) = (None, f64::INFINITY);
+        let mut outcome = Err(Failure {
+            what: 0,
+            recoverable: true,
+        });
+        for _ in 0..MAX_PROJECTIONS {
+            self.set(t, y);
+            let change = l.change(projection.run(&self.numbers));
+            let size = change.q.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            if !size.is_finite() || size > 2.0 * last {
+                break;
+            }
+            last = size;
+            first.get_or_insert(size);
+            let state = l.state_mut(y);
+            for (v, d) in state.v.iter_mut().zip(change.v) {
+                *v += d;
+            }
+            for (&place, d) in self.recorded.rows.contacts.iter().zip(change.x) {
+                state.x[place] += d;
+            }
+            if size > 0.0 {
+                self.mover.displace(state.q, change.q);
+            }
+            // the velocities were corrected with the gradient before this displacement
+            if size < PROJECTED {
+                outcome = Ok(true);
+                break;
+            }
+        }
+        let rows = &mut self.recorded.rows;
+        if rows.were_weak && last < PROJECTED_WEAKLY {
+            outcome = Ok(true);
+        }
+        // where a mechanism keeps its rows by itself, looking at them is cheaper
+        rows.clean = rows.contacts.is_empty() && first.is_some_and(|size| size < ON_ROWS);
+        outcome
+    }
+}
+
+impl Ode for System {
+    fn size(&self) -> usize {
+        self.scene.layout.n_y()
+    }
+
+    fn rate(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y);
+        if let Some(k) = self.unsolved {
+            return Err(Failure {
+                what: y.len() + k,
+                recoverable: true,
+            });
+        }
+        let n = ydot.len();
+        self.recorded.run_rate(&self.numbers);
+        let strength = self.recorded.rate.values[n];
+        if strength < NEAR_SINGULAR_PIVOT && self.recorded.rows.projection.is_some() {
+            self.evaluate_weak(t, y);
+        }
+        ydot.copy_from_slice(&self.recorded.rate.values[..n]);
+        // a sum is finite only if all its terms are
+        let sum: f64 = ydot.iter().map(|x| x * 0.0).sum();
+        if sum == 0.0 {
+            return Ok(());
+        }
+        let what = ydot.iter().position(|x| !x.is_finite()).unwrap_or(0);
+        Err(Failure {
+            what,
+            recoverable: true,
+        })
+    }
+
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        let changed = self.mover.normalize(self.scene.layout.state_mut(y).q);
+        if self.recorded.rows.clean {
+            self.set(t, y);
+            if self.worst_violation() <= ROUNDING {
+                return Ok(changed);
+            }
+        }
+        // taken out, as loops and closures are solved for on the way
+        let Some(mut projection) = self.recorded.rows.projection.take() else {
+            return Ok(changed);
+        };
+        let outcome = self.iterate_onto_rows(&mut projection, t, y);
+        self.recorded.rows.projection = Some(projection);
+        outcome
+    }
+
+    fn filter_error(&mut self, t: f64, y: &[f64], error: &mut [f64]) -> bool {
+        let rows = &mut self.recorded.rows;
+        let (true, Some(projection)) = (rows.were_weak, &mut rows.projection) else {
+            return false;
+        };
+        // Δv(v) = −W Gᵀ (G W Gᵀ)⁻¹ (G v + ġ₀): its part linear in v takes away all that is normal
+        // to the rows
+        let l = self.scene.layout;
+        let n_v = l.n_v;
+        let q = l.state(y).q;
+        let error = l.state_mut(error);
+        let tangent = self.mover.tangent(q, error.q, n_v);
+        let mut state = y.to_vec();
+        let mut normal = |v: &[f64], numbers: &mut [f64]| {
+            l.state_mut(&mut state).v.copy_from_slice(v);
+            numbers[Layout::TIME] = t;
+            numbers[l.y()].copy_from_slice(&state);
+            l.change(projection.run(numbers)).v.to_vec()
+        };
+        let none = normal(&vec![0.0; n_v], &mut self.numbers);
+        let of_q = normal(&tangent, &mut self.numbers);
+        let of_v = normal(error.v, &mut self.numbers);
+        let filtered: Vec<f64> = (0..n_v).map(|k| tangent[k] + of_q[k] - none[k]).collect();
+        self.mover.untangent(q, &filtered, error.q);
+        for k in 0..n_v {
+            error.v[k] += of_v[k] - none[k];
+        }
+        true
+    }
+
+    fn place_step(&mut self, t: f64, h: f64, gap: [f64; 2]) -> Option<f64> {
+        let harmful = (ROUNDING_OF_RATES / self.precision).min(NEAR_SINGULAR_PIVOT);
+        self.singular_steps.place(t, h, gap, harmful)
+    }
+
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        jacobian: &mut [f64],
+        dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.set(t, y);
+        self.full_jacobian(y.len(), jacobian, dfdt)
+    }
+
+    fn pattern(&mut self) -> Option<Arc<Pattern>> {
+        self.jacobian_pattern()
+    }
+
+    fn jacobian_entries(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y);
+        self.jacobian_by_groups(entries)
+    }
+
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1.0);
+        let typical = self.scene.layout.state_mut(typical);
+        for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
+            if let Source::Free { q, v } = c.source
+                && !c.angular
+                && !f.in_ball
+            {
+                typical.q[q] = self.scene.length;
+                typical.v[v] = self.scene.length;
+            }
+        }
+    }
+
+    fn relations(&self, relations: &mut [Relation]) {
+        let relations = self.scene.layout.state_mut(relations);
+        for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
+            let Source::Free { q, v } = c.source else {
+                continue;
+            };
+            let kind = u16::from(c.angular);
+            if !f.in_ball {
+                relations.q[q] = Relation {
+                    most: if c.angular {
+                        std::f64::consts::PI
+                    } else {
+                        f64::INFINITY
+                    },
+                    group: Some(kind),
+                    share: SHARE_OF_LARGEST_POSITION,
+                    rate_of: None,
+                };
+            }
+            // short steps because of a contact have to be seen in velocity
+            let smooth = self.recorded.branches.is_empty() && !f.in_ball;
+            relations.v[v] = Relation {
+                group: Some(2 + kind),
+                share: SHARE_OF_LARGEST_SPEED,
+                rate_of: smooth.then_some(q),
+                ..Relation::default()
+            };
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! The programs of a scene in one configuration.
+//!
+//! They are recorded together, before the first step and again whenever other rows are chosen: each
+//! of them is written for the rows that take part.
+
+use super::algebraic_loops::AlgebraicLoops;
+use super::branches::Branches;
+use super::complaints;
+use super::jacobian::Derivatives;
+use super::recording::Recording;
+use super::rows::Rows;
+use super::tunnelling::ThicknessBounds;
+use crate::diagnostic::Diagnostic;
+use crate::expr::program::Program;
+use crate::scene::Scene;
+use crate::scene::cams;
+use crate::scene::configuration::{Configuration, Configured};
+use crate::scene::equations::{Equations, KINEMATIC, STATIC};
+use crate::scene::programs::{self, record};
+use crate::scene::solve;
+
+/// Depth of the deepest forest whose rate is also recorded from the entries of the mass matrix: the
+/// number of its operations grows with the square of the depth.
+const MAX_DEPTH_OF_MATRIX: usize = 40;
+/// Least usual size of a pivot, as a part of the largest: rows that happen to vanish where pivots
+/// are measured are taken to be like the others.
+const LEAST_USUAL_PIVOT: f64 = 0.01;
+
+/// The programs of a scene in one configuration, with their scratch.
+#[derive(Debug)]
+pub(super) struct Recorded {
+    /// ẏ, then the strength of the rows: their weakest pivot over its usual size   (n + 1)
+    pub rate: Recording,
+    /// rows: kept by projection, watched where they are left out
+    pub rows: Rows,
+    /// switching functions, and the rate with branches held
+    pub branches: Branches,
+    /// unknowns of loops that are not linear
+    pub loops: Option<AlgebraicLoops>,
+    /// angles whose turns are counted   (n_turns)
+    pub turns: Option<Recording>,
+    /// bodies that could pass through each other
+    pub thickness: ThicknessBounds,
+    /// derivatives of the rates
+    pub derivatives: Derivatives,
+}
+
+impl Recorded {
+    /// Records the programs of a scene, and chooses how accelerations are eliminated: pivots are
+    /// measured at the positions `q`, and the shorter rate is kept.
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub fn new(
+        scene: &Scene,
+        configuration: &mut Configuration,
+        q: &[f64],
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let usual_pivots = usual_pivots(scene.within(configuration), q);
+        configuration.elimination.usual_pivots = usual_pivots;
+        let rate = shortest_rate(scene, configuration)?;
+        let here = scene.within(configuration);
+        Ok(Self {
+            rate: Recording::new(rate),
+            rows: Rows::new(here)?,
+            branches: Branches::new(here)?,
+            loops: AlgebraicLoops::new(here).map_err(complaints)?,
+            turns: turns_program(here)?.map(Recording::new),
+            thickness: ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?,
+            derivatives: Derivatives::default(),
+        })
+    }
+
+    /// Evaluates the rates at a row of numbers, and how strong the rows are: of the branches that
+    /// are held, else of those that the numbers say.
+    pub fn run_rate(&mut self, numbers: &[f64]) {
+        if !self.branches.run_held(numbers, &mut self.rate.values) {
+            self.rate.run(numbers);
+        }
+    }
+}
+
+/// Chooses the elimination that takes fewer operations and records the rate with it; deep forests
+/// are not tried the quadratic way.
+fn shortest_rate(
+    scene: &Scene,
+    configuration: &mut Configuration,
+) -> Result<Program, Vec<Diagnostic>> {
+    configuration.elimination.articulated = true;
+    let articulated = rate_program(scene.within(configuration))?;
+    if scene.depth() > MAX_DEPTH_OF_MATRIX {
+        return Ok(articulated);
+    }
+    configuration.elimination.articulated = false;
+    let matrix = rate_program(scene.within(configuration))?;
+    if matrix.n_operations() <= articulated.n_operations() {
+        return Ok(matrix);
+    }
+    configuration.elimination.articulated = true;
+    Ok(articulated)
+}
+
+// a function item would be of one lifetime
+#[allow(clippy::redundant_closure)]
+fn rate_program(scene: Configured<'_>) -> Result<Program, Vec<Diagnostic>> {
+    record(scene, |at| programs::rate(at)).map_err(complaints)
+}
+
+/// Records the angles whose turns are counted; `None` where there are none.
+fn turns_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
+    if scene.counted.is_empty() {
+        return Ok(None);
+    }
+    let counted = &scene.counted;
+    let program = record(scene, |at| {
+        counted.iter().map(|&angle| at.counted(angle)).collect()
+    });
+    program.map(Some).map_err(complaints)
+}
+
+/// Returns the inertia to lend to freedoms that have none although rows determine their motion
+/// (n_v; empty: none).
+pub(super) fn lent_inertia(scene: Configured<'_>) -> Vec<f64> {
+    if scene.rows.is_empty() || scene.mode == KINEMATIC || scene.mode == STATIC {
+        return Vec::new();
+    }
+    let mut numbers = vec![0.0; scene.layout.len()];
+    numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
+    let rows = Equations::new(scene, &numbers).mass_rows();
+    let free = scene.freedoms.iter().filter(|f| f.v.is_some());
+    let turns: Vec<bool> = free.map(|f| f.turn).collect();
+    solve::lent_inertia(rows, &turns, scene.length)
+}
+
+/// Returns the diagonal of `G M⁻¹ Gᵀ` at the positions `q`, against which pivots are measured
+/// (n_active).
+fn usual_pivots(scene: Configured<'_>, q: &[f64]) -> Vec<f64> {
+    if scene.rows.is_empty() {
+        return Vec::new();
+    }
+    let mut numbers = vec![0.0; scene.layout.len()];
+    numbers[scene.layout.q()].copy_from_slice(q);
+    // contacts on curves are sought there
+    let mut there = scene.configuration.clone();
+    there.elimination.usual_pivots.clear();
+    there.contacts.iter_mut().for_each(|c| c.begun = false);
+    cams::track(scene.scene, &mut there, &numbers);
+    let at = Equations::new(scene.within(&there), &numbers);
+    let diagonal = at.solved().diagonal.clone();
+    let largest = diagonal
+        .iter()
+        .fold(0.0, |m: f64, &d| if d.is_finite() { m.max(d) } else { m });
+    diagonal
+        .iter()
+        .map(|&d| {
+            if d > LEAST_USUAL_PIVOT * largest {
+                d
+            } else {
+                LEAST_USUAL_PIVOT * largest
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,29 @@
+//! A recorded program with the scratch that it needs.
+
+use crate::expr::program::{Program, Work};
+
+/// A recorded program, its scratch and its outputs.
+#[derive(Debug)]
+pub(super) struct Recording {
+    pub program: Program,
+    work: Work,
+    /// the outputs of the last run   (n_outputs)
+    pub values: Vec<f64>,
+}
+
+impl Recording {
+    /// Gives a program the places for its outputs.
+    pub fn new(program: Program) -> Self {
+        Self {
+            values: vec![0.0; program.n_outputs()],
+            program,
+            work: Work::default(),
+        }
+    }
+
+    /// Runs the program on a row of numbers; its outputs.
+    pub fn run(&mut self, numbers: &[f64]) -> &[f64] {
+        self.program.run(numbers, &mut self.work, &mut self.values);
+        &self.values
+    }
+}

@@ -1,0 +1,146 @@
+//! Rows of a configuration: those that take part are kept by projection, those that are left out
+//! are watched.
+//!
+//! Rows that close loops hold at acceleration level within a step. What is left of them in position
+//! and velocity is taken away after each accepted step, by the least changes.
+
+use super::complaints;
+use super::recording::Recording;
+use crate::diagnostic::Diagnostic;
+use crate::expr::program::Program;
+use crate::numeric::control::worst;
+use crate::scalar::Scalar;
+use crate::scene::Scene;
+use crate::scene::cams::Cam;
+use crate::scene::configuration::Configured;
+use crate::scene::programs::{self, record};
+
+/// Violation of a row, relative to what counts as one, that is rounding.
+pub(super) const ROUNDING: f64 = 1e-14;
+
+/// The rows of a configuration.
+#[derive(Debug)]
+pub(super) struct Rows {
+    /// least changes onto the rows: Δq as a tangent, Δv, those of contacts on curves
+    /// (2 n_v + n_contacts); `None`: no row takes part
+    pub projection: Option<Recording>,
+    /// violation of each row and its rate, relative to what counts as one   (2 n_active)
+    violation: Option<Recording>,
+    /// rows that are left out and may not follow from the others wherever the mechanism goes, and
+    /// their values   (n_left_out)
+    left_out: Option<(Vec<usize>, Recording)>,
+    /// what divides each velocity where velocities are compared   (n_v)
+    scales: Vec<f64>,
+    /// places in x of contacts on curves   (n_contacts)
+    pub contacts: Vec<usize>,
+    /// the last state that was to be projected was on the rows
+    pub clean: bool,
+    /// rows have nearly been dependent since they were chosen
+    pub were_weak: bool,
+}
+
+impl Rows {
+    /// Records what keeps and watches the rows of a scene.
+    ///
+    /// # Errors
+    /// Functions that the equations cannot supply.
+    pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
+        let weights = programs::weights(&scene);
+        let left_out = left_out_program(scene)?;
+        Ok(Self {
+            projection: projection_program(scene)?.map(Recording::new),
+            violation: violation_program(scene)?.map(Recording::new),
+            left_out: left_out.map(|(rows, program)| (rows, Recording::new(program))),
+            scales: weights.iter().map(|w| w.sqrt().recip()).collect(),
+            contacts: contact_states(&scene),
+            clean: false,
+            were_weak: false,
+        })
+    }
+
+    /// Returns the largest violation of a row at some numbers with velocities `v`, in position or
+    /// velocity, relative to what counts as one and to how fast the mechanism moves.
+    pub fn worst_violation(&mut self, numbers: &[f64], v: &[f64]) -> f64 {
+        let Some(violation) = &mut self.violation else {
+            return 0.0;
+        };
+        let violations = violation.run(numbers);
+        let speeds = v.iter().zip(&self.scales).map(|(v, s)| v.abs() * s);
+        let slow = 1.0 / speeds.fold(1.0, f64::max);
+        let pairs = violations.chunks_exact(2);
+        worst(pairs.flat_map(|p| [p[0], p[1] * slow]))
+    }
+
+    /// Returns whether rows that are left out say something that changes.
+    pub fn has_left_out(&self) -> bool {
+        self.left_out.is_some()
+    }
+
+    /// Returns the row among those left out that is violated most at some numbers, and by how much,
+    /// relative to what counts as one.
+    pub fn worst_left_out(&mut self, scene: &Scene, numbers: &[f64]) -> Option<(usize, f64)> {
+        let (rows, recording) = self.left_out.as_mut()?;
+        let values = recording.run(numbers);
+        rows.iter()
+            .zip(values)
+            .map(|(&r, &value)| (r, (value / scene.row_scale(r)).abs()))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Returns the places in x of the contacts on curves, in their order.
+fn contact_states(scene: &Scene) -> Vec<usize> {
+    let states = |cam: &Cam| cam.state..cam.state + cam.contact.n_parameters();
+    scene.cams.iter().flat_map(states).collect()
+}
+
+/// Records the least changes onto the rows; `None` when none takes part.
+fn projection_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
+    if scene.configuration.active_rows().next().is_none() {
+        return Ok(None);
+    }
+    let program = record(scene, |at| {
+        programs::projection(&scene, at, at.velocities())
+    });
+    program.map(Some).map_err(complaints)
+}
+
+/// Records the violation of each row that takes part, and its rate; `None` when none does.
+fn violation_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
+    let active: Vec<usize> = scene.configuration.active_rows().collect();
+    if active.is_empty() {
+        return Ok(None);
+    }
+    let program = record(scene, |at| {
+        let v = at.velocities();
+        let both = |&r: &usize| {
+            let row = at.row(r);
+            let along = row.gradient.iter();
+            let rate = along.fold(row.drift, |s, &(k, g)| s + g * v[k]);
+            let one = 1.0 / scene.row_scale(r);
+            [row.value.scale(one), rate.scale(one)]
+        };
+        active.iter().flat_map(both).collect()
+    });
+    program.map(Some).map_err(complaints)
+}
+
+/// Records the rows that are left out without being zero whatever happens; `None`: there are none.
+fn left_out_program(
+    scene: Configured<'_>,
+) -> Result<Option<(Vec<usize>, Program)>, Vec<Diagnostic>> {
+    let idle = |r: &usize| !scene.configuration.active[*r];
+    let idle: Vec<usize> = (0..scene.rows.len()).filter(idle).collect();
+    if idle.is_empty() {
+        return Ok(None);
+    }
+    let mut rows = Vec::new();
+    let program = record(scene, |at| {
+        let values = idle.iter().map(|&r| (r, at.row(r).value));
+        let changing: Vec<_> = values.filter(|(_, x)| x.known().is_none()).collect();
+        rows = changing.iter().map(|c| c.0).collect();
+        changing.into_iter().map(|c| c.1).collect()
+    })
+    .map_err(complaints)?;
+    Ok((!rows.is_empty()).then_some((rows, program)))
+}

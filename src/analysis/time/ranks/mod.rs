@@ -1,0 +1,263 @@
+//! The rank of the rows while a mechanism moves.
+//!
+//! Three things can happen to rows that were independent at the start. They may become dependent at
+//! one position and be independent again beyond it (a folded parallelogram): the solver passes, and
+//! the position is found afterwards, in [`passes`]. Rows that were left out may determine the
+//! motion better than some of the rest (the two coordinates of a pin that turns): the choice is
+//! made anew, by [`better_rows`]. And a drive may ask for a position that no rows permit: the
+//! mechanism is locked, see [`locked`].
+
+mod locked;
+mod passes;
+
+pub use locked::{Lock, locked};
+pub use passes::{Pass, passes};
+
+use crate::analysis::start::assemble::{self, DEPENDENT};
+use crate::expr::program::{Program, Work};
+use crate::scene::configuration::Configured;
+use crate::scene::layout::Layout;
+use crate::scene::programs::{record, weights};
+use crate::scene::{Scene, Source};
+use nalgebra::DMatrix;
+use std::cell::RefCell;
+
+/// States kept to find positions at which rows become dependent, at most, in any mechanism.
+const MOST_STATES: f64 = 2000.0;
+/// States kept, at least.
+const LEAST_STATES: f64 = 60.0;
+/// Factor by which a row must determine more than a preferred one to be chosen in its place.
+const PREFERENCE: f64 = 3.0;
+/// Least of what rows determine beyond each other, as a part of the least among better ones, below
+/// which they are exchanged.
+const WORTH_EXCHANGING: f64 = 0.3;
+/// Coordinates that a sentence names, at most.
+const MAX_NAMED: usize = 4;
+
+/// Returns how many states are kept to find positions at which rows become dependent: the cost of
+/// one grows with the cube of the number of velocities.
+pub fn states_kept(n_v: usize) -> f64 {
+    (1e8 / (n_v as f64).powi(3)).clamp(LEAST_STATES, MOST_STATES)
+}
+
+fn active(scene: Configured<'_>) -> Vec<usize> {
+    scene.configuration.active_rows().collect()
+}
+
+/// Gradients of the rows of a scene, recorded once and evaluated often.
+struct Gradients {
+    program: Program,
+    /// row and velocity of each value
+    places: Vec<(usize, usize)>,
+    work: RefCell<Work>,
+    /// scales of the columns, and what counts as one for each row
+    columns: Vec<f64>,
+    rows: Vec<f64>,
+}
+
+impl Gradients {
+    fn of(scene: Configured<'_>) -> Option<Self> {
+        let mut places = Vec::new();
+        let program = record(scene, |at| {
+            let mut values = Vec::new();
+            for r in 0..scene.rows.len() {
+                for (v, x) in at.row(r).gradient {
+                    places.push((r, v));
+                    values.push(x);
+                }
+            }
+            values
+        });
+        Some(Self {
+            program: program.ok()?,
+            places,
+            work: RefCell::default(),
+            columns: weights(&scene).iter().map(|w| w.sqrt()).collect(),
+            rows: (0..scene.rows.len()).map(|r| scene.row_scale(r)).collect(),
+        })
+    }
+
+    /// Evaluates all rows, columns scaled, each row against its scale.
+    fn at(&self, numbers: &[f64]) -> Vec<Vec<f64>> {
+        let mut values = vec![0.0; self.places.len()];
+        self.program
+            .run(numbers, &mut self.work.borrow_mut(), &mut values);
+        let mut all = vec![vec![0.0; self.columns.len()]; self.rows.len()];
+        for (&(r, v), x) in self.places.iter().zip(values) {
+            all[r][v] += x * self.columns[v] / self.rows[r];
+        }
+        all
+    }
+}
+
+/// Evaluates all rows at one place, as [`Gradients::at`] does.
+fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
+    let l = scene.layout;
+    let (_, gradient, _) = assemble::rows_at(
+        scene,
+        numbers[Layout::TIME],
+        &numbers[l.q()],
+        &numbers[l.x()],
+    );
+    let mut all = assemble::scaled_rows(&gradient, &weights(&scene));
+    for (r, row) in all.iter_mut().enumerate() {
+        let one = scene.row_scale(r);
+        row.iter_mut().for_each(|x| *x /= one);
+    }
+    all
+}
+
+/// Chooses rows one after the other by what they determine beyond those before, the preferred ones
+/// unless another determines three times as much; the chosen ones, and the least that any of them
+/// determined. Unlike in `numeric::rank` a short row determines little.
+fn select(
+    mut rows: Vec<Vec<f64>>,
+    preferred: impl Fn(usize) -> bool,
+    most: usize,
+) -> (Vec<usize>, f64) {
+    let (mut chosen, mut least) = (Vec::new(), f64::INFINITY);
+    let mut open: Vec<usize> = (0..rows.len()).collect();
+    while chosen.len() < most {
+        let size = |r: usize| norm(&rows[r]);
+        let larger = |a: &&usize, b: &&usize| size(**a).total_cmp(&size(**b));
+        let Some(&largest) = open.iter().max_by(larger) else {
+            break;
+        };
+        let best = open.iter().filter(|r| preferred(**r)).max_by(larger);
+        let pivot = match best {
+            Some(&r) if size(r) > size(largest) / PREFERENCE => r,
+            _ => largest,
+        };
+        let length = size(pivot);
+        if length.is_nan() || length < DEPENDENT {
+            break;
+        }
+        least = least.min(length);
+        open.retain(|r| *r != pivot);
+        let unit: Vec<f64> = rows[pivot].iter().map(|x| x / length).collect();
+        for &r in &open {
+            // twice, so that nothing is left of it but rounding
+            for _ in 0..2 {
+                let along: f64 = rows[r].iter().zip(&unit).map(|(a, b)| a * b).sum();
+                rows[r]
+                    .iter_mut()
+                    .zip(&unit)
+                    .for_each(|(a, b)| *a -= along * b);
+            }
+        }
+        chosen.push(pivot);
+    }
+    chosen.sort_unstable();
+    (chosen, least)
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Returns the least that any of the rows determines beyond the others: zero where they are
+/// dependent. `usual`: the length of each row elsewhere.
+fn margin(all: &[Vec<f64>], rows: &[usize], usual: &[f64]) -> f64 {
+    let scaled = rows
+        .iter()
+        .map(|&r| all[r].iter().map(|x| x / usual[r]).collect())
+        .collect();
+    let (chosen, least) = select(scaled, |_| false, rows.len());
+    if chosen.len() < rows.len() {
+        0.0
+    } else {
+        least
+    }
+}
+
+/// Returns the rows to keep from here on, when those kept so far have become dependent though the
+/// mechanism has not, or a row that was left out no longer follows from them; `None`: they may
+/// stay.
+pub fn better_rows(scene: Configured<'_>, numbers: &[f64]) -> Option<Vec<bool>> {
+    let kept = active(scene);
+    let all = gradients(scene, numbers);
+    let own = kept.iter().map(|&r| all[r].clone()).collect();
+    let (stay, least) = select(own, |_| true, kept.len());
+    let (better, most) = select(all, |r| kept.contains(&r), usize::MAX);
+    if better == kept || better.len() < kept.len() {
+        return None;
+    }
+    let gains =
+        better.len() > kept.len() || stay.len() < kept.len() || least < WORTH_EXCHANGING * most;
+    gains.then(|| (0..scene.rows.len()).map(|r| better.contains(&r)).collect())
+}
+
+/// Moves a state onto all rows, also those that were left out, where that is possible with a small
+/// change; whether it was.
+pub fn repair(scene: Configured<'_>, numbers: &mut [f64]) -> bool {
+    let l = scene.layout;
+    let t = numbers[Layout::TIME];
+    let x = numbers[l.x()].to_vec();
+    let mut q = numbers[l.q()].to_vec();
+    let mut own = scene.configuration.clone();
+    let closed = assemble::close(&scene, &mut own, t, &mut q, &x, |_, _| false);
+    if closed.size.is_nan() || closed.size > assemble::CLOSED {
+        return false;
+    }
+    let v = assemble::nearest_velocities(scene, t, &q, &x, &numbers[l.v()]);
+    numbers[l.q()].copy_from_slice(&q);
+    numbers[l.v()].copy_from_slice(&v);
+    true
+}
+
+/// The combination of rows that moves least.
+struct Weakest {
+    /// factors of the rows, each against its usual length
+    unit: Vec<f64>,
+    /// its length: zero where the rows are dependent
+    size: f64,
+    /// coordinates that its rows read
+    touched: Vec<bool>,
+}
+
+/// Finds the combination of rows that moves least; `None` where the iteration does not converge.
+fn weakest(scene: &Scene, all: &[Vec<f64>], rows: &[usize], usual: &[f64]) -> Option<Weakest> {
+    let (m, n) = (rows.len(), scene.layout.n_v);
+    let a = DMatrix::from_fn(m, n, |i, j| all[rows[i]][j] / usual[rows[i]]);
+    let eigen = nalgebra::SymmetricEigen::try_new(&a * a.transpose(), 1e-15, 10_000)?;
+    let least = (0..m).min_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]))?;
+    let unit: Vec<f64> = eigen.eigenvectors.column(least).iter().copied().collect();
+    let mut touched = vec![false; n];
+    for i in (0..m).filter(|&i| unit[i].abs() > 1e-3) {
+        for (t, x) in touched.iter_mut().zip(&all[rows[i]]) {
+            *t |= x.abs() > DEPENDENT;
+        }
+    }
+    Some(Weakest {
+        unit,
+        size: eigen.eigenvalues[least].max(0.0).sqrt(),
+        touched,
+    })
+}
+
+/// Returns the values of coordinates, those that are `touched` first.
+fn place(scene: &Scene, numbers: &[f64], touched: &[bool]) -> Vec<(String, f64)> {
+    let q = &numbers[scene.layout.q()];
+    let mut all: Vec<(bool, String, f64)> = (scene.coordinates.iter().zip(&scene.freedoms))
+        .filter(|(_, f)| !f.in_ball)
+        .filter_map(|(c, _)| match c.source {
+            Source::Free { q: place, v } => Some((!touched[v], c.name.clone(), q[place])),
+            Source::Driven(_) => None,
+        })
+        .collect();
+    all.sort_by_key(|c| c.0);
+    all.into_iter().map(|(_, name, x)| (name, x)).collect()
+}
+
+/// Writes a place: "JOINT/1 angle = 1.571, JOINT/2 angle = 0"
+pub fn words(place: &[(String, f64)]) -> String {
+    let some = place.iter().take(MAX_NAMED);
+    let some: Vec<String> = some
+        .map(|(name, x)| {
+            let x = if x.abs() < 1e-12 { 0.0 } else { *x };
+            format!("{name} = {}", crate::analysis::start::quantity::short(x))
+        })
+        .collect();
+    let more = if place.len() > MAX_NAMED { ", …" } else { "" };
+    format!("{}{more}", some.join(", "))
+}

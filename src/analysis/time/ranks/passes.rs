@@ -1,0 +1,275 @@
+//! Passes: positions at which rows become dependent while the mechanism goes through.
+//!
+//! Between accepted states positions are cubic in time. A minimum of what the rows determine beyond
+//! each other is located by golden sections.
+
+use super::{Gradients, active, gradients, margin, norm, place, weakest};
+use crate::analysis::start::assemble;
+use crate::scene::configuration::Configured;
+use crate::scene::equations::row_name;
+use crate::scene::layout::Layout;
+use crate::scene::mover::Mover;
+
+/// Smallest part of a row outside the others, relative to its length, at a located position that
+/// still counts as dependent: positions are located to the square root of rounding.
+const DEPENDENT_THERE: f64 = 1e-6;
+/// The same at a state, below which a minimum is located.
+const LARGEST_MINIMUM: f64 = 0.7;
+/// The same at a minimum found without closing states onto the rows, above which it is none.
+const LARGEST_ROUGH_MINIMUM: f64 = 0.01;
+/// Change of an angle from one state that is looked at to the next, at most, rad.
+const MAX_TURN: f64 = 0.3;
+/// Pieces into which a step is divided, at most.
+const MAX_PIECES: f64 = 64.0;
+/// Time between two passes, at least, as a part of the duration.
+const LEAST_DISTANCE: f64 = 1e-4;
+
+/// A position at which rows become dependent while the mechanism passes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pass {
+    /// time
+    pub t: f64,
+    /// rows that depend on others there and not nearby
+    pub rows: Vec<String>,
+    /// coordinates there: (name, value), those of the loops concerned first
+    pub place: Vec<(String, f64)>,
+}
+
+/// Finds the positions between accepted states at which rows become dependent. `states`: numbers of
+/// states in order; `None` separates states that do not follow on.
+pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
+    let Some(search) = Search::new(scene, states) else {
+        return Vec::new();
+    };
+    let most = match scene.layout.n_v {
+        0..13 => 64,
+        13..31 => 16,
+        _ => 3,
+    };
+    let mut times = states.iter().flatten().map(|n| n[Layout::TIME]);
+    let first = times.next().unwrap_or(0.0);
+    let duration = times.next_back().unwrap_or(first) - first;
+    let mut found: Vec<Pass> = Vec::new();
+    for run in states.split(Option::is_none) {
+        let run: Vec<&Vec<f64>> = run.iter().flatten().collect();
+        let run = search.refined(&run);
+        let sizes: Vec<f64> = run.iter().map(|n| search.margin(n)).collect();
+        for k in (0..run.len()).filter(|&k| is_suspect(&run, &sizes, k)) {
+            let (before, after) = neighbours(k, run.len());
+            let best = [(before, k), (k, after)]
+                .into_iter()
+                .filter(|(a, b)| a != b)
+                .map(|(a, b)| search.least_between(&run[a], &run[b]))
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((at, size)) = best else { continue };
+            let last = found.last();
+            let new =
+                last.is_none_or(|p| (p.t - at[Layout::TIME]).abs() > LEAST_DISTANCE * duration);
+            if size < DEPENDENT_THERE && new {
+                found.push(search.pass(&at));
+            }
+            if found.len() >= most {
+                return found;
+            }
+        }
+    }
+    found
+}
+
+fn neighbours(k: usize, n: usize) -> (usize, usize) {
+    (k.saturating_sub(1), (k + 1).min(n - 1))
+}
+
+/// Returns whether the margin may vanish near state `k`: a minimum that is not smooth and well
+/// above zero.
+fn is_suspect(run: &[Vec<f64>], sizes: &[f64], k: usize) -> bool {
+    let (before, after) = neighbours(k, run.len());
+    let least = sizes[k] <= sizes[before] && sizes[k] <= sizes[after];
+    // of equal neighbours the first
+    if !least || sizes[k] > LARGEST_MINIMUM || (k > 0 && sizes[k] == sizes[before]) {
+        return false;
+    }
+    // a smooth minimum, well above what a fall to zero beside it would show
+    let fall = (sizes[before] - sizes[k]).max(sizes[after] - sizes[k]);
+    // straight on from outside, the two sides would meet at zero between these states
+    let slope = |a: usize, b: usize| {
+        let h = run[b][Layout::TIME] - run[a][Layout::TIME];
+        ((sizes[b] - sizes[a]) / h.max(f64::MIN_POSITIVE)).abs()
+    };
+    let steep = |a: usize, b: usize| {
+        let outer = slope(a.saturating_sub(1), a).max(slope(b, (b + 1).min(run.len() - 1)));
+        sizes[a] + sizes[b] <= 1.5 * outer * (run[b][Layout::TIME] - run[a][Layout::TIME])
+    };
+    sizes[k] <= 1.25 * fall || steep(before, k) || steep(k, after)
+}
+
+/// The search for passes of a scene.
+struct Search<'s> {
+    scene: Configured<'s>,
+    gradients: Gradients,
+    /// rows that take part
+    rows: Vec<usize>,
+    /// the longest that each row is on the way   (n_rows)
+    usual: Vec<f64>,
+}
+
+impl<'s> Search<'s> {
+    /// Records the gradients of the rows; `None` where no row takes part.
+    fn new(scene: Configured<'s>, states: &[Option<Vec<f64>>]) -> Option<Self> {
+        let rows = active(scene);
+        let gradients = Gradients::of(scene).filter(|_| !rows.is_empty())?;
+        let mut usual = vec![0.0_f64; scene.rows.len()];
+        for n in states.iter().flatten() {
+            for (u, row) in usual.iter_mut().zip(gradients.at(n)) {
+                *u = u.max(norm(&row));
+            }
+        }
+        for u in usual.iter_mut().filter(|u| **u == 0.0) {
+            *u = 1.0;
+        }
+        Some(Self {
+            scene,
+            gradients,
+            rows,
+            usual,
+        })
+    }
+
+    fn margin(&self, numbers: &[f64]) -> f64 {
+        margin(&self.gradients.at(numbers), &self.rows, &self.usual)
+    }
+
+    /// Returns the state at a part `s` of the way between two others: positions cubic in time,
+    /// closed onto the rows or not.
+    fn between(&self, a: &[f64], b: &[f64], s: f64, closed: bool) -> Vec<f64> {
+        let (scene, l) = (self.scene, self.scene.layout);
+        let mover = Mover::new(&scene);
+        let h = b[Layout::TIME] - a[Layout::TIME];
+        let rate = |n: &[f64]| {
+            let mut rate = vec![0.0; l.n_q];
+            mover.untangent(&n[l.q()], &n[l.v()], &mut rate);
+            rate
+        };
+        let (rate_a, rate_b) = (rate(a), rate(b));
+        let mut n: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + s * (b - a)).collect();
+        n[Layout::TIME] = a[Layout::TIME] + s * h;
+        let mut q: Vec<f64> = l
+            .q()
+            .enumerate()
+            .map(|(k, place)| {
+                let (p, d) = (a[place], b[place] - a[place]);
+                let (m0, m1) = (h * rate_a[k], h * rate_b[k]);
+                p + s * (m0 + s * (3.0 * d - 2.0 * m0 - m1 + s * (m0 + m1 - 2.0 * d)))
+            })
+            .collect();
+        mover.normalize(&mut q);
+        if closed {
+            let x = n[l.x()].to_vec();
+            let mut own = scene.configuration.clone();
+            let ignored = |_: Configured<'_>, r: usize| !self.rows.contains(&r);
+            assemble::close(&scene, &mut own, n[Layout::TIME], &mut q, &x, ignored);
+        }
+        n[l.q()].copy_from_slice(&q);
+        n
+    }
+
+    /// Returns states so close to each other that no angle changes much between them.
+    fn refined(&self, run: &[&Vec<f64>]) -> Vec<Vec<f64>> {
+        let (scene, l) = (self.scene, self.scene.layout);
+        let turning: Vec<usize> = (scene.coordinates.iter().zip(&scene.freedoms))
+            .filter(|(c, _)| c.angular)
+            .filter_map(|(_, f)| f.v)
+            .collect();
+        let speed = |n: &[f64]| {
+            let speeds = turning.iter().map(|&v| n[l.v()][v].abs());
+            speeds.fold(0.0, f64::max)
+        };
+        let mut all = Vec::new();
+        for pair in run.windows(2) {
+            let h = pair[1][Layout::TIME] - pair[0][Layout::TIME];
+            let turn = h * speed(pair[0]).max(speed(pair[1]));
+            let pieces = (turn / MAX_TURN).ceil().clamp(1.0, MAX_PIECES) as usize;
+            all.push(pair[0].clone());
+            for k in 1..pieces {
+                let s = k as f64 / pieces as f64;
+                all.push(self.between(pair[0], pair[1], s, true));
+            }
+        }
+        all.extend(run.last().map(|n| (*n).clone()));
+        all
+    }
+
+    /// Finds the state between two others with the smallest margin, by golden sections.
+    fn least_between(&self, a: &[f64], b: &[f64]) -> (Vec<f64>, f64) {
+        let look = |s: f64, closed: bool| -> (Vec<f64>, f64) {
+            let n = self.between(a, b, s, closed);
+            let size = self.margin(&n);
+            (n, size)
+        };
+        // first without closing, which is cheap and near enough to see whether it is worth while
+        let (low, high, rough) = golden(|s| look(s, false).1, (0.0, 1.0), 1e-3);
+        let mut best = (a.to_vec(), rough);
+        if rough > LARGEST_ROUGH_MINIMUM {
+            return best;
+        }
+        let wide = (high - low).max(0.02);
+        golden(
+            |s| {
+                let (n, size) = look(s, true);
+                if size < best.1 || best.1 == rough {
+                    best = (n, size);
+                }
+                size
+            },
+            ((low - wide).max(0.0), (high + wide).min(1.0)),
+            0.01 * DEPENDENT_THERE,
+        );
+        best
+    }
+
+    /// Describes a position at which rows are dependent.
+    fn pass(&self, numbers: &[f64]) -> Pass {
+        let scene = self.scene;
+        let all = gradients(scene, numbers);
+        let weakest = weakest(&scene, &all, &self.rows, &self.usual);
+        let (unit, touched) = weakest.map_or_else(
+            || (Vec::new(), vec![true; scene.layout.n_v]),
+            |w| (w.unit, w.touched),
+        );
+        let most = unit.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+        // the row that comes last in the combination is the one that would be left out
+        let last = (0..unit.len()).rev().find(|&k| unit[k].abs() > 0.1 * most);
+        let name = |k: usize| row_name(&scene.rows[self.rows[k]]);
+        Pass {
+            t: numbers[Layout::TIME],
+            rows: last.map(name).into_iter().collect(),
+            place: place(&scene, numbers, &touched),
+        }
+    }
+}
+
+/// Returns the bracket and the value of a minimum; ends when the value or the bracket is small.
+fn golden(
+    mut f: impl FnMut(f64) -> f64,
+    (mut low, mut high): (f64, f64),
+    enough: f64,
+) -> (f64, f64, f64) {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let (mut s1, mut s2) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (mut f1, mut f2) = (f(s1), f(s2));
+    while high - low > 1e-12 && f1.min(f2) > enough {
+        if f1 < f2 {
+            (high, s2, f2) = (s2, s1, f1);
+            s1 = high - GOLDEN * (high - low);
+            f1 = f(s1);
+        } else {
+            (low, s1, f1) = (s1, s2, f2);
+            s2 = low + GOLDEN * (high - low);
+            f2 = f(s2);
+        }
+        if enough > DEPENDENT_THERE && high - low < 1e-3 {
+            break;
+        }
+    }
+    (low, high, f1.min(f2))
+}
