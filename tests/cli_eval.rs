@@ -318,6 +318,101 @@ fn json_tells_value_derivatives_and_tables() {
 }
 
 #[test]
+fn mistakes_in_json_have_the_line_that_an_editor_shows() {
+    let done = cognate_with(&["eval", "-", "--json"], "1 +\n  2 *\n  FOO(3)\n");
+    let said = &json_of(&done.out)["errors"][0];
+    assert_eq!(
+        (&said["line"], &said["column_in_line"], &said["column"]),
+        (&json!(3), &json!(3), &json!(13))
+    );
+    let done = cognate(&["eval", "2*(3+SIN(4", "--json"]);
+    let said = &json_of(&done.out)["errors"][0];
+    assert_eq!((&said["line"], &said["column"]), (&json!(1), &json!(11)));
+    assert_eq!(said["marks"][0]["start"], json!(8));
+}
+
+#[test]
+fn numbers_of_files_are_read_to_the_last_bit() {
+    // numbers that a reader which multiplies by a power of ten misses by one bit
+    let list = [
+        0.12345678901234568,
+        9007199254740993e-25,
+        1.7976931348623157e300,
+        4.35e-17,
+        8.98846567431158e307,
+        2.2250738585072011e-300,
+        123456.78901234567,
+    ];
+    let mut random = 88172645463325252_u64;
+    let mut next = || {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        f64::from_bits(random >> 2 | 1 << 60)
+    };
+    let all: Vec<f64> = list.into_iter().chain((0..93).map(|_| next())).collect();
+    let points = (all.iter().enumerate())
+        .map(|(k, x)| format!("\"{}\": {{\"r\": [{x:e}, 0, 0]}}", k + 1))
+        .collect::<Vec<_>>();
+    let file = scratch("last_bit", "m.json", &format!("{{{}}}", points.join(", ")));
+    for (k, x) in all
+        .iter()
+        .enumerate()
+        .step_by(9)
+        .chain(all.iter().enumerate().take(7))
+    {
+        let call = format!("DX({})", k + 1);
+        let said = eval(&[&call, "--markers", path(&file), "--json"]);
+        let value = json_of(&said)["value"].as_f64().unwrap();
+        assert_eq!(value.to_bits(), x.to_bits(), "{x:e} is read as {value:e}");
+    }
+}
+
+#[test]
+fn curves_are_read_from_a_file_and_missing_ones_say_where_from() {
+    let file = scratch(
+        "eval_curves",
+        "c.json",
+        r#"{"1": {"points": [[0,0,0], [1,0,0], [2,0,0], [3,0,0]]},
+            "2": {"points": [[0,0,0], [1,2,0], [2,0,1], [0,0,0]], "closed": true, "order": 2}}"#,
+    );
+    let curves = ["--curves", path(&file)];
+    let of = |text: &str| eval(&[&[text][..], &curves].concat());
+    assert_eq!(of("CURVE(0,0,1,1)"), "1.5\n");
+    assert_eq!(of("CURVE(-1,0,1,2)"), "0\n");
+    let (code, err) = fails(&[&["CURVE(0,0,1,9)"][..], &curves].concat());
+    assert!(code == 3 && err.contains("there are: 1, 2"), "{err}");
+    let (_, err) = fails(&["CURVE(0,0,1,1)"]);
+    assert!(
+        err.contains("--curves FILE") && !err.contains("--splines"),
+        "{err}"
+    );
+    let (_, err) = fails(&["AKISPL(0,0,1)"]);
+    assert!(
+        err.contains("--splines FILE") && !err.contains("--curves"),
+        "{err}"
+    );
+    for (text, said) in [
+        (r#"{"1": {"points": [[0,0]]}}"#, "each three numbers"),
+        (r#"{"1": {}}"#, "\"points\" is missing"),
+        (r#"{"1": {"points": [[0,0,0],[1,0,0]]}}"#, "at least 4"),
+        (
+            r#"{"1": {"points": [[0,0,0],[1,0,0],[2,0,0],[3,0,0]], "closed": 1}}"#,
+            "true or false",
+        ),
+    ] {
+        let file = scratch("eval_curves", "bad.json", text);
+        let (code, err) = fails(&["CURVE(0,0,1,1)", "--curves", path(&file)]);
+        assert!(code == 3 && err.contains(said), "{text}: {err}");
+    }
+    let (said, code) = session(
+        &format!(":curves {}\nCURVE(0,0,1,1)\n", path(&file)),
+        "curves.txt",
+    );
+    assert_eq!((said.as_str(), code), ("2 curves\n1.5\n", 0));
+}
+
+#[test]
 fn a_plot_takes_the_place_of_the_table_and_json_stays() {
     let file = scratch("eval_plot", "p.svg", "");
     let range = [
@@ -358,7 +453,8 @@ fn an_explanation_shows_tree_values_inputs_switches_class_breaks_and_program() {
         "STEP(TIME, 1, 0, 2, 1) + IF(TIME - 1: 2, 3, 4)",
         "+                4.5",
         "  STEP           0.5",
-        "    TIME         1.5",
+        "    x: TIME      1.5",
+        "    x0: 1",
         "    selector: -  0.5",
         "reads      TIME",
         "switches   TIME - 1",
@@ -476,6 +572,53 @@ fn mistakes_at_the_prompt_point_into_what_they_are_about() {
 }
 
 #[test]
+fn mistakes_at_the_prompt_show_the_text_as_it_was_typed() {
+    let typed = ":let root = SQRT(TIME-1)\n:let w = 2*PI\nw*FOO\n1+root\n2*(w+SIN(w\n\n";
+    let (said, code) = session(typed, "typed.txt");
+    assert_eq!(code, 3);
+    for text in [
+        "1 | w*FOO\n  |   ^^^",
+        "1 | 1+root\n  |   ^^^^",
+        "root stands for SQRT(TIME-1)",
+        "1 | 2*(w+SIN(w\n  |         - ^",
+        "this parenthesis is not closed",
+    ] {
+        assert!(said.contains(text), "{text}\n{said}");
+    }
+    assert!(!said.contains("(2*PI)*FOO"), "{said}");
+    // a warning too
+    let (said, _) = session(":let w = 2\nw*SIN(30)\n", "typed_warning.txt");
+    assert!(said.contains("1 | w*SIN(30)\n  |   ^^^"), "{said}");
+}
+
+#[test]
+fn one_blank_line_ends_what_is_not_complete() {
+    let (said, code) = session("(1+\n\n2+3\n", "blank.txt");
+    assert_eq!(code, 3);
+    assert!(
+        said.contains("error[unexpected_end]") && said.ends_with("\n5\n"),
+        "{said}"
+    );
+    assert_eq!(session("help STEP5\nquit\n1+1\n", "bare.txt").1, 0);
+}
+
+#[test]
+fn an_open_call_has_its_parenthesis_underlined() {
+    let (_, err) = fails(&["2*(SIN(TIME)+MAX(1,2"]);
+    let shown = [
+        "error[unexpected_end]: the text ends inside MAX",
+        "1 | 2*(SIN(TIME)+MAX(1,2",
+        "  |                 -   ^",
+        "  |                 |",
+        "  |                 this parenthesis is not closed",
+        "  = help: it is written MAX(a, b[, …])",
+    ];
+    for line in shown {
+        assert!(err.lines().any(|l| l.trim_end() == line), "{line}\n{err}");
+    }
+}
+
+#[test]
 fn the_prompt_changes_language_order_and_markers() {
     let typed = ":dialect expression\nsin(90)\n:dialect function\nSIN(90D)\n:marker 1 3 4 12\n:marker 2 {\"r\": [0,0,12]}\n\
         DM(1,2)\n:marker\n:let VARVAL(7) = 2**3\nVARVAL(7)\n:derivative 1\n:time 2\nTIME**2\n:derivative\n";
@@ -540,6 +683,35 @@ fn a_card_has_signature_equation_continuity_and_examples_in_text_and_json() {
     assert!(
         done.code == 3 && done.out.is_empty() && done.err.contains("the language has no `FOO`")
     );
+}
+
+#[test]
+fn a_card_says_what_each_argument_is_and_its_example_is_what_comes_out() {
+    let card = cognate(&["functions", "POLY"]).out;
+    for text in [
+        "\n  x0          shift: value of x where the polynomial is a0\n",
+        "\n  a0, …       coefficients, the constant first\n",
+    ] {
+        assert!(card.contains(text), "{text}\n{card}");
+    }
+    let card = cognate(&["explain", "JOINT"]).out;
+    for text in [
+        "number of a JOINT: element that is asked",
+        "whole number, 0 to 1: 0 on the I marker, 1 on the J marker",
+        "JOINT(7, 0, 2, 0) = x of the force of JOINT/7 on its I marker, in the axes of ground",
+    ] {
+        assert!(card.contains(text), "{text}\n{card}");
+    }
+    // the markers of the examples are a file for --markers
+    let card = cognate(&["functions", "VX"]).out;
+    let (before, markers) = card.split_once("for these --markers:\n").unwrap();
+    let example = before
+        .lines()
+        .find(|l| l.contains("VX(1, 2, 3, 4) = "))
+        .unwrap();
+    let (call, value) = example.trim().split_once(" = ").unwrap();
+    let file = scratch("card", "m.json", markers);
+    assert_eq!(eval(&[call, "--markers", path(&file)]).trim(), value);
 }
 
 #[test]

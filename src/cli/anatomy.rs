@@ -112,7 +112,7 @@ fn block(name: &str, lines: impl Iterator<Item = String>) -> String {
 fn tree(ast: &Ast, values: &[Option<f64>]) -> String {
     let mut lines: Vec<(String, String)> = Vec::new();
     // a stack of its own: trees may be deeper than the program's
-    let mut rest: Vec<(NodeIx, usize, &str)> = vec![(ast.root, 0, "")];
+    let mut rest: Vec<(NodeIx, usize, String)> = vec![(ast.root, 0, String::new())];
     while let Some((ix, depth, role)) = rest.pop() {
         if lines.len() >= MOST_LINES || depth > DEEPEST {
             lines.push((
@@ -153,12 +153,13 @@ fn tree(ast: &Ast, values: &[Option<f64>]) -> String {
 }
 
 /// Returns the name of a node, and its children with their roles.
-fn node(ast: &Ast, ix: NodeIx) -> (String, Vec<(NodeIx, &'static str)>) {
+fn node(ast: &Ast, ix: NodeIx) -> (String, Vec<(NodeIx, String)>) {
+    let plain = |ix: NodeIx| (ix, String::new());
     match ast.node(ix) {
         Node::Number { .. } | Node::Constant(_) => (ast.written(ix), Vec::new()),
-        Node::Negate(x) => ("-".into(), vec![(*x, "")]),
-        Node::Plus(x) => ("+".into(), vec![(*x, "")]),
-        Node::Binary(op, a, b) => (op.symbol().into(), vec![(*a, ""), (*b, "")]),
+        Node::Negate(x) => ("-".into(), vec![plain(*x)]),
+        Node::Plus(x) => ("+".into(), vec![plain(*x)]),
+        Node::Binary(op, a, b) => (op.symbol().into(), vec![plain(*a), plain(*b)]),
         Node::If {
             selector,
             negative,
@@ -167,16 +168,22 @@ fn node(ast: &Ast, ix: NodeIx) -> (String, Vec<(NodeIx, &'static str)>) {
         } => (
             "IF".into(),
             vec![
-                (*selector, "selector: "),
-                (*negative, "< 0: "),
-                (*zero, "= 0: "),
-                (*positive, "> 0: "),
+                (*selector, "selector: ".into()),
+                (*negative, "< 0: ".into()),
+                (*zero, "= 0: ".into()),
+                (*positive, "> 0: ".into()),
             ],
         ),
         Node::Call { .. } if ast.input(ix).is_some() => (ast.written(ix), Vec::new()),
         Node::Call { callee, args } => (
             callee.name().into(),
-            args.iter().map(|&a| (a, "")).collect(),
+            args.iter()
+                .enumerate()
+                .map(|(k, &a)| match callee.role(k, args.len()) {
+                    role if role.is_empty() => plain(a),
+                    role => (a, role + ": "),
+                })
+                .collect(),
         ),
     }
 }

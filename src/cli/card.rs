@@ -1,6 +1,7 @@
 //! The card of a name of the language: all facts of its tables in one form, for
 //! `cognate functions`, and for help and completion in the REPL.
 
+use super::example;
 use crate::expr::Symbol;
 use crate::expr::ast::{Callee, Constant, Dialect};
 use crate::expr::functions::Continuity;
@@ -30,9 +31,29 @@ pub struct Card {
     /// smoothness; `None`: as smooth as the motion it measures
     pub continuity: Option<Continuity>,
     /// expressions and their values
-    pub examples: Vec<(String, f64)>,
+    pub examples: Vec<Example>,
     /// whether its value depends on the past
     pub needs_history: bool,
+}
+
+/// An expression and what it gives.
+pub struct Example {
+    /// the expression
+    pub expression: String,
+    /// its value; `None` where only a model has one
+    pub value: Option<f64>,
+    /// the value in words, where there is no number
+    pub meaning: String,
+}
+
+impl Example {
+    fn of_numbers(expression: &str, value: f64) -> Self {
+        Self {
+            expression: expression.to_owned(),
+            value: Some(value),
+            meaning: String::new(),
+        }
+    }
 }
 
 /// Headings in the order of the list.
@@ -105,7 +126,18 @@ fn card(name: &'static str, meaning: Symbol, dialect: Dialect) -> Card {
                   selected is evaluated; the comparison is exact. There are no other comparisons in the language."
                 .into(),
             continuity: Some(Continuity::Jump),
-            examples: vec![("IF(-0.5: 1, 2, 3)".into(), 1.0), ("IF(2-2: 1, 2, 3)".into(), 2.0)],
+            arguments: [
+                ("selector", "expression whose sign is asked"),
+                ("negative", "value where the selector is less than 0"),
+                ("zero", "value where it is 0"),
+                ("positive", "value where it is greater than 0"),
+            ]
+            .map(|(name, what)| (name.to_owned(), what.to_owned()))
+            .into(),
+            examples: vec![
+                Example::of_numbers("IF(-0.5: 1, 2, 3)", 1.0),
+                Example::of_numbers("IF(2-2: 1, 2, 3)", 2.0),
+            ],
             ..empty
         },
         Symbol::Callee(callee) => of_callee(callee, empty),
@@ -127,12 +159,6 @@ fn constant(c: Constant) -> &'static str {
 
 /// Fills the card of a function from its table.
 fn of_callee(callee: Callee, empty: Card) -> Card {
-    let argument = |a: &Argument| {
-        let default = a
-            .default
-            .map_or(String::new(), |d| format!("; {d} when left out"));
-        (a.name.to_owned(), kind(a.kind) + &default)
-    };
     let card = Card {
         signature: callee.signature(),
         arguments: callee.arguments().iter().map(argument).collect(),
@@ -142,6 +168,14 @@ fn of_callee(callee: Callee, empty: Card) -> Card {
     match callee {
         Callee::Function(f) => {
             let row = f.row();
+            let mut card = card;
+            card.arguments.extend(row.further.map(|further| {
+                let name = match further.least {
+                    0 => "…".to_owned(),
+                    _ => format!("{}0, …", further.name),
+                };
+                (name, further.meaning.to_owned())
+            }));
             Card {
                 group: row.family.title(),
                 doc: paragraphs(row.doc),
@@ -150,7 +184,7 @@ fn of_callee(callee: Callee, empty: Card) -> Card {
                 examples: row
                     .examples
                     .iter()
-                    .map(|e| (e.source.to_owned(), e.value))
+                    .map(|e| Example::of_numbers(e.source, e.value))
                     .collect(),
                 ..card
             }
@@ -172,10 +206,23 @@ fn of_callee(callee: Callee, empty: Card) -> Card {
                 doc: paragraphs(row.doc),
                 equation: row.formula.to_owned(),
                 unit: row.unit.to_owned(),
+                examples: vec![example::of_measure(m)],
                 ..card
             }
         }
     }
+}
+
+/// Returns the name of an argument, with its kind and its part in the value in words.
+fn argument(a: &Argument) -> (String, String) {
+    let default = a
+        .default
+        .map_or(String::new(), |d| format!("; {d} when left out"));
+    let what = match a.kind {
+        Kind::Number => a.meaning.to_owned(),
+        kind => format!("{}: {}", in_words(kind), a.meaning),
+    };
+    (a.name.to_owned(), what + &default)
 }
 
 /// Returns the heading of a group of measures.
@@ -191,7 +238,7 @@ fn group(family: measures::Family) -> &'static str {
 }
 
 /// Describes the kind of an argument in words.
-fn kind(kind: Kind) -> String {
+fn in_words(kind: Kind) -> String {
     match kind {
         Kind::Number => "expression".into(),
         Kind::Identifier { element, zero } => {
@@ -284,8 +331,17 @@ impl Card {
         if !self.examples.is_empty() {
             text += "\n";
         }
-        for (source, value) in &self.examples {
-            text += &format!("  {source} = {}\n", crate::results::digits(*value));
+        let mut of_markers = false;
+        for example in &self.examples {
+            let value = match example.value {
+                Some(value) => crate::results::digits(value),
+                None => example.meaning.clone(),
+            };
+            text += &format!("  {} = {value}\n", example.expression);
+            of_markers |= !example.meaning.is_empty() && example.value.is_some();
+        }
+        if of_markers {
+            text += &format!("\n  for these --markers:\n  {}\n", example::markers());
         }
         text
     }
@@ -293,8 +349,7 @@ impl Card {
     /// Returns the card as JSON.
     pub fn json(&self) -> Value {
         let argument = |(name, what): &(String, String)| json!({ "name": name, "what": what });
-        let example =
-            |(source, value): &(String, f64)| json!({ "expression": source, "value": value });
+        let example = |e: &Example| json!({ "expression": e.expression, "value": e.value, "meaning": e.meaning });
         json!({
             "name": self.name,
             "dialect": match self.dialect { Dialect::Function => "function", Dialect::Expression => "expression" },
@@ -356,6 +411,24 @@ mod tests {
         }
         for group in GROUPS {
             assert!(cards.iter().any(|c| c.group == group), "{group} is empty");
+        }
+    }
+
+    #[test]
+    fn every_argument_says_what_it_is_and_every_function_shows_an_example() {
+        for card in all().iter().filter(|c| c.signature.contains('(')) {
+            for (name, what) in &card.arguments {
+                assert!(
+                    what.len() > 3 && !what.ends_with(": "),
+                    "{} {name}: {what}",
+                    card.name
+                );
+            }
+            let needs_data = ["Curves through data"].contains(&card.group) || card.name == "DELAY";
+            assert!(needs_data || !card.examples.is_empty(), "{}", card.name);
+            for e in &card.examples {
+                assert!(e.value.is_some() || e.meaning.len() > 5, "{}", card.name);
+            }
         }
     }
 

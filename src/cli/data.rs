@@ -1,13 +1,15 @@
-//! Numbers that the user gives for an expression: states of markers and data of splines from JSON
-//! files, and the host that answers expressions from them.
+//! Numbers that the user gives for an expression: states of markers, data of splines and points
+//! of curves from JSON files, and the host that answers expressions from them.
 //!
 //! Markers: `{"12": {"r": [x, y, z], "v": …, "w": …, "a": …, "al": …, "e313": [psi, theta, phi]}}`,
 //! or `"A"` with the rows of the matrix whose columns are the marker's axes; all in ground, angles
 //! in rad; missing entries are 0. Splines: `{"1": {"x": […], "y": […]}}`, with `"z"` a family of
 //! curves; `"end"` is natural, not-a-knot or periodic, `"extrap"` parabolic or linear.
+//! Curves: `{"1": {"points": [[x, y, z], …]}}`, with `"closed"`, `"control"` (the points are those of
+//! a B-spline) and `"order"`.
 
 use crate::diagnostic::Diagnostic;
-use crate::expr::interpolation::{Bindings, Spline};
+use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use crate::expr::program::Input;
 use crate::expr::spline::{Ends, Extrapolation};
 use crate::physics::kinematic::kinematic_of;
@@ -23,7 +25,7 @@ use std::sync::Arc;
 pub struct Data {
     /// states of markers by number
     pub markers: BTreeMap<u32, MarkerState<f64>>,
-    /// splines by number
+    /// splines and curves by number
     pub bindings: Bindings,
     /// values of other functions of the model, such as VARVAL(3)
     pub values: BTreeMap<Input, f64>,
@@ -76,6 +78,15 @@ impl Data {
     pub fn read_splines(&mut self, file: &Path) -> Result<(), Diagnostic> {
         each_of(file, |id, object| {
             spline(object).map(|s| drop(self.bindings.splines.insert(id, Arc::new(s))))
+        })
+    }
+    /// Reads points of curves from a file.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is not of the form above; says where.
+    pub fn read_curves(&mut self, file: &Path) -> Result<(), Diagnostic> {
+        each_of(file, |id, object| {
+            curve(object).map(|c| drop(self.bindings.curves.insert(id, Arc::new(c))))
         })
     }
     /// Adds one marker from the text of a JSON object, as in a file.
@@ -245,6 +256,33 @@ fn spline(object: &Map<String, Value>) -> Result<Spline, String> {
         _ => return Err("\"extrap\" is parabolic or linear".into()),
     };
     Spline::new(x, z, y, ends, extrapolation).map_err(|e| e.to_string())
+}
+
+fn curve(object: &Map<String, Value>) -> Result<Curve, String> {
+    known_keys(object, &["points", "closed", "control", "order"])?;
+    let wrong = || "\"points\" should be a list of points, each three numbers".to_owned();
+    let points = (object.get("points").ok_or("\"points\" is missing")?)
+        .as_array()
+        .ok_or_else(wrong)?
+        .iter()
+        .map(|p| numbers(p)?.try_into().map_err(|_| wrong()))
+        .collect::<Result<Vec<[f64; 3]>, String>>()?;
+    let switch = |key: &str| match object.get(key) {
+        None => Ok(false),
+        Some(value) => value
+            .as_bool()
+            .ok_or_else(|| format!("\"{key}\" is true or false")),
+    };
+    let order = match object.get("order") {
+        None => 4,
+        Some(value) => value.as_u64().ok_or("\"order\" is a whole number")? as usize,
+    };
+    let kind = if switch("control")? {
+        CurvePoints::Control
+    } else {
+        CurvePoints::OnCurve
+    };
+    Curve::new(&points, switch("closed")?, order, kind).map_err(|e| e.to_string())
 }
 
 fn numbers(value: &Value) -> Result<Vec<f64>, String> {

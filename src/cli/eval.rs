@@ -8,7 +8,7 @@ use crate::expr::Profile;
 use crate::expr::ast::Dialect;
 use crate::report::Plot;
 use crate::results::{Kind, Run, Units, csv, digits, json};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::Read;
 use std::path::PathBuf;
 
@@ -50,6 +50,9 @@ pub struct Args {
     /// Data of splines: {"1": {"x": […], "y": […]}}
     #[arg(long, value_name = "FILE.json")]
     splines: Option<PathBuf>,
+    /// Points of curves: {"1": {"points": [[x,y,z], …], "closed": false, "control": false, "order": 4}}
+    #[arg(long, value_name = "FILE.json")]
+    curves: Option<PathBuf>,
     /// Give a value to a function of the model, such as 'VARVAL(3)=2.5' (repeatable)
     #[arg(long, value_name = "CALL=VALUE")]
     set: Vec<String>,
@@ -108,10 +111,30 @@ pub fn run(args: &Args) -> Outcome {
     let outcome = evaluate(args, &text);
     if let (true, Err(failure)) = (args.json, &outcome) {
         say(&json::text(
-            &json!({ "expression": text, "errors": as_json(&failure.diagnostics) }),
+            &json!({ "expression": text, "errors": with_lines(failure) }),
         ));
     }
     outcome
+}
+
+/// The mistakes as JSON. `column` counts the whole expression, as the language does; `line` and
+/// `column_in_line` are what an editor shows.
+fn with_lines(failure: &Failure) -> Value {
+    let mut all = as_json(&failure.diagnostics);
+    for (said, d) in all
+        .as_array_mut()
+        .into_iter()
+        .flatten()
+        .zip(&failure.diagnostics)
+    {
+        let text = failure.sources.text(d.file.as_deref());
+        if let (Some(text), Some(span)) = (text, d.span) {
+            let placed = d.clone().at(text, span);
+            said["line"] = placed.line.into();
+            said["column_in_line"] = placed.column.into();
+        }
+    }
+    all
 }
 
 /// Evaluates an expression as the options demand.
@@ -220,6 +243,9 @@ fn setting(args: &Args) -> Result<Setting, Failure> {
     }
     if let Some(file) = &args.splines {
         setting.data.read_splines(file)?;
+    }
+    if let Some(file) = &args.curves {
+        setting.data.read_curves(file)?;
     }
     for assignment in &args.set {
         let usage = || {

@@ -6,7 +6,8 @@
 
 use super::data::Data;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::expr::ast::Dialect;
+use crate::expr::ast::{Callee, Dialect, Node};
+use crate::expr::interpolation::Interpolation;
 use crate::expr::measures::Family;
 use crate::expr::program::{Input, Program, Work};
 use crate::expr::signature::{Element, Kind};
@@ -49,7 +50,10 @@ impl Formula {
         let program = expr
             .compile(&setting.data.bindings)
             .map_err(|d| match d.code {
-                "unknown_element" if !d.message.contains("curve") => {
+                "unknown_element" if asks_for_curve(&expr, &d) => {
+                    d.help("points come from `--curves FILE`; in the REPL from `:curves FILE`")
+                }
+                "unknown_element" => {
                     d.help("data come from `--splines FILE`; in the REPL from `:splines FILE`")
                 }
                 _ => d,
@@ -190,6 +194,16 @@ impl Formula {
             _ => "give it a value: `--set`; in the REPL `:let`".into(),
         }
     }
+}
+
+/// Returns whether a mistake is about a call of CURVE.
+fn asks_for_curve(expr: &Expr, said: &Diagnostic) -> bool {
+    let ast = expr.ast();
+    let places = ast.spans.iter().map(|&span| Some(span));
+    ast.nodes.iter().zip(places).any(|(node, place)| {
+        let callee = Callee::Interpolation(Interpolation::Curve);
+        place == said.span && matches!(node, Node::Call { callee: c, .. } if *c == callee)
+    })
 }
 
 /// Returns the time at which an input is read: the expression's own, or any where it does not read

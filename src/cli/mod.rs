@@ -10,6 +10,7 @@ mod check;
 mod convert;
 pub mod data;
 mod eval;
+mod example;
 mod explain;
 mod fmt;
 pub mod formula;

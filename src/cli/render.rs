@@ -36,7 +36,8 @@ impl Sources {
     pub fn add(&mut self, file: impl Into<String>, text: impl Into<String>) {
         self.texts.push((file.into(), text.into()));
     }
-    fn text(&self, file: Option<&str>) -> Option<&str> {
+    /// The text of a file; without a file, the text that has none.
+    pub fn text(&self, file: Option<&str>) -> Option<&str> {
         self.texts
             .iter()
             .find(|t| t.0 == file.unwrap_or_default())
@@ -134,14 +135,26 @@ fn group<'a>(d: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
     let mut group = Group::with_title(title.id(d.code));
     if let Some(Excerpt {
         lines,
+        from,
         first_line,
         range,
     }) = place
     {
+        let shown = from..from + lines.len();
+        let marks = d
+            .marks
+            .iter()
+            .filter(|(span, _)| shown.contains(&span.start) && span.end <= shown.end)
+            .map(|(span, what)| {
+                let range = span.start - from..span.end - from;
+                AnnotationKind::Context.span(range).label(what.as_str())
+            });
         let snippet = Snippet::source(lines)
             .line_start(first_line)
-            .path(d.file.as_deref());
-        group = group.element(snippet.annotation(AnnotationKind::Primary.span(range)));
+            .path(d.file.as_deref())
+            .annotation(AnnotationKind::Primary.span(range))
+            .annotations(marks);
+        group = group.element(snippet);
     }
     group.elements(d.help.iter().map(|advice| Level::HELP.message(advice)))
 }
@@ -150,6 +163,8 @@ fn group<'a>(d: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
 struct Excerpt<'a> {
     /// whole lines of the text
     lines: &'a str,
+    /// byte of the text that the lines begin with
+    from: usize,
     /// number of the first of them, from 1
     first_line: usize,
     /// the place, in bytes of these lines
@@ -189,7 +204,14 @@ fn excerpt<'a>(d: &Diagnostic, sources: &'a Sources) -> Option<Excerpt<'a>> {
         floor_boundary(text, start),
         floor_boundary(text, end.max(start)),
     );
-    let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
+    // further places that stand near are shown with it
+    let first = (d
+        .marks
+        .iter()
+        .map(|(span, _)| floor_boundary(text, span.start)))
+    .filter(|&at| at < start && start - at < WIDEST)
+    .fold(start, usize::min);
+    let line_start = text[..first].rfind('\n').map_or(0, |i| i + 1);
     let line_end = text[end..].find('\n').map_or(text.len(), |i| end + i);
     // one statement can be a line of a megabyte: only the neighbourhood of the place is shown
     let (from, to) = (
@@ -201,6 +223,7 @@ fn excerpt<'a>(d: &Diagnostic, sources: &'a Sources) -> Option<Excerpt<'a>> {
     let lines = text[from..to].trim_end_matches('\r');
     Some(Excerpt {
         lines,
+        from,
         first_line,
         range: (start - from).min(lines.len())..(end - from).min(lines.len()),
     })
@@ -240,6 +263,7 @@ pub fn as_json(diagnostics: &[Diagnostic]) -> Value {
         json!({
             "code": d.code, "severity": severity, "message": d.message, "file": d.file, "line": d.line, "column": d.column,
             "start": d.span.map(|s| s.start), "end": d.span.map(|s| s.end), "element": d.element, "help": d.help,
+            "marks": d.marks.iter().map(|(s, what)| json!({ "start": s.start, "end": s.end, "what": what })).collect::<Vec<_>>(),
         })
     };
     diagnostics.iter().map(one).collect()

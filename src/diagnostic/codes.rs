@@ -242,7 +242,8 @@ many values as there are x.",
         summary: "an angle looks like degrees where radians are meant, or the other way round (a warning)",
         explanation: "\
 Direct-entry functions take and give radians; a literal with the suffix D is degrees: SIN(30D). Expression functions take and
-give degrees: sin(30). SIN(30) is a legal direct-entry function, but thirty radians are rarely meant.",
+give degrees: sin(30). SIN(30) is a legal direct-entry function, but thirty radians are rarely meant. The same holds for
+REULER, IC and ANGLE of a dataset and for the FUNCTION of a MOTION that turns: 90D is a quarter of a turn, 90 are 14.3 turns.",
     },
     Code {
         name: "doubtful_precedence",
@@ -252,7 +253,34 @@ give degrees: sin(30). SIN(30) is a legal direct-entry function, but thirty radi
 
     -2**2          is -(2**2) = -4
     x**1/2         is (x**1)/2; a square root is x**(1/2) or SQRT(x)
-    2**3**2        is 2**(3**2) = 512",
+    2**3**2        is 2**(3**2) = 512
+    2**-1          is 2**(-1) = 0.5; FORTRAN 77 refuses two operators side by side",
+    },
+    Code {
+        name: "doubtful_number",
+        summary: "the suffix for degrees stands where an exponent may be meant (a warning)",
+        explanation: "\
+D ends a number and makes degrees of it; a sign behind it is an operator. FORTRAN writes exponents of double precision
+with D, the function language does not:
+
+    1.0D-3         is one degree minus three, -2.98; a thousandth is 1.0E-3",
+    },
+    Code {
+        name: "doubtful_comment",
+        summary: "an exclamation mark cuts off what may be meant as a part of the expression (a warning)",
+        explanation: "\
+! begins a comment that runs to the end of the line. There is no factorial.
+
+    5!*2           is 5
+    5 ! *2         is 5 with a comment, and nothing is said",
+    },
+    Code {
+        name: "angles_of_several_axes",
+        summary: "AX, AY or AZ of the same markers stand in one expression (a warning)",
+        explanation: "\
+AX, AY and AZ are angles of projections: each is the angle of turning if the markers turn about that axis alone. Two of
+them together describe an orientation only while both are small. YAW, PITCH and ROLL, or PSI, THETA and PHI, are the
+angles of one sequence of turns.",
     },
     Code {
         name: "no_model",

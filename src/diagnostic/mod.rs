@@ -54,6 +54,8 @@ pub struct Diagnostic {
     pub column: usize,
     /// the element concerned, for example `SFORCE/3`
     pub element: Option<String>,
+    /// further places of the same text, and what stands there
+    pub marks: Vec<(Span, String)>,
     /// reasons and advice, one sentence each
     pub help: Vec<String>,
 }
@@ -70,6 +72,7 @@ impl Diagnostic {
             line: 0,
             column: 0,
             element: None,
+            marks: Vec::new(),
             help: Vec::new(),
         }
     }
@@ -86,6 +89,11 @@ impl Diagnostic {
         self.line = before.matches('\n').count() + 1;
         self.column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
         self.span = Some(span);
+        self
+    }
+    /// Adds a further place of the text, with what stands there.
+    pub fn mark(mut self, span: Span, what: impl Into<String>) -> Self {
+        self.marks.push((span, what.into()));
         self
     }
     /// Adds a sentence of advice.

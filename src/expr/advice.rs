@@ -1,13 +1,14 @@
 //! The message for a mistake in an expression: one sentence that names it, and advice for common
 //! habits.
 //!
-//! The tables list characters and names that users of other languages bring along. Advice is given
+//! The tables of what users of other languages bring along stand in `foreign.rs`. Advice is given
 //! only where it fits; a mistake that is plain gets none.
 
 use super::ast::{Callee, Dialect};
+use super::foreign::{ASSIGNED, CHARACTERS, DEGREES, EXPRESSION_NAMES, NAMES, RADIANS, UNITS};
 use super::signature::Kind;
-use super::symbols;
-use super::token::{About, Fault, Open};
+use super::symbols::{self, Symbol};
+use super::token::{self, About, Fault, Lexer, Open};
 use crate::diagnostic::{Diagnostic, Span, near_names};
 
 /// Returns the diagnostic for the first mistake of a text.
@@ -45,7 +46,10 @@ pub(crate) fn explain(text: &str, dialect: Dialect, fault: &Fault) -> Diagnostic
     };
     let mut said = at(text, fault.code, message, fault.span);
     said.help = help;
-    said
+    match place.unclosed(fault) {
+        Some(parenthesis) => said.mark(parenthesis, "this parenthesis is not closed"),
+        None => said,
+    }
 }
 
 /// Returns an error at a place of an expression; its column counts all characters of the text.
@@ -65,167 +69,7 @@ pub(crate) fn at(
 /// The sentence of a message, and advice.
 type Said = (String, Vec<String>);
 
-/// Characters of other languages, with their replacement here.
-const CHARACTERS: &[(&str, &str)] = &[
-    ("^", "the power operator is **, as in 2**3"),
-    (
-        "<>=",
-        "there are no comparisons; IF(a-b: x, y, z) is x where a < b, y where a = b, z where a > b",
-    ),
-    (
-        "&",
-        "an ampersand continues a line when it is its last character; there are no logical operators",
-    ),
-    (
-        "|",
-        "there are no logical operators; products of IF(...) with values 0 and 1 serve",
-    ),
-    ("%", "the remainder of a division is MOD(a, b)"),
-    (
-        "[]{}",
-        "parentheses are round; vectors are not part of this language",
-    ),
-    (";", "arguments are separated by commas"),
-    (
-        "\"'`“”‘’",
-        "there are no strings; elements of the model are named by their numbers",
-    ),
-    ("?", "a choice is written IF(e1: e2, e3, e4)"),
-    (
-        "\\",
-        "a backslash ends a function in a dataset and does not belong to the expression",
-    ),
-    ("_$@#~", "a name begins with a letter"),
-    ("−–—", "this is a dash; the minus sign is -"),
-    ("×·∙⋅", "multiplication is written *"),
-    ("÷", "division is written /"),
-    ("²", "a square is written **2"),
-    ("³", "a cube is written **3"),
-    ("√", "a square root is written SQRT(x)"),
-    ("π", "the number is called PI"),
-    ("°", "degrees are written with the suffix D, as in 30D"),
-    ("，", "this is a wide comma; write an ordinary one"),
-    ("（）", "these are wide parentheses; write ordinary ones"),
-    (
-        "\u{a0}\u{2009}\u{202f}\u{3000}\u{feff}",
-        "this is a special blank; write an ordinary one",
-    ),
-];
-
-/// Names of other languages, with their replacement in direct-entry functions.
-const NAMES: &[(&str, &str)] = &[
-    (
-        "LN",
-        "LOG(x) is the natural logarithm, LOG10(x) the decimal one",
-    ),
-    ("INT", "AINT(x) cuts off, NINT(x) rounds"),
-    ("FIX", "AINT(x) cuts off, NINT(x) rounds"),
-    ("TRUNC", "AINT(x) cuts off, NINT(x) rounds"),
-    (
-        "FLOOR",
-        "AINT(x) cuts off toward zero, which is the floor where x is not negative",
-    ),
-    ("CEIL", "AINT(x) cuts off toward zero; AINT(x)+1 is above"),
-    ("ROUND", "NINT(x) rounds to the nearest whole number"),
-    ("T", "time is TIME here; t belongs to expression functions"),
-    ("POW", "powers are written a**b"),
-    ("POWER", "powers are written a**b"),
-    ("SQR", "a square is written x**2, a square root SQRT(x)"),
-    ("CBRT", "a cube root is written x**(1/3) for positive x"),
-    (
-        "ARCSIN",
-        "the inverse functions are ASIN, ACOS, ATAN and ATAN2",
-    ),
-    (
-        "ARCCOS",
-        "the inverse functions are ASIN, ACOS, ATAN and ATAN2",
-    ),
-    (
-        "ARCTAN",
-        "the inverse functions are ASIN, ACOS, ATAN and ATAN2",
-    ),
-    (
-        "SIND",
-        "angles are radians; write SIN(30D) for a literal, SIN(x*DTOR) for a value",
-    ),
-    (
-        "COSD",
-        "angles are radians; write COS(30D) for a literal, COS(x*DTOR) for a value",
-    ),
-    (
-        "TAND",
-        "angles are radians; write TAN(30D) for a literal, TAN(x*DTOR) for a value",
-    ),
-    ("DEGREES", "x*RTOD turns radians into degrees"),
-    ("RADIANS", "x*DTOR turns degrees into radians"),
-    (
-        "DEG",
-        "x*RTOD turns radians into degrees; a literal takes the suffix D, as in 30D",
-    ),
-    ("RAD", "x*DTOR turns degrees into radians"),
-    ("E", "the base of natural logarithms is EXP(1)"),
-    ("FRAC", "the fraction is x-AINT(x)"),
-    (
-        "ENT",
-        "ENT belongs to expression functions; AINT(x) cuts off toward zero",
-    ),
-    ("ALOG", "LOG(x) is the natural logarithm"),
-    ("SGN", "the sign of x is SIGN(1, x)"),
-    (
-        "HEAVISIDE",
-        "STEP(x, x0, h0, x1, h1) rises smoothly; IF(x: 0, 0, 1) jumps",
-    ),
-    ("STEP3", "the cubic step is STEP, the quintic one STEP5"),
-    (
-        "AND",
-        "there are no logical operators; decide by IF(e1: e2, e3, e4)",
-    ),
-    (
-        "OR",
-        "there are no logical operators; decide by IF(e1: e2, e3, e4)",
-    ),
-    (
-        "NOT",
-        "there are no logical operators; decide by IF(e1: e2, e3, e4)",
-    ),
-    (
-        "AKIMA",
-        "the Akima spline is AKISPL(x, z, id); AKIMA is its name in the I-DEAS profile",
-    ),
-    (
-        "USER",
-        "USER(...) calls a compiled subroutine and replaces a whole expression; it cannot be part of one",
-    ),
-    ("AXU", "AX counts turns by itself"),
-    ("AYU", "AY counts turns by itself"),
-    ("AZU", "AZ counts turns by itself"),
-];
-
-/// Names of other languages, with their replacement in expression functions.
-const EXPRESSION_NAMES: &[(&str, &str)] = &[
-    ("TIME", "time is t here"),
-    ("PI", "the number is radians(180)"),
-    (
-        "LOG10",
-        "log(x) is the decimal logarithm, ln(x) the natural one",
-    ),
-    ("FLOOR", "ent(x) rounds down"),
-    ("AINT", "int(x) cuts off, ent(x) rounds down"),
-    (
-        "IF",
-        "expression functions have no IF; direct-entry functions have",
-    ),
-    (
-        "DTOR",
-        "radians(x) turns degrees into radians; sin, cos and tan take degrees",
-    ),
-    (
-        "RTOD",
-        "degrees(x) turns radians into degrees; asin, acos and atan give degrees",
-    ),
-];
-
-/// The place of a mistake: the text, its language, and the bytes.
+/// The text, its language, and where the mistake is.
 struct Place<'a> {
     text: &'a str,
     dialect: Dialect,
@@ -249,34 +93,67 @@ impl Place<'_> {
     fn bad_character(&self) -> Said {
         let c = self.word();
         let mut help = Vec::new();
-        if c == "." {
-            // TIME.GT.2
-            let relation: String = self
-                .after()
-                .chars()
-                .take_while(char::is_ascii_alphabetic)
-                .collect();
-            help.push(match relation.to_ascii_uppercase().as_str() {
-                "GT" | "GE" | "LT" | "LE" | "EQ" | "NE" | "AND" | "OR" | "NOT" => {
-                    "there are no comparisons; \
-                     IF(a-b: x, y, z) is x where a < b, y where a = b, z where a > b"
-                        .to_string()
-                }
-                _ => "a point belongs to a number: 0.5, .5 or 5.".to_string(),
-            });
+        if let Some(advice) = self.equals_sign(c).or_else(|| self.absolute_value(c)) {
+            help.push(advice);
+        } else if c == "." && self.is_relation() {
+            help.push(NO_COMPARISONS.to_string());
+        } else if let Some(name) = self.view_name().filter(|_| [".", "$"].contains(&c)) {
+            help.push(of_view(&name));
+        } else if c == "." {
+            help.push("a point belongs to a number: 0.5, .5 or 5.".to_string());
         } else if let Some((_, advice)) = CHARACTERS.iter().find(|(list, _)| list.contains(c)) {
             help.push((*advice).to_string());
         }
         (format!("`{}` is no part of the language", shown(c)), help)
     }
 
+    /// Advises on a leading `=`, as in a table calculation.
+    fn equals_sign(&self, c: &str) -> Option<String> {
+        let leads = c == "=" && self.before().trim().is_empty();
+        leads.then(|| "an expression begins without an equals sign: leave it out".to_string())
+    }
+
+    /// Advises on `|x|`.
+    fn absolute_value(&self, c: &str) -> Option<String> {
+        let (inside, _) = self.after().split_once('|').filter(|_| c == "|")?;
+        let inside = inside.trim();
+        (!inside.is_empty()).then(|| format!("an absolute value is written ABS({inside})"))
+    }
+
+    /// Returns the name of Adams View that begins here: `.MODEL.PART.MAR`, `$x`, `MODEL_1.PART_2`, `MARKER_1`.
+    fn view_name(&self) -> Option<String> {
+        let rest = self.text.get(self.span.start..)?;
+        let part = |c: char| c.is_ascii_alphanumeric() || "_.$".contains(c);
+        let end = rest.find(|c| !part(c)).unwrap_or(rest.len());
+        let name = rest[..end].trim_end_matches('.');
+        let words = name.trim_start_matches(['.', '$']);
+        let begins = words.starts_with(|c: char| c.is_ascii_alphabetic());
+        let is_one = begins && (words.len() < name.len() || name.contains(['.', '_']));
+        is_one.then(|| name.to_string())
+    }
+
+    /// Returns whether `.GT.` or the like begins here.
+    fn is_relation(&self) -> bool {
+        let word = self
+            .after()
+            .split(|c: char| !c.is_ascii_alphabetic())
+            .next();
+        let relations = ["GT", "GE", "LT", "LE", "EQ", "NE", "AND", "OR", "NOT"];
+        word.is_some_and(|word| relations.iter().any(|r| r.eq_ignore_ascii_case(word)))
+    }
+
     /// Words a literal that is not a number.
     fn bad_number(&self) -> Said {
         let word = self.word();
         let upper = word.to_ascii_uppercase();
+        if let Some(advice) = based(&upper) {
+            return (format!("`{word}` is not a number"), vec![advice]);
+        }
         let digits = upper.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
         let mantissa = &word[..word.len() - digits.len()];
+        let unit = self.unit(mantissa, &word[mantissa.len()..]);
         let advice = match digits.split_at_checked(1) {
+            _ if unit.is_some() => unit.unwrap_or_default(),
             Some(("D", rest)) if rest.starts_with(|c: char| c.is_ascii_digit()) => {
                 format!(
                     "write {mantissa}E{rest} for an exponent; D is the suffix for degrees and ends the number"
@@ -304,6 +181,27 @@ impl Place<'_> {
         (format!("`{word}` is not a number"), vec![advice])
     }
 
+    /// Advises on a unit behind a number.
+    fn unit(&self, number: &str, word: &str) -> Option<String> {
+        let is_one_of = |list: &[&str]| list.iter().any(|unit| unit.eq_ignore_ascii_case(word));
+        let advice = match self.dialect {
+            Dialect::Function if is_one_of(DEGREES) => {
+                format!("degrees are written with the suffix D: {number}D")
+            }
+            Dialect::Expression if is_one_of(DEGREES) => {
+                format!("angles are degrees already: {number}")
+            }
+            Dialect::Function if is_one_of(RADIANS) => {
+                format!("a number without suffix is radians already: {number}")
+            }
+            _ if is_one_of(UNITS) => {
+                format!("numbers carry no unit, UNITS of the model says what they mean: {number}")
+            }
+            _ => return None,
+        };
+        Some(advice)
+    }
+
     /// Words a name that has no meaning, with near names.
     fn unknown_name(&self) -> Said {
         let word = self.word();
@@ -312,26 +210,51 @@ impl Place<'_> {
             Dialect::Expression => EXPRESSION_NAMES,
         };
         let mut help = Vec::new();
+        let called = self.after().trim_start().starts_with('(');
         if let Some((_, advice)) = table
             .iter()
             .find(|(name, _)| name.eq_ignore_ascii_case(word))
         {
             help.push((*advice).to_string());
+        } else if let Some(advice) = self.assignment() {
+            help.push(advice);
+        } else if let Some(name) = self.view_name() {
+            help.push(of_view(&name));
         } else {
             let near = near_names(
                 word,
-                symbols::names(self.dialect).iter().map(|entry| entry.0),
+                (symbols::names(self.dialect).iter())
+                    // a single letter is near to all names of two
+                    .filter(|entry| called || word.len() > 2 || is_constant(entry.1))
+                    .map(|entry| entry.0),
             );
             if !near.is_empty() {
                 help.push(format!("did you mean {}?", near.join(" or ")));
             }
+            if self.dialect == Dialect::Function && !called && near.is_empty() {
+                help.push(NO_VARIABLES.to_string());
+            }
         }
-        let what = if self.after().trim_start().starts_with('(') {
+        let what = if called {
             "function"
         } else {
             "constant or function"
         };
         (format!("there is no {what} `{word}`"), help)
+    }
+
+    /// Advises on `FUNCTION=` before an expression, or another name that is to become it.
+    fn assignment(&self) -> Option<String> {
+        let rest = self.after().trim_start().strip_prefix('=')?;
+        if rest.starts_with('=') || !self.before().trim().is_empty() {
+            return None;
+        }
+        let word = self.word();
+        Some(if ASSIGNED.iter().any(|a| a.eq_ignore_ascii_case(word)) {
+            format!("`{word}=` belongs to the dataset; the expression is what stands behind it")
+        } else {
+            format!("nothing is assigned here; the expression is what stands behind `{word}=`")
+        })
     }
 
     /// Words a name followed by parentheses that takes no arguments.
@@ -350,7 +273,7 @@ impl Place<'_> {
 
     /// Words a text that ends too early.
     fn unexpected_end(&self, after_operand: bool, inside: Option<(Open, Span)>) -> Said {
-        let Some((open, name)) = inside else {
+        let Some((open, _)) = inside else {
             let what = if self.before().trim().is_empty() {
                 "there is no expression"
             } else {
@@ -358,31 +281,33 @@ impl Place<'_> {
             };
             return (what.to_string(), vec![]);
         };
-        let column = self
-            .text
-            .get(..name.start)
-            .unwrap_or_default()
-            .chars()
-            .count()
-            + 1;
-        let (what, mut help) = match open {
-            Open::Group => ("the parenthesis".to_string(), vec![]),
-            Open::If(_) => (
-                "IF".to_string(),
-                vec!["it is written IF(e1: e2, e3, e4)".to_string()],
+        let (what, help) = match open {
+            Open::Group if after_operand => (
+                "a parenthesis",
+                vec!["a closing parenthesis is missing".to_string()],
             ),
+            Open::Group => ("a parenthesis", vec![]),
+            Open::If(_) => ("IF", vec!["it is written IF(e1: e2, e3, e4)".to_string()]),
             Open::Call(callee) => (
-                callee.name().to_string(),
+                callee.name(),
                 vec![format!("it is written {}", callee.signature())],
             ),
         };
-        if after_operand && open == Open::Group {
-            help.push("a closing parenthesis is missing".to_string());
-        }
-        (
-            format!("the text ends inside {what} of column {column}"),
-            help,
-        )
+        (format!("the text ends inside {what}"), help)
+    }
+
+    /// The parenthesis that a text which ends too early leaves open.
+    fn unclosed(&self, fault: &Fault) -> Option<Span> {
+        let About::Token {
+            inside: Some((_, name)),
+            ..
+        } = fault.about
+        else {
+            return None;
+        };
+        let from = self.text.get(name.start..self.span.start)?;
+        let open = from.find('(').filter(|_| fault.code == "unexpected_end")?;
+        Some(Span::new(name.start + open, name.start + open + 1))
     }
 
     /// Words an argument that is missing between separators.
@@ -443,13 +368,59 @@ impl Place<'_> {
             ("*", _) if !after_operand && self.before().trim_end().ends_with('*') => {
                 "a power is written ** without a blank between the stars".to_string()
             }
-            _ if after_operand && starts_operand => {
-                "multiplication is written with a star, as in 2*TIME".to_string()
+            _ if after_operand && self.unit_behind().is_some() => {
+                self.unit_behind().unwrap_or_default()
             }
+            _ if after_operand && starts_operand => match inside {
+                Some((Open::Call(callee), name)) => self.star_or_comma(callee, name),
+                _ => STAR.to_string(),
+            },
             _ if !after_operand => "a number, a name or a parenthesis is needed here".to_string(),
             _ => return (format!("`{word}` cannot stand here"), vec![]),
         };
         (format!("`{word}` cannot stand here"), vec![advice])
+    }
+
+    /// Advises on a unit behind a number and a blank.
+    fn unit_behind(&self) -> Option<String> {
+        let before = self.before().trim_end();
+        let part = |c: char| c.is_ascii_alphanumeric() || c == '.';
+        let start = before.rfind(|c| !part(c)).map_or(0, |at| at + 1);
+        let number = before.get(start..)?;
+        number.parse::<f64>().ok()?;
+        self.unit(number, self.word())
+    }
+
+    /// Advises on two operands side by side in a call: the number of arguments tells which sign is missing.
+    fn star_or_comma(&self, callee: Callee, name: Span) -> String {
+        let comma = format!("a comma is missing before `{}`", self.word());
+        let (least, most) = callee.arity();
+        let Some(written) = self.arguments_written(name) else {
+            return STAR.to_string();
+        };
+        let fits = |count: usize| (least..=most).contains(&count);
+        match (fits(written), fits(written + 1)) {
+            (true, false) => STAR.to_string(),
+            (false, true) => format!("{comma}: it is written {}", callee.signature()),
+            _ => format!("{comma}, or a star for a multiplication"),
+        }
+    }
+
+    /// Returns the number of arguments of a call, by its commas.
+    fn arguments_written(&self, name: Span) -> Option<usize> {
+        let rest = self.text.get(name.end..)?;
+        let mut lexer = Lexer::new(rest, self.dialect == Dialect::Function);
+        let (mut depth, mut commas) = (0_usize, 0);
+        loop {
+            match lexer.next().ok()?.kind {
+                token::Kind::Open => depth += 1,
+                token::Kind::Close if depth <= 1 => return Some(commas + 1),
+                token::Kind::Close => depth -= 1,
+                token::Kind::Comma if depth == 1 => commas += 1,
+                token::Kind::End => return Some(commas + 1),
+                _ => {}
+            }
+        }
     }
 
     /// Words an argument of the wrong kind or range.
@@ -484,6 +455,35 @@ impl Place<'_> {
             ),
         }
     }
+}
+
+const NO_COMPARISONS: &str =
+    "there are no comparisons; IF(a-b: x, y, z) is x where a < b, y where a = b, z where a > b";
+const STAR: &str = "multiplication is written with a star, as in 2*TIME";
+const NO_VARIABLES: &str = "there are no variables of one's own: write the number, or read a VARIABLE of the model by VARVAL(id)";
+
+/// Advises on a name that Adams View knows and the solver does not.
+fn of_view(name: &str) -> String {
+    if name.starts_with('$') {
+        return format!("`{name}` is a variable of Adams View: write its value");
+    }
+    format!(
+        "`{name}` is a name of Adams View; here elements are called by their numbers, as in DX(12, 21)"
+    )
+}
+
+/// Advises on a number to another base, as in 0x10.
+fn based(upper: &str) -> Option<String> {
+    let (base, digits) = [(16, "0X"), (2, "0B"), (8, "0O")]
+        .into_iter()
+        .find_map(|(base, prefix)| Some((base, upper.strip_prefix(prefix)?)))?;
+    let value = u64::from_str_radix(digits, base).ok()?;
+    Some(format!("numbers are decimal: write {value}"))
+}
+
+/// Returns whether a name means a number.
+fn is_constant(meaning: Symbol) -> bool {
+    matches!(meaning, Symbol::Constant(_))
 }
 
 /// Words a wrong number of arguments.
@@ -610,7 +610,7 @@ mod tests {
             ),
             ("SIN(1,2)", "SIN takes one argument, not 2"),
             ("AX()", "AX takes 1 to 2 arguments, not none"),
-            ("3+MAX(1,2", "the text ends inside MAX of column 3"),
+            ("3+MAX(1,2", "the text ends inside MAX"),
             ("", "there is no expression"),
             ("INTERP(TIME,2,1)", "method of INTERP is 1 or 3, not 2"),
         ] {

@@ -38,7 +38,10 @@ const fn one_of(list: &'static [u32]) -> Kind {
 macro_rules! interpolations {
     ($(
         $(#[doc = $doc:literal])+
-        $variant:ident $name:literal ($($arg:ident: $kind:expr),+ $(; $optional:ident: $optional_kind:expr)?) $continuity:ident $equation:literal
+        $variant:ident $name:literal (
+            $($arg:ident: $kind:expr => $meaning:literal),+
+            $(; $optional:ident: $optional_kind:expr => $optional_meaning:literal)?
+        ) $continuity:ident $equation:literal
     )+) => {
         /// A function over data.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -56,8 +59,13 @@ macro_rules! interpolations {
                     interpolation: Interpolation::$variant,
                     name: $name,
                     parameters: &[
-                        $(Argument { name: stringify!($arg), kind: $kind, default: None },)+
-                        $(Argument { name: stringify!($optional), kind: $optional_kind, default: Some("0") },)?
+                        $(Argument { name: stringify!($arg), kind: $kind, default: None, meaning: $meaning },)+
+                        $(Argument {
+                            name: stringify!($optional),
+                            kind: $optional_kind,
+                            default: Some("0"),
+                            meaning: $optional_meaning,
+                        },)?
                     ],
                     continuity: Continuity::$continuity,
                     doc: concat!($($doc, "\n"),+),
@@ -91,31 +99,44 @@ interpolations! {
     ///
     /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind
     /// that takes an order.
-    Akispl "AKISPL" (x: Number, z: Number, id: SPLINE_ID; iord: DERIVATIVE) C1
+    Akispl "AKISPL" (x: Number => "place at which the curve is read", z: Number => "curve of a family; 0 for a single one", id: SPLINE_ID => "data"; iord: DERIVATIVE => "order of the derivative over x") C1
     "cubics with slopes weighted by the neighbouring changes of slope (Akima 1970)"
 
     /// Cubic spline through the points of spline `id`, or its derivative of order `iord`.
     ///
     /// `z` selects between the curves of a family (linearly); 0 for a single curve, the only kind
     /// that takes an order.
-    Cubspl "CUBSPL" (x: Number, z: Number, id: SPLINE_ID; iord: DERIVATIVE) C2
+    Cubspl "CUBSPL" (x: Number => "place at which the curve is read", z: Number => "curve of a family; 0 for a single one", id: SPLINE_ID => "data"; iord: DERIVATIVE => "order of the derivative over x") C2
     "cubics with continuous curvature, zero at the ends"
 
     /// Time series: linear (method 1) or cubic (method 3) interpolation of spline `id`, or its
     /// derivative of order `iord`.
-    Interp "INTERP" (x: Number, method: one_of(&[1, 3]), id: SPLINE_ID; iord: DERIVATIVE) C0
+    Interp "INTERP" (x: Number => "place at which the curve is read", method: one_of(&[1, 3]) => "1 straight lines, 3 cubics", id: SPLINE_ID => "data"; iord: DERIVATIVE => "order of the derivative over x") C0
     "straight lines, or the curve of CUBSPL"
 
     /// Component (1 x, 2 y, 3 z) of curve `id` at parameter `alpha`, or its derivative of order
     /// `iord`.
-    Curve "CURVE" (alpha: Number, iord: DERIVATIVE, comp: Kind::Selector(Choice::Range(1, 3)), id: CURVE_ID) C2
+    Curve "CURVE" (
+        alpha: Number => "place on the curve, -1 at its beginning, 1 at its end",
+        iord: DERIVATIVE => "order of the derivative over alpha",
+        comp: Kind::Selector(Choice::Range(1, 3)) => "1 x, 2 y, 3 z",
+        id: CURVE_ID => "curve"
+    ) C2
     "cubic B-spline through the points of the curve, alpha from -1 to 1"
 
     /// Random signal whose power spectral density is spline `id`, between the frequencies f0 and
     /// f1.
     ///
     /// The same seed gives the same signal. All arguments but x must be constant.
-    Invpsd "INVPSD" (x: Number, id: SPLINE_ID, f0: Number, f1: Number, nf: Number, linlog: one_of(&[0, 1]), seed: Number) Smooth
+    Invpsd "INVPSD" (
+        x: Number => "argument, often TIME",
+        id: SPLINE_ID => "density over frequency",
+        f0: Number => "lowest frequency, cycles for each unit of x",
+        f1: Number => "highest frequency",
+        nf: Number => "number of frequencies",
+        linlog: one_of(&[0, 1]) => "0 linear, 1 logarithmic interpolation of the density",
+        seed: Number => "number from which the phases are drawn"
+    ) Smooth
     "sum sqrt(2 PSD(f_i) df_i) sin(2 pi f_i x + phi_i) over nf frequencies"
 }
 

@@ -76,31 +76,47 @@ const fn marker_or_ground(name: &'static str) -> Argument {
     Argument::identifier_or_zero(name, Element::Marker).or("ground")
 }
 
-const I: Argument = marker("i");
-const J: Argument = marker_or_ground("j");
-const K: Argument = marker_or_ground("k");
-const L: Argument = marker_or_ground("l");
-const JFLAG: Argument = Argument::selector("jflag", Choice::Range(0, 1));
-const COMPONENT: Argument = Argument::selector("comp", Choice::Range(1, 8));
-const RM: Argument = Argument::identifier_or_zero("rm", Element::Marker);
-const N: Argument = Argument::selector("n", Choice::Positive);
+const I: Argument = marker("i").meaning("marker that is looked at");
+const J: Argument = marker_or_ground("j").meaning("marker that it is seen from");
+const K: Argument = marker_or_ground("k").meaning("marker whose axes give the directions");
+const L: Argument = marker_or_ground("l").meaning("marker in whose frame the rate is taken");
+const ACTING: Argument = marker("i").meaning("marker on which the forces act");
+const REACTING: Argument =
+    marker_or_ground("j").meaning("marker at their other end; 0 for action-only forces");
+const JFLAG: Argument = Argument::selector("jflag", Choice::Range(0, 1))
+    .meaning("0 on the I marker, 1 on the J marker");
+const COMPONENT: Argument = Argument::selector("comp", Choice::Range(1, 8))
+    .meaning("force: 1 magnitude, 2 x, 3 y, 4 z; torque: 5 magnitude, 6 x, 7 y, 8 z");
+const RM: Argument = Argument::identifier_or_zero("rm", Element::Marker)
+    .meaning("marker whose axes give the directions; 0 ground");
+const N: Argument = Argument::selector("n", Choice::Positive).meaning("place in the list, from 1");
 
 const I_J: &[Argument] = &[I, J];
 const I_J_K: &[Argument] = &[I, J, K];
 const I_J_L: &[Argument] = &[I, J, L];
 const I_J_K_L: &[Argument] = &[I, J, K, L];
-const THREE_MARKERS: &[Argument] = &[I, marker("j"), marker("k")];
+const ACTION: &[Argument] = &[ACTING, REACTING];
+const ACTION_K: &[Argument] = &[ACTING, REACTING, K];
+const THREE_MARKERS: &[Argument] = &[
+    marker("i").meaning("marker at the end of the first leg"),
+    marker("j").meaning("marker at the vertex"),
+    marker("k").meaning("marker at the end of the second leg"),
+];
 const ORIENTATION: &[Argument] = &[
-    Argument::selector("system", Choice::Range(1, 29)),
-    Argument::selector("component", Choice::Range(1, 9)),
+    Argument::selector("system", Choice::Range(1, 29)).meaning("sequence of angles or parameters"),
+    Argument::selector("component", Choice::Range(1, 9)).meaning("which of them"),
     I,
     J,
 ];
 
+const fn id(element: Element) -> Argument {
+    Argument::identifier("id", element).meaning("element that is asked")
+}
+
 /// `(id, jflag, comp, rm)` of an element that acts between two markers.
 macro_rules! element_force {
     ($($name:ident $element:ident)+) => { $(
-        const $name: &[Argument] = &[Argument::identifier("id", Element::$element), JFLAG, COMPONENT, RM];
+        const $name: &[Argument] = &[id(Element::$element), JFLAG, COMPONENT, RM];
     )+ };
 }
 element_force! {
@@ -108,21 +124,21 @@ element_force! {
     OF_VTORQ Vtorque  OF_PTCV Ptcv  OF_CVCV Cvcv  OF_JOINT Joint  OF_JPRIM Jprim  OF_MOTION Motion  OF_CONTACT Contact
 }
 const OF_NFORCE: &[Argument] = &[
-    Argument::identifier("id", Element::Nforce),
-    marker("at"),
+    id(Element::Nforce),
+    marker("at").meaning("marker on which the force acts"),
     COMPONENT,
     RM,
 ];
 const OF_FRICTION: &[Argument] = &[
-    Argument::identifier("id", Element::Friction),
-    Argument::selector("index", Choice::Range(1, 24)),
+    id(Element::Friction),
+    Argument::selector("index", Choice::Range(1, 24)).meaning("which number: see above"),
 ];
-const OF_VARIABLE: &[Argument] = &[Argument::identifier("id", Element::Variable)];
-const OF_ARRAY: &[Argument] = &[Argument::identifier("id", Element::Array), N];
-const OF_DIFF: &[Argument] = &[Argument::identifier("id", Element::Diff)];
-const OF_PINPUT: &[Argument] = &[Argument::identifier("id", Element::Pinput), N];
-const OF_POUTPUT: &[Argument] = &[Argument::identifier("id", Element::Poutput), N];
-const OF_SENSOR: &[Argument] = &[Argument::identifier("id", Element::Sensor)];
+const OF_VARIABLE: &[Argument] = &[id(Element::Variable)];
+const OF_ARRAY: &[Argument] = &[id(Element::Array), N];
+const OF_DIFF: &[Argument] = &[id(Element::Diff)];
+const OF_PINPUT: &[Argument] = &[id(Element::Pinput), N];
+const OF_POUTPUT: &[Argument] = &[id(Element::Poutput), N];
+const OF_SENSOR: &[Argument] = &[id(Element::Sensor)];
 
 measures! {
     Displacement {
@@ -211,28 +227,28 @@ measures! {
     GenericForce {
         /// Magnitude of the sum of all forces on i from elements between i and j; without j, of
         /// action-only forces on i.
-        Fm "FM" I_J "force" "|F|";
+        Fm "FM" ACTION "force" "|F|";
         /// Sum of all forces on i from elements between i and j, along the x axis of k; without j,
         /// of action-only forces.
-        Fx "FX" I_J_K "force" "F · x_K";
+        Fx "FX" ACTION_K "force" "F · x_K";
         /// Sum of all forces on i from elements between i and j, along the y axis of k; without j,
         /// of action-only forces.
-        Fy "FY" I_J_K "force" "F · y_K";
+        Fy "FY" ACTION_K "force" "F · y_K";
         /// Sum of all forces on i from elements between i and j, along the z axis of k; without j,
         /// of action-only forces.
-        Fz "FZ" I_J_K "force" "F · z_K";
+        Fz "FZ" ACTION_K "force" "F · z_K";
         /// Magnitude of the sum of all torques on i from elements between i and j; without j, of
         /// action-only torques on i.
-        Tm "TM" I_J "torque" "|T|";
+        Tm "TM" ACTION "torque" "|T|";
         /// Sum of all torques on i from elements between i and j, along the x axis of k; without j,
         /// of action-only torques.
-        Tx "TX" I_J_K "torque" "T · x_K";
+        Tx "TX" ACTION_K "torque" "T · x_K";
         /// Sum of all torques on i from elements between i and j, along the y axis of k; without j,
         /// of action-only torques.
-        Ty "TY" I_J_K "torque" "T · y_K";
+        Ty "TY" ACTION_K "torque" "T · y_K";
         /// Sum of all torques on i from elements between i and j, along the z axis of k; without j,
         /// of action-only torques.
-        Tz "TZ" I_J_K "torque" "T · z_K";
+        Tz "TZ" ACTION_K "torque" "T · z_K";
     }
     ElementForce {
         /// Force of a beam on its I marker (jflag 0) or J marker (1), in the axes of rm; comp 1

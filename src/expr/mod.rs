@@ -17,9 +17,9 @@
 //! |---|---|---|
 //! | names | `functions/` `measures.rs` `interpolation.rs` | tables of the functions |
 //! | | `signature.rs` `symbols.rs` | arguments of functions; meanings of names in each language |
-//! | text | `token.rs` `check.rs` | tokens; one ordered pass that finds the first mistake and its
-//! place |
-//! | | `advice.rs` `lint.rs` | advice on mistakes; warnings about what is legal but hardly meant |
+//! | text | `token.rs` `check.rs` | tokens; one ordered pass finds the first mistake, with its place |
+//! | | `advice.rs` `foreign.rs` | advice on mistakes; words of other languages |
+//! | | `lint/` | warnings about what is legal but hardly meant |
 //! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | grammars, tree, and back to source |
 //! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
@@ -33,9 +33,10 @@ pub mod ast;
 mod check;
 pub mod compile;
 mod expression;
+mod foreign;
 pub mod functions;
 pub mod interpolation;
-mod lint;
+pub mod lint;
 pub mod measures;
 mod parse;
 mod print;

@@ -124,6 +124,8 @@ pub struct Argument {
     pub kind: Kind,
     /// default in words, if it may be left out
     pub default: Option<&'static str>,
+    /// its part in the value, for a reader
+    pub meaning: &'static str,
 }
 
 impl Argument {
@@ -133,6 +135,7 @@ impl Argument {
             name,
             kind: Kind::Number,
             default: None,
+            meaning: "",
         }
     }
     /// Describes an identifier from 1.
@@ -144,6 +147,7 @@ impl Argument {
                 zero: false,
             },
             default: None,
+            meaning: "",
         }
     }
     /// Describes an identifier from 0.
@@ -155,6 +159,7 @@ impl Argument {
                 zero: true,
             },
             default: None,
+            meaning: "",
         }
     }
     /// Describes an integer from a set.
@@ -163,7 +168,12 @@ impl Argument {
             name,
             kind: Kind::Selector(choice),
             default: None,
+            meaning: "",
         }
+    }
+    /// Sets the argument's part in the value, for a reader.
+    pub const fn meaning(self, meaning: &'static str) -> Self {
+        Self { meaning, ..self }
     }
     /// Makes the argument optional, with a default in words.
     pub const fn or(self, default: &'static str) -> Self {

@@ -149,6 +149,21 @@ impl Callee {
     pub fn argument_name(self, k: usize) -> &'static str {
         self.arguments().get(k).map_or("the argument", |a| a.name)
     }
+    /// Returns the name of the `k`-th of `count` arguments (`k` from 0), with a number where many have
+    /// one name; empty where there is one argument only.
+    pub fn role(self, k: usize, count: usize) -> String {
+        let named = self.arguments();
+        let further = match self {
+            Callee::Function(f) => f.row().further.filter(|further| further.least > 0),
+            Callee::Measure(_) | Callee::Interpolation(_) => None,
+        };
+        match (named.get(k), further) {
+            _ if count < 2 => String::new(),
+            (Some(argument), _) => argument.name.to_owned(),
+            (None, Some(further)) => format!("{}{}", further.name, k - named.len()),
+            (None, None) => String::new(),
+        }
+    }
     /// Prints the signature: `NAME(i[, j])`.
     pub fn signature(self) -> String {
         match self {

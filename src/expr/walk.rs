@@ -414,7 +414,36 @@ impl<'a> Walk<'a> {
             ),
             None => String::new(),
         };
-        self.trouble("domain", ix, format!("{what} has no value{when}: {why}"))
+        let mut trouble = self.trouble("domain", ix, format!("{what} has no value{when}: {why}"));
+        trouble.help.extend(self.step_in_order(ix, operands));
+        trouble
+    }
+
+    /// How a step is written whose second place stands before its first.
+    fn step_in_order(&self, ix: NodeIx, operands: &[f64]) -> Option<String> {
+        let Node::Call {
+            callee: Callee::Function(f @ (Function::Step | Function::Step5 | Function::Havsin)),
+            ref args,
+        } = *self.ast.node(ix)
+        else {
+            return None;
+        };
+        let (&[x, x0, h0, x1, h1], &[_, from, _, to, _]) = (args.as_slice(), operands) else {
+            return None;
+        };
+        let [x, x0, h0, x1, h1] = [x, x0, h0, x1, h1].map(|arg| self.ast.written(arg));
+        let name = f.name();
+        if from > to {
+            Some(format!(
+                "the earlier place stands first: {name}({x}, {x1}, {h1}, {x0}, {h0})"
+            ))
+        } else if from == to {
+            Some(format!(
+                "a jump is written IF({x} - {x0}: {h0}, {h1}, {h1})"
+            ))
+        } else {
+            None
+        }
     }
 }
 

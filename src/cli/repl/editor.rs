@@ -1,7 +1,8 @@
 //! Help while typing: completion, colours, the signature of the function at hand, and lines that go
 //! on.
 
-use super::session::{COMMANDS, Session, words};
+use super::names::{Names, words};
+use super::session::{COMMANDS, Session};
 use crate::expr::ast::{Callee, Dialect};
 use crate::expr::{Profile, Symbol, names, parse, symbol};
 use rustyline::completion::{Completer, Pair};
@@ -24,7 +25,7 @@ impl Helper {
     pub fn new(session: &Session, colour: bool) -> Self {
         Self {
             dialect: session.setting.dialect,
-            defined: session.names.keys().cloned().collect(),
+            defined: session.names.0.keys().cloned().collect(),
             colour,
         }
     }
@@ -189,11 +190,8 @@ impl Validator for Helper {
     fn validate(&self, context: &mut ValidationContext<'_>) -> Result<ValidationResult> {
         let mut session = Session::new(self.dialect);
         // defined names count as numbers for completeness
-        session.names = self
-            .defined
-            .iter()
-            .map(|n| (n.clone(), "1".to_owned()))
-            .collect();
+        let numbers = self.defined.iter().map(|n| (n.clone(), "1".to_owned()));
+        session.names = Names(numbers.collect());
         let incomplete = session.is_incomplete(context.input());
         debug_assert!(!incomplete || parse(context.input(), self.dialect, Profile::Adams).is_err());
         Ok(if incomplete {

@@ -1,10 +1,11 @@
 //! `cognate repl`: expressions and their values, one after another.
 //!
-//! `session.rs` executes a line, whatever its origin; `editor.rs` helps while typing. At a terminal
-//! lines come from the editor; piped in, they are read as they are, only results are printed, and
-//! the exit code tells whether all went well.
+//! `session.rs` executes a line, whatever its origin; `names.rs` holds the names that a session
+//! defines; `editor.rs` helps while typing. At a terminal lines come from the editor; piped in, they
+//! are read as they are, only results are printed, and the exit code tells whether all went well.
 
 mod editor;
+mod names;
 mod session;
 
 use super::render::{self, Sources};

@@ -1,17 +1,17 @@
 //! The execution of a line at the prompt: an expression is evaluated, a command (`:name`) changes
 //! or shows something.
 
+use super::names::{Expansion, Names};
 use crate::cli::anatomy;
 use crate::cli::eval::DialectName;
 use crate::cli::formula::{Formula, Setting, derivative_names, give, times};
 use crate::cli::{card, functions, plot};
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::expr::ast::Dialect;
-use crate::expr::{MOST_CHARACTERS, Profile, parse, symbol};
+use crate::expr::{Profile, parse, symbol};
 use crate::report::terminal::terminal;
 use crate::report::{Curve, Plot, svg::svg};
 use crate::results::{digits, write_text};
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The answer to a line.
@@ -27,7 +27,7 @@ pub enum Reply {
 }
 
 /// The TABLE of commands: name, arguments, effect.
-pub const COMMANDS: [(&str, &str, &str); 12] = [
+pub const COMMANDS: [(&str, &str, &str); 13] = [
     (
         ":help",
         "[NAME]",
@@ -52,6 +52,7 @@ pub const COMMANDS: [(&str, &str, &str); 12] = [
     ),
     (":markers", "FILE.json", "read states of markers"),
     (":splines", "FILE.json", "read data of splines"),
+    (":curves", "FILE.json", "read points of curves"),
     (
         ":plot",
         "EXPRESSION FIRST LAST [FILE.svg]",
@@ -78,7 +79,7 @@ pub struct Session {
     /// highest derivative that is shown
     order: usize,
     /// names for parts of expressions: as defined, with earlier names replaced
-    pub names: BTreeMap<String, String>,
+    pub names: Names,
 }
 
 impl Session {
@@ -93,7 +94,7 @@ impl Session {
             setting,
             time: 0.0,
             order: 0,
-            names: BTreeMap::new(),
+            names: Names::default(),
         }
     }
 
@@ -101,12 +102,13 @@ impl Session {
     /// ends it all the same.
     pub fn is_incomplete(&self, text: &str) -> bool {
         let empty = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('!');
-        let last_is_blank = (text.lines().next_back()).is_some_and(|l| l.trim().is_empty());
+        // a line break that ends the text begins a line that is blank
+        let last_is_blank = (text.rsplit('\n').next()).is_some_and(|l| l.trim().is_empty());
         let command = text.trim_start().starts_with(':');
         let ends = command || last_is_blank || text.lines().all(empty);
         let error = || {
             parse(
-                &self.expanded(text),
+                &self.names.expand(text).text,
                 self.setting.dialect,
                 self.setting.profile,
             )
@@ -121,9 +123,11 @@ impl Session {
         if line.is_empty() || line.starts_with('!') {
             return Reply::Text(String::new());
         }
-        if !line.starts_with(':') {
-            return self.evaluate(line);
-        }
+        let line = match bare_command(line) {
+            Some((command, rest)) => &format!(":{command} {rest}"),
+            None if line.starts_with(':') => line,
+            None => return self.evaluate(line),
+        };
         let (command, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         let rest = rest.trim();
         let done = match command {
@@ -146,6 +150,11 @@ impl Session {
                 .data
                 .read_splines(Path::new(rest))
                 .map(|()| format!("{} splines\n", self.setting.data.bindings.splines.len())),
+            ":curves" => self
+                .setting
+                .data
+                .read_curves(Path::new(rest))
+                .map(|()| format!("{} curves\n", self.setting.data.bindings.curves.len())),
             ":plot" => return self.plot(rest),
             ":explain" => return self.explain(rest),
             ":dialect" => self.set_dialect(rest),
@@ -160,14 +169,14 @@ impl Session {
 
     /// Evaluates an expression at the time of the session.
     fn evaluate(&self, text: &str) -> Reply {
-        let expanded = self.expanded(text);
-        let done = Formula::new(&expanded, &self.setting).and_then(|mut f| {
+        let expansion = self.names.expand(text);
+        let done = Formula::new(&expansion.text, &self.setting).and_then(|mut f| {
             let sample = f.sample(Some(self.time), self.order, &self.setting.data)?;
             Ok((f.expr.warnings(), sample))
         });
         let (doubts, sample) = match done {
             Ok(done) => done,
-            Err(d) => return Reply::Mistake(Box::new(d), expanded),
+            Err(d) => return mistake(with_let(d, &expansion), &expansion),
         };
         let text = if self.order == 0 {
             digits(sample[0]) + "\n"
@@ -181,7 +190,8 @@ impl Session {
         if doubts.is_empty() {
             Reply::Text(text)
         } else {
-            Reply::Doubtful(doubts, expanded, text)
+            let doubts = doubts.into_iter().map(|d| expansion.as_typed(d));
+            Reply::Doubtful(doubts.collect(), expansion.typed, text)
         }
     }
 
@@ -213,6 +223,7 @@ impl Session {
         if text.is_empty() {
             let names = self
                 .names
+                .0
                 .iter()
                 .map(|(name, body)| format!("{name} = {body}\n"));
             let values = self
@@ -223,26 +234,28 @@ impl Session {
                 .map(|(input, value)| format!("{input} = {}\n", digits(*value)));
             return Reply::Text(names.chain(values).collect());
         }
-        let mistake = |d: Diagnostic, text: &str| Reply::Mistake(Box::new(d), text.to_owned());
+        let about = |d: Diagnostic, text: &str| Reply::Mistake(Box::new(d), text.to_owned());
         let Some((name, body)) = text.split_once('=').map(|(n, b)| (n.trim(), b.trim())) else {
-            return mistake(usage(":let"), text);
+            return about(usage(":let"), text);
         };
-        let expanded = self.expanded(body);
-        let formula = Formula::new(&expanded, &self.setting);
+        let expansion = self.names.expand(body);
+        let formula = Formula::new(&expansion.text, &self.setting);
         if !name.contains('(') {
             return match (self.may_define(name), formula) {
-                (Err(d), _) => mistake(d, name),
-                (_, Err(d)) => mistake(d, &expanded),
+                (Err(d), _) => about(d, name),
+                (_, Err(d)) => mistake(d, &expansion),
                 (Ok(()), Ok(_)) => {
-                    self.names.insert(name.to_ascii_uppercase(), expanded);
+                    self.names
+                        .0
+                        .insert(name.to_ascii_uppercase(), expansion.text);
                     Reply::Text(String::new())
                 }
             };
         }
         match formula.and_then(|mut f| f.sample(Some(self.time), 0, &self.setting.data)) {
-            Err(d) => mistake(d, &expanded),
+            Err(d) => mistake(d, &expansion),
             Ok([value, ..]) => give(&mut self.setting, name, value)
-                .map_or_else(|d| mistake(d, name), |()| Reply::Text(String::new())),
+                .map_or_else(|d| about(d, name), |()| Reply::Text(String::new())),
         }
     }
 
@@ -271,15 +284,15 @@ impl Session {
         if text.is_empty() {
             return Reply::Text(format!("{}\n", digits(self.time)));
         }
-        let expanded = self.expanded(text);
-        let time = Formula::new(&expanded, &self.setting)
+        let expansion = self.names.expand(text);
+        let time = Formula::new(&expansion.text, &self.setting)
             .and_then(|mut f| f.sample(None, 0, &self.setting.data));
         match time {
             Ok([time, ..]) => {
                 self.time = time;
                 Reply::Text(String::new())
             }
-            Err(d) => Reply::Mistake(Box::new(d), expanded),
+            Err(d) => mistake(d, &expansion),
         }
     }
 
@@ -356,15 +369,15 @@ impl Session {
         let Some((expression, first, last)) = range_at_the_end(text) else {
             return Reply::Mistake(Box::new(usage(":plot")), text.to_owned());
         };
-        let expanded = self.expanded(expression);
-        let picture = self.picture(&expanded, expression, first, last);
+        let expansion = self.names.expand(expression);
+        let picture = self.picture(&expansion.text, expression, first, last);
         let shown = picture.and_then(|picture| match file {
             Some(file) => {
                 write_text(Path::new(file), &svg(&picture)?).map(|()| format!("plot in {file}\n"))
             }
             None => terminal(&picture, plot::terminal_style()),
         });
-        shown.map_or_else(|d| Reply::Mistake(Box::new(d), expanded), Reply::Text)
+        shown.map_or_else(|d| mistake(d, &expansion), Reply::Text)
     }
 
     /// Draws an expression over a range of times.
@@ -410,33 +423,16 @@ impl Session {
             Some((rest, first, last)) => (rest, first..=last),
             None => (text, anatomy::BREAKPOINT_INTERVAL),
         };
-        let expanded = self.expanded(text);
-        match Formula::new(&expanded, &self.setting) {
+        let expansion = self.names.expand(text);
+        match Formula::new(&expansion.text, &self.setting) {
             Ok(formula) => Reply::Text(anatomy::explain(
                 &formula,
                 Some(self.time),
                 interval,
                 &self.setting.data,
             )),
-            Err(d) => Reply::Mistake(Box::new(d), expanded),
+            Err(d) => mistake(d, &expansion),
         }
-    }
-
-    /// Returns the text with defined names replaced by their definitions, in parentheses.
-    pub fn expanded(&self, text: &str) -> String {
-        if self.names.is_empty() {
-            return text.to_owned();
-        }
-        let mut out = String::with_capacity(text.len());
-        for word in words(text) {
-            match self.names.get(&word.to_ascii_uppercase()) {
-                Some(body) if out.len() + body.len() < MOST_CHARACTERS => {
-                    out.extend(["(", body, ")"])
-                }
-                _ => out.push_str(word),
-            }
-        }
-        out
     }
 }
 
@@ -451,27 +447,48 @@ fn range_at_the_end(text: &str) -> Option<(&str, f64, f64)> {
     Some((&text[..end], first, last))
 }
 
-/// Iterates over the pieces of a text: words that begin with a letter, numbers with exponent and
-/// suffix, and the rest.
-pub fn words(text: &str) -> impl Iterator<Item = &str> {
-    let mut rest = text;
-    std::iter::from_fn(move || {
-        let first = rest.chars().next()?;
-        let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        let length = match first {
-            '!' => rest.find('\n').unwrap_or(rest.len()),
-            c if c.is_ascii_alphanumeric() || c == '.' => rest
-                .find(|c| !word(c) && c != '.')
-                .unwrap_or(rest.len())
-                .max(1),
-            _ => rest
-                .find(|c: char| c.is_ascii_alphanumeric() || c == '.' || c == '!')
-                .unwrap_or(rest.len()),
-        };
-        let (piece, after) = rest.split_at(length);
-        rest = after;
-        Some(piece)
-    })
+/// A mistake in an expression, in terms of the text that was typed.
+fn mistake(said: Diagnostic, expansion: &Expansion) -> Reply {
+    Reply::Mistake(Box::new(expansion.as_typed(said)), expansion.typed.clone())
+}
+
+/// A mistake about a name that the language does not know, with the command that defines it, where the name could be
+/// a number: `k*2`, `k = 3`.
+fn with_let(said: Diagnostic, expansion: &Expansion) -> Diagnostic {
+    let Some(span) = said.span.filter(|_| said.code == "unknown_name") else {
+        return said;
+    };
+    let name = expansion.text.get(span.start..span.end).unwrap_or_default();
+    let rest = expansion
+        .text
+        .get(span.end..)
+        .unwrap_or_default()
+        .trim_start();
+    match rest.strip_prefix('=') {
+        Some(value) if span.start == 0 => said.help(format!(
+            "here a name is defined by `:let {name} = {}`",
+            value.trim()
+        )),
+        None if !rest.starts_with('(') && said.help.len() == 1 && name.len() <= 2 => {
+            said.help(format!("here a name is defined by `:let {name} = …`"))
+        }
+        _ => said,
+    }
+}
+
+/// `quit`, `exit` and `help NAME`, which are commands with and without their colon: the language has
+/// no such names.
+fn bare_command(line: &str) -> Option<(&'static str, &str)> {
+    let line = line.trim_end_matches(';').trim_end_matches("()");
+    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let command = ["help", "quit", "exit"]
+        .into_iter()
+        .find(|c| c.eq_ignore_ascii_case(word))?;
+    let one_name = rest
+        .trim()
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() || c == ':');
+    (one_name && (command == "help" || rest.trim().is_empty())).then_some((command, rest.trim()))
 }
 
 fn usage(command: &str) -> Diagnostic {
@@ -566,6 +583,8 @@ mod tests {
         assert!(session.is_incomplete("STEP(TIME, 0, 0,") && session.is_incomplete("2 +\n3 *"));
         assert!(
             !session.is_incomplete("2 +\n3")
+                && !session.is_incomplete("2 +\n")
+                && !session.is_incomplete("2 +\n  ")
                 && !session.is_incomplete("2 +\n\n")
                 && !session.is_incomplete(":let x = (")
                 && !session.is_incomplete("2 ^ 3")
@@ -573,9 +592,27 @@ mod tests {
     }
 
     #[test]
-    fn numbers_and_comments_keep_their_letters() {
-        let pieces: Vec<&str> = words("2E5*e+30D!e\nx_1.").collect();
-        assert_eq!(pieces, ["2E5", "*", "e", "+", "30D", "!e", "\n", "x_1."]);
+    fn a_name_that_could_be_a_number_is_told_the_command_that_defines_it() {
+        let mut session = Session::new(Dialect::Function);
+        let mut help = |line: &str| match session.execute(line) {
+            Reply::Mistake(d, _) => d.help.join("\n"),
+            _ => String::new(),
+        };
+        assert!(help("k*3").contains(":let k = …"));
+        assert!(help("k = 2*PI").contains(":let k = 2*PI"));
+        assert!(!help("K(3)").contains(":let") && !help("SINE(3)").contains(":let"));
+    }
+
+    #[test]
+    fn quit_and_help_need_no_colon() {
+        for end in ["quit", "QUIT", "exit", "quit()", "quit;"] {
+            assert_eq!(answers(&[end]), ["bye"], "{end}");
+        }
+        let said = answers(&["help", ":help", "help STEP5", ":help STEP5", "help :let"]);
+        assert_eq!((&said[0], &said[2]), (&said[1], &said[3]));
+        assert!(said[4].contains(":let"), "{}", said[4]);
+        // what goes on is an expression
+        assert_eq!(answers(&["quit + 1", "help(1)*2"]), ["unknown_name"; 2]);
     }
 
     #[test]

@@ -75,6 +75,19 @@ pub struct Example {
     pub value: f64,
 }
 
+/// Arguments behind those with names of their own, as many as there are coefficients.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Further {
+    /// common name: `a` for a0, a1 …
+    pub name: &'static str,
+    /// their part in the value, for a reader
+    pub meaning: &'static str,
+    /// fewest
+    pub least: usize,
+    /// most
+    pub most: usize,
+}
+
 /// A row of the table: everything about one function apart from its body.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
@@ -88,8 +101,8 @@ pub struct Row {
     pub family: Family,
     /// parameters that have a name
     pub parameters: &'static [Argument],
-    /// further arguments of the last kind: name, fewest, most
-    pub further: Option<(&'static str, usize, usize)>,
+    /// further arguments of the last kind
+    pub further: Option<Further>,
     /// smoothness of the function in its arguments
     pub continuity: Continuity,
     /// one sentence that describes it, then remarks
@@ -106,7 +119,7 @@ impl Row {
         let (required, named) = signature::arity(self.parameters);
         let (least, most) = self
             .further
-            .map_or((0, 0), |(_, least, most)| (least, most));
+            .map_or((0, 0), |further| (further.least, further.most));
         required + least..=named + most
     }
 
@@ -122,8 +135,8 @@ impl Row {
             }
         }
         match self.further {
-            Some((_, 0, _)) => text += "[, …]",
-            Some((name, _, most)) => {
+            Some(Further { least: 0, .. }) => text += "[, …]",
+            Some(Further { name, most, .. }) => {
                 text += &format!(", {name}0[, {name}1, …, {name}{}]", most - 1)
             }
             None => {}

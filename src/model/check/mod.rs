@@ -3,6 +3,7 @@
 //! A rule reads the model and says what is wrong with which element, and what to do. Rules about geometry in motion
 //! (freedom, redundancy, lock-up) belong to the analyses; here stands what the statements themselves contradict.
 
+mod angles;
 mod bodies;
 mod constraints;
 mod couplings;
@@ -27,6 +28,7 @@ pub const RULES: &[Rule] = &[
     ("mass has a place", bodies::mass_has_a_centre),
     ("inertia is possible", bodies::inertia_is_possible),
     ("axes have directions", bodies::axes_have_directions),
+    ("angles are radians", angles::angles_are_radians),
     (
         "constraints join two parts",
         constraints::constraints_join_two_parts,

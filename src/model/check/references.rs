@@ -48,7 +48,11 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
         match Expr::parse(text) {
             Err(d) => {
                 let at = d.span.map_or(0, |s| s.start);
-                out.push(placed(who(strip(d)), owned.formula, at));
+                out.push(placed(
+                    who(strip(marks_told(d, owned.formula))),
+                    owned.formula,
+                    at,
+                ));
                 continued_by_comma(owned.formula, at, out);
             }
             Ok(expr) => {
@@ -69,6 +73,16 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
             }
         }
     }
+}
+
+/// Further places of the expression as sentences, with their lines and columns in the file.
+fn marks_told(mut d: Diagnostic, formula: &Formula) -> Diagnostic {
+    for (span, what) in std::mem::take(&mut d.marks) {
+        if let Some((line, column)) = formula.file_place(span.start) {
+            d.help.push(format!("{what}: line {line}, column {column}"));
+        }
+    }
+    d
 }
 
 /// A place in an expression is not yet one in a file.
