@@ -605,7 +605,7 @@ impl<'a> Reader<'a> {
         let (text, breaks) = self.joined(from, to, " ");
         let (line, column) = self.source.place(self.tokens[from].span.start);
         Ok(Formula::Expression {
-            text,
+            text: text.into(),
             line,
             column,
             breaks,

@@ -12,6 +12,7 @@ use crate::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// An expression of the function language, checked.
 ///
@@ -37,7 +38,7 @@ use std::str::FromStr;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     text: String,
-    ast: Ast,
+    ast: Arc<Ast>,
 }
 
 impl Expr {
@@ -88,7 +89,14 @@ impl Expr {
         dialect: Dialect,
         profile: Profile,
     ) -> Result<Self, Diagnostic> {
-        let ast = parse(text, dialect, profile)?;
+        Self::from_ast(text, Arc::new(parse(text, dialect, profile)?))
+    }
+
+    /// Takes a tree that was made of a text.
+    ///
+    /// # Errors
+    /// A constant part without a value.
+    pub(crate) fn from_ast(text: &str, ast: Arc<Ast>) -> Result<Self, Diagnostic> {
         walk::check_constants(&ast).map_err(|trouble| trouble.diagnostic(text))?;
         Ok(Self {
             text: text.to_string(),

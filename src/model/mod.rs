@@ -13,6 +13,7 @@ mod output;
 pub mod reference;
 mod settings;
 mod system;
+mod text;
 pub mod units;
 
 pub use body::*;
@@ -22,6 +23,7 @@ pub use force::*;
 pub use output::*;
 pub use settings::*;
 pub use system::*;
+pub use text::Text;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -45,7 +47,7 @@ pub enum Formula {
     /// an expression of the function language
     Expression {
         /// the text, continuation commas removed
-        text: String,
+        text: Text,
         /// line of its first character in the file; 0 when built by a program
         line: usize,
         /// column of its first character in that line
@@ -75,7 +77,7 @@ impl Formula {
     /// An expression built by a program.
     pub fn text(text: impl Into<String>) -> Self {
         Formula::Expression {
-            text: text.into(),
+            text: Text::from(text.into()),
             line: 0,
             column: 0,
             breaks: Vec::new(),
@@ -89,7 +91,7 @@ impl Formula {
         };
         // most of them are plain, and asked for often
         let plain = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
-        plain.or_else(|| crate::expr::Expr::parse(text).ok()?.eval(&[]).ok())
+        plain.or_else(|| text.expression().ok()?.eval(&[]).ok())
     }
 
     /// Line and column in the file of a byte of the expression; `None` when it was not read from a file.

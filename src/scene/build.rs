@@ -18,7 +18,7 @@ use crate::expr::interpolation::Bindings;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
 use crate::model::{
     ArrayKind, ById, COMPONENTS, Driven, ElementId, ElementKind, Formula as ModelFormula,
-    JointKind, Level, Model, RequestKind, VectorForce,
+    JointKind, Level, Model, RequestKind, Text, VectorForce,
 };
 use crate::physics::bushing::Bushing;
 use crate::physics::joint::Tie;
@@ -42,7 +42,7 @@ pub struct Options {
     /// variables of joints are to be shown
     pub variables: bool,
     /// expressions to be evaluated beside those of the model: (name, text)
-    pub extra: Vec<(String, String)>,
+    pub extra: Vec<(String, Text)>,
     /// kinds of elements that are left out where they are not solved
     pub skip: BTreeSet<ElementKind>,
     /// closures for `USER(…)`
@@ -268,7 +268,7 @@ impl<'m> Builder<'m> {
         self.scene.formulas.len() - 1
     }
 
-    fn compiled(&mut self, c: &mut Compiler, owner: &Owner, text: &str) -> usize {
+    fn compiled(&mut self, c: &mut Compiler, owner: &Owner, text: &Text) -> usize {
         let compiled = match super::formula::compile(text, &self.bindings) {
             Ok(compiled) => compiled,
             Err(mut d) => {
@@ -333,7 +333,7 @@ impl<'m> Builder<'m> {
             return vec![self.formula(c, owner, formula); n];
         };
         if self.zero_user {
-            return vec![self.compiled(c, owner, "0"); n];
+            return vec![self.compiled(c, owner, &"0".into()); n];
         }
         let known = owner.element.and_then(|element| {
             let mut hooks = self.hooks.iter();
@@ -348,7 +348,9 @@ impl<'m> Builder<'m> {
             return vec![usize::MAX; n];
         };
         let texts = self.hooks[closure].inputs.iter().chain(reads);
-        let mut inputs: Vec<usize> = texts.map(|text| self.compiled(c, owner, text)).collect();
+        let mut inputs: Vec<usize> = texts
+            .map(|text| self.compiled(c, owner, &text.as_str().into()))
+            .collect();
         inputs.extend(further);
         let hook = self.scene.hooks.len();
         let places: Vec<usize> = (0..n)

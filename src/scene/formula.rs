@@ -1,14 +1,11 @@
 //! Expressions of the model as programs: splines and arrays they name are found in the model.
 
 use crate::diagnostic::Diagnostic;
-use crate::expr::Profile;
-use crate::expr::ast::Dialect;
 use crate::expr::compile;
 use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
-use crate::expr::parse;
 use crate::expr::program::Program;
 use crate::expr::spline::{Ends, Extrapolation};
-use crate::model::{ElementKind, Model};
+use crate::model::{ElementKind, Model, Text};
 use std::sync::Arc;
 
 /// The splines of a model, for the expressions that name them; what is wrong with those that cannot be used.
@@ -94,14 +91,14 @@ pub(super) struct Compiled {
     pub delays: Vec<[Program; 3]>,
 }
 
-/// Compiles the text of an expression.
+/// Compiles an expression; its text is parsed only if that has not been done before.
 ///
 /// # Errors
 /// What the language has to say about it; columns count from the beginning of the text.
-pub(super) fn compile(text: &str, bindings: &Bindings) -> Result<Compiled, Diagnostic> {
-    let ast = parse(text, Dialect::Function, Profile::default())?;
+pub(super) fn compile(text: &Text, bindings: &Bindings) -> Result<Compiled, Diagnostic> {
+    let ast = text.ast()?;
     let mut compiler = compile::Compiler::new(bindings);
-    let value = compiler.add(&ast)?;
+    let value = compiler.add(ast)?;
     let delays = compiler.delays().iter();
     let delays = delays.map(|d| [d.expression, d.delay, d.history].map(|v| compiler.finish(&[v])));
     Ok(Compiled {

@@ -9,7 +9,7 @@ pub fn expressions(model: &Model) -> Vec<String> {
         if let RequestKind::Functions(functions) = &request.kind {
             for f in functions.iter().flatten() {
                 if let Formula::Expression { text, .. } = f {
-                    all.push(text.clone());
+                    all.push(text.to_string());
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{ElementId, ElementKind, Formula, Model, Part, Place, RequestKind};
+use crate::model::{ElementId, ElementKind, Formula, Model, Part, Place, RequestKind, Text};
 use crate::physics::kinematic;
 use crate::results::{Component, Entity, Run, Units};
 use crate::scalar::Scalar;
@@ -34,7 +34,7 @@ enum What {
 pub struct Columns {
     what: Vec<What>,
     /// expressions to compile with each scene: (name, text)
-    pub extra: Vec<(String, String)>,
+    pub extra: Vec<(String, Text)>,
 }
 
 /// The unit of what an expression yields, where it is a single measure.
@@ -210,7 +210,7 @@ impl Columns {
 
     fn text(&mut self, run: &mut Run, name: String, text: &str, units: &Units) -> usize {
         let k = self.extra.len();
-        self.extra.push((name.clone(), text.to_string()));
+        self.extra.push((name.clone(), text.into()));
         self.push(run, name, unit_of(text, units), What::Text(k))
     }
 

@@ -45,7 +45,7 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
             )));
             continue;
         }
-        match Expr::parse(text) {
+        match text.expression() {
             Err(d) => {
                 let at = d.span.map_or(0, |s| s.start);
                 out.push(placed(
