@@ -1,7 +1,7 @@
 //! Constraints: motions against rows, rows against their gradients, one formulation against the other.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::start::assemble;
+use cognate::analysis::start::{assemble, velocities};
 use cognate::model::{ElementId, ElementKind, Model};
 use cognate::scene::cams;
 use cognate::scene::configuration::Configuration;
@@ -367,7 +367,7 @@ fn answers(text: &str, cut_all: bool, element: ElementId) -> [Vec3<f64>; 4] {
     let found = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).unwrap();
     let configured = scene.within(&configuration);
     assert!(found.redundant.is_empty(), "{:?}\n{text}", found.redundant);
-    let v = assemble::velocities(configured, &model, 0.0, &q, &[]).unwrap();
+    let v = velocities::velocities(configured, &model, 0.0, &q, &[]).unwrap();
     let n = all_numbers(&scene, 0.0, &q, &v);
     let at = Equations::<f64>::new(configured, &n);
     let three = scene.parts.iter().position(|p| p.id.number == 3).unwrap();

@@ -7,7 +7,8 @@ use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::system::System;
 use cognate::analysis::time::{dynamics, options};
 use cognate::analysis::watch::Unwatched;
-use cognate::analysis::{session::columns, start::assemble};
+use cognate::analysis::session::columns;
+use cognate::analysis::start::{assemble, velocities};
 use cognate::model::{Driven, MarkerOwner, Model, Orientation, Units};
 use cognate::results::{Run, Status};
 use cognate::scene::configuration::Configuration;
@@ -288,7 +289,7 @@ fn without_forest(model: &Model, names: &[String]) -> Run {
     let mut q = scene.initial_q.clone();
     assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).expect("positions");
     let here = scene.within(&configuration);
-    let v = assemble::velocities(here, model, 0.0, &q, &[]).expect("velocities");
+    let v = velocities::velocities(here, model, 0.0, &q, &[]).expect("velocities");
     let l = scene.layout;
     let mut system = System::new(scene, configuration).expect("a system");
     system.numbers[l.q()].copy_from_slice(&q);

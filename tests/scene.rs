@@ -1,7 +1,8 @@
 //! Scenes: the equations of small mechanisms against closed forms, and every formulation against the other.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::{start::assemble, system::System};
+use cognate::analysis::start::{assemble, velocities};
+use cognate::analysis::system::System;
 use cognate::model::*;
 use cognate::numeric::{self, Method, Ode};
 use cognate::scene::configuration::Configuration;
@@ -75,7 +76,7 @@ fn a_pendulum_is_a_handful_of_operations_and_swings_as_it_should() {
         let found = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).unwrap();
         println!("{found:?}");
         assert_eq!(found.freedom, 1);
-        let v = assemble::velocities(scene.within(&configuration), &model, 0.0, &q, &[]).unwrap();
+        let v = velocities::velocities(scene.within(&configuration), &model, 0.0, &q, &[]).unwrap();
         let mut system = System::new(scene, configuration).unwrap();
         println!("operations {}", system.operations());
         let mut y = q;

@@ -1,10 +1,11 @@
 //! A model and its clock: one simulation after another, each from where the last one ended.
 //!
-//! A simulation compiles the model as it is now, takes over the state (or assembles the first one), computes, and appends its
-//! rows to the run. What goes wrong in numbers is an outcome in the record, with the results so far; what is wrong in the
-//! model is an error.
+//! A simulation compiles the model as it is now, takes over the state (or assembles the first one),
+//! computes, and appends its rows to the run. What goes wrong in numbers is an outcome in the
+//! record, with the results so far; what is wrong in the model is an error.
 
 mod at_rest;
+mod carried;
 pub mod columns;
 mod outcome;
 mod over_time;
@@ -14,6 +15,7 @@ mod shells;
 mod simulate;
 mod start;
 pub mod state;
+mod state_at_start;
 mod stop_reason;
 
 use crate::analysis::linear::{self, Linearization};
@@ -26,8 +28,9 @@ use crate::expr::program::Program;
 use crate::model::{ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
+use carried::Carried;
 use outcome::units;
-use start::{Carried, Kept};
+use start::Kept;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -84,7 +87,8 @@ pub struct Session {
     columns_program: Option<Program>,
     account: Option<Program>,
     hooks: Vec<external_inputs::Hook>,
-    /// linear systems that commands asked for: name of their file where one was given, and whether matrices are wanted
+    /// linear systems that commands asked for: name of their file where one was given, and whether
+    /// matrices are wanted
     pub linear: Vec<(Option<String>, bool, Linearization)>,
     /// states that commands saved, by the names of their files
     pub saved: std::collections::BTreeMap<String, String>,
@@ -132,8 +136,9 @@ impl Session {
 
     /// Computes what `USER(…)` stands for by a closure.
     ///
-    /// `name` is an element ("SFORCE/3"), the text of its ROUTINE, or the first number of `USER(…)`; `inputs` are expressions of the
-    /// function language whose values the closure is given, in this order. They may not depend on what it computes. See [`external_inputs::Law`]
+    /// `name` is an element ("SFORCE/3"), the text of its ROUTINE, or the first number of
+    /// `USER(…)`; `inputs` are expressions of the function language whose values the closure is
+    /// given, in this order. They may not depend on what it computes. See [`external_inputs::Law`]
     /// for what it has to fill in.
     pub fn register(
         &mut self,
@@ -166,8 +171,8 @@ impl Session {
         self.columns = Columns::new(&self.model, run, &options.columns, options.full, &known);
     }
 
-    /// Tells which VARIABLEs will be changed between simulations: where their functions are numbers, these stay outside the equations, which then
-    /// need not be written anew.
+    /// Tells which VARIABLEs will be changed between simulations: where their functions are
+    /// numbers, these stay outside the equations, which then need not be written anew.
     pub fn will_change(&mut self, variables: impl IntoIterator<Item = u32>) {
         self.changing.extend(variables);
     }
@@ -182,7 +187,8 @@ impl Session {
         self.carried.as_ref().map_or(0.0, |c| c.t)
     }
 
-    /// Linearizes the model about its present state; before any simulation, about its initial conditions.
+    /// Linearizes the model about its present state; before any simulation, about its initial
+    /// conditions.
     ///
     /// # Errors
     /// What is wrong in the model, and what has no derivatives.

@@ -1,4 +1,5 @@
-//! What a run tells about its simulations: rows of results, facts of the record, how it ended and which element is to blame.
+//! What a run tells about its simulations: rows of results, facts of the record, how it ended and
+//! which element is to blame.
 
 use super::Session;
 use super::stop_reason::{Cause, StopReason};
@@ -275,7 +276,8 @@ pub(super) fn counts(stats: &crate::numeric::Stats) -> Counts {
     }
 }
 
-/// Why a method stopped: the function that lost its value, the row that locks, or else what the method met.
+/// Why a method stopped: the function that lost its value, the row that locks, or else what the
+/// method met.
 fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
     let (scene, at) = (system.configured(), stop.t);
     let may_lack_a_value = !matches!(stop.reason, Reason::TooManySteps | Reason::Projection(_));

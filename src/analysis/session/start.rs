@@ -1,47 +1,24 @@
-//! What a simulation starts from: the model compiled as it is now, and the state that the last one left or that is assembled.
+//! The start of a simulation: the model compiled as it is now, in the state that the last
+//! simulation left or that is assembled.
 
+use super::carried::{has_new_unknowns, moved};
 use super::shells;
+use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::start::assemble::{self, Assembly};
-use crate::analysis::start::{coincident, initial_conditions, misalignment, placement};
+use crate::analysis::start::{coincident, initial_conditions, misalignment, placement, velocities};
 use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{external_inputs, samples};
 use crate::diagnostic::Diagnostic;
-use crate::expr::measures::Measure;
-use crate::model::{ElementId, ElementKind, Formula, Model, Orientation, Place};
-use crate::physics::kinematic::kinematic;
+use crate::model::{Formula, Model, Place};
 use crate::scene::Scene;
-use crate::scene::build::{self, unknown_names};
-use crate::scene::compile::orientation;
-use crate::scene::configuration::{Configuration, Configured};
+use crate::scene::build;
+use crate::scene::configuration::Configured;
 use crate::scene::contacts::Shell;
-use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::layout::Layout;
-use crate::space::{MarkerState, Vec3};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// State carried from one simulation to the next, by the names of the unknowns.
-#[derive(Clone, Debug)]
-pub(super) struct Carried {
-    pub(super) t: f64,
-    /// numbers of the last row
-    pub(super) numbers: Vec<f64>,
-    pub(super) names: Vec<String>,
-    /// it came to rest: velocities are those of the dataset again, not zero
-    pub(super) at_rest: bool,
-    /// place and motion of every part (point masses: true), for when the unknowns are others
-    pub(super) parts: Vec<(ElementId, MarkerState<f64>)>,
-    /// turns that angles have counted
-    pub(super) turns: Vec<f64>,
-    /// what sensors evaluated last, by their numbers
-    pub(super) sensors: BTreeMap<u32, f64>,
-    /// where sampled systems stand, by the numbers of their GSE
-    pub(super) samples: BTreeMap<u32, samples::Held>,
-    /// what was before
-    pub(super) past: Vec<external_inputs::Past>,
-}
 
 /// A system that has done its simulation, and the model it was made of.
 #[derive(Debug)]
@@ -64,7 +41,7 @@ impl Kept {
     }
 }
 
-/// A model without the numbers that its scene is supplied with.
+/// Returns a model without the numbers that are external inputs of its scene.
 fn without_constants(model: &Model, scene: &Scene) -> Model {
     let mut model = model.clone();
     for what in &scene.external_inputs {
@@ -79,8 +56,8 @@ fn without_constants(model: &Model, scene: &Scene) -> Model {
 }
 
 impl Session {
-    /// The system of the simulation before, at the state that it left, where nothing is different but constants that commands change. No constraint
-    /// reads these: it still holds.
+    /// Returns the system of the simulation before, at the state that it left, where nothing is
+    /// different but constants that commands change. No constraint reads these: it still holds.
     fn again(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
         let kept = *self.kept.take()?;
         let carried = self.carried.as_ref()?;
@@ -113,16 +90,34 @@ impl Session {
             return Ok(again);
         }
         (self.columns_program, self.account) = (None, None);
+        let (scene, moved) = self.compile(mode, inputs)?;
+        let mut start = Start::new(scene, mode, self.time());
+        let assembly = if self.carried.is_some() {
+            self.go_on(&mut start)?
+        } else {
+            self.assemble(&mut start)?
+        };
+        (start.configuration).begin_states(&start.scene, &mut start.x);
+        let v = self.velocities(&mut start, moved.as_ref())?;
+        let system = self.system(start, v)?;
+        Ok((system, assembly))
+    }
+
+    /// Compiles the model; where commands have changed what carries a part, with its parts where
+    /// the last simulation left them, which is that model: the place of such a part is no unknown
+    /// of before.
+    fn compile(
+        &mut self,
+        mode: u32,
+        inputs: &[u32],
+    ) -> Result<(Arc<Scene>, Option<Model>), Vec<Diagnostic>> {
+        let hooks = self.hooks.iter().map(external_inputs::Hook::as_name);
         let mut options = build::Options {
             mode,
             extra: self.columns.extra.clone(),
             variables: self.options.full,
             skip: self.options.skip.clone(),
-            hooks: self
-                .hooks
-                .iter()
-                .map(external_inputs::Hook::as_name)
-                .collect(),
+            hooks: hooks.collect(),
             zero_user: self.options.zero_user,
             plant_inputs: inputs.to_vec(),
             changing: self.changing.clone(),
@@ -130,14 +125,13 @@ impl Session {
             ..build::Options::default()
         };
         let compiled = match Scene::compile(&self.model, &options) {
-            // a motion may read a number, but nothing from outside
+            // a motion may read a number, but no external input
             Err(_) if !options.changing.is_empty() => {
                 options.changing.clear();
                 Scene::compile(&self.model, &options)?
             }
             outcome => outcome?,
         };
-        // Commands may have changed what carries a part: then its place is no unknown of before, and is told by the part.
         let moved = (self.carried.as_ref())
             .filter(|carried| has_new_unknowns(&compiled, carried))
             .map(|carried| moved(&self.model, carried));
@@ -145,130 +139,126 @@ impl Session {
             Some(moved) => Scene::compile(moved, &options)?,
             None => compiled,
         };
-        let mut configuration = Configuration::new(&scene);
-        let first = self.carried.is_none();
-        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
-        let exchanged = if first && joints {
-            self.exchange(&scene)
-        } else {
-            Vec::new()
-        };
-        let l = scene.layout;
-        let t = self.time();
-        let names = unknown_names(&scene);
-        let mut x = vec![0.0; l.n_x];
-        for d in &scene.differentials {
-            if let Some(state) = d.state {
-                x[state] = d.initial[0];
-            }
-        }
-        let mut q = scene.initial_q.clone();
-        let mut v = None;
+        Ok((scene, moved))
+    }
+
+    /// Goes on from the state of the last simulation.
+    fn go_on(&self, start: &mut Start) -> Result<Assembly, Vec<Diagnostic>> {
         if let Some(carried) = &self.carried {
-            let values: BTreeMap<&str, f64> = carried
-                .names
-                .iter()
-                .map(String::as_str)
-                .zip(carried.numbers.iter().skip(Layout::STATE).copied())
-                .collect();
-            let mut speeds = vec![0.0; l.n_v];
-            let names = l.state(&names);
-            // every position and velocity is told; states may be new
-            let mut complete = take_over(&values, names.q, &mut q);
-            complete &= take_over(&values, names.v, &mut speeds);
-            take_over(&values, names.x, &mut x);
-            for (cam, contact) in scene.cams.iter().zip(&mut configuration.contacts) {
-                let name = &names.x[cam.state];
-                contact.begun = values.contains_key(name.as_str());
-            }
-            if complete && !carried.at_rest {
-                v = Some(speeds);
-            }
-            if carried.turns.len() == l.n_turns {
-                configuration.turns.copy_from_slice(&carried.turns);
-            }
-        } else {
-            if mode != KINEMATIC && mode != STATIC {
-                placement::initial_joints(&scene, &self.model, &mut q);
-            }
-            for (m, motion) in scene.motions.iter().enumerate() {
-                self.initial_motion(&scene, m, motion.state, &q, &mut x);
-            }
+            start.take_over(carried);
         }
-        configuration.external = self.external(scene.within(&configuration), t, &q, &x)?;
-        let misaligned = if first {
-            misalignment::misaligned(&scene, &self.model)
+        start.configuration.external = self.external(start.here(), start.t, &start.q, &start.x)?;
+        start.positions()
+    }
+
+    /// Assembles the first state: from the dataset, to initial conditions as far as rows let it.
+    fn assemble(&mut self, start: &mut Start) -> Result<Assembly, Vec<Diagnostic>> {
+        let mode = start.mode;
+        let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
+        let moves = mode != KINEMATIC && mode != STATIC;
+        // the dataset
+        let exchanged = if joints {
+            self.exchange(&start.scene)
         } else {
             Vec::new()
         };
-        let undecided = scene.within(&configuration);
-        let placed = first && placement::settle(undecided, &self.model, t, &mut q, &x, joints);
-        // only what moves by itself has initial conditions
-        let wishes = if first && mode != KINEMATIC && mode != STATIC {
-            initial_conditions::collect(&scene, &self.model)
-        } else {
-            Vec::new()
-        };
-        // where parts are too many to be weighed, or on curves, coordinates move as little as may be
-        let starts = if first && !(placed && joints) {
-            initial_conditions::approach(&scene, &mut configuration, &wishes, t, &mut q, &x)
-        } else {
-            Vec::new()
-        };
-        let mut assembly = assemble::positions(&scene, &mut configuration, t, &mut q, &x)?;
-        let here = scene.within(&configuration);
-        let unmet = initial_conditions::unmet(here, &wishes, &starts, t, &q, &x);
-        assembly.warnings.extend(unmet);
-        assembly.warnings.splice(0..0, misaligned);
-        assembly.warnings.extend(exchanged);
-        if first {
-            let numbers = assemble::numbers(here, t, &q, &vec![0.0; l.n_v], &x);
-            let turned = misalignment::turned(here, &self.model, &numbers);
-            assembly.warnings.extend(turned);
-            assembly.warnings.extend(coincident::lines(here, &numbers)?);
+        if moves {
+            placement::initial_joints(&start.scene, &self.model, &mut start.q);
         }
-        configuration.begin_states(&scene, &mut x);
-        let v = match v {
-            _ if mode == STATIC || mode == LINEAR && self.is_at_rest() => vec![0.0; l.n_v],
-            Some(v) => v,
-            None => {
-                let at_rest = self.carried.as_ref().is_some_and(|c| c.at_rest);
-                let given = moved.as_ref().filter(|_| !at_rest).unwrap_or(&self.model);
-                assemble::velocities(scene.within(&configuration), given, t, &q, &x)?
-            }
+        for m in 0..start.scene.motions.len() {
+            self.initial_motion(&start.scene, m, &mut start.x);
+        }
+        start.configuration.external = self.external(start.here(), start.t, &start.q, &start.x)?;
+        let misaligned = misalignment::misaligned(&start.scene, &self.model);
+        // places near it; where parts are too many to be weighed, or on curves, coordinates move as
+        // little as may be
+        let placed = start.place(&self.model, joints);
+        let conditions = if moves {
+            initial_conditions::collect(&start.scene, &self.model)
+        } else {
+            Vec::new()
         };
-        let turns = configuration.turns.clone();
-        let mut system = System::with_hooks(scene, configuration, &self.hooks)?;
-        let past = self.carried.as_ref().map_or(&[][..], |c| &c.past);
-        system.external.begin(t, past);
-        let mut y = q;
+        let contacts = if placed && joints {
+            Vec::new()
+        } else {
+            start.approach(&conditions)
+        };
+        // the rows, and what they did not let be met
+        let mut assembly = start.positions()?;
+        let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
+        let warnings = &mut assembly.warnings;
+        warnings.extend(initial_conditions::unmet(
+            here,
+            &conditions,
+            &contacts,
+            t,
+            q,
+            x,
+        ));
+        warnings.splice(0..0, misaligned);
+        warnings.extend(exchanged);
+        let still = vec![0.0; here.layout.n_v];
+        let numbers = assemble::numbers(here, t, q, &still, x);
+        warnings.extend(misalignment::turned(here, &self.model, &numbers));
+        warnings.extend(coincident::lines(here, &numbers)?);
+        Ok(assembly)
+    }
+
+    /// Returns the velocities to start with: those of before, else those of the model on the rows.
+    fn velocities(
+        &self,
+        start: &mut Start,
+        moved: Option<&Model>,
+    ) -> Result<Vec<f64>, Vec<Diagnostic>> {
+        let at_rest = self.is_at_rest();
+        if start.mode == STATIC || start.mode == LINEAR && at_rest {
+            return Ok(vec![0.0; start.scene.layout.n_v]);
+        }
+        if let Some(v) = start.v.take() {
+            return Ok(v);
+        }
+        let given = moved.filter(|_| !at_rest).unwrap_or(&self.model);
+        velocities::velocities(start.here(), given, start.t, &start.q, &start.x)
+    }
+
+    /// Records the programs and puts the system into its state, with past, samples and sensors.
+    fn system(&self, start: Start, v: Vec<f64>) -> Result<System, Vec<Diagnostic>> {
+        let (mode, t, l) = (start.mode, start.t, start.scene.layout);
+        let turns = start.configuration.turns.clone();
+        let mut y = start.q;
         y.extend(v);
-        y.extend(x);
+        y.extend(start.x);
+        let mut system = System::with_hooks(start.scene, start.configuration, &self.hooks)?;
+        let carried = self.carried.as_ref();
+        system
+            .external
+            .begin(t, carried.map_or(&[][..], |c| &c.past));
         system.numbers[l.turns()].copy_from_slice(&turns);
         system.numbers[Layout::TIME] = t;
         system.numbers[l.y()].copy_from_slice(&y);
         if let Err(k) = system.resolve() {
             let name = system.scene.loops[k].name.clone();
+            let what = "it depends on itself, and no value solves that";
             return Err(vec![
-                Diagnostic::error("loop", "it depends on itself, and no value solves that")
+                Diagnostic::error("loop", what)
                     .element(name)
                     .help("give an IC near the solution, where it has one"),
             ]);
         }
         let row = system.row(t, &y);
         system.numbers.copy_from_slice(&row);
-        let y = row[l.y()].to_vec();
-        system.count_turns(t, &y);
+        system.count_turns(t, &row[l.y()]);
         let none = BTreeMap::new();
-        let held = self.carried.as_ref().map_or(&none, |c| &c.samples);
+        let held = carried.map_or(&none, |c| &c.samples);
         system.begin_sampling(held).map_err(|d| vec![d])?;
         if mode != STATIC {
             system.begin_sensing();
         }
-        Ok((system, assembly))
+        Ok(system)
     }
 
-    /// Exchanges the numbers of initial conditions that are to be read the other way round; what is told of these and of doubtful ones.
+    /// Exchanges the numbers of initial conditions that are to be read the other way round; returns
+    /// warnings of these and of doubtful ones.
     fn exchange(&mut self, scene: &Scene) -> Vec<String> {
         let found = misalignment::exchanged(scene, &self.model);
         for e in found.iter().filter(|e| e.believed) {
@@ -284,13 +274,14 @@ impl Session {
         found.into_iter().map(|e| e.told).collect()
     }
 
-    /// The shells of contacts, read when they are first asked for.
+    /// Returns the shells of contacts, read when they are first asked for.
     fn shells(&mut self) -> Arc<BTreeMap<u32, Result<Shell, String>>> {
         let load = || Arc::new(shells::load(&self.model, &self.folders));
         self.shells.get_or_insert_with(load).clone()
     }
 
-    /// Numbers from outside where assembly begins: what sensors evaluated before, and what closures say of the configuration.
+    /// Returns the external inputs where assembly begins: values that sensors evaluated before, and
+    /// results of closures in that configuration.
     pub(super) fn external(
         &self,
         scene: Configured<'_>,
@@ -337,17 +328,12 @@ impl Session {
         self.carried.as_ref().is_some_and(|c| c.at_rest)
     }
 
-    /// Start of motions given by their rate: ICDISP and ICVEL, else what the dataset's configuration and the joint's IC show; rows begin
-    /// where the assembled configuration is.
-    pub(super) fn initial_motion(
-        &self,
-        scene: &Scene,
-        m: usize,
-        state: Option<usize>,
-        _q: &[f64],
-        x: &mut [f64],
-    ) {
-        let Some(state) = state else { return };
+    /// Puts in the start of a motion given by its rate: ICDISP and ICVEL, else the displacement of
+    /// the dataset's configuration and the joint's IC; rows begin in the assembled configuration.
+    fn initial_motion(&self, scene: &Scene, m: usize, x: &mut [f64]) {
+        let Some(state) = scene.motions[m].state else {
+            return;
+        };
         let motion = &scene.motions[m];
         let Some(data) = self.model.motions.get(&motion.id) else {
             return;
@@ -367,83 +353,4 @@ impl Session {
             x[state + 1] = data.ic_velocity.or(rate).unwrap_or(0.0);
         }
     }
-
-    pub(super) fn keep(&mut self, system: &System, numbers: Vec<f64>) {
-        let at = Equations::new(system.configured(), &numbers);
-        let parts = system.scene.parts.iter().enumerate();
-        let parts = parts.map(|(k, p)| (p.id, at.part(k, false))).collect();
-        self.carried = Some(Carried {
-            t: numbers[Layout::TIME],
-            turns: numbers[system.scene.layout.turns()].to_vec(),
-            sensors: sensed(&system.scene, &numbers),
-            samples: system.samples.held(&numbers),
-            past: system.external.past(),
-            names: unknown_names(&system.scene),
-            at_rest: false,
-            parts,
-            numbers,
-        });
-    }
-}
-
-/// Takes over the values that are known by these names; returns whether all are.
-fn take_over(known: &BTreeMap<&str, f64>, names: &[String], values: &mut [f64]) -> bool {
-    let mut complete = true;
-    for (name, value) in names.iter().zip(values) {
-        match known.get(name.as_str()) {
-            Some(&found) => *value = found,
-            None => complete = false,
-        }
-    }
-    complete
-}
-
-/// What SENVAL yields of each sensor.
-fn sensed(scene: &Scene, numbers: &[f64]) -> BTreeMap<u32, f64> {
-    let l = scene.layout;
-    let all = scene.external_inputs.iter().enumerate();
-    all.filter_map(|(place, s)| Some((scene.sensor_of(*s)?, numbers[l.external_at(place)])))
-        .collect()
-}
-
-/// Whether a scene has positions or velocities among its unknowns that the last state does not tell by name.
-pub(super) fn has_new_unknowns(scene: &Scene, carried: &Carried) -> bool {
-    let known: BTreeSet<&str> = carried.names.iter().map(String::as_str).collect();
-    let l = scene.layout;
-    let names = unknown_names(scene);
-    let state = l.state(&names);
-    (state.q.iter().chain(state.v)).any(|name| !known.contains(name.as_str()))
-}
-
-/// The model with its parts where they are, and moving as they do.
-pub(super) fn moved(model: &Model, carried: &Carried) -> Model {
-    let mut model = model.clone();
-    for joint in model.joints.values_mut() {
-        (joint.ic_translation, joint.ic_rotation) = ([None; 2], [None; 2]);
-    }
-    let ground = MarkerState::ground();
-    for (id, state) in &carried.parts {
-        let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);
-        let parts = if id.kind == ElementKind::PointMass {
-            &mut model.point_masses
-        } else {
-            &mut model.parts
-        };
-        let Some(part) = parts.get_mut(&id.number) else {
-            continue;
-        };
-        part.qg = state.p_GM.0;
-        part.orientation =
-            Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle));
-        let cm = part.cm.and_then(|cm| model.markers.get(&cm));
-        let cm_place = cm.map_or(Vec3::zero(), |cm| Vec3(cm.qp));
-        let cm_axes = cm.and_then(|cm| orientation(&cm.orientation, cm.qp).ok());
-        // The dataset tells the velocity of CM along ground axes, the angular velocity along those of CM.
-        let v_cm = state.v_GM + state.w_GM.cross(state.R_GM.apply(cm_place));
-        let w_part = state.R_GM.apply_transposed(state.w_GM);
-        let w_cm = cm_axes.map_or(w_part, |axes| axes.apply_transposed(w_part));
-        (part.vm, part.wm) = (None, None);
-        (part.velocity, part.angular_velocity) = (v_cm.0.map(Some), w_cm.0.map(Some));
-    }
-    model
 }

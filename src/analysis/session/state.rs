@@ -1,10 +1,11 @@
 //! SAVE and RELOAD: where a session stands, as a text that reads back exactly.
 //!
-//! The text is JSON: the model as the commands have left it (a dataset), what is switched off, and the state of the last simulation. Numbers stand in
-//! quotes, as the shortest decimals that name them, so that each comes back with every bit whatever program has passed the file on.
+//! The text is JSON: the model as the commands have left it (a dataset), what is switched off, and
+//! the state of the last simulation. Numbers stand in quotes, as the shortest decimals that name
+//! them, so that each comes back with every bit whatever program has passed the file on.
 
 use super::Session;
-use super::start::Carried;
+use super::carried::Carried;
 use crate::analysis::system::external_inputs::Past;
 use crate::analysis::system::samples::Held;
 use crate::dataset;
@@ -141,7 +142,8 @@ impl Session {
     }
 }
 
-// ------------------------------------------------------------------------------------------------------- numbers in text
+// -------------------------------------------------------------------------------------------------------
+// numbers in text
 
 fn number(x: f64) -> Value {
     Value::String(format!("{x:?}"))

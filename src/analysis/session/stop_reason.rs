@@ -1,4 +1,5 @@
-//! Why a simulation ended before all was done that was asked for: as data, and as the code, the status and the sentence of its record.
+//! Why a simulation ended before all was done that was asked for: as data, and as the code, the
+//! status and the sentence of its record.
 
 use crate::analysis::statics::Imbalance;
 use crate::analysis::time::ranks::{self, Lock};

@@ -1,14 +1,13 @@
-//! Putting the mechanism together: positions that satisfy all rows, which rows depend on others, velocities that fit.
+//! Assembly: positions that satisfy all rows, and the rows that depend on others.
 //!
-//! Positions move from those of the dataset by the least change that closes the loops. Rank is found there by
-//! reflections (`numeric/rank.rs`), translations first; a row that depends on earlier ones is left out, and is no
-//! contradiction as long as it holds. Velocities are those nearest to what the dataset gives.
+//! Positions move from those of the dataset by the least change that closes the loops. Rank is
+//! found there by reflections (`numeric/rank.rs`), translations first; a row that depends on
+//! earlier ones is left out, and is no contradiction as long as it holds.
 
 use crate::analysis::start::direction::{AXIS_LETTERS, Direction};
 use crate::analysis::start::nearby;
 use crate::analysis::start::quantity::{length, short};
 use crate::diagnostic::Diagnostic;
-use crate::model::Model;
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
 use crate::scene::cams;
@@ -20,14 +19,15 @@ use crate::scene::{RowKind, Scene};
 use crate::space::Frame;
 use nalgebra::{DMatrix, DVector};
 
-/// Rows whose part orthogonal to earlier rows is smaller than this, relative to themselves, depend on them.
+/// Part of a row orthogonal to earlier rows, relative to its length, below which it depends on
+/// them.
 pub const DEPENDENT: f64 = 1e-8;
-/// Rows shorter than this, compared with what they are where they move something, move nothing.
-const EMPTY: f64 = 1e-9;
-/// A row holds when it is smaller than this (lengths relative to the size of the mechanism).
+/// Length of a row, compared with where it moves something, below which it moves nothing.
+pub(super) const EMPTY: f64 = 1e-9;
+/// Residual of a row that holds, at most, as a part of its scale.
 pub const CLOSED: f64 = 1e-10;
 
-/// A dependent row and what it depends on.
+/// A dependent row, and those that it depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Redundant {
     /// index of the row
@@ -38,7 +38,7 @@ pub struct Redundant {
     pub combination: Vec<(usize, f64)>,
 }
 
-/// What assembly found.
+/// The result of assembly.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly {
     /// rows that depend on others wherever the mechanism can go near here
@@ -55,11 +55,11 @@ pub struct Assembly {
     pub iterations: usize,
     /// largest change of a coordinate
     pub moved: f64,
-    /// what the user should know
+    /// warnings for the user
     pub warnings: Vec<String>,
 }
 
-/// What programs read, with these positions, velocities and states.
+/// Returns the numbers that programs read, with these positions, velocities and states.
 pub(in crate::analysis) fn numbers(
     scene: Configured<'_>,
     t: f64,
@@ -79,7 +79,8 @@ pub(in crate::analysis) fn numbers(
     n
 }
 
-/// Constants of sums of displacements that hold what the configuration shows; what is worth telling about them.
+/// Lets sums of displacements hold the values of the configuration; returns warnings of those that
+/// are not zero.
 fn hold(
     scene: &Scene,
     configuration: &mut Configuration,
@@ -113,7 +114,7 @@ fn hold(
     told
 }
 
-/// Motions given by their rate, without ICDISP, begin where they are.
+/// Lets motions given by their rate, without ICDISP, begin where they are.
 fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[f64], x: &[f64]) {
     let here = scene.within(configuration);
     let at = Equations::new(here, &numbers(here, t, q, &vec![0.0; scene.layout.n_v], x));
@@ -143,7 +144,7 @@ fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[
     }
 }
 
-/// Values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
+/// Evaluates values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
 pub fn rows_at(
     scene: Configured<'_>,
     t: f64,
@@ -169,24 +170,25 @@ pub fn rows_at(
     (g, gradient, drift)
 }
 
-/// Size of a row's residual as compared with [`CLOSED`].
+/// Returns a row's residual as a part of its scale, to be compared with [`CLOSED`].
 fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
     (value / scene.row_scale(r)).abs()
 }
 
-/// The rows of a matrix, columns scaled by √w.
+/// Returns the rows of a matrix, columns scaled by √w.
 pub(in crate::analysis) fn scaled_rows(a: &DMatrix<f64>, w: &[f64]) -> Vec<Vec<f64>> {
     let row = |r: usize| (0..w.len()).map(|v| a[(r, v)] * w[v].sqrt()).collect();
     (0..a.nrows()).map(row).collect()
 }
 
-/// The decision which rows depend on others, columns scaled by √w.
-fn rank_of(a: &DMatrix<f64>, w: &[f64]) -> Rank {
+/// Decides which rows depend on others, columns scaled by √w.
+pub(super) fn rank_of(a: &DMatrix<f64>, w: &[f64]) -> Rank {
     let rows = scaled_rows(a, w);
     Rank::of(rows.iter().map(Vec::as_slice), w.len(), 1e-9)
 }
 
-/// Shortest solution of `A x = b` in the metric W, rows counting by their direction; where they contradict, the best.
+/// Returns the shortest solution of `A x = b` in the metric W, rows counting by their direction;
+/// where they contradict, the best.
 pub(in crate::analysis) fn least_change(
     a: &DMatrix<f64>,
     w: &[f64],
@@ -197,11 +199,11 @@ pub(in crate::analysis) fn least_change(
     DVector::from_iterator(w.len(), x.iter().zip(w).map(|(x, w)| x * w.sqrt()))
 }
 
-/// How far [`close`] came.
+/// The result of [`close`].
 pub(in crate::analysis) struct Closed {
     /// iterations it took
     pub iterations: usize,
-    /// largest residual, relative to what counts as one for its row
+    /// largest residual, as a part of its row's scale
     pub size: f64,
     /// residuals   (n_rows)
     pub g: DVector<f64>,
@@ -274,7 +276,7 @@ pub(in crate::analysis) fn close(
     }
 }
 
-/// Positions that satisfy all rows at time `t`, starting from `q`; finds which rows depend on others.
+/// Moves `q` to positions that satisfy all rows at time `t`, and finds which rows depend on others.
 ///
 /// # Errors
 /// When the rows contradict each other: which, and by how much.
@@ -329,7 +331,7 @@ pub fn positions(
     Ok(found)
 }
 
-/// The rows that do not hold, worst first: by how much, and in which direction.
+/// Returns errors of the rows that do not hold, worst first: by how much, and in which direction.
 fn contradictions(scene: Configured<'_>, g: &DVector<f64>, numbers: &[f64]) -> Vec<Diagnostic> {
     let mut bad: Vec<usize> = (0..g.len())
         .filter(|&r| relative(&scene, r, g[r]) > CLOSED || !g[r].is_finite())
@@ -347,7 +349,7 @@ fn contradictions(scene: Configured<'_>, g: &DVector<f64>, numbers: &[f64]) -> V
         .collect()
 }
 
-/// Tells how far a row is from being satisfied: "Zi.Xj is off by 3 deg about ground X".
+/// Writes how far a row is from being satisfied: "Zi.Xj is off by 3 deg about ground X".
 fn gap(scene: &Scene, at: &Equations<'_, f64>, r: usize, g: f64) -> String {
     let row = &scene.rows[r];
     let direction = Direction::of_row(scene, at, r);
@@ -381,8 +383,8 @@ fn gap(scene: &Scene, at: &Equations<'_, f64>, r: usize, g: f64) -> String {
     format!("{} is off by {by}", row.equation)
 }
 
-/// Independent rows, and for each other row what it is a combination of: translations before rotations before sums.
-/// Rows in `first` come before all others.
+/// Finds independent rows, and for each other row the rows that it is a combination of:
+/// translations before rotations before sums. Rows in `first` come before all others.
 pub fn rank(
     scene: &Scene,
     gradient: &DMatrix<f64>,
@@ -436,232 +438,13 @@ pub fn rank(
     (independent, redundant)
 }
 
-/// Motions ask for a rate that a row forbids: what it would have to give way by, and which motions there are.
-fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f64) -> Diagnostic {
-    let at = Equations::new(scene, numbers);
-    let row = &scene.rows[r];
-    let direction = Direction::of_row(&scene, &at, r);
-    let way = direction.way();
-    let rate = if direction.is_rotation() {
-        format!("{} deg", short(rate.abs().to_degrees()))
-    } else {
-        length(rate, &scene.length_unit)
-    };
-    let motions: Vec<String> = (scene.motions.iter())
-        .map(|m| format!("MOTION/{}", m.id))
-        .collect();
-    Diagnostic::error(
-        "assembly",
-        format!(
-            "the prescribed velocities contradict it: {} would have to give way by {rate} per unit of time {way}",
-            row.equation
-        ),
-    )
-    .element(row.element.clone())
-    .help(format!(
-        "prescribe less, or rates that go together: there are {}",
-        motions.join(", ")
-    ))
-}
-
-/// Velocities nearest to those the dataset gives that satisfy the rows: given ones first, then the rest as small as may be.
-///
-/// # Errors
-/// When the motions ask for velocities that the rows forbid.
-pub fn velocities(
-    scene: Configured<'_>,
-    model: &Model,
-    t: f64,
-    q: &[f64],
-    x: &[f64],
-) -> Result<Vec<f64>, Vec<Diagnostic>> {
-    let n = scene.layout.n_v;
-    let (_, gradient, drift) = rows_at(scene, t, q, x);
-    let wishes = Wishes::collect(scene, model, t, q, x);
-    // v = v₀ + N z, with N the null space of the rows
-    let w = vec![1.0; n];
-    let v0 = least_change(&gradient, &w, &(-&drift));
-    let left = &gradient * &v0 + &drift;
-    let scale = 1.0 + drift.amax().max(gradient.amax());
-    if let Some(r) = (0..left.len()).find(|&r| left[r].abs() > 1e-8 * scale) {
-        return Err(vec![prescribed_too_much(
-            scene,
-            &numbers(scene, t, q, &vec![0.0; n], x),
-            r,
-            left[r],
-        )]);
-    }
-    let mut v = v0;
-    let wishes = [&wishes.firm, &wishes.given, &wishes.rest];
-    if wishes.iter().all(|(a, b)| (b - a * &v).amax() == 0.0) {
-        return Ok(v.iter().copied().collect());
-    }
-    let mut space = null_space(&gradient, n);
-    // each level of wishes as well as may be within what the levels before leave free
-    for (a, b) in wishes {
-        if space.ncols() == 0 || a.nrows() == 0 {
-            continue;
-        }
-        let mut reduced = a * &space;
-        // a wish square to all that is free is not to be had: what rounding leaves of it says nothing
-        for r in 0..reduced.nrows() {
-            if reduced.row(r).norm() <= EMPTY * a.row(r).norm() {
-                reduced.row_mut(r).fill(0.0);
-            }
-        }
-        let rank = rank_of(&reduced, &vec![1.0; space.ncols()]);
-        let mut z = vec![0.0; space.ncols()];
-        rank.least_squares((b - a * &v).as_slice(), &mut z);
-        v += &space * DVector::from_vec(z);
-        space = &space * directions(&rank, space.ncols());
-    }
-    // without rounding dust where the dataset says zero
-    let size = v.amax();
-    Ok(v.iter()
-        .map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x })
-        .collect())
-}
-
-/// The velocities nearest to the given ones that all rows permit   (n_v)
-pub(in crate::analysis) fn nearest_velocities(
-    scene: Configured<'_>,
-    t: f64,
-    q: &[f64],
-    x: &[f64],
-    v: &[f64],
-) -> Vec<f64> {
-    let (_, gradient, drift) = rows_at(scene, t, q, x);
-    let given = DVector::from_column_slice(v);
-    let missing = -(&gradient * &given + drift);
-    let change = least_change(&gradient, &weights(&scene), &missing);
-    (given + change).iter().copied().collect()
-}
-
-/// An orthonormal basis of what a matrix maps to zero, by columns.
+/// Returns an orthonormal basis of the vectors that a matrix maps to zero, by columns.
 pub fn null_space(a: &DMatrix<f64>, n: usize) -> DMatrix<f64> {
     directions(&rank_of(a, &vec![1.0; n]), n)
 }
 
-fn directions(rank: &Rank, n: usize) -> DMatrix<f64> {
+/// Returns the directions that rows leave free, by columns.
+pub(super) fn directions(rank: &Rank, n: usize) -> DMatrix<f64> {
     let free = rank.free_directions();
     DMatrix::from_fn(n, free.len(), |i, j| free[j][i])
-}
-
-/// Linear equations that velocities should satisfy: (matrix, right side).
-type Equation = (DMatrix<f64>, DVector<f64>);
-
-/// Wishes of the dataset: those of constraints (IC of joints, VEL of contacts), which go before those of parts, and zero for all that is
-/// not given.
-struct Wishes {
-    firm: Equation,
-    given: Equation,
-    rest: Equation,
-}
-
-/// Who wishes for a velocity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Level {
-    Constraint,
-    Part,
-    Rest,
-}
-
-impl Level {
-    fn of(given: Option<f64>) -> (Self, f64) {
-        given.map_or((Self::Rest, 0.0), |x| (Self::Part, x))
-    }
-}
-
-impl Wishes {
-    fn collect(scene: Configured<'_>, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Self {
-        let n = scene.layout.n_v;
-        // velocities are linear in v: one evaluation per coordinate, and one for what motions prescribe
-        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(n + 1);
-        let mut targets: Vec<(Level, f64)> = Vec::new();
-        for k in 0..=n {
-            let mut v = vec![0.0; n];
-            if k > 0 {
-                v[k - 1] = 1.0;
-            }
-            let at = Equations::new(scene, &numbers(scene, t, q, &v, x));
-            let (values, wanted) = part_velocities(&scene, model, &at);
-            let origin = columns.first();
-            let column = match origin {
-                Some(zero) => values.iter().zip(zero).map(|(a, b)| a - b).collect(),
-                None => values,
-            };
-            columns.push(column);
-            targets = wanted;
-        }
-        let level = |level: Level| {
-            let rows: Vec<usize> = (0..targets.len())
-                .filter(|&r| targets[r].0 == level)
-                .collect();
-            let a = DMatrix::from_fn(rows.len(), n, |i, j| columns[j + 1][rows[i]]);
-            let b = DVector::from_iterator(
-                rows.len(),
-                rows.iter().map(|&r| targets[r].1 - columns[0][r]),
-            );
-            (a, b)
-        };
-        Self {
-            firm: level(Level::Constraint),
-            given: level(Level::Part),
-            rest: level(Level::Rest),
-        }
-    }
-}
-
-/// Velocity components of all parts as the dataset would give them, and (by whom, value) of what it gives; then joint rates.
-fn part_velocities(
-    scene: &Scene,
-    model: &Model,
-    at: &Equations<'_, f64>,
-) -> (Vec<f64>, Vec<(Level, f64)>) {
-    let mut values = Vec::new();
-    let mut wanted = Vec::new();
-    for part in &scene.parts {
-        let Some(data) = model.body(part.id) else {
-            continue;
-        };
-        let frame = |m: Option<u32>| {
-            m.and_then(|m| scene.marker_of.get(&m))
-                .map(|&m| at.marker(m))
-        };
-        let Some(cm) = frame(data.cm) else { continue };
-        let axes_v = frame(data.vm).map_or_else(crate::space::Mat3::identity, |m| m.R_GM);
-        let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
-        for k in 0..3 {
-            values.push(axes_v.column(k).dot(cm.v_GM));
-            wanted.push(Level::of(data.velocity[k]));
-        }
-        for k in 0..3 {
-            values.push(axes_w.column(k).dot(cm.w_GM));
-            wanted.push(Level::of(data.angular_velocity[k]));
-        }
-    }
-    for (c, cam) in scene.cams.iter().enumerate() {
-        for (k, along) in at.cam_speeds(c).into_iter().enumerate() {
-            if let Some(given) = cam.velocity[k] {
-                values.push(along);
-                wanted.push((Level::Constraint, given));
-            }
-        }
-    }
-    for (id, gauge, [_, rate]) in crate::analysis::start::initial_conditions::of_joints(model) {
-        let joint = &model.joints[&id];
-        let markers = [joint.i, joint.j].map(|m| scene.marker_of.get(&m));
-        let ([Some(&i), Some(&j)], Some(rate)) = (markers, rate) else {
-            continue;
-        };
-        let (i, j) = (at.marker(i), at.marker(j));
-        let z = j.R_GM.column(2);
-        values.push(if gauge.is_angle() {
-            (i.w_GM - j.w_GM).dot(z)
-        } else {
-            (i.v_GM - j.v_GM).dot(z) + (i.p_GM - j.p_GM).dot(j.w_GM.cross(z))
-        });
-        wanted.push((Level::Constraint, rate));
-    }
-    (values, wanted)
 }

@@ -4,8 +4,8 @@
 //! F = f(d) (p_I − p_J)/d,   d = |p_I − p_J|         d = 0: no direction
 //! ```
 //!
-//! Where f(0) = 0 the force goes through zero whatever the direction is, and the model can move from there. Where it is not, nothing says which way the
-//! force points: the model has to.
+//! Where f(0) = 0 the force goes through zero whatever the direction is, and the model can move
+//! from there. Where it is not, nothing says which way the force points: the model has to.
 
 use crate::diagnostic::Diagnostic;
 use crate::model::ElementKind;
@@ -13,7 +13,8 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::forces::{ForceElement, ForceLaw};
 
-/// Part of the mechanism's size below which two markers coincide: typed numbers have ten digits, and rounding makes up a direction.
+/// Part of the mechanism's size below which two markers coincide: typed numbers have ten digits,
+/// and rounding makes up a direction.
 const COINCIDENT: f64 = 1e-12;
 
 /// Warnings of forces that are zero where their markers coincide.
@@ -62,7 +63,8 @@ pub fn lines(scene: Configured<'_>, numbers: &[f64]) -> Result<Vec<String>, Vec<
     }
 }
 
-/// J, and the force at no distance and rate, of an element that acts along the line between its markers.
+/// J, and the force at no distance and rate, of an element that acts along the line between its
+/// markers.
 fn along_a_line(force: &ForceElement, at: &Equations<'_, f64>) -> Option<(usize, f64)> {
     let magnitude = match &force.law {
         ForceLaw::Single {

@@ -23,7 +23,8 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// Finds the axis along a vector in ground: ground's, one of the `frames` (numbers of markers, orientations), or none of these.
+    /// Finds the axis along a vector in ground: ground's, one of the `frames` (numbers of markers,
+    /// orientations), or none of these.
     pub fn along(vector: Vec3<f64>, frames: &[(u32, Mat3<f64>)]) -> Self {
         let unit = vector.times(1.0 / vector.norm());
         let parallel = |frame: &Mat3<f64>| {
@@ -86,7 +87,8 @@ impl Direction {
         }
     }
 
-    /// Writes which way it leads, without what kind of motion it is: "along ground X", "about ground X".
+    /// Writes which way it leads, without what kind of motion it is: "along ground X", "about
+    /// ground X".
     pub(in crate::analysis) fn way(&self) -> String {
         match self {
             Direction::Translation(axis) => format!("along {axis}"),

@@ -1,15 +1,17 @@
-//! What a dataset wishes of the initial configuration: IC of joints, EXACT coordinates of parts.
+//! Initial conditions of a dataset: IC of joints, EXACT coordinates of parts, DISP of contacts.
 //!
-//! A wish is an equation that assembly satisfies together with the rows where it can, and that is forgotten once the mechanism moves:
+//! An initial condition is an equation that assembly satisfies together with the rows where it can,
+//! and that is forgotten once the mechanism moves:
 //!
 //! ```text
 //! d.z_J = ICTRAN,  angle of x_I about z_J = ICROT      part frame: X, Y, Z, ψ, θ, φ as in the dataset
 //! PTCV: I at the point of the curve next to DISP        CVCV: the curves touch next to IDISP and JDISP
 //! ```
 //!
-//! First rows and wishes together, by least changes; then the rows alone, exactly. So rows win where they contradict wishes, and
-//! that is told. Only dynamic simulations ask for wishes of joints and parts: kinematics and statics find their own configuration.
-//! Where contacts begin is asked for always: that chooses among the ways in which the parts can be put together.
+//! First rows and conditions are satisfied together, by least changes; then the rows alone,
+//! exactly. So rows win where they contradict conditions, with a warning. Only dynamic simulations
+//! have conditions of joints and parts: kinematics and statics find their own configuration. Those
+//! of contacts count always: they choose among the ways in which the parts can be put together.
 
 use crate::analysis::start::assemble::{self, least_change, rows_at};
 use crate::expr::measures::Measure;
@@ -31,14 +33,15 @@ use nalgebra::{DMatrix, DVector};
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
-/// Iterations towards rows and wishes together.
-const ITERATIONS: usize = 30;
-/// How far off a wish may be left without a word (lengths relative to the size of the mechanism).
-const MET: f64 = 1e-7;
+/// Iterations towards rows and conditions together.
+const MAX_ITERATIONS: usize = 30;
+/// Deviation of a condition that is met, at most (rad, lengths relative to the size of the
+/// mechanism).
+const MET_TOLERANCE: f64 = 1e-7;
 
-/// What is wished for.
+/// A quantity whose value is given.
 #[derive(Clone, Debug, PartialEq)]
-enum Wanted {
+enum Given {
     /// of marker `i` against marker `j`
     Joint { gauge: Gauge, i: usize, j: usize },
     /// of a part's frame: 0 x, 1 y, 2 z, 3 ψ, 4 θ, 5 φ
@@ -47,17 +50,18 @@ enum Wanted {
     Turn { part: usize, axis: usize },
 }
 
-/// A wish: a quantity and the value it should have.
+/// An initial condition: a quantity and the value it should have.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wish {
+pub struct InitialCondition {
     /// "JOINT/3 IC", "PART/2 EXACT X"
     name: String,
-    wanted: Wanted,
+    given: Given,
     value: f64,
     angle: bool,
 }
 
-/// The joints of a model that have an initial displacement or rate, with what it is of: (number, gauge, displacement, rate).
+/// Returns the joints of a model that have an initial displacement or rate: number, gauge,
+/// displacement and rate.
 pub(in crate::analysis) fn of_joints(model: &Model) -> Vec<(u32, Gauge, [Option<f64>; 2])> {
     let mut found = Vec::new();
     for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
@@ -78,9 +82,9 @@ pub(in crate::analysis) fn of_joints(model: &Model) -> Vec<(u32, Gauge, [Option<
     found
 }
 
-/// What a model wishes.
-pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
-    let mut wishes = Vec::new();
+/// Collects the initial conditions of a model.
+pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
+    let mut conditions = Vec::new();
     for (id, gauge, given) in of_joints(model) {
         let joint = &model.joints[&id];
         let markers = [joint.i, joint.j].map(|m| scene.marker_of.get(&m).copied());
@@ -90,9 +94,9 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
                 && matches!(c.source, crate::scene::Source::Driven(_))
         });
         if let ([Some(i), Some(j)], Some(value), false) = (markers, given[0], driven) {
-            wishes.push(Wish {
+            conditions.push(InitialCondition {
                 name: format!("{} IC", ElementKind::Joint.id(id)),
-                wanted: Wanted::Joint { gauge, i, j },
+                given: Given::Joint { gauge, i, j },
                 value,
                 angle: gauge.is_angle(),
             });
@@ -103,10 +107,10 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
             continue;
         };
         let name = part.id;
-        let mut wish = |component: usize, what: &str, wanted: Wanted, value: f64| {
-            wishes.push(Wish {
+        let mut condition = |component: usize, what: &str, given: Given, value: f64| {
+            conditions.push(InitialCondition {
                 name: format!("{name} EXACT {what}"),
-                wanted,
+                given,
                 value,
                 angle: component > 2,
             });
@@ -114,13 +118,13 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
         for component in 0..3 {
             if exact[component] {
                 let value = part.initial.position.0[component];
-                let wanted = Wanted::Part { part: k, component };
-                wish(component, ["X", "Y", "Z"][component], wanted, value);
+                let given = Given::Part { part: k, component };
+                condition(component, ["X", "Y", "Z"][component], given, value);
             }
         }
         if exact[3..] == [true; 3] {
             for axis in 0..3 {
-                wish(3, "PSI:THETA:PHI", Wanted::Turn { part: k, axis }, 0.0);
+                condition(3, "PSI:THETA:PHI", Given::Turn { part: k, axis }, 0.0);
             }
             continue;
         }
@@ -131,13 +135,13 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<Wish> {
         };
         for component in 3..6 {
             if exact[component] {
-                let wanted = Wanted::Part { part: k, component };
+                let given = Given::Part { part: k, component };
                 let what = ["PSI", "THETA", "PHI"][component - 3];
-                wish(component, what, wanted, angle(&state, component));
+                condition(component, what, given, angle(&state, component));
             }
         }
     }
-    wishes
+    conditions
 }
 
 fn angle<S: Scalar>(state: &MarkerState<S>, component: usize) -> S {
@@ -146,10 +150,10 @@ fn angle<S: Scalar>(state: &MarkerState<S>, component: usize) -> S {
     kinematic(measure, state, &ground, &ground, &ground).unwrap_or_else(S::zero)
 }
 
-impl Wish {
+impl InitialCondition {
     fn quantity<S: Scalar>(&self, scene: &Scene, at: &Equations<'_, S>) -> S {
-        match self.wanted {
-            Wanted::Joint { gauge, i, j } => {
+        match self.given {
+            Given::Joint { gauge, i, j } => {
                 let frame = |m: usize| {
                     let state = at.marker(m);
                     Frame {
@@ -159,14 +163,14 @@ impl Wish {
                 };
                 gauge.value(&frame(i), &frame(j))
             }
-            Wanted::Part { part, component } => {
+            Given::Part { part, component } => {
                 let state = at.part(part, false);
                 match component {
                     0..=2 => state.p_GM.0[component],
                     _ => angle(&state, component),
                 }
             }
-            Wanted::Turn { part, axis } => {
+            Given::Turn { part, axis } => {
                 // half the skew part of R₀ᵀ R: the sine of the angle times its axis
                 let state = at.part(part, false);
                 let first = scene.parts[part].initial.rotation;
@@ -183,7 +187,7 @@ impl Wish {
         }
     }
 
-    /// How far off it is; angles the short way.
+    /// Returns its deviation; angles the short way.
     fn residual(&self, quantity: f64) -> f64 {
         let off = quantity - self.value;
         if self.angle {
@@ -194,20 +198,20 @@ impl Wish {
     }
 }
 
-/// Residuals of wishes and their derivatives along the velocities, from the program of their quantities; wishes without finite
-/// ones are left out (zero).
+/// Residuals of conditions and their derivatives along the velocities, from the program of their
+/// quantities; conditions without finite ones are left out (zero).
 fn equations(
     scene: &Scene,
-    wishes: &[Wish],
+    conditions: &[InitialCondition],
     quantities: &Program,
     numbers: &[f64],
     mover: &Mover,
 ) -> (DVector<f64>, DMatrix<f64>) {
     let l = scene.layout;
-    let mut found = vec![0.0; wishes.len()];
+    let mut found = vec![0.0; conditions.len()];
     quantities.run(numbers, &mut Work::default(), &mut found);
-    let residual = wishes.iter().zip(&found).map(|(w, &x)| w.residual(x));
-    let mut residual = DVector::from_iterator(wishes.len(), residual);
+    let residual = conditions.iter().zip(&found).map(|(w, &x)| w.residual(x));
+    let mut residual = DVector::from_iterator(conditions.len(), residual);
     let mut directions = vec![Direction::new(); l.n_v];
     for (v, place, slope) in mover.tangents(&numbers[l.q()]) {
         directions[v].push((l.q_at(place), slope));
@@ -222,7 +226,7 @@ fn equations(
         None,
         nothing,
     );
-    for w in 0..wishes.len() {
+    for w in 0..conditions.len() {
         let bad = !residual[w].is_finite() || gradient.row(w).iter().any(|x| !x.is_finite());
         if bad {
             residual[w] = 0.0;
@@ -232,12 +236,12 @@ fn equations(
     (residual, gradient)
 }
 
-/// Moves positions towards rows and wishes together; contacts that are asked to begin somewhere are taken to be there, and
-/// returned.
+/// Moves positions towards rows and conditions together; contacts that are asked to begin somewhere
+/// are taken to be there, and returned.
 pub fn approach(
     scene: &Scene,
     configuration: &mut Configuration,
-    wishes: &[Wish],
+    conditions: &[InitialCondition],
     t: f64,
     q: &mut [f64],
     x: &[f64],
@@ -245,20 +249,20 @@ pub fn approach(
     let here = scene.within(configuration);
     let still = vec![0.0; scene.layout.n_v];
     let starts = cams::starts(here, &assemble::numbers(here, t, q, &still, x));
-    if wishes.is_empty() && starts.is_empty() || scene.layout.n_v == 0 {
+    if conditions.is_empty() && starts.is_empty() || scene.layout.n_v == 0 {
         return starts;
     }
     let w = weights(scene);
     let mover = Mover::new(scene);
     let (quantities, _) = record_with_complaints(here, |at| {
-        wishes.iter().map(|w| w.quantity(scene, at)).collect()
+        conditions.iter().map(|w| w.quantity(scene, at)).collect()
     });
     // contacts that are asked to be somewhere are equations of their own
     let asked = |scene: Configured<'_>, r: usize| match scene.rows[r].kind {
         RowKind::Cam { cam, .. } => starts.iter().any(|s| s.cam == cam),
         _ => scene.is_held(r),
     };
-    for _ in 0..ITERATIONS {
+    for _ in 0..MAX_ITERATIONS {
         let here = assemble::numbers(scene.within(configuration), t, q, &still, x);
         cams::track(scene, configuration, &here);
         cams::place(scene, configuration, &starts, &here);
@@ -273,8 +277,8 @@ pub fn approach(
             .flat_map(|s| at.cam_start(s.cam, s.given))
             .filter(|(value, _)| value.is_finite())
             .collect();
-        let (off, slopes) = equations(scene, wishes, &quantities, &here, &mover);
-        let (m, n) = (g.len(), wishes.len());
+        let (off, slopes) = equations(scene, conditions, &quantities, &here, &mover);
+        let (m, n) = (g.len(), conditions.len());
         let mut a = DMatrix::zeros(m + n + places.len(), w.len());
         a.rows_mut(0, m).copy_from(&gradient);
         a.rows_mut(m, n).copy_from(&slopes);
@@ -301,10 +305,10 @@ pub fn approach(
     starts
 }
 
-/// Wishes that an assembled configuration does not meet, in words.
+/// Returns warnings of the conditions that an assembled configuration does not meet.
 pub fn unmet(
     scene: Configured<'_>,
-    wishes: &[Wish],
+    conditions: &[InitialCondition],
     starts: &[Start],
     t: f64,
     q: &[f64],
@@ -312,14 +316,14 @@ pub fn unmet(
 ) -> Vec<String> {
     let numbers = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
     let at = Equations::new(scene, &numbers);
-    let told = wishes.iter().filter_map(|wish| {
-        let found = wish.quantity(&scene, &at);
-        let unit = if wish.angle { 1.0 } else { scene.length };
-        let off = wish.residual(found);
-        (off.abs() > MET * unit).then(|| {
+    let told = conditions.iter().filter_map(|condition| {
+        let found = condition.quantity(&scene, &at);
+        let unit = if condition.angle { 1.0 } else { scene.length };
+        let off = condition.residual(found);
+        (off.abs() > MET_TOLERANCE * unit).then(|| {
             format!(
                 "{} cannot be met: the constraints leave {found:.6e} instead of {:.6e}",
-                wish.name, wish.value
+                condition.name, condition.value
             )
         })
     });
@@ -336,7 +340,7 @@ pub fn unmet(
                 continue;
             };
             let off = (path.at::<f64>(reached[k], 0) - path.at(given, 0)).norm();
-            if off > MET * scene.length {
+            if off > MET_TOLERANCE * scene.length {
                 let off = crate::analysis::start::quantity::length(off, &scene.length_unit);
                 told.push(format!(
                     "{} {} cannot be met: the constraints put the contact {off} away from the point of CURVE/{} next to it",

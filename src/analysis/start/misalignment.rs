@@ -1,4 +1,5 @@
-//! How well the parts of a dataset fit together before and after assembly: by how much joints are off, and which parts had to be turned round.
+//! How well the parts of a dataset fit together before and after assembly: by how much joints are
+//! off, and which parts had to be turned round.
 
 use crate::analysis::start::direction::Axis;
 use crate::analysis::start::quantity::{length, short};
@@ -10,9 +11,11 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::space::Vec3;
 
-/// Offsets relative to the size of the mechanism, and angles in rad, that are worth telling: typed numbers with five digits are not.
+/// Offsets relative to the size of the mechanism, and angles in rad, that are worth telling: typed
+/// numbers with five digits are not.
 const WORTH_TELLING: f64 = 1e-5;
-/// A part turned by more than this against its dataset, in rad, sits on another branch than was drawn.
+/// A part turned by more than this against its dataset, in rad, sits on another branch than was
+/// drawn.
 const TURNED: f64 = 2.0;
 
 /// All ties of a model that are switched on: name, kind, I and J.
@@ -84,11 +87,13 @@ pub struct Exchanged {
 
 /// Joints whose initial condition fits the dataset better with its numbers exchanged.
 ///
-/// `IC = displacement, velocity` is how the statement is documented, and how it is read. Adams View writes, and Adams Solver (C++) reads, velocity and
-/// displacement: the one model that we have in all three forms has `translational_ic = -146.99, velocity_ic = -0.1815` in its View commands,
-/// `IC = -0.1815, -146.99` in the dataset that View wrote of them, and stands at -146.992, moving by -0.2, in the results. Nobody can tell by the numbers
-/// alone. But a statement that View wrote carries the name it has there, and its parts stand where View has drawn them: where both speak for
-/// it, the numbers are exchanged and that is told; where only the parts do, it is told.
+/// `IC = displacement, velocity` is how the statement is documented, and how it is read. Adams View
+/// writes, and Adams Solver (C++) reads, velocity and displacement: the one model that we have in
+/// all three forms has `translational_ic = -146.99, velocity_ic = -0.1815` in its View commands,
+/// `IC = -0.1815, -146.99` in the dataset that View wrote of them, and stands at -146.992, moving
+/// by -0.2, in the results. Nobody can tell by the numbers alone. But a statement that View wrote
+/// carries the name it has there, and its parts stand where View has drawn them: where both speak
+/// for it, the numbers are exchanged and that is told; where only the parts do, it is told.
 pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
     let mut found = Vec::new();
     for (&id, joint) in &model.joints {
@@ -141,7 +146,8 @@ fn is_directed(tie: Tie) -> bool {
     )
 }
 
-/// What assembly has turned round: parts that stand the other way than in the dataset, joints whose axes point against each other.
+/// What assembly has turned round: parts that stand the other way than in the dataset, joints whose
+/// axes point against each other.
 pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<String> {
     let at = Equations::new(scene, numbers);
     let mut told = Vec::new();

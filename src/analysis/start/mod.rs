@@ -1,4 +1,5 @@
-//! The start of every analysis: positions that satisfy all rows, velocities that fit, initial conditions.
+//! The start of every analysis: positions that satisfy all rows, velocities that fit, initial
+//! conditions.
 
 pub mod assemble;
 pub(super) mod coincident;
@@ -8,3 +9,4 @@ pub mod misalignment;
 pub mod nearby;
 pub mod placement;
 pub(super) mod quantity;
+pub mod velocities;

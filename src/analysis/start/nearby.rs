@@ -1,7 +1,9 @@
-//! What holds near a position and not only there: dependent rows are looked at again where the mechanism stands a little differently.
+//! What holds near a position and not only there: dependent rows are looked at again where the
+//! mechanism stands a little differently.
 //!
-//! A step along random free directions, with all motions at slightly different values, is closed again; rows that are independent there were dependent in
-//! passing only (a folded parallelogram, a four-bar at its dead point). When no other position can be reached, what was found stands.
+//! A step along random free directions, with all motions at slightly different values, is closed
+//! again; rows that are independent there were dependent in passing only (a folded parallelogram, a
+//! four-bar at its dead point). When no other position can be reached, what was found stands.
 
 use crate::analysis::start::assemble::{self, CLOSED, Redundant};
 use crate::numeric::rank::Rank;
@@ -31,7 +33,8 @@ pub struct Around {
     pub q: Place,
 }
 
-/// Sizes of steps that are tried: angles, and lengths relative to the mechanism; whether motions take part.
+/// Sizes of steps that are tried: angles, and lengths relative to the mechanism; whether motions
+/// take part.
 const STEPS: [(f64, bool); 9] = [
     (0.05, true),
     (0.05, true),
@@ -44,7 +47,8 @@ const STEPS: [(f64, bool); 9] = [
     (0.002, false),
 ];
 
-/// Rank near a position, by the place among those tried where it is largest; `None`: no other position was found.
+/// Rank near a position, by the place among those tried where it is largest; `None`: no other
+/// position was found.
 ///
 /// `here`: rows that are independent at `q`; they are preferred.
 pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Option<Around> {

@@ -20,7 +20,7 @@ pub use free::{Free, Moving};
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::direction::Direction;
 use crate::analysis::start::nearby::Place;
-use crate::analysis::start::{initial_conditions, misalignment, placement};
+use crate::analysis::start::{initial_conditions, misalignment, placement, velocities};
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, ElementKind, Family, Formula, Level, Model};
 use crate::scene::Scene;
@@ -287,7 +287,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         }
     };
     let scene = scene.within(&configuration);
-    if let Err(contradictions) = assemble::velocities(scene, &model, 0.0, &q, &x) {
+    if let Err(contradictions) = velocities::velocities(scene, &model, 0.0, &q, &x) {
         found.inconsistent = contradictions;
     }
     found.assembly = (assembly.iterations, assembly.moved);

@@ -1,6 +1,6 @@
 //! What becomes of a model when it is compiled: what carries what, the unknowns, the rows, what is left out, and how much there is to compute.
 
-use crate::analysis::start::{assemble, initial_conditions, misalignment, placement};
+use crate::analysis::start::{assemble, initial_conditions, misalignment, placement, velocities};
 use crate::analysis::system::System;
 use crate::analysis::verify::start;
 use crate::diagnostic::Diagnostic;
@@ -104,7 +104,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         .map(|r| row_name(&scene.rows[r]))
         .collect();
     forest(&scene, &mut out);
-    let v = assemble::velocities(here, model, 0.0, &q, &x)?;
+    let v = velocities::velocities(here, model, 0.0, &q, &x)?;
     let names = unknown_names(&scene);
     out.unknowns = names
         .into_iter()

@@ -14,6 +14,7 @@ pub use locked::{Lock, locked};
 pub use passes::{Pass, passes};
 
 use crate::analysis::start::assemble::{self, DEPENDENT};
+use crate::analysis::start::velocities;
 use crate::expr::program::{Program, Work};
 use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
@@ -199,7 +200,7 @@ pub fn repair(scene: Configured<'_>, numbers: &mut [f64]) -> bool {
     if closed.size.is_nan() || closed.size > assemble::CLOSED {
         return false;
     }
-    let v = assemble::nearest_velocities(scene, t, &q, &x, &numbers[l.v()]);
+    let v = velocities::nearest_velocities(scene, t, &q, &x, &numbers[l.v()]);
     numbers[l.q()].copy_from_slice(&q);
     numbers[l.v()].copy_from_slice(&v);
     true

@@ -1,0 +1,117 @@
+//! The state that one simulation leaves to the next, and the model moved to it.
+
+use super::Session;
+use crate::analysis::system::{System, external_inputs, samples};
+use crate::expr::measures::Measure;
+use crate::model::{ElementId, ElementKind, Model, Orientation};
+use crate::physics::kinematic::kinematic;
+use crate::scene::Scene;
+use crate::scene::build::unknown_names;
+use crate::scene::compile::orientation;
+use crate::scene::equations::Equations;
+use crate::scene::layout::Layout;
+use crate::space::{MarkerState, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// State carried from one simulation to the next, by the names of the unknowns.
+#[derive(Clone, Debug)]
+pub(super) struct Carried {
+    /// time
+    pub(super) t: f64,
+    /// numbers of the last row
+    pub(super) numbers: Vec<f64>,
+    /// names of the unknowns among them
+    pub(super) names: Vec<String>,
+    /// whether it came to rest: velocities are those of the dataset again, not zero
+    pub(super) at_rest: bool,
+    /// place and motion of every part (point masses: true), for when the unknowns are others
+    pub(super) parts: Vec<(ElementId, MarkerState<f64>)>,
+    /// turns that angles have counted
+    pub(super) turns: Vec<f64>,
+    /// values of EVALUATE of sensors, by their numbers
+    pub(super) sensors: BTreeMap<u32, f64>,
+    /// states of sampled systems, by the numbers of their GSE
+    pub(super) samples: BTreeMap<u32, samples::Held>,
+    /// the past of delayed values
+    pub(super) past: Vec<external_inputs::Past>,
+}
+
+impl Carried {
+    /// Returns the values of the unknowns by their names.
+    pub(super) fn values(&self) -> BTreeMap<&str, f64> {
+        let numbers = self.numbers.iter().skip(Layout::STATE).copied();
+        self.names.iter().map(String::as_str).zip(numbers).collect()
+    }
+}
+
+impl Session {
+    /// Keeps the state of a system for the next simulation.
+    pub(super) fn keep(&mut self, system: &System, numbers: Vec<f64>) {
+        let at = Equations::new(system.configured(), &numbers);
+        let parts = system.scene.parts.iter().enumerate();
+        let parts = parts.map(|(k, p)| (p.id, at.part(k, false))).collect();
+        self.carried = Some(Carried {
+            t: numbers[Layout::TIME],
+            turns: numbers[system.scene.layout.turns()].to_vec(),
+            sensors: sensed(&system.scene, &numbers),
+            samples: system.samples.held(&numbers),
+            past: system.external.past(),
+            names: unknown_names(&system.scene),
+            at_rest: false,
+            parts,
+            numbers,
+        });
+    }
+}
+
+/// Returns SENVAL of each sensor.
+fn sensed(scene: &Scene, numbers: &[f64]) -> BTreeMap<u32, f64> {
+    let l = scene.layout;
+    let all = scene.external_inputs.iter().enumerate();
+    all.filter_map(|(place, s)| Some((scene.sensor_of(*s)?, numbers[l.external_at(place)])))
+        .collect()
+}
+
+/// Returns whether a scene has positions or velocities among its unknowns that the last state does
+/// not tell by name.
+pub(super) fn has_new_unknowns(scene: &Scene, carried: &Carried) -> bool {
+    let known: BTreeSet<&str> = carried.names.iter().map(String::as_str).collect();
+    let l = scene.layout;
+    let names = unknown_names(scene);
+    let state = l.state(&names);
+    (state.q.iter().chain(state.v)).any(|name| !known.contains(name.as_str()))
+}
+
+/// Returns the model with its parts where they are, and moving as they do.
+pub(super) fn moved(model: &Model, carried: &Carried) -> Model {
+    let mut model = model.clone();
+    for joint in model.joints.values_mut() {
+        (joint.ic_translation, joint.ic_rotation) = ([None; 2], [None; 2]);
+    }
+    let ground = MarkerState::ground();
+    for (id, state) in &carried.parts {
+        let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);
+        let parts = if id.kind == ElementKind::PointMass {
+            &mut model.point_masses
+        } else {
+            &mut model.parts
+        };
+        let Some(part) = parts.get_mut(&id.number) else {
+            continue;
+        };
+        part.qg = state.p_GM.0;
+        part.orientation =
+            Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle));
+        let cm = part.cm.and_then(|cm| model.markers.get(&cm));
+        let cm_place = cm.map_or(Vec3::zero(), |cm| Vec3(cm.qp));
+        let cm_axes = cm.and_then(|cm| orientation(&cm.orientation, cm.qp).ok());
+        // the dataset tells the velocity of CM along ground axes, the angular velocity along its
+        // own
+        let v_cm = state.v_GM + state.w_GM.cross(state.R_GM.apply(cm_place));
+        let w_part = state.R_GM.apply_transposed(state.w_GM);
+        let w_cm = cm_axes.map_or(w_part, |axes| axes.apply_transposed(w_part));
+        (part.vm, part.wm) = (None, None);
+        (part.velocity, part.angular_velocity) = (v_cm.0.map(Some), w_cm.0.map(Some));
+    }
+    model
+}

@@ -1,0 +1,112 @@
+//! A state on its way to be consistent: from the dataset, or from the last simulation, onto the
+//! rows.
+
+use super::carried::Carried;
+use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::initial_conditions::{self, InitialCondition};
+use crate::analysis::start::placement;
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use crate::scene::Scene;
+use crate::scene::build::unknown_names;
+use crate::scene::cams;
+use crate::scene::configuration::{Configuration, Configured};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A state on its way to be consistent.
+pub(super) struct Start {
+    pub mode: u32,
+    pub t: f64,
+    pub scene: Arc<Scene>,
+    pub configuration: Configuration,
+    /// positions   (n_q)
+    pub q: Vec<f64>,
+    /// velocities that are taken over; `None`: they are assembled   (n_v)
+    pub v: Option<Vec<f64>>,
+    /// states   (n_x)
+    pub x: Vec<f64>,
+}
+
+impl Start {
+    /// Begins with the configuration of the dataset.
+    pub fn new(scene: Arc<Scene>, mode: u32, t: f64) -> Self {
+        let mut x = vec![0.0; scene.layout.n_x];
+        for d in &scene.differentials {
+            if let Some(state) = d.state {
+                x[state] = d.initial[0];
+            }
+        }
+        Self {
+            mode,
+            t,
+            configuration: Configuration::new(&scene),
+            q: scene.initial_q.clone(),
+            v: None,
+            x,
+            scene,
+        }
+    }
+
+    /// Returns the scene in its present configuration.
+    pub fn here(&self) -> Configured<'_> {
+        self.scene.within(&self.configuration)
+    }
+
+    /// Takes over the state of the last simulation, by the names of the unknowns.
+    pub fn take_over(&mut self, carried: &Carried) {
+        let l = self.scene.layout;
+        let (values, names) = (carried.values(), unknown_names(&self.scene));
+        let names = l.state(&names);
+        let mut v = vec![0.0; l.n_v];
+        // every position and velocity is told; states may be new
+        let mut complete = take_over(&values, names.q, &mut self.q);
+        complete &= take_over(&values, names.v, &mut v);
+        take_over(&values, names.x, &mut self.x);
+        for (cam, contact) in self.scene.cams.iter().zip(&mut self.configuration.contacts) {
+            let name = &names.x[cam.state];
+            contact.begun = values.contains_key(name.as_str());
+        }
+        if complete && !carried.at_rest {
+            self.v = Some(v);
+        }
+        if carried.turns.len() == l.n_turns {
+            self.configuration.turns.copy_from_slice(&carried.turns);
+        }
+    }
+
+    /// Moves positions near those of the dataset; whether the mechanism is one that is placed like
+    /// this.
+    pub fn place(&mut self, model: &Model, joints: bool) -> bool {
+        let here = self.scene.within(&self.configuration);
+        placement::settle(here, model, self.t, &mut self.q, &self.x, joints)
+    }
+
+    /// Moves positions towards initial conditions; where contacts on curves begin.
+    pub fn approach(&mut self, conditions: &[InitialCondition]) -> Vec<cams::Start> {
+        let (scene, configuration) = (&self.scene, &mut self.configuration);
+        let (t, q) = (self.t, &mut self.q);
+        initial_conditions::approach(scene, configuration, conditions, t, q, &self.x)
+    }
+
+    /// Puts positions onto the rows, and chooses those that take part.
+    ///
+    /// # Errors
+    /// Rows that contradict each other.
+    pub fn positions(&mut self) -> Result<Assembly, Vec<Diagnostic>> {
+        let (scene, configuration) = (&self.scene, &mut self.configuration);
+        assemble::positions(scene, configuration, self.t, &mut self.q, &self.x)
+    }
+}
+
+/// Takes over the values that are known by these names; returns whether all are.
+fn take_over(known: &BTreeMap<&str, f64>, names: &[String], values: &mut [f64]) -> bool {
+    let mut complete = true;
+    for (name, value) in names.iter().zip(values) {
+        match known.get(name.as_str()) {
+            Some(&found) => *value = found,
+            None => complete = false,
+        }
+    }
+    complete
+}
