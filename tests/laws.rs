@@ -3,12 +3,12 @@
 #![cfg(feature = "solver")]
 #![allow(non_snake_case)]
 
+use cognate::analysis::session::columns;
 use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::start::{assemble, velocities};
 use cognate::analysis::system::System;
 use cognate::analysis::time::{dynamics, options};
 use cognate::analysis::watch::Unwatched;
-use cognate::analysis::session::columns;
-use cognate::analysis::start::{assemble, velocities};
 use cognate::model::{Driven, MarkerOwner, Model, Orientation, Units};
 use cognate::results::{Run, Status};
 use cognate::scene::configuration::Configuration;

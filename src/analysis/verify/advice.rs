@@ -1,7 +1,9 @@
-//! What could be changed so that nothing is fixed twice: for each element with superfluous rows the weaker element that keeps the rest.
+//! What could be changed so that nothing is fixed twice: for each element with superfluous rows the
+//! weaker element that keeps the rest.
 //!
-//! A candidate is tried, not guessed: with its rows in place of those of the element the rank must stay what it is, nothing of it may depend on the
-//! rest, and it must hold here and at a position nearby.
+//! A candidate is tried, not guessed: with its rows in place of those of the element the rank must
+//! stay what it is, nothing of it may depend on the rest, and it must hold here and at a position
+//! nearby.
 
 use super::numbers_at;
 use crate::analysis::start::assemble::{self, Assembly};

@@ -1,6 +1,7 @@
-//! What is free, as motions: for each free direction which parts move, and how.
+//! Free directions as motions: which parts move in each, and how.
 //!
-//! Directions that satisfy all rows to first order, combined so that each has an unknown of its own: as few parts as can be had cheaply move in each.
+//! Directions satisfy all rows to first order, and are combined so that each has an unknown of its
+//! own: as few parts as can be had cheaply move in each.
 
 use crate::analysis::start::assemble;
 use crate::analysis::start::direction::Axis;
@@ -13,7 +14,12 @@ use crate::scene::programs::weights;
 use crate::scene::{Scene, Source};
 use crate::space::{MarkerState, Vec3};
 
-/// How a part moves in a free direction.
+/// Motion of a part in a free direction, relative to the largest, below which it does not move.
+const LEAST_MOTION: f64 = 1e-7;
+/// Parts that a sentence names, at most.
+const MAX_NAMED: usize = 8;
+
+/// The motion of a part in a free direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moving {
     /// "PART/3"
@@ -24,7 +30,7 @@ pub struct Moving {
     pub angular: [f64; 3],
     /// velocity of the centre of mass (of the part's origin when it has none), ground axes
     pub linear: [f64; 3],
-    /// where that point is
+    /// the place of that point
     pub at: [f64; 3],
 }
 
@@ -41,7 +47,7 @@ pub struct Free {
     pub rates: Vec<f64>,
 }
 
-/// All free directions at a position.
+/// Finds all free directions at a position.
 pub(super) fn motions(
     scene: Configured<'_>,
     model: &Model,
@@ -70,50 +76,18 @@ pub(super) fn motions(
             .collect()
     };
     let still = moving(&vec![0.0; w.len()]);
-    rank.free_motions()
-        .into_iter()
+    let motions = rank.free_motions().into_iter();
+    motions
         .map(|(own, direction)| {
             let one = w[own].sqrt();
             let v: Vec<f64> = (direction.iter().zip(&w))
                 .map(|(d, w)| d * w.sqrt() / one)
                 .collect();
             let coordinate = &scene.coordinates[owner[own]];
-            let mut parts = Vec::new();
-            let mut largest = 0.0_f64;
-            for (k, ((p, state), (_, rest))) in moving(&v).into_iter().zip(&still).enumerate() {
-                let angular = state.w_GM - rest.w_GM;
-                let arm = p - state.p_GM;
-                let linear = (state.v_GM - rest.v_GM) + angular.cross(arm);
-                let size = linear.norm().max(angular.norm() * scene.length);
-                largest = largest.max(size);
-                parts.push((k, p, state, angular, linear, size));
-            }
-            parts.retain(|part| part.5 > 1e-7 * largest);
-            parts.sort_by_key(|part| (scene.parts[part.0].link != Some(coordinate.link), part.0));
-            let parts: Vec<Moving> = parts
-                .into_iter()
-                .map(|(k, p, state, angular, linear, _)| Moving {
-                    part: scene.parts[k].id.to_string(),
-                    words: how(&scene, p, &state, angular, linear),
-                    angular: angular.0,
-                    linear: linear.0,
-                    at: p.0,
-                })
-                .collect();
+            let parts = moving_parts(&scene, coordinate.link, moving(&v), &still);
             let words = match parts.split_first() {
                 None => format!("{} changes and moves no part", coordinate.name),
-                Some((first, rest)) => {
-                    let mut text = format!("{} {}", first.part, first.words);
-                    if !rest.is_empty() {
-                        let names: Vec<&str> =
-                            rest.iter().take(8).map(|p| p.part.as_str()).collect();
-                        text += &format!("; with it {}", names.join(", "));
-                        if rest.len() > 8 {
-                            text += &format!(" and {} more", rest.len() - 8);
-                        }
-                    }
-                    text
-                }
+                Some((first, rest)) => sentence(first, rest),
             };
             Free {
                 unknown: coordinate.name.clone(),
@@ -125,7 +99,52 @@ pub(super) fn motions(
         .collect()
 }
 
-/// The centre of mass of a part, else its origin, in ground.
+/// Returns the parts that move against how they are at rest, those on link `first` first.
+fn moving_parts(
+    scene: &Scene,
+    first: usize,
+    moving: Vec<(Vec3<f64>, MarkerState<f64>)>,
+    still: &[(Vec3<f64>, MarkerState<f64>)],
+) -> Vec<Moving> {
+    let mut parts = Vec::new();
+    let mut largest = 0.0_f64;
+    for (k, ((p, state), (_, rest))) in moving.into_iter().zip(still).enumerate() {
+        let angular = state.w_GM - rest.w_GM;
+        let arm = p - state.p_GM;
+        let linear = (state.v_GM - rest.v_GM) + angular.cross(arm);
+        let size = linear.norm().max(angular.norm() * scene.length);
+        largest = largest.max(size);
+        parts.push((k, p, state, angular, linear, size));
+    }
+    parts.retain(|part| part.5 > LEAST_MOTION * largest);
+    parts.sort_by_key(|part| (scene.parts[part.0].link != Some(first), part.0));
+    parts
+        .into_iter()
+        .map(|(k, p, state, angular, linear, _)| Moving {
+            part: scene.parts[k].id.to_string(),
+            words: how(scene, p, &state, angular, linear),
+            angular: angular.0,
+            linear: linear.0,
+            at: p.0,
+        })
+        .collect()
+}
+
+/// Writes how a part moves, and which go with it.
+fn sentence(first: &Moving, rest: &[Moving]) -> String {
+    let mut text = format!("{} {}", first.part, first.words);
+    if !rest.is_empty() {
+        let some = rest.iter().take(MAX_NAMED);
+        let names: Vec<&str> = some.map(|p| p.part.as_str()).collect();
+        text += &format!("; with it {}", names.join(", "));
+        if rest.len() > MAX_NAMED {
+            text += &format!(" and {} more", rest.len() - MAX_NAMED);
+        }
+    }
+    text
+}
+
+/// Returns the centre of mass of a part, else its origin, in ground.
 fn centre(scene: &Scene, model: &Model, part: usize, state: &MarkerState<f64>) -> Vec3<f64> {
     let p = &scene.parts[part];
     let cm = model
@@ -139,7 +158,7 @@ fn centre(scene: &Scene, model: &Model, part: usize, state: &MarkerState<f64>) -
     state.p_GM + state.R_GM.apply(cm)
 }
 
-/// A twist in words: slides, turns or both.
+/// Writes a twist: slides, turns or both.
 fn how(
     scene: &Scene,
     p: Vec3<f64>,

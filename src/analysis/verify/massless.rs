@@ -1,13 +1,16 @@
-//! Free directions without inertia: motions that nothing holds and nothing resists, in which no acceleration is determined.
+//! Free directions without inertia: motions that nothing holds and nothing resists, in which no
+//! acceleration is determined.
 //!
-//! With the free directions as columns of F, Fᵀ M F is positive definite wherever the parts that move have mass or inertia in them:
+//! With the free directions as columns of F, Fᵀ M F is positive definite wherever the parts that
+//! move have mass or inertia in them:
 //!
 //! ```text
 //! Tₐᵦ = Σ m vₐ·vᵦ + vₐ·(ωᵦ × s) + vᵦ·(ωₐ × s) + ωₐ·J ωᵦ          over links, about their origins, s = m p_LC        (1)
 //! ```
 //!
-//! A direction whose own Tₐₐ vanishes moves only what has no mass; a combination of directions does where (1), scaled to a unit diagonal, is
-//! singular: two arms without mass stretched out towards the same ball.
+//! A direction whose own Tₐₐ vanishes moves only what has no mass; a combination of directions does
+//! where (1), scaled to a unit diagonal, is singular: two arms without mass stretched out towards
+//! the same ball.
 
 use super::free::{self, Free, Moving};
 use crate::analysis::start::assemble;
@@ -19,11 +22,13 @@ use crate::scene::equations::Equations;
 use crate::space::Vec3;
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// A diagonal entry of (1) below this part of the model's mass times the square of the motion is nothing: a mass on the axis of a turn moves by
-/// rounding, 1e-16 of its distance, and that squared is what is left.
+/// A diagonal entry of (1) below this part of the model's mass times the square of the motion is
+/// nothing: a mass on the axis of a turn moves by rounding, 1e-16 of its distance, and that squared
+/// is what is left.
 const NOTHING: f64 = 1e-24;
 
-/// Eigenvalues of (1), scaled to a unit diagonal, below this are zero: what is left when rounding is taken away.
+/// Eigenvalues of (1), scaled to a unit diagonal, below this are zero: what is left when rounding
+/// is taken away.
 const SINGULAR: f64 = 1e-13;
 
 /// Whether some part lacks mass or a principal inertia: otherwise every motion is resisted.

@@ -5,8 +5,10 @@
 //! freedom    coordinates of the forest − rank of the rows that close loops, at the assembled position
 //! ```
 //!
-//! They differ by the rows that depend on others. Each of these is told with the elements that fix the same direction already: those that can be stressed
-//! against it without any load (`scene/equations/stress.rs`). Whether the dependence is one of this position only is found out at positions nearby.
+//! They differ by the rows that depend on others. Each of these is told with the elements that fix
+//! the same direction already: those that can be stressed against it without any load
+//! (`scene/equations/stress.rs`). Whether the dependence is one of this position only is found out
+//! at positions nearby.
 
 mod advice;
 mod free;
@@ -31,7 +33,7 @@ use crate::scene::left_out::{Unknown, equations, unknown_constraints};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Stress in an element, relative to the largest in the state, below which it takes no part.
-const NONE: f64 = 1e-7;
+const LEAST_STRESS: f64 = 1e-7;
 
 /// A row that depends on others.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +46,8 @@ pub struct Dependent {
     pub direction: Direction,
     /// elements that fix the same already, carriers first
     pub fixed_by: Vec<String>,
-    /// factors of the rows it is a combination of; rows of joints that carry parts are not among them
+    /// factors of the rows it is a combination of; rows of joints that carry parts are not among
+    /// them
     pub combination: Vec<(String, f64)>,
     /// it depends on others at this position, but not nearby
     pub only_here: bool,
@@ -53,7 +56,8 @@ pub struct Dependent {
 }
 
 impl Dependent {
-    /// Tells it in a sentence: "JOINT/4 fixes rotation about ground X, already fixed by JOINT/1, JOINT/2".
+    /// Tells it in a sentence: "JOINT/4 fixes rotation about ground X, already fixed by JOINT/1,
+    /// JOINT/2".
     pub fn sentence(&self) -> String {
         self.sentence_of(&[self])
     }
@@ -86,14 +90,15 @@ pub struct Undetermined {
     pub axes: String,
 }
 
-/// What there is to say about the freedoms of a model.
+/// The freedoms of a model, explained.
 #[derive(Clone, Debug, Default)]
 pub struct Verification {
     /// moving parts
     pub parts: usize,
     /// moving point masses
     pub point_masses: usize,
-    /// constraint elements and equations, by statement: (keyword or type, how many, equations of all of them)
+    /// constraint elements and equations, by statement: (keyword or type, how many, equations of
+    /// all of them)
     pub counted: Vec<(String, usize, usize)>,
     /// the count
     pub gruebler: i64,
@@ -124,7 +129,7 @@ impl Verification {
     }
 }
 
-/// The model without what has no influence on its freedoms.
+/// Returns the model without all that has no influence on its freedoms.
 fn skeleton(model: &Model) -> Model {
     let mut model = model.clone();
     let idle = |kind: &ElementKind| match kind.family() {
@@ -140,7 +145,8 @@ fn skeleton(model: &Model) -> Model {
     model
 }
 
-/// What routines compute is not known: their variables are zero, and motions that depend on them keep the place that the dataset shows.
+/// Sets variables that routines compute to zero, as their values are not known; motions that depend
+/// on them keep the place that the dataset shows.
 fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
     let mut unknown: BTreeSet<u32> = BTreeSet::new();
     for (&id, variable) in &mut model.variables {
@@ -183,8 +189,8 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
     }
 }
 
-/// Constraints that a routine computes, or whose curve does not stand in the dataset, are counted, but cannot be among the rows: nobody knows
-/// what they hold.
+/// Constraints that a routine computes, or whose curve does not stand in the dataset, are counted,
+/// but cannot be among the rows: nobody knows what they hold.
 fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<String>) {
     for unknown in unknown_constraints(model) {
         let Unknown {
@@ -231,46 +237,33 @@ fn counted(model: &Model) -> Vec<(String, usize, usize)> {
     found.into_iter().map(|(k, (n, e))| (k, n, e)).collect()
 }
 
-/// Verifies a model: counts, assembles, and explains what it finds.
+/// Verifies a model: counts, assembles, and explains its freedoms.
 ///
 /// # Errors
-/// What keeps the model from being assembled at all. Rows that contradict each other are no such error.
+/// What keeps the model from being assembled at all. Rows that contradict each other are no such
+/// error.
 pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
+    // the model without all that has no influence on its freedoms
     let mut model = skeleton(model);
     let mut warnings = Vec::new();
     stand_still(&mut model, &mut warnings);
+    let counted = counted(&model);
+    leave_out_unknown(&mut model, &mut warnings);
     let options = Options {
         mode: 4,
         skip: outline::pushing(),
         ..Options::default()
     };
-    let counted = counted(&model);
-    leave_out_unknown(&mut model, &mut warnings);
     let scene = Scene::compile(&model, &options)?;
-    let mut configuration = Configuration::new(&scene);
     for d in &scene.warnings {
         let element = d.element.clone().unwrap_or_default();
         warnings.push(format!("{element} {}", d.message));
     }
-    let moving = |kind: ElementKind| {
-        let bodies = model.bodies().filter(|(id, _)| id.kind == kind);
-        let moving = bodies.filter(|(id, part)| !part.ground && model.is_active(*id));
-        moving.count()
-    };
-    let parts = moving(ElementKind::Part);
-    let point_masses = moving(ElementKind::PointMass);
-    let equations: usize = counted.iter().map(|c| c.2).sum();
-    let mut found = Verification {
-        parts,
-        point_masses,
-        counted,
-        gruebler: (6 * parts + 3 * point_masses) as i64 - equations as i64,
-        warnings,
-        ..Verification::default()
-    };
-    found
-        .warnings
-        .extend(misalignment::misaligned(&scene, &model));
+    // its assembled position
+    let mut found = count(&model, counted, warnings);
+    let misaligned = misalignment::misaligned(&scene, &model);
+    found.warnings.extend(misaligned);
+    let mut configuration = Configuration::new(&scene);
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
     let undecided = scene.within(&configuration);
@@ -286,39 +279,77 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
             return Ok(found);
         }
     };
+    // its freedoms there
     let scene = scene.within(&configuration);
     if let Err(contradictions) = velocities::velocities(scene, &model, 0.0, &q, &x) {
         found.inconsistent = contradictions;
     }
-    found.assembly = (assembly.iterations, assembly.moved);
-    found.freedom = Some(assembly.freedom_here);
-    found.freedom_nearby = Some(assembly.freedom);
     found.warnings.extend(assembly.warnings.iter().cloned());
     let unmet = initial_conditions::unmet(scene, &[], &starts, 0.0, &q, &x);
     found.warnings.extend(unmet);
-    let numbers = assemble::numbers(scene, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
-    let turned = misalignment::turned(scene, &model, &numbers);
-    found.warnings.extend(turned);
-    explain(scene, &numbers, &assembly, &mut found);
-    found.free = free::motions(scene, &model, 0.0, &q, &x);
-    found.advice = advice::advice(scene, &numbers, &assembly);
-    let massless = massless::massless(scene, &model, 0.0, &q, &x);
-    let dynamic = massless.iter().map(|d| {
-        let element = d.element.as_deref().unwrap_or("the model");
-        format!("{element}: {}; a dynamic simulation needs it", d.message)
-    });
-    found.warnings.extend(dynamic);
-    if assembly.freedom != assembly.freedom_here {
-        found.warnings.push(format!(
-            "at this position {} of the free directions lead nowhere, or to another branch: nearby the freedom is {}",
-            assembly.freedom_here.abs_diff(assembly.freedom),
-            assembly.freedom
-        ));
-    }
+    found.examine(scene, &model, &assembly, (&q, &x));
     Ok(found)
 }
 
-/// Starting values of the states, and of joints that say where they begin.
+/// Counts parts and equations.
+fn count(
+    model: &Model,
+    counted: Vec<(String, usize, usize)>,
+    warnings: Vec<String>,
+) -> Verification {
+    let moving = |kind: ElementKind| {
+        let bodies = model.bodies().filter(|(id, _)| id.kind == kind);
+        let moving = bodies.filter(|(id, part)| !part.ground && model.is_active(*id));
+        moving.count()
+    };
+    let parts = moving(ElementKind::Part);
+    let point_masses = moving(ElementKind::PointMass);
+    let equations: usize = counted.iter().map(|c| c.2).sum();
+    Verification {
+        parts,
+        point_masses,
+        counted,
+        gruebler: (6 * parts + 3 * point_masses) as i64 - equations as i64,
+        warnings,
+        ..Verification::default()
+    }
+}
+
+impl Verification {
+    /// Examines the freedoms of an assembled model.
+    fn examine(
+        &mut self,
+        scene: Configured<'_>,
+        model: &Model,
+        assembly: &Assembly,
+        (q, x): (&[f64], &[f64]),
+    ) {
+        self.assembly = (assembly.iterations, assembly.moved);
+        self.freedom = Some(assembly.freedom_here);
+        self.freedom_nearby = Some(assembly.freedom);
+        let numbers = assemble::numbers(scene, 0.0, q, &vec![0.0; scene.layout.n_v], x);
+        let turned = misalignment::turned(scene, model, &numbers);
+        self.warnings.extend(turned);
+        explain(scene, &numbers, assembly, self);
+        self.free = free::motions(scene, model, 0.0, q, x);
+        self.advice = advice::advice(scene, &numbers, assembly);
+        let massless = massless::massless(scene, model, 0.0, q, x);
+        let dynamic = massless.iter().map(|d| {
+            let element = d.element.as_deref().unwrap_or("the model");
+            format!("{element}: {}; a dynamic simulation needs it", d.message)
+        });
+        self.warnings.extend(dynamic);
+        if assembly.freedom != assembly.freedom_here {
+            self.warnings.push(format!(
+                "at this position {} of the free directions lead nowhere, or to another branch: nearby the freedom is {}",
+                assembly.freedom_here.abs_diff(assembly.freedom),
+                assembly.freedom
+            ));
+        }
+    }
+}
+
+/// Returns starting values of the states, and puts in those of joints.
 pub(super) fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
     placement::initial_joints(scene, model, q);
     let mut x = vec![0.0; scene.layout.n_x];
@@ -336,7 +367,7 @@ pub(super) fn start(scene: &Scene, model: &Model, q: &mut [f64]) -> Vec<f64> {
     x
 }
 
-/// Dependent rows in words, and the reactions they leave open.
+/// Explains dependent rows, and finds the reactions that they leave undetermined.
 fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &mut Verification) {
     let at = Equations::new(scene, numbers);
     let permanent: Vec<usize> = assembly.redundant.iter().map(|r| r.row).collect();
@@ -368,7 +399,8 @@ fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &
         let mut fixed_by = Vec::new();
         for (c, action) in stress.iter().enumerate() {
             let element = &scene.constraints[c];
-            let takes_part = size(action.force.norm(), action.torque.norm()) > NONE * largest
+            let takes_part = size(action.force.norm(), action.torque.norm())
+                > LEAST_STRESS * largest
                 || element.rows.clone().any(|r| lambda[r] != 0.0);
             if !takes_part {
                 continue;
@@ -376,8 +408,9 @@ fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &
             let axes = words::axes(&at, element.markers.map(|m| m.1));
             for k in 0..3 {
                 let e = axes.1.column(k);
-                open[c][k] |= e.dot(action.force).abs() > NONE * largest;
-                open[c][k + 3] |= e.dot(action.torque).abs() > NONE * largest * scene.length;
+                open[c][k] |= e.dot(action.force).abs() > LEAST_STRESS * largest;
+                open[c][k + 3] |=
+                    e.dot(action.torque).abs() > LEAST_STRESS * largest * scene.length;
             }
             if own != Some(c) {
                 fixed_by.push(element.id.to_string());

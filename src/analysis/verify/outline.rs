@@ -1,4 +1,5 @@
-//! What becomes of a model when it is compiled: what carries what, the unknowns, the rows, what is left out, and how much there is to compute.
+//! What becomes of a model when it is compiled: what carries what, the unknowns, the rows, what is
+//! left out, and how much there is to compute.
 
 use crate::analysis::start::{assemble, initial_conditions, misalignment, placement, velocities};
 use crate::analysis::system::System;
@@ -49,7 +50,8 @@ pub struct Outline {
     pub warnings: Vec<String>,
 }
 
-/// Returns the kinds of elements that a model may hold without being solved, where only its freedoms are asked for.
+/// Returns the kinds of elements that a model may hold without being solved, where only its
+/// freedoms are asked for.
 pub(in crate::analysis) fn pushing() -> BTreeSet<ElementKind> {
     let families = [Family::Body, Family::Force, Family::System];
     families.into_iter().flat_map(ElementKind::of).collect()

@@ -18,7 +18,8 @@ pub(super) fn primitive(kind: PrimitiveKind) -> &'static str {
     }
 }
 
-/// The axes in which an element's reaction is told: those of its J marker, ground's when they are parallel to these.
+/// The axes in which an element's reaction is told: those of its J marker, ground's when they are
+/// parallel to these.
 pub(super) fn axes(at: &Equations<'_, f64>, marker: Option<usize>) -> (String, Mat3<f64>) {
     let ground = ("ground".to_string(), Mat3::identity());
     let Some(m) = marker else { return ground };
