@@ -119,6 +119,29 @@ fn a_derivative_that_does_not_exist_is_told_apart_from_a_value_that_does_not() {
     );
 }
 
+#[test]
+fn infinities_are_never_made_numbers() {
+    for text in [
+        "ATAN2(1/TIME,1/TIME)",
+        "MIN(5,1/TIME)",
+        "1/(1/TIME)",
+        "0/TIME",
+        "EXP(-1/TIME)",
+        "IF(1/TIME: 1, 2, 3)",
+        "SQRT(TIME-5)**0",
+        "POLY(LOG(TIME-5),0,7)",
+        "IMPACT(1/TIME,0,1,100,1.5,25,0.1)",
+    ] {
+        let (code, err) = fails(&[text, "--time", "0"]);
+        assert!(code == 3 && err.contains("error[domain]"), "{text}: {err}");
+        let (code, err) = fails(&[text, "--time", "0", "--derivative", "1"]);
+        assert!(code == 3 && err.contains("error[domain]"), "{text}: {err}");
+    }
+    // on the taken path only
+    assert_eq!(eval(&["IF(TIME: 1, 2, 1/(1/TIME))", "--time", "0"]), "2\n");
+    assert_eq!(eval(&["1/(1/TIME)", "--time", "4"]), "4\n");
+}
+
 // ------------------------------------------------------------------------------------------------- dialects and profiles
 
 #[test]

@@ -31,6 +31,8 @@ pub struct Formula {
     pub expr: Expr,
     /// its program, with one output
     pub program: Program,
+    /// inputs that it names, and values of the past
+    asked: Vec<Input>,
     /// scratch for values with rates
     jets: Work<Jet>,
     /// scratch for values
@@ -58,9 +60,11 @@ impl Formula {
                 }
                 _ => d,
             })?;
+        let asked = [&expr.inputs()[..], program.inputs()].concat();
         Ok(Self {
             expr,
             program,
+            asked,
             jets: Work::default(),
             plain: Work::default(),
         })
@@ -83,11 +87,20 @@ impl Formula {
             self.rates(time, data)
         };
         let wanted = &sample[..=order.min(2)];
-        if wanted.iter().all(|x| x.is_finite()) {
-            Ok(sample)
-        } else {
-            Err(self.trouble(time, data, &sample))
+        if wanted.iter().any(|x| !x.is_finite()) {
+            return Err(self.trouble(time, data, &sample));
         }
+        // a function such as IMPACT makes a number of an input that has none
+        let given = |&input: &Input| {
+            input_time(input, time)
+                .and_then(|t| data.value(input, t))
+                .is_some_and(f64::is_finite)
+        };
+        if !self.asked.iter().all(given) && self.expr.eval_with(&TimedData { data, time }).is_err()
+        {
+            return Err(self.trouble(time, data, &sample));
+        }
+        Ok(sample)
     }
 
     /// Evaluates without rates.
@@ -366,6 +379,24 @@ mod tests {
             give(&mut setting, "2*VARVAL(3)", 4.0).unwrap_err().code,
             "missing_value"
         );
+    }
+
+    #[test]
+    fn what_is_not_given_is_never_a_silent_number() {
+        let setting = Setting::default();
+        for text in [
+            "IMPACT(VARVAL(3),0,1,100,1.5,25,0.1)",
+            "POLY(VARVAL(3),0,7)",
+            "VARVAL(3)**0",
+            "STEP(VARVAL(3),0,1,1,2)",
+            "IF(1: 2, 3, POLY(VARVAL(3),0,7))",
+        ] {
+            let mut formula = Formula::new(text, &setting).unwrap();
+            for order in [0, 1] {
+                let said = formula.sample(Some(0.5), order, &setting.data).unwrap_err();
+                assert_eq!(said.code, "missing_value", "{text}");
+            }
+        }
     }
 
     #[test]

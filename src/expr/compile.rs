@@ -7,6 +7,7 @@
 //! prepared; the others expand into operations.
 
 use super::ast::{Ast, BinaryOp as Written, Callee, Constant, Node, NodeIx};
+use super::finite;
 use super::functions::{Family, Function};
 use super::interpolation::Bindings;
 use super::program::{BinaryOp, Builder, Folding, Input, Program, Sym, UnaryOp, Value};
@@ -107,6 +108,7 @@ impl<'a> Compiler<'a> {
     /// every IF has no value for any inputs. The span is that of the operator or function name.
     pub fn add(&mut self, ast: &Ast) -> Result<Value, Diagnostic> {
         let conditional = conditional(ast);
+        let risks = finite::risks(ast);
         let mut values: Vec<Option<Value>> = Vec::with_capacity(ast.nodes.len());
         for (k, node) in ast.nodes.iter().enumerate() {
             let span = ast.spans.get(k).copied().unwrap_or_default();
@@ -114,10 +116,20 @@ impl<'a> Compiler<'a> {
                 Reach::Never => None,
                 reach => {
                     let always = reach == Reach::Always;
-                    Some(
-                        self.node(node, &values, always)
-                            .map_err(|d| place(d, span))?,
-                    )
+                    let mut value = self
+                        .node(node, &values, always)
+                        .map_err(|d| place(d, span))?;
+                    finite::watched(ast, node, &risks, |operand| {
+                        if let Some(&Some(x)) = values.get(operand as usize) {
+                            value = self.lost_with(value, x);
+                        }
+                    });
+                    match self.builder.get_mut().constant_of(value) {
+                        Some(c) if always && !c.is_finite() => {
+                            return Err(place(not_finite(node, c), span));
+                        }
+                        _ => Some(value),
+                    }
                 }
             };
             values.push(value);
@@ -144,7 +156,7 @@ impl<'a> Compiler<'a> {
                 Diagnostic::error("unexpected_token", "an operand stands after its operator")
             })
         };
-        let value = match *node {
+        Ok(match *node {
             Node::Number { literal, degrees } => self
                 .builder
                 .get_mut()
@@ -180,11 +192,14 @@ impl<'a> Compiler<'a> {
                 let args = args.iter().map(|&a| of(a)).collect::<Result<Vec<_>, _>>()?;
                 self.call(callee, &args, always)?
             }
-        };
-        match self.builder.get_mut().constant_of(value) {
-            Some(c) if always && !c.is_finite() => Err(not_finite(node, c)),
-            _ => Ok(value),
-        }
+        })
+    }
+
+    /// Returns the value where `x` is a number, and NaN where it is not; to the bit, for `x - x` is +0.
+    fn lost_with(&mut self, value: Value, x: Value) -> Value {
+        let builder = self.builder.get_mut();
+        let nothing = builder.binary(BinaryOp::Sub, x, x);
+        builder.binary(BinaryOp::Sub, value, nothing)
     }
 
     /// Records a call.

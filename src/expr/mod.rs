@@ -23,6 +23,7 @@
 //! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | grammars, tree, and back to source |
 //! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
+//! | | `finite.rs` | operands without a finite value that an operation could lose |
 //! | | `smoothness.rs` | places where it is not smooth, and the derivative that jumps there |
 //!
 //! Parsing finds every mistake with its place; compiling resolves names, folds constants and shares
@@ -33,6 +34,7 @@ pub mod ast;
 mod check;
 pub mod compile;
 mod expression;
+mod finite;
 mod foreign;
 pub mod functions;
 pub mod interpolation;

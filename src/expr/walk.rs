@@ -211,17 +211,19 @@ impl<'a> Walk<'a> {
         };
         let delays = self.ast.delays();
         let number = delays.iter().find(|d| d.0 == ix).map_or(0, |d| d.1);
-        host.input(Input::Delayed(number)).ok_or_else(|| {
-            let mut trouble = self.trouble(
-                "needs_history",
-                ix,
-                "DELAY needs the values of the past".to_string(),
-            );
-            trouble
-                .help
-                .push("a simulation keeps them; a single evaluation has none".to_string());
-            trouble
-        })
+        match host.input(Input::Delayed(number)) {
+            Some(value) if value.is_finite() => Ok(value),
+            Some(value) => {
+                Err(self.trouble("domain", ix, format!("{} is {value}", self.ast.written(ix))))
+            }
+            None => {
+                let past = "DELAY needs the values of the past".to_string();
+                let mut trouble = self.trouble("needs_history", ix, past);
+                let help = "a simulation keeps them; a single evaluation has none";
+                trouble.help.push(help.to_string());
+                Err(trouble)
+            }
+        }
     }
 
     /// Selects the branch of an IF; when the selector is unknown no branch is taken, and the value
