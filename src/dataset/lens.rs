@@ -7,6 +7,7 @@ use super::row::Element as _;
 use super::row::{Angle, Lens, canonical};
 use super::value::{Always, Field, Kind, Number, Value, angles, numbers};
 use crate::model::*;
+use crate::physics::joint::Displacements;
 
 /// A sentence about what does not fit.
 type Done = Result<(), String>;
@@ -361,18 +362,20 @@ pub fn other_owner(marker: &Marker, kind: ElementKind) -> Option<Value> {
 
 /// IC means the angle of a REVOLUTE, the distance of all others.
 pub fn put_joint_ic(joint: &mut Joint, value: Value) -> Done {
-    match joint.kind {
-        JointKind::Revolute => joint.ic_rotation.put(value),
-        _ => joint.ic_translation.put(value),
+    match joint.kind.displacements() {
+        Displacements::Rotation => joint.ic_rotation.put(value),
+        Displacements::Translation | Displacements::Both | Displacements::None => {
+            joint.ic_translation.put(value)
+        }
     }
 }
 
 /// See [`put_joint_ic`].
 pub fn joint_ic(joint: &Joint) -> Option<Value> {
-    match joint.kind {
-        JointKind::Revolute => <Angle as Lens<_>>::get(&joint.ic_rotation),
-        JointKind::Translational => joint.ic_translation.written(),
-        _ => None,
+    match joint.kind.displacements() {
+        Displacements::Rotation => <Angle as Lens<_>>::get(&joint.ic_rotation),
+        Displacements::Translation => joint.ic_translation.written(),
+        Displacements::Both | Displacements::None => None,
     }
 }
 
@@ -589,9 +592,9 @@ impl Lens<[f64; 6]> for LastThree {
 }
 
 /// Three lengths and three angles.
-pub struct Displacements;
+pub struct SixDisplacements;
 
-impl Lens<[f64; 6]> for Displacements {
+impl Lens<[f64; 6]> for SixDisplacements {
     const KIND: Kind = Kind::Reals {
         min: 6,
         max: 6,

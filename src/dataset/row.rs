@@ -45,7 +45,6 @@ impl Argument {
 }
 
 /// An argument bound to a field of `T`.
-#[derive(Clone, Copy)]
 pub struct Binding<T: 'static> {
     /// name and kind
     pub argument: Argument,
@@ -54,6 +53,14 @@ pub struct Binding<T: 'static> {
     /// the values to write, none for what is absent or default
     pub get: fn(&T, &'static str) -> Vec<Value>,
 }
+
+impl<T> Clone for Binding<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Binding<T> {}
 
 impl<T> Binding<T> {
     /// The statement is incomplete without it.

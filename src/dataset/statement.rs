@@ -23,6 +23,7 @@ use super::row::{
 };
 use super::value::{Always, Field, Kind, Number, Value};
 use crate::model::*;
+use crate::physics::joint::Displacements;
 
 /// What a word means among the statements of a dataset; at least three letters.
 pub fn find(word: &str) -> Meaning {
@@ -214,6 +215,19 @@ macro_rules! bindings {
     };
 }
 macro_rules! numbered {
+    ($kind:ident, $list:ident: $t:ty, $finish:expr, $types:ident, { $($rows:tt)* }) => {
+        &Numbered::<$t> {
+            kind: ElementKind::$kind,
+            list: |m| &m.$list,
+            list_mut: |m| &mut m.$list,
+            bindings: {
+                const REST: &[Binding<$t>] = bindings!($t: $($rows)*);
+                const ALL: [Binding<$t>; $types.len() + REST.len()] = joined(&$types, REST);
+                &ALL
+            },
+            finish: $finish,
+        }
+    };
     ($kind:ident, $list:ident: $t:ty, $finish:expr, { $($rows:tt)* }) => {
         &Numbered::<$t> {
             kind: ElementKind::$kind,
@@ -248,6 +262,77 @@ macro_rules! settings {
             finish: nothing,
         }
     };
+}
+
+/// The bare keywords of the types of joints, from their table.
+const JOINT_TYPES: [Binding<Joint>; JointKind::ALL.len()] = {
+    let mut all = [joint_type(JointKind::ALL[0]); JointKind::ALL.len()];
+    let mut k = 1;
+    while k < all.len() {
+        all[k] = joint_type(JointKind::ALL[k]);
+        k += 1;
+    }
+    all
+};
+
+const fn joint_type(kind: JointKind) -> Binding<Joint> {
+    let binding = Binding::<Joint> {
+        argument: Argument::new(kind.row().word, Kind::Flag),
+        put: |joint, word, _| {
+            let kind = JointKind::ALL.into_iter().find(|k| k.row().word == word);
+            joint.kind = kind.unwrap_or(joint.kind);
+            Ok(())
+        },
+        get: |joint, word| {
+            let is = joint.kind.row().word == word;
+            is.then_some(Value::Flag).into_iter().collect()
+        },
+    };
+    binding.required().group("type")
+}
+
+/// The bare keywords of the types of primitives, from their table.
+const PRIMITIVE_TYPES: [Binding<Primitive>; PrimitiveKind::ALL.len()] = {
+    let mut all = [primitive_type(PrimitiveKind::ALL[0]); PrimitiveKind::ALL.len()];
+    let mut k = 1;
+    while k < all.len() {
+        all[k] = primitive_type(PrimitiveKind::ALL[k]);
+        k += 1;
+    }
+    all
+};
+
+const fn primitive_type(kind: PrimitiveKind) -> Binding<Primitive> {
+    let binding = Binding::<Primitive> {
+        argument: Argument::new(kind.row().word, Kind::Flag),
+        put: |primitive, word, _| {
+            let kind = PrimitiveKind::ALL
+                .into_iter()
+                .find(|k| k.row().word == word);
+            primitive.kind = kind.unwrap_or(primitive.kind);
+            Ok(())
+        },
+        get: |primitive, word| {
+            let is = primitive.kind.row().word == word;
+            is.then_some(Value::Flag).into_iter().collect()
+        },
+    };
+    binding.required().group("type")
+}
+
+/// Joins two lists of bindings; `N` is the sum of their lengths.
+const fn joined<T, const N: usize>(first: &[Binding<T>], rest: &[Binding<T>]) -> [Binding<T>; N] {
+    let mut all = [first[0]; N];
+    let mut k = 1;
+    while k < N {
+        all[k] = if k < first.len() {
+            first[k]
+        } else {
+            rest[k - first.len()]
+        };
+        k += 1;
+    }
+    all
 }
 
 const fn kind_of<L: Lens<F>, T, F>(_: fn(&mut T) -> &mut F) -> Kind {
@@ -383,25 +468,14 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         keep "BITMAP" (Kind::Text);
         keep "MATRIX" (Kind::Id);
     }),
-    numbered!(Joint, joints: Joint, nothing, {
-        choice "FIXED" (kind = JointKind::Fixed).required().group("type");
-        choice "Revolute" (kind = JointKind::Revolute).required().group("type");
-        choice "Translational" (kind = JointKind::Translational).required().group("type");
-        choice "Cylindrical" (kind = JointKind::Cylindrical).required().group("type");
-        choice "Spherical" (kind = JointKind::Spherical).required().group("type");
-        choice "PLANAR" (kind = JointKind::Planar).required().group("type");
-        choice "Universal" (kind = JointKind::Universal).required().group("type");
-        choice "Hooke" (kind = JointKind::Hooke).required().group("type");
-        choice "CONvel" (kind = JointKind::Convel).required().group("type");
-        choice "RAckpin" (kind = JointKind::Rackpin).required().group("type");
-        choice "SCrew" (kind = JointKind::Screw).required().group("type");
+    numbered!(Joint, joints: Joint, nothing, JOINT_TYPES, {
         field "I" (i).required();
         field "J" (j).required();
         own "IC" (Kind::Reals { min: 1, max: 2, angle: true }, put_joint_ic, joint_ic);
         own "ICTran" (Kind::Reals { min: 1, max: 2, angle: false }, |j, v| j.ic_translation.put(v),
-            |j| if matches!(j.kind, JointKind::Translational) { None } else { j.ic_translation.written() });
+            |j| if j.kind.displacements() == Displacements::Translation { None } else { j.ic_translation.written() });
         own "ICRot" (Kind::Reals { min: 1, max: 2, angle: true }, |j, v| j.ic_rotation.put(v),
-            |j| if matches!(j.kind, JointKind::Revolute) { None } else { <Angle as Lens<_>>::get(&j.ic_rotation) });
+            |j| if j.kind.displacements() == Displacements::Rotation { None } else { <Angle as Lens<_>>::get(&j.ic_rotation) });
         field "PITCH" (pitch);
         field "PD" (pd);
         keep "FRICTION" (WORD);
@@ -422,13 +496,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         keep "HEIGHT" (REAL);
         keep "WIDTH" (REAL);
     }),
-    numbered!(Jprim, primitives: Primitive, nothing, {
-        choice "ATpoint" (kind = PrimitiveKind::Atpoint).required().group("type");
-        choice "INLine" (kind = PrimitiveKind::Inline).required().group("type");
-        choice "INPlane" (kind = PrimitiveKind::Inplane).required().group("type");
-        choice "Orientation" (kind = PrimitiveKind::Orientation).required().group("type");
-        choice "PArallel_axes" (kind = PrimitiveKind::ParallelAxes).required().group("type");
-        choice "PErpendicular" (kind = PrimitiveKind::Perpendicular).required().group("type");
+    numbered!(Jprim, primitives: Primitive, nothing, PRIMITIVE_TYPES, {
         field "I" (i).required();
         field "J" (j).required();
     }),
@@ -572,7 +640,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "CRATIO" (damping_ratio);
         lens "KMATRIX" (Many<36>, stiffness);
         field "FORCE" (preload);
-        lens "LENGTH" (Displacements, free);
+        lens "LENGTH" (SixDisplacements, free);
         field "FUNCTION" (function);
         lens "ROUTINE" (Routine, function);
     }),

@@ -2,33 +2,7 @@
 
 use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
-
-/// JOINT types.
-#[allow(missing_docs)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum JointKind {
-    #[default] Fixed, Revolute, Translational, Cylindrical, Spherical, Planar, Universal, Hooke, Convel, Rackpin, Screw,
-}
-
-impl JointKind {
-    /// Returns its keyword.
-    pub fn keyword(self) -> &'static str {
-        match self {
-            JointKind::Fixed => "FIXED",
-            JointKind::Revolute => "REVOLUTE",
-            JointKind::Translational => "TRANSLATIONAL",
-            JointKind::Cylindrical => "CYLINDRICAL",
-            JointKind::Spherical => "SPHERICAL",
-            JointKind::Planar => "PLANAR",
-            JointKind::Universal => "UNIVERSAL",
-            JointKind::Hooke => "HOOKE",
-            JointKind::Convel => "CONVEL",
-            JointKind::Rackpin => "RACKPIN",
-            JointKind::Screw => "SCREW",
-        }
-    }
-}
+pub use crate::physics::joint::{JointKind, PrimitiveKind};
 
 /// JOINT
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,12 +31,6 @@ impl Element for Joint {
         Some([self.i, self.j])
     }
 }
-
-/// JPRIM types.
-#[allow(missing_docs)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum PrimitiveKind { #[default] Atpoint, Inline, Inplane, Orientation, ParallelAxes, Perpendicular }
 
 /// JPRIM
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -17,11 +17,11 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::interpolation::Bindings;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
 use crate::model::{
-    ArrayKind, ById, COMPONENTS, Driven, ElementId, ElementKind, Formula as ModelFormula,
-    JointKind, Level, Model, RequestKind, Text, VectorForce,
+    ArrayKind, ById, COMPONENTS, Driven, ElementId, ElementKind, Formula as ModelFormula, Level,
+    Model, RequestKind, Text, VectorForce,
 };
 use crate::physics::bushing::Bushing;
-use crate::physics::joint::Tie;
+use crate::physics::joint::{Displacements, Tie};
 use crate::physics::row::Law;
 use crate::physics::spring_damper::SpringDamper;
 use crate::space::Vec3;
@@ -433,7 +433,7 @@ impl<'m> Builder<'m> {
                     self.model
                         .joints
                         .get(&j)
-                        .is_some_and(|j| j.kind == JointKind::Revolute),
+                        .is_some_and(|j| j.kind.displacements() == Displacements::Rotation),
                 ),
                 Driven::Markers { i, j, component } => {
                     let law = match component {
@@ -450,22 +450,17 @@ impl<'m> Builder<'m> {
                     continue;
                 }
             };
-            let allowed = match self.model.joints.get(&joint).map(|j| j.kind) {
-                Some(JointKind::Revolute) => turn,
-                Some(JointKind::Translational) => !turn,
-                Some(JointKind::Cylindrical) => true,
-                Some(_) => false,
-                None => {
-                    c.error(name, format!("JOINT/{joint} does not exist"));
-                    continue;
-                }
+            let Some(j) = self.model.joints.get(&joint) else {
+                c.error(name, format!("JOINT/{joint} does not exist"));
+                continue;
             };
+            let has = j.kind.displacements();
+            let allowed = if turn { has.turns() } else { has.slides() };
             if !allowed {
                 let what = if turn { "rotation" } else { "translation" };
                 c.error(name, format!("JOINT/{joint} has no {what} to drive: a motion needs a revolute, translational or cylindrical joint"));
                 continue;
             }
-            let j = &self.model.joints[&joint];
             let law = if turn { Law::Angle } else { Law::Along(2) };
             if c.driven.insert((joint, turn), m).is_some() {
                 c.error(name, format!("JOINT/{joint} is driven twice"));

@@ -538,7 +538,7 @@ impl<'m> Compiler<'m> {
         ) else {
             return;
         };
-        for law in tie.kind.rows() {
+        for &law in tie.kind.rows() {
             let kind = RowKind::Markers {
                 law,
                 i,

@@ -166,7 +166,7 @@ impl Configured<'_> {
                 motion: None,
             },
         };
-        let rows: Vec<Row> = tie.rows().into_iter().map(row).collect();
+        let rows: Vec<Row> = tie.rows().iter().copied().map(row).collect();
         let constants = vec![0.0; rows.len()];
         configuration.sums.splice(element.rows.clone(), constants);
         scene.rows.splice(element.rows.clone(), rows);

@@ -12,10 +12,12 @@ use super::{
     ConstraintElement, Displacement, JointVariable, LinkMotion, MarkerOnLink, Row, RowKind, Scene,
     Source, Sum,
 };
-use crate::model::{ElementId, ElementKind, Joint, JointKind, MarkerOwner};
+use crate::model::{ElementId, ElementKind, Joint, MarkerOwner};
 use crate::physics::coupler::{Gauge, GearedJoint, gear_factors};
+use crate::physics::joint::{Displacements, Relation, Tie, Unclear};
 use crate::scalar::{Dual, Jet};
 use crate::space::{Frame, Mat3, Vec3};
+use std::f64::consts::TAU;
 
 /// Differences below this are rounding.
 const SAME: f64 = 1e-11;
@@ -25,8 +27,8 @@ impl Builder<'_> {
     pub(super) fn couplers(&mut self, c: &mut Compiler, strict: bool) {
         let model = self.model;
         for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
-            if matches!(joint.kind, JointKind::Screw | JointKind::Rackpin) {
-                self.single(c, id, joint, strict);
+            if let Some(relation) = Tie::Joint(joint.kind).relation() {
+                self.single(c, id, joint, relation, strict);
             }
         }
         for (id, coupler) in model.active(ElementKind::Coupler, &model.couplers) {
@@ -61,7 +63,7 @@ impl Builder<'_> {
         let model = self.model;
         for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
             let name = ElementKind::Joint.id(id);
-            let variables = crate::physics::joint::variables(joint.kind);
+            let variables = joint.kind.row().variables;
             if variables.is_empty() {
                 continue;
             }
@@ -80,25 +82,28 @@ impl Builder<'_> {
     }
 
     /// SCREW and RACKPIN: one equation between the two markers.
-    fn single(&mut self, c: &mut Compiler, id: u32, joint: &Joint, strict: bool) {
+    fn single(
+        &mut self,
+        c: &mut Compiler,
+        id: u32,
+        joint: &Joint,
+        relation: Relation,
+        strict: bool,
+    ) {
         let name = ElementKind::Joint.id(id);
         let (Some(i), Some(j)) = (c.marker(joint.i, name), c.marker(joint.j, name)) else {
             return;
         };
-        let (keyword, about, per_radian) = match joint.kind {
-            JointKind::Screw => (
-                "PITCH",
-                2,
-                joint.pitch.map(|pitch| pitch / std::f64::consts::TAU),
-            ),
-            _ => ("PD", 0, joint.pd.map(|pd| pd / 2.0)),
+        let (argument, per_radian) = match relation {
+            Relation::Screw => ("PITCH", joint.pitch.map(|pitch| pitch / TAU)),
+            Relation::Rack => ("PD", joint.pd.map(|pd| pd / 2.0)),
         };
         let Some(per_radian) = per_radian else {
-            c.error(name, format!("needs {keyword}"));
+            c.error(name, format!("needs {argument}"));
             return;
         };
         let distance = displacement(&self.scene, Gauge::Distance, i, j);
-        let angle = displacement(&self.scene, Gauge::Angle(about), i, j);
+        let angle = displacement(&self.scene, Gauge::Angle(relation.axis()), i, j);
         let sum = Sum {
             terms: vec![(1.0, distance), (-per_radian, angle)],
             constant: 0.0,
@@ -117,28 +122,25 @@ impl Builder<'_> {
         turn: Option<bool>,
     ) -> Option<Displacement> {
         let joint = active_joint(c, name, id)?;
-        let turn = match (joint.kind, turn) {
-            (JointKind::Revolute, None | Some(true)) => true,
-            (JointKind::Translational, None | Some(false)) => false,
-            (JointKind::Cylindrical, Some(turn)) => turn,
-            (JointKind::Cylindrical, None) => {
-                c.error(name, format!("JOINT/{id} is cylindrical: TYPE must say whether its rotation (R) or its translation (T) is meant"));
-                return None;
-            }
-            (JointKind::Revolute | JointKind::Translational, Some(turn)) => {
-                let (has, wants) = if turn {
-                    ("translation", "R")
-                } else {
-                    ("rotation", "T")
+        let turn = match joint.kind.displacements().chosen(turn) {
+            Ok(turn) => turn,
+            Err(why) => {
+                let joint = ElementKind::Joint.id(id);
+                let message = match why {
+                    Unclear::Several => format!(
+                        "{joint} is cylindrical: TYPE must say whether its rotation (R) or its translation (T) is meant"
+                    ),
+                    Unclear::Other { turns: true } => {
+                        format!("TYPE R does not fit: {joint} has only a translation")
+                    }
+                    Unclear::Other { turns: false } => {
+                        format!("TYPE T does not fit: {joint} has only a rotation")
+                    }
+                    Unclear::None => format!(
+                        "{joint} has no displacement to couple: it must be revolute, translational or cylindrical"
+                    ),
                 };
-                c.error(
-                    name,
-                    format!("TYPE {wants} does not fit: JOINT/{id} has only a {has}"),
-                );
-                return None;
-            }
-            _ => {
-                c.error(name, format!("JOINT/{id} has no displacement to couple: it must be revolute, translational or cylindrical"));
+                c.error(name, message);
                 return None;
             }
         };
@@ -167,15 +169,12 @@ impl Builder<'_> {
             let Some(joint) = active_joint(c, name, joint_id) else {
                 return;
             };
-            let (turns, slides) = match joint.kind {
-                JointKind::Revolute => (true, false),
-                JointKind::Translational => (false, true),
-                JointKind::Cylindrical => (true, true),
-                _ => {
-                    c.error(name, format!("JOINT/{joint_id} cannot carry a gear: it must be revolute, translational or cylindrical"));
-                    return;
-                }
-            };
+            let displacements = joint.kind.displacements();
+            if displacements == Displacements::None {
+                c.error(name, format!("JOINT/{joint_id} cannot carry a gear: it must be revolute, translational or cylindrical"));
+                return;
+            }
+            let (turns, slides) = (displacements.turns(), displacements.slides());
             if owner(joint.j) != carrier {
                 let on = |o: Option<MarkerOwner>| {
                     let body = o.and_then(MarkerOwner::body);

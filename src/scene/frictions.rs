@@ -7,7 +7,7 @@ use super::build::Builder;
 use super::compile::Compiler;
 use super::forces::ForceLaw;
 use crate::diagnostic::Diagnostic;
-use crate::model::{self, ElementKind, JointKind};
+use crate::model::{self, ElementKind};
 use crate::physics::contact::law::Coulomb;
 use crate::physics::friction::{Friction, Kind, Overlap};
 
@@ -26,21 +26,13 @@ impl Builder<'_> {
             if !model.is_active(ElementKind::Joint.id(f.joint)) {
                 continue;
             }
-            let kind = match joint.kind {
-                JointKind::Revolute => Kind::Revolute,
-                JointKind::Translational => Kind::Translational,
-                JointKind::Cylindrical => Kind::Cylindrical,
-                JointKind::Spherical => Kind::Spherical,
-                // the pins of the cross: see the joint's rows
-                JointKind::Hooke => Kind::Pins { i: 0, j: 1 },
-                JointKind::Universal => Kind::Pins { i: 2, j: 2 },
-                _ => {
-                    c.error(
-                        name,
-                        format!("JOINT/{}: there is no friction law for its kind", f.joint),
-                    );
-                    continue;
-                }
+            let Some(kind) = joint.kind.row().friction else {
+                let joint = ElementKind::Joint.id(f.joint);
+                c.error(
+                    name,
+                    format!("{joint}: there is no friction law for its kind"),
+                );
+                continue;
             };
             match friction(f, kind) {
                 Ok(law) => {

@@ -275,7 +275,7 @@ impl Columns {
                 name_of(&joint.place, ElementKind::Joint.id(id))
             );
             let mut components = Vec::new();
-            for &(variable, gauge) in crate::physics::joint::variables(joint.kind) {
+            for &(variable, gauge) in joint.kind.row().variables {
                 let unit = if gauge.is_angle() {
                     u.angle.clone()
                 } else {

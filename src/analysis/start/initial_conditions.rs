@@ -16,7 +16,7 @@
 use crate::analysis::start::assemble::{self, least_change, rows_at};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{ElementKind, JointKind, Model};
+use crate::model::{ElementKind, Model};
 use crate::physics::cam::Contact;
 use crate::physics::coupler::Gauge;
 use crate::physics::kinematic::kinematic;
@@ -65,14 +65,10 @@ pub struct InitialCondition {
 pub(in crate::analysis) fn of_joints(model: &Model) -> Vec<(u32, Gauge, [Option<f64>; 2])> {
     let mut found = Vec::new();
     for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
-        let slides = matches!(
-            joint.kind,
-            JointKind::Translational | JointKind::Cylindrical
-        );
-        let turns = matches!(joint.kind, JointKind::Revolute | JointKind::Cylindrical);
+        let has = joint.kind.displacements();
         for (allowed, gauge, given) in [
-            (slides, Gauge::Distance, joint.ic_translation),
-            (turns, Gauge::Angle(2), joint.ic_rotation),
+            (has.slides(), Gauge::Distance, joint.ic_translation),
+            (has.turns(), Gauge::Angle(2), joint.ic_rotation),
         ] {
             if allowed && given != [None; 2] {
                 found.push((id, gauge, given));

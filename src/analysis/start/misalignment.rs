@@ -3,7 +3,7 @@
 
 use crate::analysis::start::direction::Axis;
 use crate::analysis::start::quantity::{length, short};
-use crate::model::{ElementId, ElementKind, JointKind, Model, PrimitiveKind};
+use crate::model::{ElementId, ElementKind, Model};
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
 use crate::scene::Scene;
@@ -37,7 +37,7 @@ pub fn misaligned(scene: &Scene, model: &Model) -> Vec<String> {
             continue;
         };
         let (mut offset, mut turn) = (Vec3::zero(), Vec3::zero());
-        for law in tie.rows() {
+        for &law in tie.rows() {
             let value = law.value(&I, &J, None);
             match law {
                 Law::Offset(k) => offset += Vec3::axis(k).times(value),
@@ -135,17 +135,6 @@ pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
     found
 }
 
-/// Whether the z axes of a tie must point the same way.
-fn is_directed(tie: Tie) -> bool {
-    use JointKind as J;
-    use PrimitiveKind as P;
-    matches!(
-        tie,
-        Tie::Joint(J::Fixed | J::Revolute | J::Translational | J::Cylindrical | J::Planar)
-            | Tie::Primitive(P::Orientation | P::ParallelAxes)
-    )
-}
-
 /// What assembly has turned round: parts that stand the other way than in the dataset, joints whose
 /// axes point against each other.
 pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<String> {
@@ -169,7 +158,7 @@ pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<Stri
             ));
         }
     }
-    for (name, _, i, j) in ties(model).into_iter().filter(|t| is_directed(t.1)) {
+    for (name, _, i, j) in ties(model).into_iter().filter(|t| t.1.keeps_z()) {
         let frame = |id: u32| scene.marker_of.get(&id).map(|&m| at.marker(m).R_GM);
         if let (Some(I), Some(J)) = (frame(i), frame(j))
             && I.column(2).dot(J.column(2)) < -0.5

@@ -13,7 +13,7 @@
 //! `Δ₀` closing the rows, N what they leave free, and z least squares.
 
 use crate::analysis::start::assemble;
-use crate::model::{ElementKind, JointKind, Model};
+use crate::model::{ElementKind, Model};
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
 use crate::scalar::{Jet, Scalar};
@@ -153,12 +153,8 @@ impl Asked {
             let Some(joint) = model.joints.get(&id) else {
                 continue;
             };
-            let has = match joint.kind {
-                JointKind::Revolute => [false, true],
-                JointKind::Translational => [true, false],
-                JointKind::Cylindrical => [true, true],
-                _ => [false, false],
-            };
+            let has = joint.kind.displacements();
+            let has = [has.slides(), has.turns()];
             let given = [joint.ic_translation[0], joint.ic_rotation[0]];
             for (turn, value) in [false, true].into_iter().zip(given) {
                 let Some(value) = value.filter(|_| has[usize::from(turn)]) else {

@@ -64,14 +64,14 @@ impl fmt::Display for Advice {
                 write!(f, "{name} is not needed: without it the motion is the same")
             }
             Change::Replace(Tie::Joint(kind)) => {
-                let kind = format!("{kind:?}").to_uppercase();
+                let kind = kind.keyword();
                 write!(
                     f,
                     "{name} as {kind} with the same markers permits the same motion and fixes nothing twice"
                 )
             }
             Change::Replace(Tie::Primitive(kind)) => {
-                let kind = super::words::primitive(kind);
+                let kind = kind.row().keyword;
                 write!(
                     f,
                     "JPRIM {kind} with the markers of {name} in its place permits the same motion and fixes nothing twice"

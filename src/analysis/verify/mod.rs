@@ -214,7 +214,7 @@ fn statement(model: &Model, id: ElementId) -> String {
     let primitive = model.primitives.get(&id.number);
     match (id.kind, joint, primitive) {
         (ElementKind::Joint, Some(joint), _) => format!("{} {}", id.kind, joint.kind.keyword()),
-        (ElementKind::Jprim, _, Some(p)) => format!("{} {}", id.kind, words::primitive(p.kind)),
+        (ElementKind::Jprim, _, Some(p)) => format!("{} {}", id.kind, p.kind.row().keyword),
         _ => id.kind.to_string(),
     }
 }

@@ -1,22 +1,8 @@
-//! Names of primitives, and the axes in which reactions are told.
+//! The axes in which reactions are told.
 
 use crate::analysis::start::direction::SAME_DIRECTION;
-use crate::model::PrimitiveKind;
 use crate::scene::equations::Equations;
 use crate::space::Mat3;
-
-/// The keyword of a JPRIM type.
-pub(super) fn primitive(kind: PrimitiveKind) -> &'static str {
-    use PrimitiveKind as P;
-    match kind {
-        P::Atpoint => "ATPOINT",
-        P::Inline => "INLINE",
-        P::Inplane => "INPLANE",
-        P::Orientation => "ORIENTATION",
-        P::ParallelAxes => "PARALLEL_AXES",
-        P::Perpendicular => "PERPENDICULAR",
-    }
-}
 
 /// The axes in which an element's reaction is told: those of its J marker, ground's when they are
 /// parallel to these.

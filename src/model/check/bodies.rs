@@ -1,6 +1,7 @@
 //! Parts, point masses and markers: one ground, mass with a place, inertia that a body can have, axes, owners of floating markers.
 
 use super::*;
+use crate::physics::joint::Tie;
 use nalgebra::Matrix3;
 
 pub(super) fn one_ground(model: &Model, out: &mut Out) {
@@ -210,7 +211,7 @@ pub(super) fn point_masses_do_not_turn(model: &Model, out: &mut Out) {
         body.is_some_and(|b| b.kind == ElementKind::PointMass)
     };
     for (&id, j) in &model.joints {
-        if !matches!(j.kind, JointKind::Spherical) && (is_point(j.i) || is_point(j.j)) {
+        if Tie::Joint(j.kind).holds_orientation() && (is_point(j.i) || is_point(j.j)) {
             let message = format!(
                 "a {} joint holds the orientation of a point mass, which has none",
                 j.kind.keyword()
@@ -228,10 +229,7 @@ pub(super) fn point_masses_do_not_turn(model: &Model, out: &mut Out) {
         }
     }
     for (&id, j) in &model.primitives {
-        let holds = matches!(
-            j.kind,
-            PrimitiveKind::Orientation | PrimitiveKind::ParallelAxes | PrimitiveKind::Perpendicular
-        );
+        let holds = Tie::Primitive(j.kind).holds_orientation();
         if holds && (is_point(j.i) || is_point(j.j)) {
             let message = "it holds the orientation of a point mass, which has none".to_owned();
             error(

@@ -1,6 +1,7 @@
 //! Joints, primitives and motions: between two parts, complete, and driving what there is to drive.
 
 use super::*;
+use crate::physics::joint::Unclear;
 
 pub(super) fn constraints_join_two_parts(model: &Model, out: &mut Out) {
     for (id, element) in model.elements() {
@@ -55,8 +56,8 @@ pub(super) fn joints_are_complete(model: &Model, out: &mut Out) {
             }
             _ => {}
         }
-        let turns = matches!(j.kind, JointKind::Revolute | JointKind::Cylindrical);
-        let slides = matches!(j.kind, JointKind::Translational | JointKind::Cylindrical);
+        let has = j.kind.displacements();
+        let (turns, slides) = (has.turns(), has.slides());
         if !turns && j.ic_rotation != [None; 2] || !slides && j.ic_translation != [None; 2] {
             let message = format!(
                 "{} has no such freedom: its initial condition is not used",
@@ -91,38 +92,10 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
         let Some(kind) = model.joints.get(&joint).map(|j| j.kind) else {
             continue;
         };
-        let word = kind.keyword();
-        let turns = match (kind, rotation) {
-            (JointKind::Revolute, None | Some(true)) => true,
-            (JointKind::Translational, None | Some(false)) => false,
-            (JointKind::Cylindrical, Some(turns)) => turns,
-            (JointKind::Cylindrical, None) => {
-                let message =
-                    format!("JOINT/{joint} is CYLINDRICAL: ROTATION or TRANSLATION is needed");
-                error(out, "missing_argument", who, message);
-                continue;
-            }
-            (JointKind::Revolute | JointKind::Translational, Some(turns)) => {
-                let what = if turns { "rotation" } else { "translation" };
-                error(
-                    out,
-                    "motion_on_wrong_joint",
-                    who,
-                    format!("JOINT/{joint} is {word} and has no {what}"),
-                );
-                continue;
-            }
-            _ => {
-                error(
-                    out,
-                    "motion_on_wrong_joint",
-                    who,
-                    format!("JOINT/{joint} is {word}: no motion can drive it"),
-                );
-                advise(
-                    out,
-                    "a motion drives a REVOLUTE, TRANSLATIONAL or CYLINDRICAL joint, or one component between two markers (I, J)",
-                );
+        let turns = match kind.displacements().chosen(rotation) {
+            Ok(turns) => turns,
+            Err(why) => {
+                undriven(out, who, (joint, kind), why);
                 continue;
             }
         };
@@ -136,5 +109,33 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
             );
         }
         driven.entry((joint, turns)).or_insert(id);
+    }
+}
+
+/// Tells why a motion cannot drive a joint.
+fn undriven(out: &mut Out, who: Who, (joint, kind): (u32, JointKind), why: Unclear) {
+    let is = format!("JOINT/{joint} is {}", kind.keyword());
+    match why {
+        Unclear::Several => {
+            let message = format!("{is}: ROTATION or TRANSLATION is needed");
+            error(out, "missing_argument", who, message);
+        }
+        Unclear::Other { turns } => {
+            let what = if turns { "rotation" } else { "translation" };
+            error(
+                out,
+                "motion_on_wrong_joint",
+                who,
+                format!("{is} and has no {what}"),
+            );
+        }
+        Unclear::None => {
+            let message = format!("{is}: no motion can drive it");
+            error(out, "motion_on_wrong_joint", who, message);
+            advise(
+                out,
+                "a motion drives a REVOLUTE, TRANSLATIONAL or CYLINDRICAL joint, or one component between two markers (I, J)",
+            );
+        }
     }
 }

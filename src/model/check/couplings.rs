@@ -1,6 +1,7 @@
 //! Couplers and gears: sums of displacements that their joints have, on a carrier that they share.
 
 use super::*;
+use crate::physics::joint::{Displacements, Unclear};
 
 pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
     for (&id, c) in &model.couplers {
@@ -17,45 +18,36 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
             let Some(kind) = model.joints.get(joint).map(|j| j.kind) else {
                 continue;
             };
-            let word = kind.keyword();
-            match (kind, c.rotational.get(k).copied().flatten()) {
-                (JointKind::Revolute, Some(false)) => {
-                    error(
-                        out,
-                        "contradiction",
-                        who,
-                        format!("TYPE says T for JOINT/{joint}, which is REVOLUTE"),
-                    );
-                }
-                (JointKind::Translational, Some(true)) => {
-                    error(
-                        out,
-                        "contradiction",
-                        who,
-                        format!("TYPE says R for JOINT/{joint}, which is TRANSLATIONAL"),
-                    );
-                }
-                (JointKind::Cylindrical, None) => {
-                    error(
-                        out,
-                        "missing_argument",
-                        who,
-                        format!("JOINT/{joint} is CYLINDRICAL: TYPE must say R or T"),
-                    );
-                }
-                (JointKind::Revolute | JointKind::Translational | JointKind::Cylindrical, _) => {}
-                _ => error(
-                    out,
-                    "wrong_joint",
-                    who,
-                    format!("JOINT/{joint} is {word}: it cannot be coupled"),
-                ),
+            let said = c.rotational.get(k).copied().flatten();
+            if let Err(why) = kind.displacements().chosen(said) {
+                uncoupled(out, who, (*joint, kind), why);
             }
         }
         if c.user.is_none() && !c.scales.is_empty() && c.scales.iter().all(|&s| s == 0.0) {
             error(out, "unfit_value", who, "all SCALES are zero".into());
         }
     }
+}
+
+/// Tells why a displacement of a joint cannot be coupled.
+fn uncoupled(out: &mut Out, who: Who, (joint, kind): (u32, JointKind), why: Unclear) {
+    let (word, joint) = (kind.keyword(), ElementKind::Joint.id(joint));
+    let (code, message) = match why {
+        Unclear::Several => (
+            "missing_argument",
+            format!("{joint} is {word}: TYPE must say R or T"),
+        ),
+        Unclear::Other { turns } => {
+            let said = if turns { "R" } else { "T" };
+            let message = format!("TYPE says {said} for {joint}, which is {word}");
+            ("contradiction", message)
+        }
+        Unclear::None => (
+            "wrong_joint",
+            format!("{joint} is {word}: it cannot be coupled"),
+        ),
+    };
+    error(out, code, who, message);
 }
 
 pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
@@ -74,11 +66,7 @@ pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
             let Some(joint) = model.joints.get(&n) else {
                 continue;
             };
-            let geared = matches!(
-                joint.kind,
-                JointKind::Revolute | JointKind::Translational | JointKind::Cylindrical
-            );
-            if !geared {
+            if joint.kind.displacements() == Displacements::None {
                 let message = format!("JOINT/{n} is {}: it cannot be geared", joint.kind.keyword());
                 error(out, "wrong_joint", who, message);
             }

@@ -47,19 +47,7 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
     }
     for (&id, f) in &model.frictions {
         let kind = model.joints.get(&f.joint).map(|j| j.kind);
-        let takes = |k| {
-            use JointKind as J;
-            matches!(
-                k,
-                J::Translational
-                    | J::Revolute
-                    | J::Cylindrical
-                    | J::Hooke
-                    | J::Universal
-                    | J::Spherical
-            )
-        };
-        if let Some(kind) = kind.filter(|&k| !takes(k)) {
+        if let Some(kind) = kind.filter(|k| k.row().friction.is_none()) {
             let message = format!(
                 "JOINT/{} is {}: there is no friction law for it",
                 f.joint,
