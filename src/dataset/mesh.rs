@@ -1,4 +1,5 @@
-//! Points of the shells that GRAPHICS name by file: Adams shell (`.shl`), STL (text and binary), Wavefront (`.obj`).
+//! Points of the shells that GRAPHICS name by file: Adams shell (`.shl`), STL (text and binary),
+//! Wavefront (`.obj`).
 //!
 //! ```text
 //! .shl   n_points n_polygons [scale]      then n_points lines x y z, then the polygons, which are not needed here
@@ -6,9 +7,10 @@
 //! .obj   v x y z …
 //! ```
 //!
-//! What touches is the convex hull of the points (`physics/contact/query/hull.rs`), so that polygons are of no use. Lengths are in the
-//! units of the model. A file is taken as what it is, whatever its name ends with. Nothing is reserved on the word of a file: there are
-//! never more points than bytes.
+//! What touches is the convex hull of the points (`physics/contact/query/hull.rs`), so that
+//! polygons are of no use. Lengths are in the units of the model. A file is taken as what it is,
+//! whatever its name ends with. Nothing is reserved on the word of a file: there are never more
+//! points than bytes.
 
 use std::str::FromStr;
 

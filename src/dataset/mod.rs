@@ -4,8 +4,9 @@
 //! bytes → Source → Syntax (statements, comments, tokens) → Records (rows of the table) → Model
 //! ```
 //!
-//! [`Dataset`] keeps the first four, so that a file can be written again with its comments and its order; the Model says
-//! what it means. The table of statements (`statement.rs`) is the only place that knows arguments by name.
+//! [`Dataset`] keeps the first four, so that a file can be written again with its comments and its
+//! order; the Model says what it means. The table of statements (`statement.rs`) is the only place
+//! that knows arguments by name.
 
 pub mod command;
 pub mod lens;
@@ -44,7 +45,8 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// What is said about an element, with the place of its statement; unchanged where that is not known, or a place has been given.
+    /// What is said about an element, with the place of its statement; unchanged where that is not
+    /// known, or a place has been given.
     pub fn locate(&self, d: Diagnostic) -> Diagnostic {
         let named = d.element.as_deref().and_then(|e| e.split(' ').next());
         let (None, Some(element)) = (&d.file, named) else {
@@ -68,7 +70,8 @@ impl Dataset {
     }
 }
 
-/// What reading a dataset gave: always everything that could be understood, with all that was found wrong.
+/// What reading a dataset gave: always everything that could be understood, with all that was found
+/// wrong.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
     /// the file as written
@@ -259,9 +262,8 @@ fn adopt_marker(
 impl Model {
     /// Reads a dataset; all mistakes at once.
     ///
-    /// # Errors
-    /// Every mistake with its place and advice; printing the error prints them all. Warnings alone are no error: see
-    /// [`read()`] for them.
+    /// # Errors Every mistake with its place and advice; printing the error prints them all.
+    /// Warnings alone are no error: see [`read()`] for them.
     pub fn read(path: impl AsRef<Path>) -> Result<Model, Errors> {
         into_model(read(path)?)
     }

@@ -1,7 +1,8 @@
-//! What a row of the table of statements is, and the two directions it serves: from a record into the Model and back.
+//! What a row of the table of statements is, and the two directions it serves: from a record into
+//! the Model and back.
 //!
-//! A [`Record`] is a statement read but not yet believed: which row, which number, which arguments with their values.
-//! The rows themselves stand in `statement.rs`.
+//! A [`Record`] is a statement read but not yet believed: which row, which number, which arguments
+//! with their values. The rows themselves stand in `statement.rs`.
 
 use super::value::{Field, Kind, Value};
 use crate::diagnostic::{Span, near_names};
@@ -13,8 +14,8 @@ use std::fmt::Debug;
 /// An argument of a statement, whatever field it fills.
 #[derive(Clone, Copy, Debug)]
 pub struct Argument {
-    /// Full keyword; the capitals at its beginning are the shortest form that wins against longer keywords that begin
-    /// alike (`Comment` is meant by `C`). Other spellings follow after `|`.
+    /// Full keyword; the capitals at its beginning are the shortest form that wins against longer
+    /// keywords that begin alike (`Comment` is meant by `C`). Other spellings follow after `|`.
     pub name: &'static str,
     /// what it accepts
     pub kind: Kind,
@@ -171,7 +172,8 @@ pub trait Statement: Sync {
     fn open(&self) -> bool;
     /// Its arguments.
     fn arguments(&self) -> Vec<Argument>;
-    /// Puts a record into the model: a new element, or (`change`) new values for arguments of one that is there.
+    /// Puts a record into the model: a new element, or (`change`) new values for arguments of one
+    /// that is there.
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem>;
     /// Sets what a statement without a number sets back to what holds without it.
     fn reset(&self, _: &mut Model) {}
@@ -305,7 +307,8 @@ impl<T: Element> Statement for Numbered<T> {
         {
             problems.push(Problem::new("contradiction", message));
         }
-        // A new element with a mistake is entered all the same, so that nothing else seems to miss it.
+        // A new element with a mistake is entered all the same, so that nothing else seems to miss
+        // it.
         if !change || problems.is_empty() {
             (self.list_mut)(model).insert(id, element);
         }
@@ -447,7 +450,8 @@ fn row_of(keyword: &'static str) -> &'static dyn Statement {
     *row.unwrap_or_else(|| unreachable!("records are made by rows of the table"))
 }
 
-/// Puts the arguments into an element: bare keywords first, for the meaning of others may depend on them.
+/// Puts the arguments into an element: bare keywords first, for the meaning of others may depend on
+/// them.
 fn apply<T: Element>(
     bindings: &'static [Binding<T>],
     element: &mut T,
@@ -552,7 +556,8 @@ pub enum Meaning {
     Unknown,
 }
 
-/// Which of the names a word means: itself, else the only one it begins, else the first whose shortest form it has.
+/// Which of the names a word means: itself, else the only one it begins, else the first whose
+/// shortest form it has.
 pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Meaning {
     let word = word.as_bytes();
     let mut begins = Vec::new();

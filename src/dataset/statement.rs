@@ -1,7 +1,8 @@
 //! The table of statements: keyword, arguments, where each argument sits in the Model.
 //!
-//! Reading, abbreviations, writing, respecification by commands and the texts of errors all come from these rows; a new
-//! statement or argument is a row here and a field in the Model. A line reads *how* "Name" (field), where *how* is
+//! Reading, abbreviations, writing, respecification by commands and the texts of errors all come
+//! from these rows; a new statement or argument is a row here and a field in the Model. A line
+//! reads *how* "Name" (field), where *how* is
 //!
 //! ```text
 //! field   "MASS" (mass)                   the field's type says what it takes
@@ -14,7 +15,8 @@
 //! set     "ERROR" (kind)                  a number or word among Settings
 //! ```
 //!
-//! and capitals at the beginning of a name are the abbreviation that wins when several names begin alike.
+//! and capitals at the beginning of a name are the abbreviation that wins when several names begin
+//! alike.
 
 use super::lens::*;
 use super::row::{
@@ -343,7 +345,8 @@ const fn kind_of_slot<F: Field>(_: fn(&mut Shape) -> Option<&mut F>) -> Kind {
     F::KIND
 }
 
-/// Every statement a dataset may hold. The order decides between equal abbreviations and is the order of writing.
+/// Every statement a dataset may hold. The order decides between equal abbreviations and is the
+/// order of writing.
 #[rustfmt::skip]
 pub static STATEMENTS: &[&dyn Statement] = &[
     &Single::<Option<Units>> {

@@ -1,7 +1,8 @@
-//! From bytes to statements and their tokens, nothing lost: every comment, mark and word with its place.
+//! From bytes to statements and their tokens, nothing lost: every comment, mark and word with its
+//! place.
 //!
-//! The grammar (`grammar/dataset.pest`) says what a statement, a continuation and a comment are. Nothing here knows any
-//! statement by name.
+//! The grammar (`grammar/dataset.pest`) says what a statement, a continuation and a comment are.
+//! Nothing here knows any statement by name.
 
 use crate::diagnostic::{Diagnostic, Span};
 use pest::Parser;
@@ -37,8 +38,9 @@ pub enum Encoding {
 impl Encoding {
     /// What these bytes look like.
     ///
-    /// UTF-16 is known by its byte order mark, or, without one, by zero bytes beside the first characters, which are
-    /// plain letters in any dataset. Bytes that would not come back as they were are taken as Latin-1.
+    /// UTF-16 is known by its byte order mark, or, without one, by zero bytes beside the first
+    /// characters, which are plain letters in any dataset. Bytes that would not come back as they
+    /// were are taken as Latin-1.
     fn of(bytes: &[u8]) -> Self {
         let wide = |big_endian| Encoding::Utf16 { big_endian };
         let guess = match *bytes {
@@ -245,7 +247,6 @@ pub struct Syntax {
 
 /// Generated from the grammars.
 mod grammar {
-    #![allow(missing_docs)]
     #[derive(pest_derive::Parser)]
     #[grammar = "../grammar/dataset.pest"]
     #[grammar = "../grammar/command.pest"]

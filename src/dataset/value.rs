@@ -1,7 +1,9 @@
-//! What can stand behind an argument: the kinds of value, and how each kind sits in a field of the Model.
+//! What can stand behind an argument: the kinds of value, and how each kind sits in a field of the
+//! Model.
 //!
-//! A [`Value`] is the one form between text and Model: the reader makes it from tokens, the table puts it into a field
-//! ([`Field::put`]), takes it out again ([`Field::written`]), and the writer prints it.
+//! A [`Value`] is the one form between text and Model: the reader makes it from tokens, the table
+//! puts it into a field ([`Field::put`]), takes it out again ([`Field::written`]), and the writer
+//! prints it.
 
 use crate::model::{Formula, Level};
 use std::fmt::Write;
@@ -451,7 +453,8 @@ impl Field for Formula {
     }
 }
 
-/// A field that may be absent takes what the field itself takes, and is written whenever it is there.
+/// A field that may be absent takes what the field itself takes, and is written whenever it is
+/// there.
 impl<F: Field + Default + Always> Field for Option<F> {
     const KIND: Kind = F::KIND;
     fn put(&mut self, value: Value) -> Result<(), String> {

@@ -1,8 +1,9 @@
-//! Statements back to text, the way Adams View writes them: one argument per line, at most eighty columns.
+//! Statements back to text, the way Adams View writes them: one argument per line, at most eighty
+//! columns.
 //!
-//! [`Dataset::formatted`] keeps comments, order and suffixes of a file; [`Model::to_text`] writes a model that may never
-//! have been a file. Both print records of the table, so what is read is what is written. Numbers are the shortest that
-//! read back to the same value.
+//! [`Dataset::formatted`] keeps comments, order and suffixes of a file; [`Model::to_text`] writes a
+//! model that may never have been a file. Both print records of the table, so what is read is what
+//! is written. Numbers are the shortest that read back to the same value.
 
 use super::Dataset;
 use super::row::{Given, Record};
@@ -258,8 +259,8 @@ fn write_formula(out: &mut Lines, head: &str, text: &str, more: bool) {
     }
 }
 
-/// Where to break an expression that does not fit into `room` columns: at a blank, else after a mark; `None` when it fits
-/// or cannot be broken.
+/// Where to break an expression that does not fit into `room` columns: at a blank, else after a
+/// mark; `None` when it fits or cannot be broken.
 fn break_at(text: &str, room: usize) -> Option<usize> {
     if text.chars().count() <= room {
         return None;
@@ -283,8 +284,9 @@ fn break_at(text: &str, room: usize) -> Option<usize> {
     blank.or(mark)
 }
 
-/// Whether the byte before `at` ends something after which blanks do not matter: `,`, `(`, an operator that is not the
-/// sign of an exponent, nor half of `**`, nor a division (which at the end of a line looks like the end of the function).
+/// Whether the byte before `at` ends something after which blanks do not matter: `,`, `(`, an
+/// operator that is not the sign of an exponent, nor half of `**`, nor a division (which at the end
+/// of a line looks like the end of the function).
 fn after_mark(bytes: &[u8], at: usize) -> bool {
     let before = |k: usize| {
         at.checked_sub(k)

@@ -24,10 +24,12 @@ pub enum Orientation {
 
 /// PART (a rigid body; ground is the part with `ground`) and POINT_MASS.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Part {
+    /// where it stands in the dataset
     pub place: Place,
+    /// GROUND: the part that does not move
     pub ground: bool,
+    /// MASS; 0 when absent
     pub mass: f64,
     /// marker at the centre of mass
     pub cm: Option<u32>,
@@ -43,15 +45,16 @@ pub struct Part {
     pub velocity: [Option<f64>; 3],
     /// initial angular velocity about the axes of `wm` (CM when absent); `None` = not given
     pub angular_velocity: [Option<f64>; 3],
+    /// VM: marker whose axes `velocity` has
     pub vm: Option<u32>,
+    /// WM: marker whose axes `angular_velocity` has
     pub wm: Option<u32>,
     /// EXACT: x, y, z, ψ, θ, φ that assembly should keep
     pub exact: [bool; 6],
 }
 
-/// What a marker is fixed in.
+/// The body that a marker is fixed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum MarkerOwner {
     /// a PART, by its number
     Part(u32),
@@ -80,12 +83,14 @@ impl Default for MarkerOwner {
 
 /// MARKER: a frame fixed in a part, or floating.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Marker {
+    /// where it stands in the dataset
     pub place: Place,
+    /// the body it is fixed in
     pub owner: MarkerOwner,
     /// origin in the part frame
     pub qp: [f64; 3],
+    /// orientation in the part frame
     pub orientation: Orientation,
     /// its frame is set by the element that owns it
     pub floating: bool,

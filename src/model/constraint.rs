@@ -4,13 +4,16 @@ use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
 pub use crate::physics::joint::{JointKind, PrimitiveKind};
 
-/// JOINT
+/// JOINT: a joint between two markers.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Joint {
+    /// where it stands in the dataset
     pub place: Place,
+    /// its type
     pub kind: JointKind,
+    /// I marker, on the part that moves
     pub i: u32,
+    /// J marker, against which I moves
     pub j: u32,
     /// IC or ICTRAN: initial displacement and velocity along z_J
     pub ic_translation: [Option<f64>; 2],
@@ -32,13 +35,16 @@ impl Element for Joint {
     }
 }
 
-/// JPRIM
+/// JPRIM: a single condition between two markers.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Primitive {
+    /// where it stands in the dataset
     pub place: Place,
+    /// its type
     pub kind: PrimitiveKind,
+    /// I marker
     pub i: u32,
+    /// J marker
     pub j: u32,
 }
 
@@ -52,18 +58,23 @@ impl Element for Primitive {
     }
 }
 
-/// What a MOTION drives.
+/// The displacement that a MOTION drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum Driven {
+    /// translation along z of J of a joint
     JointTranslation(u32),
+    /// rotation about z of J of a joint
     JointRotation(u32),
     /// the only freedom of a joint (no keyword given)
     Joint(u32),
-    /// component 0 X, 1 Y, 2 Z of I from J along J's axes; 3 B1, 4 B2, 5 B3 body 1-2-3 angles of I in J
+    /// component 0 X, 1 Y, 2 Z of I from J along J's axes; 3 B1, 4 B2, 5 B3 body 1-2-3 angles of I
+    /// in J
     Markers {
+        /// I marker
         i: u32,
+        /// J marker
         j: u32,
+        /// which: 0 to 5
         component: usize,
     },
 }
@@ -74,21 +85,32 @@ impl Default for Driven {
     }
 }
 
-/// Level at which a MOTION prescribes.
-#[allow(missing_docs)]
+/// The level at which a MOTION prescribes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum Level { #[default] Displacement, Velocity, Acceleration }
+pub enum Level {
+    /// DISPLACEMENT
+    #[default]
+    Displacement,
+    /// VELOCITY
+    Velocity,
+    /// ACCELERATION
+    Acceleration,
+}
 
-/// MOTION
+/// MOTION: a displacement, velocity or acceleration given as a function of time.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Motion {
+    /// where it stands in the dataset
     pub place: Place,
+    /// the displacement that is given
     pub driven: Driven,
+    /// whether the function is the displacement or a rate of it
     pub level: Level,
+    /// FUNCTION   [length or rad, over time or time² at the higher levels]
     pub function: Formula,
+    /// ICDISP: displacement at the start   [length or rad]; used by velocity and acceleration
     pub ic_displacement: Option<f64>,
+    /// ICVEL: velocity at the start   [length/time or rad/time]; used by acceleration
     pub ic_velocity: Option<f64>,
 }
 
@@ -115,14 +137,16 @@ impl Element for Motion {
 
 /// COUPLER: r1 q1 + r2 q2 + r3 q3 = constant.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Coupler {
+    /// where it stands in the dataset
     pub place: Place,
+    /// JOINTS: two or three
     pub joints: Vec<u32>,
     /// per joint: rotation (true) or translation (false); `None` = the joint's only freedom
     pub rotational: Vec<Option<bool>>,
     /// as many as joints
     pub scales: Vec<f64>,
+    /// FUNCTION=USER(…), instead of SCALES
     pub user: Option<Formula>,
 }
 
@@ -136,12 +160,14 @@ impl Element for Coupler {
     }
 }
 
-/// GEAR
+/// GEAR: two joints whose points at the common velocity marker move alike.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Gear {
+    /// where it stands in the dataset
     pub place: Place,
+    /// JOINTS: the two joints, which share the carrier of their J markers
     pub joints: [u32; 2],
+    /// CV: marker on the carrier; its z points along the common velocity
     pub cv: u32,
 }
 
@@ -154,12 +180,14 @@ impl Element for Gear {
     }
 }
 
-/// GCON: expression = 0
+/// GCON: an expression that stays zero.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct GeneralConstraint {
+    /// where it stands in the dataset
     pub place: Place,
+    /// I: marker on whose part the reaction is told
     pub i: Option<u32>,
+    /// FUNCTION: the expression
     pub function: Formula,
 }
 
@@ -175,9 +203,10 @@ impl Element for GeneralConstraint {
 
 /// CURVE: a B-spline through or near the rows of a MATRIX, or computed by a routine.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Curve {
+    /// where it stands in the dataset
     pub place: Place,
+    /// CLOSED: its end meets its beginning
     pub closed: bool,
     /// one more than the degree of the pieces; 4 when absent
     pub order: Option<u32>,
@@ -205,10 +234,12 @@ impl Element for Curve {
 
 /// PTCV: the origin of I stays on a curve.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct PointOnCurve {
+    /// where it stands in the dataset
     pub place: Place,
+    /// CURVE
     pub curve: u32,
+    /// I marker
     pub i: u32,
     /// floating marker that carries the reaction
     pub jfloat: Option<u32>,
@@ -238,7 +269,6 @@ impl Element for PointOnCurve {
 
 /// One of the two sides of a CVCV.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct CurveSide {
     /// ICURVE, JCURVE
     pub curve: u32,
@@ -256,10 +286,12 @@ pub struct CurveSide {
 
 /// CVCV: two planar curves touch.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct CurveOnCurve {
+    /// where it stands in the dataset
     pub place: Place,
+    /// the curve of I
     pub i: CurveSide,
+    /// the curve of J
     pub j: CurveSide,
 }
 

@@ -1,9 +1,11 @@
-//! The table of elements: every statement with a number, its keyword, its family and its list in the [`Model`].
+//! The table of elements: every statement with a number, its keyword, its family and its list in
+//! the [`Model`].
 //!
-//! A row here makes the variant of [`ElementKind`], the list of the model and all lookups by kind; the element's own type, next
-//! to its fields, says whom it names and what it computes ([`Element`]). Arguments stand in the table of statements
-//! (`dataset/statement.rs`). Nobody else knows keywords: inside the program an element is an [`ElementId`], a text only where it
-//! is printed.
+//! A row here makes the variant of [`ElementKind`], the list of the model and all lookups by kind;
+//! the element's own type, next to its fields, says whom it names and what it computes
+//! ([`Element`]). Arguments stand in the table of statements (`dataset/statement.rs`). Nobody else
+//! knows keywords: inside the program an element is an [`ElementId`], a text only where it is
+//! printed.
 
 use super::{ById, Formula, Model, Place};
 use crate::expr::signature;
@@ -13,10 +15,11 @@ use std::str::FromStr;
 /// Hands all rows of the table to the macro `$then`.
 ///
 /// ```text
-/// variant  "KEYWORD"  family  list in the model: type of its elements       below a line that says what the list holds
+/// variant  "KEYWORD"  family  list: type of its elements        below what the list holds
 /// ```
 ///
-/// The second block holds statements that are read and written, but not solved: their arguments are kept as text.
+/// The second block holds statements that are read and written, but not solved: their arguments are
+/// kept as text.
 macro_rules! elements {
     ($then:ident) => {
         $then! {
@@ -182,8 +185,8 @@ impl ElementKind {
         all.filter(move |kind| kind.family() == family)
     }
 
-    /// Returns whether the element takes part in motion but is not solved: a model that holds one is refused, unless the user
-    /// leaves it out.
+    /// Returns whether the element takes part in motion but is not solved: a model that holds one
+    /// is refused, unless the user leaves it out.
     pub fn is_unsolved(self) -> bool {
         let moves = match self.family() {
             Family::Body | Family::Constraint | Family::Force | Family::System => true,
@@ -265,7 +268,8 @@ pub trait Element {
         Vec::new()
     }
 
-    /// Returns the numbers of the two markers between which it acts, where these must belong to two bodies.
+    /// Returns the numbers of the two markers between which it acts, where these must belong to two
+    /// bodies.
     fn ends(&self) -> Option<[u32; 2]> {
         None
     }

@@ -1,17 +1,23 @@
-//! What pushes: SFORCE, VFORCE, VTORQUE, GFORCE, SPRINGDAMPER, BUSHING, FIELD, BEAM, NFORCE, CONTACT, FRICTION.
+//! What pushes: SFORCE, VFORCE, VTORQUE, GFORCE, SPRINGDAMPER, BUSHING, FIELD, BEAM, NFORCE,
+//! CONTACT, FRICTION.
 
 use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
 
-/// SFORCE
+/// SFORCE: a force along the line between two markers, or a torque about z of J.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct SingleForce {
+    /// where it stands in the dataset
     pub place: Place,
+    /// ROTATION: a torque rather than a force
     pub rotational: bool,
+    /// I marker, on which it acts
     pub i: u32,
+    /// J marker, on which the reaction acts
     pub j: u32,
+    /// ACTIONONLY: nothing feels the reaction, and the force acts along z of J
     pub action_only: bool,
+    /// FUNCTION: force (positive drives the markers apart) or torque
     pub function: Formula,
 }
 
@@ -28,11 +34,13 @@ impl Element for SingleForce {
 /// Arguments that give the components of a force and a torque.
 pub const COMPONENTS: [&str; 6] = ["FX", "FY", "FZ", "TX", "TY", "TZ"];
 
-/// VFORCE, VTORQUE, GFORCE: components in the axes of `rm`, on I; the reaction acts on the part of `jfloat`.
+/// VFORCE, VTORQUE, GFORCE: components in the axes of `rm`, on I; the reaction acts on the part of
+/// `jfloat`.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct VectorForce {
+    /// where it stands in the dataset
     pub place: Place,
+    /// I marker, on which it acts
     pub i: u32,
     /// floating marker that carries the reaction; `None` = no reaction
     pub jfloat: Option<u32>,
@@ -65,13 +73,16 @@ impl Element for VectorForce {
     }
 }
 
-/// SPRINGDAMPER
+/// SPRINGDAMPER: a linear spring with a damper along the line IJ, or about z of J.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct SpringDamper {
+    /// where it stands in the dataset
     pub place: Place,
+    /// ROTATION: a torque rather than a force
     pub rotational: bool,
+    /// I marker
     pub i: u32,
+    /// J marker
     pub j: u32,
     /// K or KT
     pub stiffness: f64,
@@ -93,12 +104,14 @@ impl Element for SpringDamper {
     }
 }
 
-/// BUSHING: three translations then three rotations, in J axes
+/// BUSHING: three linear springs with dampers along, and three about, the axes of J.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Bushing {
+    /// where it stands in the dataset
     pub place: Place,
+    /// I marker
     pub i: u32,
+    /// J marker
     pub j: u32,
     /// K, KT
     pub stiffness: [f64; 6],
@@ -120,10 +133,12 @@ impl Element for Bushing {
 
 /// FIELD: six displacements to six forces by full matrices, in J axes.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Field {
+    /// where it stands in the dataset
     pub place: Place,
+    /// I marker
     pub i: u32,
+    /// J marker
     pub j: u32,
     /// KMATRIX, 36 numbers by columns; empty when not given
     pub stiffness: Vec<f64>,
@@ -152,26 +167,32 @@ impl Element for Field {
     }
 }
 
-/// How a BEAM treats large displacements.
+/// The treatment of large displacements by a BEAM.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum BeamFormulation {
+    /// LINEAR: small displacements
     #[default]
     Linear,
+    /// STRING: tension stiffens
     String,
+    /// NONLINEAR: large displacements
     Nonlinear,
 }
 
-/// BEAM: J at the root, I at the tip, x of J along the undeflected beam.
+/// BEAM: a massless beam; J at the root, I at the tip, x of J along the undeflected beam.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Beam {
+    /// where it stands in the dataset
     pub place: Place,
+    /// I marker, at the tip
     pub i: u32,
+    /// J marker, at the root
     pub j: u32,
+    /// LENGTH: undeflected length along x of J
     pub length: f64,
     /// second moments of area about x (torsion constant), y, z
     pub second_moments: [f64; 3],
+    /// AREA: area of the cross section
     pub area: f64,
     /// ASY, ASZ: shear factors; 0 = no shear deformation
     pub shear: [f64; 2],
@@ -183,6 +204,7 @@ pub struct Beam {
     pub damping_ratio: Option<f64>,
     /// CMATRIX: 21 numbers, lower triangle by rows; empty when not given
     pub damping: Vec<f64>,
+    /// FORMULATION
     pub formulation: BeamFormulation,
 }
 
@@ -198,15 +220,22 @@ impl Element for Beam {
 
 /// NFORCE: the linear law of FIELD between many markers, matrices given as MATRIX numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct NodalForce {
+    /// where it stands in the dataset
     pub place: Place,
+    /// IMARKERS
     pub i: Vec<u32>,
+    /// J marker, against which the others move
     pub j: u32,
+    /// KMATRIX: MATRIX of six rows and columns for each I marker
     pub stiffness: u32,
+    /// CMATRIX: MATRIX of the same size
     pub damping: Option<u32>,
+    /// CRATIO: damping = ratio · stiffness   [time]
     pub damping_ratio: Option<f64>,
+    /// LENGTH: MATRIX of the displacements at which the forces are the preload
     pub free: Option<u32>,
+    /// FORCE: MATRIX of the forces there
     pub preload: Option<u32>,
 }
 
@@ -227,44 +256,71 @@ impl Element for NodalForce {
 }
 
 /// The normal law of a CONTACT.
-#[allow(missing_docs)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum ContactLaw { #[default] Impact, Poisson, User }
+pub enum ContactLaw {
+    /// IMPACT: a stiffening spring with a damper
+    #[default]
+    Impact,
+    /// POISSON: a penalty with a coefficient of restitution
+    Poisson,
+    /// FUNCTION=USER(…)
+    User,
+}
 
-/// When a CONTACT has Coulomb friction.
-#[allow(missing_docs)]
+/// The part of a CONTACT in which there is Coulomb friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum CoulombFriction { #[default] Off, On, DynamicsOnly }
+pub enum CoulombFriction {
+    /// OFF
+    #[default]
+    Off,
+    /// ON
+    On,
+    /// DYNAMICS_ONLY: not in statics
+    DynamicsOnly,
+}
 
-/// CONTACT between GRAPHICS.
+/// CONTACT: forces where GRAPHICS touch.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Contact {
+    /// where it stands in the dataset
     pub place: Place,
     /// TYPE: SOLID_TO_SOLID, POINT_TO_CURVE …
     pub kind: Option<String>,
+    /// IGEOM: GRAPHICS on one side
     pub i_geometry: Vec<u32>,
+    /// JGEOM: GRAPHICS on the other
     pub j_geometry: Vec<u32>,
+    /// IMPACT, POISSON or FUNCTION: the normal law
     pub law: ContactLaw,
+    /// STIFFNESS: force at unit depth, IMPACT   [force/length^exponent]
     pub stiffness: f64,
+    /// DAMPING: largest damping, IMPACT   [force·time/length]
     pub damping: f64,
     /// penetration at which the damping is fully there
     pub dmax: f64,
+    /// EXPONENT of the depth, IMPACT
     pub exponent: f64,
+    /// PENALTY: stiffness of POISSON   [force/length]
     pub penalty: f64,
+    /// RESTITUTION_COEFFICIENT, POISSON: 0 plastic to 1 elastic
     pub restitution: f64,
+    /// COULOMB_FRICTION
     pub friction: CoulombFriction,
+    /// MU_STATIC: coefficient at the stiction transition velocity
     pub mu_static: f64,
+    /// MU_DYNAMIC: coefficient beyond the friction transition velocity
     pub mu_dynamic: f64,
+    /// STICTION_TRANSITION_VELOCITY   [length/time]
     pub stiction_transition_velocity: f64,
+    /// FRICTION_TRANSITION_VELOCITY   [length/time]
     pub friction_transition_velocity: f64,
     /// STICTION=ON
     pub stiction: bool,
+    /// MAX_STICTION_DEFORMATION   [length]
     pub max_stiction_deformation: Option<f64>,
     /// IFLIP, JFLIP: the outside of the geometry is its inside
     pub flip: [bool; 2],
+    /// AUGMENTED_LAGRANGIAN_FORMULATION
     pub augmented_lagrangian: bool,
     /// FUNCTION=USER(…)
     pub function: Option<Formula>,
@@ -284,11 +340,14 @@ impl Element for Contact {
 
 /// FRICTION in a joint; `None` = the documented default.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Friction {
+    /// where it stands in the dataset
     pub place: Place,
+    /// JOINT
     pub joint: u32,
+    /// MU_STATIC: coefficient at the stiction transition velocity
     pub mu_static: f64,
+    /// MU_DYNAMIC: coefficient beyond it
     pub mu_dynamic: f64,
     /// 0.1
     pub stiction_transition_velocity: Option<f64>,

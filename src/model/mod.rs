@@ -1,8 +1,9 @@
-//! What the user wrote: the dataset as data. Numbers are the user's, in the user's units; angles are radians.
+//! What the user wrote: the dataset as data. Numbers are the user's, in the user's units; angles
+//! are radians.
 //!
-//! Elements refer to each other by their numbers, unresolved, so that a model can be built, changed and printed in any
-//! order. All fields are public; `check` and the scene compiler say what does not fit together.
-//! Nothing here knows how anything is computed.
+//! Elements refer to each other by their numbers, unresolved, so that a model can be built, changed
+//! and printed in any order. All fields are public; `check` and the scene compiler say what does
+//! not fit together. Nothing here knows how anything is computed.
 
 mod body;
 pub mod check;
@@ -37,7 +38,8 @@ pub struct Place {
     pub line: usize,
     /// the name given by `adams_view_name='…'`
     pub name: Option<String>,
-    /// arguments that are kept but not used: full keyword and text of the value, empty for a bare keyword
+    /// arguments that are kept but not used: full keyword and text of the value, empty for a bare
+    /// keyword
     pub extra: Vec<(String, String)>,
 }
 
@@ -66,10 +68,12 @@ pub enum Formula {
 
 /// From this byte of an expression on, the text stands at this line and column of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct Break {
+    /// byte of the expression
     pub offset: usize,
+    /// 1-based line of the file
     pub line: usize,
+    /// 1-based column in that line
     pub column: usize,
 }
 
@@ -94,7 +98,8 @@ impl Formula {
         plain.or_else(|| text.expression().ok()?.eval(&[]).ok())
     }
 
-    /// Line and column in the file of a byte of the expression; `None` when it was not read from a file.
+    /// Line and column in the file of a byte of the expression; `None` when it was not read from a
+    /// file.
     pub fn file_place(&self, offset: usize) -> Option<(usize, usize)> {
         let Formula::Expression {
             text,
@@ -129,7 +134,8 @@ macro_rules! model {
         solved { $($(#[$doc:meta])* $kind:ident $keyword:literal $family:ident $list:ident: $type:ident;)* }
         kept { $($kept:tt)* }
     ) => {
-        /// The dataset as data: a list for every kind of element, and the settings of the whole model.
+        /// The dataset as data: a list for every kind of element, and the settings of the whole
+        /// model.
         ///
         /// The lists are those of the table of elements (`element.rs`).
         #[derive(Clone, Debug, Default, PartialEq)]

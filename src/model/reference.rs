@@ -1,4 +1,5 @@
-//! Who names whom: every number by which one element refers to another, and every FUNCTION, with its owner.
+//! Who names whom: every number by which one element refers to another, and every FUNCTION, with
+//! its owner.
 
 use super::{ById, ElementId, ElementKind, Family, Formula, Model, Part, Place};
 
@@ -29,7 +30,8 @@ pub struct Owned<'a> {
 }
 
 impl Model {
-    /// Returns every reference from one element to another. Numbers that were not given (0) are left out.
+    /// Returns every reference from one element to another. Numbers that were not given (0) are
+    /// left out.
     pub fn references(&self) -> Vec<Reference<'_>> {
         let mut all = Vec::new();
         for (element, e) in self.elements() {
@@ -60,7 +62,8 @@ impl Model {
         all
     }
 
-    /// Returns the data of a part or point mass; `None` when there is none, or the element is no body.
+    /// Returns the data of a part or point mass; `None` when there is none, or the element is no
+    /// body.
     pub fn body(&self, id: ElementId) -> Option<&Part> {
         self.bodies_of(id.kind)?.get(&id.number)
     }

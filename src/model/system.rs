@@ -1,14 +1,17 @@
-//! Data and equations of the user: VARIABLE, DIFF, ARRAY, SPLINE, STRING, MATRIX, LSE, GSE, TFSISO, PINPUT, POUTPUT, SENSOR.
+//! Data and equations of the user: VARIABLE, DIFF, ARRAY, SPLINE, STRING, MATRIX, LSE, GSE, TFSISO,
+//! PINPUT, POUTPUT, SENSOR.
 
 use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
 
-/// VARIABLE
+/// VARIABLE: a number defined by an expression.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Variable {
+    /// where it stands in the dataset
     pub place: Place,
+    /// IC: first guess where it depends on itself
     pub ic: Option<f64>,
+    /// FUNCTION
     pub function: Formula,
 }
 
@@ -19,14 +22,18 @@ impl Element for Variable {
     }
 }
 
-/// DIFF
+/// DIFF: a differential equation of first order.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Differential {
+    /// where it stands in the dataset
     pub place: Place,
+    /// IC: value and rate at the start
     pub ic: [Option<f64>; 2],
+    /// STATIC_HOLD: it keeps its value in statics
     pub static_hold: bool,
+    /// IMPLICIT: the function is zero rather than the rate
     pub implicit: bool,
+    /// FUNCTION: the rate, or what is zero
     pub function: Formula,
 }
 
@@ -39,11 +46,14 @@ impl Element for Differential {
 
 /// ARRAY kinds.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub enum ArrayKind {
+    /// IC: these numbers
     Ic(Vec<f64>),
+    /// X: states of the system that names it
     States,
+    /// Y: outputs of the system that names it
     Outputs,
+    /// U: values of these VARIABLEs
     Inputs(Vec<u32>),
 }
 
@@ -53,12 +63,14 @@ impl Default for ArrayKind {
     }
 }
 
-/// ARRAY
+/// ARRAY: a list that systems and functions read by number.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Array {
+    /// where it stands in the dataset
     pub place: Place,
+    /// SIZE: number of entries
     pub size: Option<usize>,
+    /// the meaning of its entries
     pub kind: ArrayKind,
 }
 
@@ -72,17 +84,20 @@ impl Element for Array {
     }
 }
 
-/// SPLINE
+/// SPLINE: a curve, or a surface of curves, through data.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct SplineData {
+    /// where it stands in the dataset
     pub place: Place,
+    /// X: abscissae, increasing   (n_x)
     pub x: Vec<f64>,
     /// one curve per z   (n_z × n_x)
     pub y: Vec<Vec<f64>>,
     /// empty for a single curve
     pub z: Vec<f64>,
+    /// LINEAR_EXTRAPOLATE: straight beyond the ends, else parabolic
     pub linear_extrapolate: bool,
+    /// FILE: the data stand in a file
     pub file: Option<String>,
 }
 
@@ -90,11 +105,12 @@ impl Element for SplineData {
     placed!();
 }
 
-/// STRING
+/// STRING: a text that routines read.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct StringData {
+    /// where it stands in the dataset
     pub place: Place,
+    /// STRING: the text
     pub text: String,
 }
 
@@ -119,13 +135,16 @@ pub enum MatrixLayout {
     },
 }
 
-/// MATRIX
+/// MATRIX: numbers in rows and columns.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Matrix {
+    /// where it stands in the dataset
     pub place: Place,
+    /// ROWS: number of rows
     pub rows: usize,
+    /// COLUMNS: number of columns
     pub columns: usize,
+    /// how `values` are laid out
     pub layout: MatrixLayout,
     /// as laid out
     pub values: Vec<f64>,
@@ -138,7 +157,8 @@ impl Element for Matrix {
 }
 
 impl Matrix {
-    /// All numbers row after row   (rows × columns), or `None` when they do not fit the stated size.
+    /// All numbers row after row   (rows × columns), or `None` when they do not fit the stated
+    /// size.
     pub fn by_rows(&self) -> Option<Vec<f64>> {
         let (m, n) = (self.rows, self.columns);
         let size = m.checked_mul(n).filter(|&s| s <= 1 << 28)?;
@@ -166,19 +186,28 @@ impl Matrix {
     }
 }
 
-/// LSE: ẋ = A x + B u, y = C x + D u; numbers of ARRAY and MATRIX statements
+/// LSE: ẋ = A x + B u, y = C x + D u; numbers of ARRAY and MATRIX statements.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct LinearSystem {
+    /// where it stands in the dataset
     pub place: Place,
+    /// X: array of the states
     pub x: u32,
+    /// U: array of the inputs
     pub u: Option<u32>,
+    /// Y: array of the outputs
     pub y: Option<u32>,
+    /// IC: array of the states at the start; zeros when absent
     pub ic: Option<u32>,
+    /// A: matrix, n × n
     pub a: u32,
+    /// B: matrix, n × inputs
     pub b: Option<u32>,
+    /// C: matrix, outputs × n
     pub c: Option<u32>,
+    /// D: matrix, outputs × inputs
     pub d: Option<u32>,
+    /// STATIC_HOLD: the states keep their values in statics
     pub static_hold: bool,
 }
 
@@ -195,24 +224,34 @@ impl Element for LinearSystem {
     }
 }
 
-/// GSE: states and outputs computed by routines of the user's
+/// GSE: states and outputs computed by routines of the user's.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct GeneralSystem {
+    /// where it stands in the dataset
     pub place: Place,
-    /// number of states, of outputs
+    /// NS: number of continuous states
     pub ns: usize,
+    /// NO: number of outputs
     pub no: usize,
+    /// X: array of the continuous states
     pub x: Option<u32>,
+    /// U: array of the inputs
     pub u: Option<u32>,
+    /// Y: array of the outputs
     pub y: Option<u32>,
+    /// IC: array of the continuous states at the start
     pub ic: Option<u32>,
+    /// FUNCTION=USER(…)
     pub function: Option<Formula>,
-    /// number of discrete states, their array, their initial values, the time between samples
+    /// ND: number of discrete states
     pub nd: usize,
+    /// XD: array of the discrete states
     pub xd: Option<u32>,
+    /// ICD: array of the discrete states at the start
     pub icd: Option<u32>,
+    /// SAMPLE_PERIOD: time between samples
     pub sample_period: Option<Formula>,
+    /// STATIC_HOLD: the states keep their values in statics
     pub static_hold: bool,
 }
 
@@ -236,18 +275,22 @@ impl Element for GeneralSystem {
     }
 }
 
-/// TFSISO: y/u = (b0 + b1 s + …)/(a0 + a1 s + …)
+/// TFSISO: y/u = (b0 + b1 s + …)/(a0 + a1 s + …).
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct TransferFunction {
+    /// where it stands in the dataset
     pub place: Place,
+    /// X: array of the states
     pub x: u32,
+    /// U: array of the one input
     pub u: u32,
+    /// Y: array of the one output
     pub y: u32,
     /// b0, b1, …
     pub numerator: Vec<f64>,
     /// a0, a1, …
     pub denominator: Vec<f64>,
+    /// STATIC_HOLD: the states keep their values in statics
     pub static_hold: bool,
 }
 
@@ -261,11 +304,12 @@ impl Element for TransferFunction {
     }
 }
 
-/// PINPUT, POUTPUT: VARIABLEs in order
+/// PINPUT, POUTPUT: VARIABLEs in order.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Plant {
+    /// where it stands in the dataset
     pub place: Place,
+    /// VARIABLES
     pub variables: Vec<u32>,
 }
 
@@ -276,19 +320,28 @@ impl Element for Plant {
     }
 }
 
-/// How a SENSOR compares.
-#[allow(missing_docs)]
+/// The comparison of a SENSOR.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[rustfmt::skip]
-pub enum Comparison { #[default] Equal, GreaterOrEqual, LessOrEqual }
+pub enum Comparison {
+    /// EQ: within ERROR of the value
+    #[default]
+    Equal,
+    /// GE
+    GreaterOrEqual,
+    /// LE
+    LessOrEqual,
+}
 
-/// SENSOR
+/// SENSOR: watches an expression and acts when it passes a value.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct Sensor {
+    /// where it stands in the dataset
     pub place: Place,
+    /// FUNCTION: the expression
     pub function: Formula,
+    /// EQ, GE or LE
     pub comparison: Comparison,
+    /// VALUE: compared with; in rad where ANGULAR
     pub value: f64,
     /// 1e-3 when absent
     pub error: Option<f64>,
@@ -302,13 +355,17 @@ pub struct Sensor {
     pub halt: bool,
     /// end this simulation, go on with the next command
     pub end_simulation: bool,
+    /// PRINT: write a line when it is triggered
     pub print: bool,
     /// output step afterwards
     pub dt: Option<f64>,
     /// integration step afterwards
     pub stepsize: Option<f64>,
+    /// RESTART: start the integration anew
     pub restart: bool,
+    /// CODGEN: kept, without effect
     pub codgen: bool,
+    /// YYDUMP: kept, without effect
     pub yydump: bool,
 }
 

@@ -1,4 +1,5 @@
-//! Units: every name a UNITS statement may hold, its factor to SI, and the factor that makes them consistent.
+//! Units: every name a UNITS statement may hold, its factor to SI, and the factor that makes them
+//! consistent.
 //!
 //! ```text
 //! Force · UCF = Mass · Acceleration        all in model units
@@ -79,7 +80,8 @@ pub fn consistency(force: &str, mass: &str, length: &str, time: &str) -> f64 {
         let t = self::time(time)?;
         Some(self::force(force)? * t * t / (self::mass(mass)? * self::length(length)?))
     };
-    // 1000 rather than 999.9999999999999 for millimetres: the nearest number of 14 digits, where that is one.
+    // 1000 rather than 999.9999999999999 for millimetres: the nearest number of 14 digits, where
+    // that is one.
     factor().map_or(1.0, |f| format!("{f:.13e}").parse().unwrap_or(f))
 }
 

@@ -1,5 +1,6 @@
-//! Angles are radians: numbers without the suffix D that read as degrees, in orientations, initial angles, free angles of springs
-//! and motions that turn. One warning for each statement, with the number and what it means.
+//! Angles are radians: numbers without the suffix D that read as degrees, in orientations, initial
+//! angles, free angles of springs and motions that turn. One warning for each statement, with the
+//! number and what it means.
 
 use super::*;
 use crate::expr::Expr;

@@ -1,4 +1,5 @@
-//! Parts, point masses and markers: one ground, mass with a place, inertia that a body can have, axes, owners of floating markers.
+//! Parts, point masses and markers: one ground, mass with a place, inertia that a body can have,
+//! axes, owners of floating markers.
 
 use super::*;
 use crate::physics::joint::Tie;
@@ -94,7 +95,8 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
     }
 }
 
-/// The inertia tensor is that of some distribution of mass: positive, and no moment larger than the two others together.
+/// The inertia tensor is that of some distribution of mass: positive, and no moment larger than the
+/// two others together.
 pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
     const TOLERANCE: f64 = 1e-3;
     for (id, part) in bodies(model) {

@@ -1,7 +1,9 @@
-//! What does not fit together in a model: one function per rule, all of them run, all findings reported.
+//! What does not fit together in a model: one function per rule, all of them run, all findings
+//! reported.
 //!
-//! A rule reads the model and says what is wrong with which element, and what to do. Rules about geometry in motion
-//! (freedom, redundancy, lock-up) belong to the analyses; here stands what the statements themselves contradict.
+//! A rule reads the model and says what is wrong with which element, and what to do. Rules about
+//! geometry in motion (freedom, redundancy, lock-up) belong to the analyses; here stands what the
+//! statements themselves contradict.
 
 mod angles;
 mod bodies;

@@ -95,7 +95,8 @@ fn strip(d: Diagnostic) -> Diagnostic {
     }
 }
 
-/// The place in the file of a byte of the expression; the place of the statement stays where there is none.
+/// The place in the file of a byte of the expression; the place of the statement stays where there
+/// is none.
 fn placed(mut d: Diagnostic, formula: &Formula, offset: usize) -> Diagnostic {
     if let Some((line, column)) = formula.file_place(offset) {
         (d.line, d.column) = (line, column);
@@ -103,7 +104,8 @@ fn placed(mut d: Diagnostic, formula: &Formula, offset: usize) -> Diagnostic {
     d
 }
 
-/// A comma at the beginning of a line does not separate arguments: say so where that may be the mistake.
+/// A comma at the beginning of a line does not separate arguments: say so where that may be the
+/// mistake.
 fn continued_by_comma(formula: &Formula, offset: usize, out: &mut Out) {
     let Formula::Expression { text, breaks, .. } = formula else {
         return;

@@ -1,0 +1,302 @@
+//! From the tokens of a statement to a record: which row, which number, which arguments.
+//!
+//! The row says what each argument takes; this file knows how each kind of value is written. A
+//! mistake in one argument is reported with its place and the reading goes on at the next, so that
+//! all mistakes of a file are found at once.
+
+mod formula;
+mod tokens;
+mod values;
+
+use super::row::{Argument, Given, Meaning, Record, Statement, canonical, meaning};
+use super::syntax::{Source, Token, TokenKind, Tokens};
+use super::value::{Kind, Number, Value};
+use crate::diagnostic::{Diagnostic, Severity, Span, near_names};
+use crate::model::{Break, Formula, Place};
+
+/// A table of statements to read with.
+#[derive(Clone, Copy)]
+pub struct Table {
+    /// the rows
+    pub rows: &'static [&'static dyn Statement],
+    /// what a keyword means among them
+    pub find: fn(&str) -> Meaning,
+}
+
+/// Reads one statement; `None` when its head cannot be understood.
+pub fn record(
+    source: &Source,
+    tokens: &Tokens,
+    table: Table,
+    out: &mut Vec<Diagnostic>,
+) -> Option<Record> {
+    let before = out.len();
+    let silent = |t: &&Token| !matches!(t.kind, TokenKind::Comment | TokenKind::Carry);
+    let mut reader = Reader {
+        source,
+        tokens: tokens.tokens.iter().filter(silent).copied().collect(),
+        at: 0,
+        element: String::new(),
+        arguments: Vec::new(),
+        out,
+    };
+    let mut record = reader.statement(tokens, table)?;
+    record.mistaken = out[before..].iter().any(|d| d.severity == Severity::Error);
+    Some(record)
+}
+
+struct Reader<'a> {
+    source: &'a Source,
+    tokens: Vec<Token>,
+    at: usize,
+    element: String,
+    arguments: Vec<Argument>,
+    out: &'a mut Vec<Diagnostic>,
+}
+
+/// A mistake already reported; the argument is given up.
+struct Reported;
+
+impl<'a> Reader<'a> {
+    fn statement(&mut self, tokens: &Tokens, table: Table) -> Option<Record> {
+        let head = *self.tokens.first()?;
+        let word = self.text(head);
+        let row = match (head.kind, (table.find)(word)) {
+            (TokenKind::Atom, Meaning::One(k)) => table.rows[k],
+            (TokenKind::Atom, Meaning::Several(of)) => {
+                let names: Vec<String> = of
+                    .iter()
+                    .map(|&k| canonical(table.rows[k].keyword()))
+                    .collect();
+                self.error(
+                    "ambiguous_statement",
+                    head.span,
+                    format!("{word} may be {}", names.join(" or ")),
+                );
+                return None;
+            }
+            _ => {
+                self.unknown_statement(head, table);
+                return None;
+            }
+        };
+        self.at = 1;
+        let keyword = canonical(row.keyword());
+        self.element = keyword.clone();
+        let slash = self.take(TokenKind::Slash).is_some();
+        let id = self.identifier(row, &keyword, head, slash)?;
+        if let Some(id) = id {
+            self.element = format!("{keyword}/{id}");
+        }
+        let head = Span::new(head.span.start, self.tokens[self.at - 1].span.end);
+        self.arguments = row.arguments();
+        let mut record = Record {
+            row,
+            id,
+            given: Vec::new(),
+            kept: Vec::new(),
+            place: Place {
+                line: self.source.place(head.start).0,
+                name: tokens.name.clone(),
+                extra: Vec::new(),
+            },
+            head,
+            mistaken: false,
+        };
+        while self.next_argument() {
+            if self.argument(&mut record).is_err() {
+                self.recover();
+            }
+        }
+        self.exclusions(&record);
+        Some(record)
+    }
+
+    fn unknown_statement(&mut self, head: Token, table: Table) {
+        let word = self.text(head);
+        let known: Vec<String> = table.rows.iter().map(|r| canonical(r.keyword())).collect();
+        let near = near_names(word, known.iter().map(String::as_str));
+        let mut d = Diagnostic::error("unknown_statement", format!("`{word}` is not a statement"));
+        if head.kind == TokenKind::Comma {
+            d = d.help(
+                "a line that begins with a comma continues a statement, but none stands before it",
+            );
+        } else if !near.is_empty() {
+            d = d.help(format!("did you mean {}?", near.join(" or ")));
+        } else if self.argument_like() {
+            d = d.help("a line that continues a statement begins with a comma");
+        }
+        let d = self.source.locate(d, head.span);
+        self.out.push(d);
+    }
+
+    /// Whether the statement looks like an argument whose leading comma was forgotten.
+    fn argument_like(&self) -> bool {
+        self.tokens
+            .get(1)
+            .is_some_and(|t| t.kind == TokenKind::Equals)
+    }
+
+    /// The number after the slash; `None` outside when it is missing where there must be one.
+    fn identifier(
+        &mut self,
+        row: &dyn Statement,
+        keyword: &str,
+        head: Token,
+        slash: bool,
+    ) -> Option<Option<u32>> {
+        let token = self.tokens.get(self.at).copied();
+        let digits = token.filter(|t| slash && t.kind == TokenKind::Atom && self.numeric(*t));
+        let Some(token) = digits else {
+            if row.numbered() {
+                self.error(
+                    "missing_identifier",
+                    head.span,
+                    format!("{keyword} needs a number: {keyword}/id"),
+                );
+                return None;
+            }
+            return Some(None);
+        };
+        self.at += 1;
+        if !row.numbered() {
+            self.error(
+                "unexpected_identifier",
+                token.span,
+                format!("{keyword} takes no number"),
+            );
+            return Some(None);
+        }
+        match self.text(token).parse::<u32>() {
+            Ok(id) if (1..=i32::MAX as u32).contains(&id) => Some(Some(id)),
+            _ => {
+                let message = format!("`{}` is not a number an element can have", self.text(token));
+                self.error("not_an_identifier", token.span, message);
+                None
+            }
+        }
+    }
+
+    /// Goes to the next argument; false at the end.
+    fn next_argument(&mut self) -> bool {
+        while let Some(t) = self.tokens.get(self.at) {
+            let separator = matches!(
+                t.kind,
+                TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
+            );
+            // A slash may end an expression; it means nothing else between arguments.
+            if !separator && t.kind != TokenKind::Slash {
+                return true;
+            }
+            self.at += 1;
+        }
+        false
+    }
+
+    fn argument(&mut self, record: &mut Record) -> Result<(), Reported> {
+        let name = self.tokens[self.at];
+        let start = name.span.start;
+        let word = self.text(name);
+        if name.kind != TokenKind::Atom {
+            let message = format!("`{word}` is not an argument");
+            return self.fail("unexpected_text", name.span, message);
+        }
+        self.at += 1;
+        let kind_at = |k: usize| self.tokens.get(k).map(|t| t.kind);
+        if kind_at(self.at) == Some(TokenKind::Continuation)
+            && kind_at(self.at + 1) == Some(TokenKind::Equals)
+        {
+            self.at += 1;
+        }
+        let equals = self.take(TokenKind::Equals).is_some();
+        // The value may begin on the next line, whose comma then only continues.
+        while equals && self.take(TokenKind::Continuation).is_some() {}
+        let argument = match meaning(word, self.arguments.iter().map(|a| a.name)) {
+            Meaning::One(k) => k,
+            Meaning::Several(of) => {
+                let names: Vec<String> = of.iter().map(|&k| self.arguments[k].keyword()).collect();
+                let message = format!("{word} may be {}", names.join(" or "));
+                return self.fail("ambiguous_argument", name.span, message);
+            }
+            Meaning::Unknown if record.row.open() => {
+                let text = if equals {
+                    self.raw(true)?
+                } else {
+                    String::new()
+                };
+                record.kept.push((word.to_ascii_uppercase(), text));
+                return self.separated();
+            }
+            Meaning::Unknown => return self.unknown_argument(name),
+        };
+        let Argument { kind, repeated, .. } = self.arguments[argument];
+        let value = match (kind, equals) {
+            (Kind::Flag, false) => Value::Flag,
+            (Kind::Flag, true) => {
+                let message = format!(
+                    "{} stands alone, without a value",
+                    self.arguments[argument].keyword()
+                );
+                return self.fail("unexpected_value", name.span, message);
+            }
+            (_, false) => {
+                let message = format!(
+                    "{} needs = {}",
+                    self.arguments[argument].keyword(),
+                    kind.describe()
+                );
+                return self.fail("missing_value", name.span, message);
+            }
+            (_, true) => self.value(kind, name)?,
+        };
+        let span = Span::new(start, self.tokens[self.at - 1].span.end);
+        let given = Given {
+            argument,
+            value,
+            span,
+        };
+        if !repeated && record.given.iter().any(|g| g.argument == argument) {
+            let message = format!("{} is given twice", self.arguments[argument].keyword());
+            self.error("given_twice", name.span, message);
+        } else {
+            record.given.push(given);
+        }
+        self.separated()
+    }
+
+    fn unknown_argument(&mut self, name: Token) -> Result<(), Reported> {
+        let word = self.text(name);
+        let known: Vec<String> = self.arguments.iter().map(Argument::keyword).collect();
+        let near = near_names(word, known.iter().map(String::as_str));
+        let keyword = self.element.split('/').next().unwrap_or_default();
+        let mut d = Diagnostic::error(
+            "unknown_argument",
+            format!("{keyword} has no argument {word}"),
+        );
+        d = match near.is_empty() {
+            false => d.help(format!("did you mean {}?", near.join(" or "))),
+            true if known.is_empty() => d.help(format!("{keyword} takes no arguments")),
+            true => d.help(format!("it has {}", known.join(", "))),
+        };
+        let d = self
+            .source
+            .locate(d.element(self.element.clone()), name.span);
+        self.out.push(d);
+        Err(Reported)
+    }
+
+    /// Bare keywords of which only one may be given.
+    fn exclusions(&mut self, record: &Record) {
+        for (k, g) in record.given.iter().enumerate() {
+            let group = self.arguments[g.argument].group;
+            let rival = record.given[..k]
+                .iter()
+                .find(|r| self.arguments[r.argument].group == group);
+            if let (Some(group), Some(rival)) = (group, rival) {
+                let [first, second] = [rival, g].map(|x| self.arguments[x.argument].keyword());
+                let message = format!("{first} and {second} are both given as the {group}");
+                self.error("excluded_argument", g.span, message);
+            }
+        }
+    }
+}
