@@ -4,9 +4,9 @@
 //! Markers: `{"12": {"r": [x, y, z], "v": …, "w": …, "a": …, "al": …, "e313": [psi, theta, phi]}}`,
 //! or `"A"` with the rows of the matrix whose columns are the marker's axes; all in ground, angles
 //! in rad; missing entries are 0. Splines: `{"1": {"x": […], "y": […]}}`, with `"z"` a family of
-//! curves; `"end"` is natural, not-a-knot or periodic, `"extrap"` parabolic or linear.
-//! Curves: `{"1": {"points": [[x, y, z], …]}}`, with `"closed"`, `"control"` (the points are those of
-//! a B-spline) and `"order"`.
+//! curves; `"end"` is natural, not-a-knot or periodic, `"extrap"` parabolic or linear. Curves:
+//! `{"1": {"points": [[x, y, z], …]}}`, with `"closed"`, `"control"` (the points are those of a
+//! B-spline) and `"order"`.
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};

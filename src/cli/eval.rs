@@ -50,7 +50,8 @@ pub struct Args {
     /// Data of splines: {"1": {"x": […], "y": […]}}
     #[arg(long, value_name = "FILE.json")]
     splines: Option<PathBuf>,
-    /// Points of curves: {"1": {"points": [[x,y,z], …], "closed": false, "control": false, "order": 4}}
+    /// Points of curves: {"1": {"points": [[x,y,z], …], "closed": false, "control": false, "order":
+    /// 4}}
     #[arg(long, value_name = "FILE.json")]
     curves: Option<PathBuf>,
     /// Give a value to a function of the model, such as 'VARVAL(3)=2.5' (repeatable)

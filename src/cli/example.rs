@@ -1,7 +1,8 @@
-//! Examples of functions of the model: a call, and its value for markers that are written down beside it.
+//! Examples of functions of the model: a call, and its value for markers that are written down
+//! beside it.
 //!
-//! The value is computed from the markers by the code that answers expressions; where only a model has a value, its meaning is
-//! said in words.
+//! The value is computed from the markers by the code that answers expressions; where only a model
+//! has a value, its meaning is said in words.
 
 use super::card::Example;
 use super::data::Data;

@@ -120,7 +120,8 @@ impl Place<'_> {
         (!inside.is_empty()).then(|| format!("an absolute value is written ABS({inside})"))
     }
 
-    /// Returns the name of Adams View that begins here: `.MODEL.PART.MAR`, `$x`, `MODEL_1.PART_2`, `MARKER_1`.
+    /// Returns the name of Adams View that begins here: `.MODEL.PART.MAR`, `$x`, `MODEL_1.PART_2`,
+    /// `MARKER_1`.
     fn view_name(&self) -> Option<String> {
         let rest = self.text.get(self.span.start..)?;
         let part = |c: char| c.is_ascii_alphanumeric() || "_.$".contains(c);
@@ -391,7 +392,8 @@ impl Place<'_> {
         self.unit(number, self.word())
     }
 
-    /// Advises on two operands side by side in a call: the number of arguments tells which sign is missing.
+    /// Advises on two operands side by side in a call: the number of arguments tells which sign is
+    /// missing.
     fn star_or_comma(&self, callee: Callee, name: Span) -> String {
         let comma = format!("a comma is missing before `{}`", self.word());
         let (least, most) = callee.arity();

@@ -15,7 +15,7 @@
 //!
 //! | step | file | |
 //! |---|---|---|
-//! | names | `functions/` `measures.rs` `interpolation.rs` | tables of the functions |
+//! | names | `functions/` `measures.rs` `interpolation/` | tables of the functions |
 //! | | `signature.rs` `symbols.rs` | arguments of functions; meanings of names in each language |
 //! | text | `token.rs` `check.rs` | tokens; one ordered pass finds the first mistake, with its place |
 //! | | `advice.rs` `foreign.rs` | advice on mistakes; words of other languages |

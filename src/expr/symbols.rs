@@ -149,8 +149,8 @@ impl Callee {
     pub fn argument_name(self, k: usize) -> &'static str {
         self.arguments().get(k).map_or("the argument", |a| a.name)
     }
-    /// Returns the name of the `k`-th of `count` arguments (`k` from 0), with a number where many have
-    /// one name; empty where there is one argument only.
+    /// Returns the name of the `k`-th of `count` arguments (`k` from 0), with a number where many
+    /// have one name; empty where there is one argument only.
     pub fn role(self, k: usize, count: usize) -> String {
         let named = self.arguments();
         let further = match self {

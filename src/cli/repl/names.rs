@@ -122,8 +122,8 @@ impl Expansion {
     }
 }
 
-/// The text in pieces: words that begin with a letter, numbers with exponent and suffix, and what is
-/// between them.
+/// The text in pieces: words that begin with a letter, numbers with exponent and suffix, and what
+/// is between them.
 pub fn words(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = text;
     std::iter::from_fn(move || {

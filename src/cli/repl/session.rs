@@ -452,8 +452,8 @@ fn mistake(said: Diagnostic, expansion: &Expansion) -> Reply {
     Reply::Mistake(Box::new(expansion.as_typed(said)), expansion.typed.clone())
 }
 
-/// A mistake about a name that the language does not know, with the command that defines it, where the name could be
-/// a number: `k*2`, `k = 3`.
+/// A mistake about a name that the language does not know, with the command that defines it, where
+/// the name could be a number: `k*2`, `k = 3`.
 fn with_let(said: Diagnostic, expansion: &Expansion) -> Diagnostic {
     let Some(span) = said.span.filter(|_| said.code == "unknown_name") else {
         return said;
@@ -476,8 +476,8 @@ fn with_let(said: Diagnostic, expansion: &Expansion) -> Diagnostic {
     }
 }
 
-/// `quit`, `exit` and `help NAME`, which are commands with and without their colon: the language has
-/// no such names.
+/// `quit`, `exit` and `help NAME`, which are commands with and without their colon: the language
+/// has no such names.
 fn bare_command(line: &str) -> Option<(&'static str, &str)> {
     let line = line.trim_end_matches(';').trim_end_matches("()");
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));

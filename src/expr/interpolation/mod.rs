@@ -171,8 +171,9 @@ impl Interpolation {
 mod tests {
     use super::*;
     use crate::expr::spline::{Ends, Extrapolation};
-    use crate::scalar::{Dual, Jet};
+    use crate::scalar::{Dual, Jet, Scalar};
     use approx::assert_relative_eq;
+    use std::collections::BTreeMap;
     use std::f64::consts::TAU;
     use std::sync::Arc;
 

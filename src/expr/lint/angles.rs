@@ -1,4 +1,5 @@
-//! Warnings about angles: degrees where radians are read, angles about several axes in one expression.
+//! Warnings about angles: degrees where radians are read, angles about several axes in one
+//! expression.
 
 use super::{Doubt, number, place, rounded, said};
 use crate::diagnostic::Diagnostic;
@@ -163,8 +164,8 @@ pub(super) fn of_several_axes(ast: &Ast) -> Vec<Doubt> {
     doubts
 }
 
-/// Returns the warnings about an expression whose value is an angle in radians, as the FUNCTION of a
-/// MOTION that turns: 90, 360*TIME, STEP(TIME, 0, 0, 1, 90).
+/// Returns the warnings about an expression whose value is an angle in radians, as the FUNCTION of
+/// a MOTION that turns: 90, 360*TIME, STEP(TIME, 0, 0, 1, 90).
 pub fn degrees_in_angle(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     let mut doubts = Vec::new();
     for (sign, term) in terms(ast) {
@@ -189,8 +190,8 @@ pub fn degrees_in_angle(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     said(doubts, text)
 }
 
-/// Returns the warnings about an expression whose value is an angular velocity in radians per unit of
-/// time: 360 for one turn.
+/// Returns the warnings about an expression whose value is an angular velocity in radians per unit
+/// of time: 360 for one turn.
 pub fn degrees_in_speed(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     let fits = |n: f64| n % 90.0 == 0.0 && degree_sized(n);
     let mut doubts = Vec::new();

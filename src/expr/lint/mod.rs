@@ -1,9 +1,9 @@
 //! Warnings about what is legal but probably not meant: degrees for radians, operators that bind
 //! otherwise than they look, marks that are read otherwise than they are typed.
 //!
-//! Only patterns that are hardly ever right are reported. A warning says the number that was written
-//! and its meaning; its advice says the replacement. The rules stand in a file per kind: `angles.rs`,
-//! `precedence.rs`, `typing.rs`.
+//! Only patterns that are hardly ever right are reported. A warning says the number that was
+//! written and its meaning; its advice says the replacement. The rules stand in a file per kind:
+//! `angles.rs`, `precedence.rs`, `typing.rs`.
 
 mod angles;
 mod precedence;

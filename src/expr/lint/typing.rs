@@ -1,5 +1,5 @@
-//! Warnings about marks that are read otherwise than typed: D for the E of an exponent, an exclamation
-//! mark for a factorial.
+//! Warnings about marks that are read otherwise than typed: D for the E of an exponent, an
+//! exclamation mark for a factorial.
 
 use super::{Doubt, rounded};
 use crate::diagnostic::Span;

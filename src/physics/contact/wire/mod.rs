@@ -192,6 +192,8 @@ impl Wire {
         };
         let lengths: Vec<f64> = knots.windows(2).map(|k| length(k[0], k[1])).collect();
         let whole: f64 = lengths.iter().sum();
+
+        // stations: as many in each smooth piece as its length demands
         let mut places = Vec::new();
         for (pair, length) in knots.windows(2).zip(&lengths) {
             let n = (STATIONS[0] as f64 * length / whole).ceil();
@@ -217,6 +219,8 @@ impl Wire {
             })
             .collect();
         self.size = points.iter().map(|p| p.norm()).fold(self.tube, f64::max);
+
+        // anchors: the stations at equal ways along the wire
         let gaps = if self.closed { ANCHORS } else { ANCHORS - 1 } as f64;
         let last = if self.closed { n } else { n.saturating_sub(1) };
         let whole: f64 = self.stations[..last].iter().map(|s| s.way).sum();
