@@ -62,6 +62,9 @@
 //! ```
 
 #![warn(missing_docs)]
+// without generated code there is no unsafe Rust; with it, where it is allowed by name (see fuzz/README.md)
+#![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
+#![deny(unsafe_code)]
 // names follow the monogram notation: capitals are frames and only frames (`p_JI_K`, `R_GP`)
 #![allow(non_snake_case)]
 

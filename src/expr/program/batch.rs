@@ -5,8 +5,9 @@
 //! instructions; which one runs is decided when the batch is made. The result of each point is that of [`Program::run`], to
 //! the bit.
 
+use super::code::{Code, Instruction, gathered, partial};
 use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
-use super::{Code, Instruction, Program};
+use super::run::Program;
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::{self, Prepared};
 use crate::expr::functions::step::{cubic, quintic};
@@ -50,9 +51,9 @@ pub struct Batch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Instructions {
     Portable,
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "native", target_arch = "x86_64"))]
     Avx2,
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "native", target_arch = "x86_64"))]
     Avx512,
 }
 
@@ -134,7 +135,7 @@ impl Program {
     fn batch_step(&self, instruction: &Instruction) -> Step {
         let core = self.core();
         if let Code::Call(function, count) = instruction.code {
-            let list = &core.lists[instruction.a as usize..(instruction.a + count) as usize];
+            let list = core.arguments(instruction.a, count);
             let known: Vec<Option<f64>> = list
                 .iter()
                 .map(|&r| core.constants.get(r as usize).copied())
@@ -160,7 +161,7 @@ impl Program {
 
 impl Instructions {
     fn of_this_machine() -> Self {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(feature = "native", target_arch = "x86_64"))]
         {
             if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {
                 return Instructions::Avx512;
@@ -188,17 +189,18 @@ impl Batch {
     pub fn run(&mut self, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) {
         let n = outputs.iter().map(|out| out.len()).max().unwrap_or(0);
         assert!(
-            inputs.len() >= self.program.inputs.len(),
+            inputs.len() >= self.program.inputs().len(),
             "the program reads {} inputs",
-            self.program.inputs.len()
+            self.program.inputs().len()
         );
         assert!(
-            outputs.len() <= self.program.outputs.len(),
+            outputs.len() <= self.program.n_outputs(),
             "the program has {} outputs",
-            self.program.outputs.len()
+            self.program.n_outputs()
         );
         assert!(
             self.program
+                .core()
                 .used
                 .iter()
                 .all(|&k| inputs[k as usize].len() >= n),
@@ -206,15 +208,7 @@ impl Batch {
         );
         for start in (0..n).step_by(BLOCK) {
             self.enter(inputs, start, n);
-            match self.instructions {
-                Instructions::Portable => self.steps(),
-                // SAFETY: the machine has these instructions, see `of_this_machine`
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx2 => unsafe { self.steps_avx2() },
-                // SAFETY: as before
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx512 => unsafe { self.steps_avx512() },
-            }
+            self.run_block();
             self.leave(outputs, start);
         }
     }
@@ -223,7 +217,10 @@ impl Batch {
     fn enter(&mut self, inputs: &[&[f64]], start: usize, n: usize) {
         let first = self.program.core().constants.len();
         let end = n.min(start + BLOCK);
-        for (register, &k) in self.registers[first..].iter_mut().zip(&self.program.used) {
+        for (register, &k) in self.registers[first..]
+            .iter_mut()
+            .zip(&self.program.core().used)
+        {
             let column = &inputs[k as usize][start..end];
             let (vectors, rest) = column.as_chunks::<WIDTH>();
             for (to, from) in register.0.iter_mut().zip(vectors) {
@@ -237,7 +234,7 @@ impl Batch {
 
     /// Copies the results of a block out.
     fn leave(&self, outputs: &mut [&mut [f64]], start: usize) {
-        for (out, &r) in outputs.iter_mut().zip(&self.program.outputs) {
+        for (out, &r) in outputs.iter_mut().zip(&self.program.core().outputs) {
             let end = out.len().min(start + BLOCK);
             let Some(column) = out.get_mut(start..end) else {
                 continue;
@@ -254,15 +251,36 @@ impl Batch {
         }
     }
 
-    #[cfg(target_arch = "x86_64")]
+    /// Runs over the block in the registers, with the vector instructions of this machine.
+    #[cfg(all(feature = "native", target_arch = "x86_64"))]
+    #[allow(unsafe_code)]
+    fn run_block(&mut self) {
+        match self.instructions {
+            Instructions::Portable => self.steps(),
+            // SAFETY: the machine has these instructions, see `of_this_machine`
+            Instructions::Avx2 => unsafe { self.steps_avx2() },
+            // SAFETY: as before
+            Instructions::Avx512 => unsafe { self.steps_avx512() },
+        }
+    }
+
+    /// Runs over the block in the registers.
+    #[cfg(not(all(feature = "native", target_arch = "x86_64")))]
+    fn run_block(&mut self) {
+        match self.instructions {
+            Instructions::Portable => self.steps(),
+        }
+    }
+
+    #[cfg(all(feature = "native", target_arch = "x86_64"))]
     #[target_feature(enable = "avx2")]
-    unsafe fn steps_avx2(&mut self) {
+    fn steps_avx2(&mut self) {
         self.steps();
     }
 
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "native", target_arch = "x86_64"))]
     #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-    unsafe fn steps_avx512(&mut self) {
+    fn steps_avx512(&mut self) {
         self.steps();
     }
 
@@ -383,14 +401,14 @@ fn plain(program: &Program, instruction: &Instruction, r: &mut [Block]) {
             each!(r, to = |x = a| x.lookup(&core.tables[table as usize], order))
         }
         Code::Call(_, count) | Code::Partial(_, count, _) => {
-            let arguments = &core.lists[a as usize..(a + count) as usize];
+            let arguments = core.arguments(a, count);
             for k in 0..VECTORS {
-                let value = super::gathered(
+                let value = gathered(
                     arguments,
                     |x| r[x as usize].0[k],
                     |args| match code {
                         Code::Partial(function, _, which) => {
-                            super::partial(function, args, which as usize)
+                            partial(function, args, which as usize)
                         }
                         Code::Call(function, _) => function.eval(args),
                         _ => unreachable!("only functions have lists of arguments"),

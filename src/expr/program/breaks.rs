@@ -1,8 +1,10 @@
 //! Where a program may stop being smooth: comparisons, roundings, knots of tables, poles and edges of domains.
 
+use super::builder::Builder;
 use super::expand::Expand;
-use super::operation::{BinaryOp, Node, UnaryOp, Value};
-use super::{Builder, Input};
+use super::input::Input;
+use super::node::{Node, Value};
+use super::operation::{BinaryOp, Edges};
 use crate::scalar::Table;
 use std::sync::Arc;
 
@@ -72,37 +74,48 @@ impl Builder {
     }
 
     pub(super) fn breaks_of(&mut self, node: &Node, found: &mut Vec<Break>) {
-        use UnaryOp::{Abs, Acos, Asin, Floor, Ln, Log10, Round, Sqrt, Tan, Trunc};
         let mut at = |value: Value, levels: Levels| found.push(Break { value, levels });
         match *node {
             Node::Compare(_, a, b) => at(self.binary(BinaryOp::Sub, a, b), Levels::Zero),
             Node::If(first) => at(self.arguments[first as usize], Levels::Zero),
-            Node::Unary(Abs | Sqrt | Ln | Log10, x) => at(x, Levels::Zero),
-            Node::Unary(Trunc | Floor, x) => at(x, Levels::Whole),
-            Node::Unary(Round, x) => at(x, Levels::Halves),
-            Node::Unary(Tan, x) => {
-                let half_turns = self.constant(std::f64::consts::FRAC_1_PI);
-                at(self.binary(BinaryOp::Mul, x, half_turns), Levels::Halves);
+            Node::Unary(op, x) => match op.edges() {
+                Edges::Nowhere => {}
+                Edges::Zero => at(x, Levels::Zero),
+                Edges::Whole => at(x, Levels::Whole),
+                Edges::Halves => at(x, Levels::Halves),
+                Edges::Poles => {
+                    let half_turns = self.constant(std::f64::consts::FRAC_1_PI);
+                    at(self.binary(BinaryOp::Mul, x, half_turns), Levels::Halves);
+                }
+                Edges::PlusMinusOne => {
+                    let one = self.constant(1.0);
+                    at(self.binary(BinaryOp::Sub, x, one), Levels::Zero);
+                    at(self.binary(BinaryOp::Add, x, one), Levels::Zero);
+                }
+            },
+            Node::Binary(op, a, b) => match op {
+                BinaryOp::Atan2 | BinaryOp::Pow => at(a, Levels::Zero),
+                BinaryOp::Rem => at(self.binary(BinaryOp::Div, a, b), Levels::Whole),
+                BinaryOp::Div | BinaryOp::Along => at(b, Levels::Zero),
+                BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or => {}
+            },
+            Node::Whole(x, n) => {
+                if n < 0 {
+                    at(x, Levels::Zero);
+                }
             }
-            Node::Unary(Asin | Acos, x) => {
-                let one = self.constant(1.0);
-                at(self.binary(BinaryOp::Sub, x, one), Levels::Zero);
-                at(self.binary(BinaryOp::Add, x, one), Levels::Zero);
-            }
-            Node::Binary(BinaryOp::Atan2, y, _) => at(y, Levels::Zero),
-            Node::Binary(BinaryOp::Rem, a, b) => {
-                at(self.binary(BinaryOp::Div, a, b), Levels::Whole)
-            }
-            Node::Binary(BinaryOp::Div | BinaryOp::Along, _, b) => at(b, Levels::Zero),
-            Node::Binary(BinaryOp::Pow, a, _) => at(a, Levels::Zero),
-            Node::Whole(x, n) if n < 0 => at(x, Levels::Zero),
             Node::Lookup { table, x, .. } => {
                 let table = self.tables[table as usize].clone();
                 if !table.knots().is_empty() {
                     at(x, Levels::Knots(table));
                 }
             }
-            _ => {}
+            // calls are expanded before, and a selection breaks where its condition does
+            Node::Constant(_)
+            | Node::Input(_)
+            | Node::Select(..)
+            | Node::Call { .. }
+            | Node::Partial { .. } => {}
         }
     }
 

@@ -3,8 +3,9 @@
 //! Nodes stand in one vector, operands before their users, and a table of hashes finds equal ones: recording is linear
 //! in time. Nothing here depends on the order of a hash map; the same calls make the same program.
 
-use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value, arithmetic_if};
-use super::{Input, Program, schedule};
+use super::input::Input;
+use super::node::{Node, Value};
+use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if};
 use crate::expr::functions::Function;
 use crate::scalar::{Scalar, Table};
 use std::collections::HashMap;
@@ -480,20 +481,6 @@ impl Builder {
             first,
             count: args.len() as u32,
         })
-    }
-
-    /// The program that computes these values, and nothing else.
-    ///
-    /// Its inputs are those it needs, in the order in which the builder was asked for them.
-    pub fn finish(&self, outputs: &[Value]) -> Program {
-        schedule::program(self, outputs, None)
-    }
-
-    /// As [`Builder::finish`], for inputs that the host lays out itself; what is not needed is not read.
-    ///
-    /// An input that is needed and missing in `layout` is appended to it: compare `program.inputs()`.
-    pub fn finish_with_inputs(&self, outputs: &[Value], layout: &[Input]) -> Program {
-        schedule::program(self, outputs, Some(layout))
     }
 
     fn push(&mut self, node: Node) -> Value {

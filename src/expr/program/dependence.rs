@@ -6,8 +6,9 @@
 //!
 //! A superset of what any numbers can give: products that happen to be zero count. Conditions have no derivative.
 
+use super::code::{Code, Core, Instruction};
 use super::operation::BinaryOp;
-use super::{Code, Core, Instruction, Program};
+use super::run::Program;
 
 /// Directions per word.
 const BITS: usize = u64::BITS as usize;
@@ -21,7 +22,7 @@ impl Program {
         let words = n.unwrap_or(0).div_ceil(BITS);
         let mut sets = vec![0u64; words * core.size as usize];
         let first = core.constants.len();
-        for (k, &input) in self.used.iter().enumerate() {
+        for (k, &input) in core.used.iter().enumerate() {
             for &d in along.get(input as usize).map_or(&[][..], Vec::as_slice) {
                 sets[(first + k) * words + d as usize / BITS] |= 1 << (d as usize % BITS);
             }
@@ -48,7 +49,7 @@ impl Program {
             };
             set.iter().enumerate().flat_map(of_word).collect()
         };
-        self.outputs.iter().map(members).collect()
+        core.outputs.iter().map(members).collect()
     }
 }
 
@@ -70,8 +71,7 @@ impl Core {
             Code::CompareSelect(_) => [c, d].into_iter().for_each(each),
             Code::If => [b, c, d].into_iter().for_each(each),
             Code::Call(_, count) | Code::Partial(_, count, _) => {
-                let arguments = &self.lists[a as usize..(a + count) as usize];
-                arguments.iter().copied().for_each(each);
+                self.arguments(a, count).iter().copied().for_each(each);
             }
         }
     }

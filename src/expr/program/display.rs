@@ -1,7 +1,11 @@
 //! Programs as text, one operation per line, for people who want to see what is computed.
 
-use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value};
-use super::{Builder, Code, Input, Program};
+use super::builder::Builder;
+use super::code::Code;
+use super::input::Input;
+use super::node::{Node, Value};
+use super::operation::{BinaryOp, Comparison, UnaryOp};
+use super::run::Program;
 use std::fmt;
 
 impl fmt::Display for Program {
@@ -42,7 +46,7 @@ impl fmt::Display for Program {
             }
             writeln!(f)?;
         }
-        for (k, &r) in self.outputs.iter().enumerate() {
+        for (k, &r) in core.outputs.iter().enumerate() {
             writeln!(f, "output {k} = {}", name(r))?;
         }
         Ok(())
@@ -51,7 +55,7 @@ impl fmt::Display for Program {
 
 impl Program {
     fn names(&self, first: u32, count: u32) -> String {
-        let list = &self.core().lists[first as usize..(first + count) as usize];
+        let list = self.core().arguments(first, count);
         list.iter()
             .map(|&r| self.name(r))
             .collect::<Vec<_>>()
@@ -66,13 +70,14 @@ impl Program {
             return format!("{c}");
         }
         match self
+            .core()
             .used
             .get(register - constants.len())
-            .map(|&k| &self.inputs[k as usize])
+            .map(|&k| &self.inputs()[k as usize])
         {
             Some(Input::Slot(k)) => format!("slot{k}"),
             Some(input) => format!("{input}"),
-            None => format!("r{}", register - constants.len() - self.used.len()),
+            None => format!("r{}", register - constants.len() - self.core().used.len()),
         }
     }
 }

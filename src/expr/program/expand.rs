@@ -1,7 +1,9 @@
 //! Rewriting recorded values: calls of table functions, and their partial derivatives, as the operations of their rows.
 
-use super::operation::{Node, Value, partial};
-use super::{Builder, Folding, Sym};
+use super::builder::{Builder, Folding};
+use super::code::partial;
+use super::node::{Node, Value};
+use super::record::Sym;
 use std::cell::RefCell;
 
 /// What is expanded.

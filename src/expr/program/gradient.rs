@@ -4,10 +4,12 @@
 //! table are its row evaluated over duals ([`Node::Partial`]). Where a contribution leaves a side of a selection it is zero
 //! unless that side is taken, so that a branch without a value does not spoil the derivatives of the other.
 
+use super::builder::{Builder, Folding};
+use super::code::partial;
 use super::expand::Expand;
 use super::guard::{GuardIx, Guards, NEVER};
-use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value, partial};
-use super::{Builder, Folding};
+use super::node::{Node, Value};
+use super::operation::{BinaryOp, Comparison, UnaryOp, unary_operations};
 use crate::expr::functions::Function;
 use BinaryOp::{Add, Along, Div, Mul, Sub};
 use std::f64::consts::LOG10_E;
@@ -159,56 +161,12 @@ impl<'b> Adjoint<'b> {
         }
     }
 
-    fn unary(&mut self, op: UnaryOp, x: Value, v: Value, bar: Value) -> Value {
-        let [zero, one] = [0.0, 1.0].map(|c| self.builder.constant(c));
-        let slope = match op {
-            UnaryOp::Neg => return self.negative(bar),
-            UnaryOp::Trunc | UnaryOp::Round | UnaryOp::Floor | UnaryOp::Not => return zero,
-            UnaryOp::Abs => return self.op(Along, bar, x),
-            // the quotient need not wait for the bar
-            UnaryOp::Sqrt => {
-                let half = self.builder.constant(0.5);
-                self.op(Div, half, v)
-            }
-            UnaryOp::Ln => return self.op(Div, bar, x),
-            UnaryOp::Log10 => {
-                let scaled = self.times(bar, LOG10_E);
-                return self.op(Div, scaled, x);
-            }
-            UnaryOp::Sin => self.builder.unary(UnaryOp::Cos, x),
-            UnaryOp::Cos => {
-                let sine = self.builder.unary(UnaryOp::Sin, x);
-                self.negative(sine)
-            }
-            UnaryOp::Tan => {
-                let square = self.op(Mul, v, v);
-                self.op(Add, one, square)
-            }
-            UnaryOp::Asin | UnaryOp::Acos => {
-                let square = self.op(Mul, x, x);
-                let rest = self.op(Sub, one, square);
-                let root = self.builder.unary(UnaryOp::Sqrt, rest);
-                let part = self.op(Div, bar, root);
-                return if op == UnaryOp::Asin {
-                    part
-                } else {
-                    self.negative(part)
-                };
-            }
-            UnaryOp::Atan => {
-                let square = self.op(Mul, x, x);
-                let denominator = self.op(Add, one, square);
-                return self.op(Div, bar, denominator);
-            }
-            UnaryOp::Sinh => self.builder.unary(UnaryOp::Cosh, x),
-            UnaryOp::Cosh => self.builder.unary(UnaryOp::Sinh, x),
-            UnaryOp::Tanh => {
-                let square = self.op(Mul, v, v);
-                self.op(Sub, one, square)
-            }
-            UnaryOp::Exp => v,
-        };
-        self.op(Mul, bar, slope)
+    /// √(1 − x²)
+    fn root_of_one_less_square(&mut self, x: Value) -> Value {
+        let one = self.constant(1.0);
+        let square = self.op(Mul, x, x);
+        let rest = self.op(Sub, one, square);
+        self.apply(UnaryOp::Sqrt, rest)
     }
 
     fn binary(&mut self, op: BinaryOp, a: Value, b: Value, v: Value, bar: Value) {
@@ -379,6 +337,12 @@ impl<'b> Adjoint<'b> {
         });
     }
 
+    fn constant(&mut self, c: f64) -> Value {
+        self.builder.constant(c)
+    }
+    fn apply(&mut self, op: UnaryOp, a: Value) -> Value {
+        self.builder.unary(op, a)
+    }
     fn op(&mut self, op: BinaryOp, a: Value, b: Value) -> Value {
         self.builder.binary(op, a, b)
     }
@@ -401,6 +365,29 @@ impl<'b> Adjoint<'b> {
         self.op(Mul, a, factor)
     }
 }
+
+/// Makes the adjoints of the operations on one number.
+macro_rules! adjoints {
+    (
+        methods { $($(#[$doc:meta])* $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $method_rule:expr;)+ }
+        bodies { $($(#[$body_doc:meta])* $body_op:ident |$x:ident| $body:expr, $body_cost:literal, $body_edges:ident, $body_rule:expr;)+ }
+    ) => {
+        impl<'b> Adjoint<'b> {
+            /// Returns the part of `bar` for the operand `x` of an operation with the result `y`.
+            fn unary(&mut self, op: UnaryOp, x: Value, y: Value, bar: Value) -> Value {
+                type Rule<'b> = fn(&mut Adjoint<'b>, Value, Value, Value) -> Value;
+                // nodes are numbered in the order of recording: these two come first
+                let _ = [0.0, 1.0].map(|c| self.constant(c));
+                let rule: Rule<'b> = match op {
+                    $(UnaryOp::$method_op => $method_rule,)+
+                    $(UnaryOp::$body_op => $body_rule,)+
+                };
+                rule(self, x, y, bar)
+            }
+        }
+    };
+}
+unary_operations!(adjoints);
 
 /// `a + b`; two selections by the same condition become one.
 fn sum(builder: &mut Builder, a: Value, b: Value) -> Value {

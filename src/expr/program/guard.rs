@@ -4,8 +4,8 @@
 //! must not be counted there. Guards form a tree; that of a node is the nearest common ancestor of the guards of its uses.
 //! Selections by the same condition under the same guard share their sides.
 
-use super::Builder;
-use super::operation::{Node, Value};
+use super::builder::Builder;
+use super::node::{Node, Value};
 use std::collections::HashMap;
 
 /// Index into [`Guards`]; [`ALWAYS`] is the root.

@@ -1,55 +1,224 @@
-//! What a program can do: the operations, each meaning the same over every number.
+//! The elementary operations, one row each, meaning the same over every number.
+//!
+//! A row of [`unary_operations`] says all that this folder knows of an operation on one number. To add one is to add its row
+//! (and its method to `Scalar`): enum, evaluation, recording, adjoint, printing, breaks and calls from generated code
+//! follow.
 
-use crate::expr::functions::Function;
-use crate::scalar::{Dual, Mask, Scalar};
+use crate::scalar::{Mask, Scalar};
 
-/// A value in a [`super::Builder`]: the index of the node that yields it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Value(pub(crate) u32);
+/// Hands the table of operations on one number to the macro `$make`.
+///
+/// Columns: name and doc; the method of `Scalar`, or the body; cost in additions; where it may stop being smooth; the
+/// adjoint: its part of `bar` for the operand `x`, where `y` is the result and `d` writes operations down.
+macro_rules! unary_operations {
+    ($make:ident) => {
+        $make! {
+            methods {
+                /// magnitude
+                Abs abs, 1, Zero, |d, x, _y, bar| d.op(Along, bar, x);
+                /// square root; the quotient need not wait for the bar
+                Sqrt sqrt, 5, Zero, |d, _x, y, bar| {
+                    let half = d.constant(0.5);
+                    let slope = d.op(Div, half, y);
+                    d.op(Mul, bar, slope)
+                };
+                /// sine of an angle in radians
+                Sin sin, 20, Nowhere, |d, x, _y, bar| {
+                    let slope = d.apply(UnaryOp::Cos, x);
+                    d.op(Mul, bar, slope)
+                };
+                /// cosine of an angle in radians
+                Cos cos, 20, Nowhere, |d, x, _y, bar| {
+                    let sine = d.apply(UnaryOp::Sin, x);
+                    let slope = d.negative(sine);
+                    d.op(Mul, bar, slope)
+                };
+                /// tangent of an angle in radians
+                Tan tan, 20, Poles, |d, _x, y, bar| {
+                    let square = d.op(Mul, y, y);
+                    let one = d.constant(1.0);
+                    let slope = d.op(Add, one, square);
+                    d.op(Mul, bar, slope)
+                };
+                /// angle in radians whose sine this is
+                Asin asin, 20, PlusMinusOne, |d, x, _y, bar| {
+                    let root = d.root_of_one_less_square(x);
+                    d.op(Div, bar, root)
+                };
+                /// angle in radians whose cosine this is
+                Acos acos, 20, PlusMinusOne, |d, x, _y, bar| {
+                    let root = d.root_of_one_less_square(x);
+                    let part = d.op(Div, bar, root);
+                    d.negative(part)
+                };
+                /// angle in radians whose tangent this is
+                Atan atan, 20, Nowhere, |d, x, _y, bar| {
+                    let square = d.op(Mul, x, x);
+                    let one = d.constant(1.0);
+                    let denominator = d.op(Add, one, square);
+                    d.op(Div, bar, denominator)
+                };
+                /// hyperbolic sine
+                Sinh sinh, 20, Nowhere, |d, x, _y, bar| {
+                    let slope = d.apply(UnaryOp::Cosh, x);
+                    d.op(Mul, bar, slope)
+                };
+                /// hyperbolic cosine
+                Cosh cosh, 20, Nowhere, |d, x, _y, bar| {
+                    let slope = d.apply(UnaryOp::Sinh, x);
+                    d.op(Mul, bar, slope)
+                };
+                /// hyperbolic tangent
+                Tanh tanh, 20, Nowhere, |d, _x, y, bar| {
+                    let square = d.op(Mul, y, y);
+                    let one = d.constant(1.0);
+                    let slope = d.op(Sub, one, square);
+                    d.op(Mul, bar, slope)
+                };
+                /// exponential function
+                Exp exp, 20, Nowhere, |d, _x, y, bar| d.op(Mul, bar, y);
+                /// natural logarithm
+                Ln ln, 20, Zero, |d, x, _y, bar| d.op(Div, bar, x);
+                /// logarithm to the base 10
+                Log10 log10, 20, Zero, |d, x, _y, bar| {
+                    let scaled = d.times(bar, LOG10_E);
+                    d.op(Div, scaled, x)
+                };
+                /// whole number toward zero
+                Trunc trunc, 2, Whole, |d, _x, _y, _bar| d.constant(0.0);
+                /// nearest whole number, halves away from zero
+                Round round, 2, Halves, |d, _x, _y, _bar| d.constant(0.0);
+                /// whole number downward
+                Floor floor, 2, Whole, |d, _x, _y, _bar| d.constant(0.0);
+            }
+            bodies {
+                /// −x
+                Neg |x| -x, 1, Nowhere, |d, _x, _y, bar| d.negative(bar);
+                /// 1 where a condition is 0, else 0
+                Not |x| from_mask(truth(x).not()), 1, Nowhere, |d, _x, _y, _bar| d.constant(0.0);
+            }
+        }
+    };
+}
+pub(super) use unary_operations;
 
-impl Value {
-    pub(crate) fn index(self) -> usize {
-        self.0 as usize
-    }
+/// Where an operation on one number may stop being smooth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Edges {
+    /// smooth wherever it has a value
+    Nowhere,
+    /// at zero
+    Zero,
+    /// at whole numbers
+    Whole,
+    /// halfway between whole numbers
+    Halves,
+    /// at odd multiples of a right angle
+    Poles,
+    /// at 1 and −1
+    PlusMinusOne,
 }
 
-/// An operation on one number.
-#[allow(missing_docs)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[rustfmt::skip]
-pub enum UnaryOp {
-    Neg, Abs, Sqrt, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Exp, Ln, Log10,
-    /// toward zero
-    Trunc,
-    /// nearest, halves away from zero
-    Round,
-    /// downward
-    Floor,
-    /// 1 where a condition is 0, else 0
-    Not,
-}
+/// Makes the enum of operations on one number, their evaluation, cost and edges.
+macro_rules! define_unary {
+    (
+        methods { $($(#[$doc:meta])* $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;)+ }
+        bodies { $($(#[$body_doc:meta])* $body_op:ident |$x:ident| $body:expr, $body_cost:literal, $body_edges:ident, $_s:expr;)+ }
+    ) => {
+        /// An operation on one number.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum UnaryOp {
+            $($(#[$body_doc])* $body_op,)+
+            $($(#[$doc])* $method_op,)+
+        }
 
-/// An operation on two numbers.
-#[allow(missing_docs)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BinaryOp {
-    Add,
-    Sub,
-    Mul,
-    Div,
-    /// `a**b` as `Scalar::powf`
-    Pow,
-    /// angle of the point (b, a)
-    Atan2,
-    /// exact remainder with the sign of a
-    Rem,
-    /// both conditions
-    And,
-    /// either condition
-    Or,
-    /// −a, 0 or a by the sign of b; NaN where b is
-    Along,
+        impl UnaryOp {
+            /// Applies the operation to a number.
+            #[inline(always)]
+            pub fn apply<S: Scalar>(self, x: S) -> S {
+                match self {
+                    $(UnaryOp::$body_op => { let $x = x; $body })+
+                    $(UnaryOp::$method_op => x.$method(),)+
+                }
+            }
+
+            /// Returns about how many additions it costs.
+            pub(super) fn cost(self) -> u32 {
+                match self {
+                    $(UnaryOp::$body_op => $body_cost,)+
+                    $(UnaryOp::$method_op => $method_cost,)+
+                }
+            }
+
+            /// Returns where it may stop being smooth.
+            pub(super) fn edges(self) -> Edges {
+                match self {
+                    $(UnaryOp::$body_op => Edges::$body_edges,)+
+                    $(UnaryOp::$method_op => Edges::$method_edges,)+
+                }
+            }
+        }
+    };
 }
+unary_operations!(define_unary);
+
+/// Hands the table of operations on two numbers to the macro `$make`: name and doc, body, cost in additions.
+macro_rules! binary_operations {
+    ($make:ident) => {
+        $make! {
+            /// a + b
+            Add |a, b| a + b, 1;
+            /// a − b
+            Sub |a, b| a - b, 1;
+            /// a·b
+            Mul |a, b| a * b, 1;
+            /// a/b
+            Div |a, b| a / b, 4;
+            /// `a**b` as `Scalar::powf`
+            Pow |a, b| a.powf(b), 30;
+            /// angle in radians of the point (b, a)
+            Atan2 |a, b| a.atan2(b), 30;
+            /// exact remainder with the sign of a
+            Rem |a, b| a.rem(b), 30;
+            /// both conditions
+            And |a, b| from_mask(truth(a).and(truth(b))), 1;
+            /// either condition
+            Or |a, b| from_mask(truth(a).or(truth(b))), 1;
+            /// −a, 0 or a by the sign of b; NaN where b is
+            Along |a, b| arithmetic_if(b, -a, S::zero(), a), 1;
+        }
+    };
+}
+pub(super) use binary_operations;
+
+/// Makes the enum of operations on two numbers, their evaluation and cost.
+macro_rules! define_binary {
+    ($($(#[$doc:meta])* $op:ident |$a:ident, $b:ident| $body:expr, $cost:literal;)+) => {
+        /// An operation on two numbers.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum BinaryOp {
+            $($(#[$doc])* $op,)+
+        }
+
+        impl BinaryOp {
+            /// Applies the operation to two numbers.
+            #[inline(always)]
+            pub fn apply<S: Scalar>(self, a: S, b: S) -> S {
+                match self {
+                    $(BinaryOp::$op => { let ($a, $b) = (a, b); $body })+
+                }
+            }
+
+            /// Returns about how many additions it costs.
+            pub(super) fn cost(self) -> u32 {
+                match self {
+                    $(BinaryOp::$op => $cost,)+
+                }
+            }
+        }
+    };
+}
+binary_operations!(define_binary);
 
 /// A comparison of two numbers; it yields a condition, 1 or 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -62,55 +231,8 @@ pub enum Comparison {
     Eq,
 }
 
-impl UnaryOp {
-    /// The operation itself.
-    #[inline(always)]
-    pub fn apply<S: Scalar>(self, x: S) -> S {
-        match self {
-            UnaryOp::Neg => -x,
-            UnaryOp::Abs => x.abs(),
-            UnaryOp::Sqrt => x.sqrt(),
-            UnaryOp::Sin => x.sin(),
-            UnaryOp::Cos => x.cos(),
-            UnaryOp::Tan => x.tan(),
-            UnaryOp::Asin => x.asin(),
-            UnaryOp::Acos => x.acos(),
-            UnaryOp::Atan => x.atan(),
-            UnaryOp::Sinh => x.sinh(),
-            UnaryOp::Cosh => x.cosh(),
-            UnaryOp::Tanh => x.tanh(),
-            UnaryOp::Exp => x.exp(),
-            UnaryOp::Ln => x.ln(),
-            UnaryOp::Log10 => x.log10(),
-            UnaryOp::Trunc => x.trunc(),
-            UnaryOp::Round => x.round(),
-            UnaryOp::Floor => x.floor(),
-            UnaryOp::Not => from_mask(truth(x).not()),
-        }
-    }
-}
-
-impl BinaryOp {
-    /// The operation itself.
-    #[inline(always)]
-    pub fn apply<S: Scalar>(self, a: S, b: S) -> S {
-        match self {
-            BinaryOp::Add => a + b,
-            BinaryOp::Sub => a - b,
-            BinaryOp::Mul => a * b,
-            BinaryOp::Div => a / b,
-            BinaryOp::Pow => a.powf(b),
-            BinaryOp::Atan2 => a.atan2(b),
-            BinaryOp::Rem => a.rem(b),
-            BinaryOp::And => from_mask(truth(a).and(truth(b))),
-            BinaryOp::Or => from_mask(truth(a).or(truth(b))),
-            BinaryOp::Along => arithmetic_if(b, -a, S::zero(), a),
-        }
-    }
-}
-
 impl Comparison {
-    /// The comparison itself.
+    /// Compares two numbers.
     #[inline(always)]
     pub fn apply<S: Scalar>(self, a: S, b: S) -> S::Mask {
         match self {
@@ -121,19 +243,19 @@ impl Comparison {
     }
 }
 
-/// A condition kept as a number, as a mask.
+/// Returns a condition that is kept as a number, as a mask.
 #[inline(always)]
 pub(crate) fn truth<S: Scalar>(condition: S) -> S::Mask {
     S::zero().lt(condition)
 }
 
-/// A mask as a number, 1 or 0.
+/// Returns a mask as a number, 1 or 0.
 #[inline(always)]
 pub(crate) fn from_mask<S: Scalar>(mask: S::Mask) -> S {
     S::select(mask, S::one(), S::zero())
 }
 
-/// `IF(selector: negative, zero, positive)`: NaN where the selector is NaN.
+/// Evaluates `IF(selector: negative, zero, positive)`: NaN where the selector is NaN.
 #[inline(always)]
 pub(crate) fn arithmetic_if<S: Scalar>(selector: S, negative: S, zero: S, positive: S) -> S {
     let origin = S::zero();
@@ -148,59 +270,4 @@ pub(crate) fn arithmetic_if<S: Scalar>(selector: S, negative: S, zero: S, positi
             )
         },
     )
-}
-
-/// The `k`-th partial derivative of a function: its row over a dual.
-#[inline]
-pub(crate) fn partial<S: Scalar>(function: Function, args: &[S], k: usize) -> S {
-    fn over_duals<S: Scalar, const N: usize>(function: Function, args: &[S], k: usize) -> S {
-        let mut duals = [Dual::<1, S>::constant(0.0); N];
-        for (dual, &x) in duals.iter_mut().zip(args) {
-            *dual = Dual {
-                re: x,
-                eps: [S::zero()],
-            };
-        }
-        if let Some(dual) = duals.get_mut(k) {
-            dual.eps = [S::one()];
-        }
-        function.eval(&duals[..args.len().min(N)]).eps[0]
-    }
-    if args.len() <= 8 {
-        over_duals::<S, 8>(function, args, k)
-    } else {
-        over_duals::<S, 40>(function, args, k)
-    }
-}
-
-/// One node of a builder. Operands stand before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Node {
-    /// bits of the number
-    Constant(u64),
-    /// position among the inputs of the builder
-    Input(u32),
-    Unary(UnaryOp, Value),
-    Whole(Value, i32),
-    Binary(BinaryOp, Value, Value),
-    Compare(Comparison, Value, Value),
-    Select(Value, Value, Value),
-    /// position of (selector, negative, zero, positive) in the list of arguments
-    If(u32),
-    Lookup {
-        table: u32,
-        order: u32,
-        x: Value,
-    },
-    /// position and number of the arguments in the list of arguments
-    Call {
-        function: Function,
-        first: u32,
-        count: u32,
-    },
-    /// the `k`-th partial derivative of a call
-    Partial {
-        call: Value,
-        k: u32,
-    },
 }

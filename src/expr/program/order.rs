@@ -5,9 +5,10 @@
 //! marks and computes both sides. Nodes that one operation can yield together follow each other: sine and cosine of one
 //! angle, a function and its partial derivatives.
 
-use super::Builder;
+use super::builder::Builder;
 use super::guard::{ALWAYS, GuardIx, Guards, NEVER};
-use super::operation::{Node, UnaryOp, Value};
+use super::node::{Node, Value};
+use super::operation::UnaryOp;
 use std::collections::{HashMap, VecDeque};
 
 /// An element of the order.
@@ -476,26 +477,13 @@ fn weights(builder: &Builder, guards: &Guards) -> Vec<u32> {
     weights
 }
 
-/// About how many additions a node costs.
+/// Returns about how many additions a node costs.
 fn cost(node: &Node) -> u32 {
-    use super::operation::BinaryOp;
     match node {
         Node::Constant(_) | Node::Input(_) => 0,
-        Node::Unary(UnaryOp::Neg | UnaryOp::Abs | UnaryOp::Not, _) | Node::Compare(..) => 1,
-        Node::Unary(UnaryOp::Sqrt, _) => 5,
-        Node::Unary(UnaryOp::Trunc | UnaryOp::Floor | UnaryOp::Round, _) => 2,
-        Node::Unary(..) => 20,
-        Node::Binary(
-            BinaryOp::Add
-            | BinaryOp::Sub
-            | BinaryOp::Mul
-            | BinaryOp::And
-            | BinaryOp::Or
-            | BinaryOp::Along,
-            ..,
-        ) => 1,
-        Node::Binary(BinaryOp::Div, ..) => 4,
-        Node::Binary(..) => 30,
+        Node::Unary(op, _) => op.cost(),
+        Node::Binary(op, ..) => op.cost(),
+        Node::Compare(..) => 1,
         Node::Whole(..) => 4,
         Node::Select(..) | Node::If(_) => 2,
         Node::Lookup { .. } => 15,

@@ -1,7 +1,9 @@
 //! A number that records what is done to it: any formula generic over `Scalar` becomes part of a program by running once.
 
-use super::operation::{BinaryOp, Comparison, UnaryOp, Value};
-use super::{Builder, Input};
+use super::builder::Builder;
+use super::input::Input;
+use super::node::Value;
+use super::operation::{BinaryOp, Comparison, UnaryOp, unary_operations};
 use crate::scalar::{Mask, Scalar, Table};
 use std::cell::RefCell;
 use std::fmt;
@@ -200,13 +202,16 @@ impl std::ops::SubAssign for Sym<'_> {
     }
 }
 
-/// Functions of one number that are operations of the builder.
+/// Makes the methods of `Scalar` that are operations on one number.
 macro_rules! recorded {
-    ($($name:ident $op:ident,)*) => { $(
-        fn $name(self) -> Self {
-            self.unary(UnaryOp::$op)
+    (
+        methods { $($(#[$doc:meta])* $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;)+ }
+        bodies { $($others:tt)+ }
+    ) => { $(
+        fn $method(self) -> Self {
+            self.unary(UnaryOp::$method_op)
         }
-    )* };
+    )+ };
 }
 
 impl<'b> Scalar for Sym<'b> {
@@ -250,10 +255,7 @@ impl<'b> Scalar for Sym<'b> {
             }
         }
     }
-    recorded! {
-        sqrt Sqrt, sin Sin, cos Cos, tan Tan, asin Asin, acos Acos, atan Atan, sinh Sinh, cosh Cosh, tanh Tanh,
-        exp Exp, ln Ln, log10 Log10, abs Abs, trunc Trunc, round Round, floor Floor,
-    }
+    unary_operations!(recorded);
     fn atan2(self, other: Self) -> Self {
         self.binary(BinaryOp::Atan2, other)
     }

@@ -3,26 +3,43 @@
 //! The frame is `constants | inputs | temporaries`. A register is free again after its last use, so that the working set
 //! stays small.
 
-use super::operation::{Node, Value};
+use super::builder::Builder;
+use super::code::{Code, Core, Instruction, Mark, Sides};
+use super::input::Input;
+use super::node::{Node, Value};
 use super::order::{Item, Order};
-use super::{Builder, Code, Core, Input, Instruction, Program, machine};
-use std::sync::Arc;
+use super::run::Program;
+use std::collections::HashMap;
 
 /// Register of a node that has none (yet).
 const NONE: u32 = u32::MAX;
 
-/// Where everything stands: what code is made from.
-pub(super) struct Schedule<'a> {
-    pub(super) builder: &'a Builder,
-    pub(super) order: Order,
-    /// register of each needed node
-    pub(super) registers: Vec<u32>,
-    /// place of each needed node in the code; `NONE` for constants and inputs
-    pub(super) instructions: Vec<u32>,
+impl Builder {
+    /// The program that computes these values, and nothing else.
+    ///
+    /// Its inputs are those it needs, in the order in which the builder was asked for them.
+    pub fn finish(&self, outputs: &[Value]) -> Program {
+        program(self, outputs, None)
+    }
+
+    /// As [`Builder::finish`], for inputs that the host lays out itself; what is not needed is not read.
+    ///
+    /// An input that is needed and missing in `layout` is appended to it: compare `program.inputs()`.
+    pub fn finish_with_inputs(&self, outputs: &[Value], layout: &[Input]) -> Program {
+        program(self, outputs, Some(layout))
+    }
 }
 
-/// The program that computes `outputs`.
-pub(super) fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Program {
+/// Where everything stands: what code is made from.
+struct Schedule<'a> {
+    builder: &'a Builder,
+    order: Order,
+    /// register of each needed node
+    registers: Vec<u32>,
+}
+
+/// Returns the program that computes `outputs`.
+fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Program {
     let order = Order::new(builder, outputs);
     let mut registers = vec![NONE; builder.nodes.len()];
     let mut constants = Vec::new();
@@ -41,8 +58,7 @@ pub(super) fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Inp
     // inputs in the order in which the builder was asked for them
     needed.sort_unstable();
     let mut inputs: Vec<Input> = layout.map(<[Input]>::to_vec).unwrap_or_default();
-    let places: std::collections::HashMap<Input, usize> =
-        inputs.iter().enumerate().map(|(k, &i)| (i, k)).collect();
+    let places: HashMap<Input, usize> = inputs.iter().enumerate().map(|(k, &i)| (i, k)).collect();
     let mut used = Vec::with_capacity(needed.len());
     for &(input, v) in &needed {
         let input = builder.inputs[input as usize];
@@ -54,72 +70,65 @@ pub(super) fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Inp
         used.push(place as u32);
     }
     let first_temporary = (constants.len() + used.len()) as u32;
-    let instructions = vec![NONE; builder.nodes.len()];
     let mut schedule = Schedule {
         builder,
         order,
         registers,
-        instructions,
     };
-    let (code, lists, size) = schedule.allocate(outputs, first_temporary);
-    let registers: Vec<u32> = outputs
+    let mut core = schedule.allocate(outputs, first_temporary);
+    core.outputs = outputs
         .iter()
         .map(|v| schedule.registers[v.index()])
         .collect();
-    let core = Arc::new(Core {
-        constants,
-        code,
-        lists,
-        tables: builder.tables.clone(),
-        size,
-    });
-    let machine = machine::lower(&schedule, &core, outputs, &used);
-    Program::new(inputs, used, registers, core, machine)
+    Program::new(
+        inputs,
+        Core {
+            constants,
+            used,
+            ..core
+        },
+    )
 }
 
 impl Schedule<'_> {
-    /// Gives every node a register and an instruction: the code, the argument lists, the number of registers.
-    fn allocate(
-        &mut self,
-        outputs: &[Value],
-        first_temporary: u32,
-    ) -> (Vec<Instruction>, Vec<u32>, u32) {
+    /// Gives every node a register and an instruction; returns the code, without constants, inputs and outputs.
+    fn allocate(&mut self, outputs: &[Value], first_temporary: u32) -> Core {
         let builder = self.builder;
         let mut allocation = Allocation::new(&self.order, builder, outputs, first_temporary);
-        let mut code = Vec::with_capacity(self.order.items.len());
-        let mut lists = Vec::new();
+        let mut core = Core {
+            constants: Vec::new(),
+            used: Vec::new(),
+            code: Vec::with_capacity(self.order.items.len()),
+            lists: Vec::new(),
+            sides: Sides::default(),
+            tables: builder.tables.clone(),
+            size: 0,
+            outputs: Vec::new(),
+        };
+        let mut groups = Groups::default();
         for (time, item) in self.order.items.iter().enumerate() {
             let v = match *item {
                 Item::Node(v) => v,
-                Item::Begin(first, 0) => {
-                    // the values of all sides go to registers that are held for them from the first side on
-                    for &member in &self.order.groups[&first] {
-                        self.registers[member.index()] = allocation.take();
+                Item::Begin(first, side) => {
+                    if side == 0 {
+                        // the values of all sides go to registers that are held for them from the first side on
+                        for &member in &self.order.groups[&first] {
+                            self.registers[member.index()] = allocation.take();
+                        }
                     }
+                    groups.mark(first, side, false, core.code.len());
                     continue;
                 }
-                _ => continue,
+                Item::End(first, side) => {
+                    groups.mark(first, side, true, core.code.len());
+                    continue;
+                }
             };
             let node = builder.nodes[v.index()];
             if matches!(node, Node::Constant(_) | Node::Input(_)) {
                 continue;
             }
-            let mut operands = [0; 4];
-            let mut n = 0;
-            let first_in_list = lists.len() as u32;
-            let is_call = matches!(node, Node::Call { .. } | Node::Partial { .. });
-            self.order.operands(builder, &node, |x| {
-                let register = self.registers[x.index()];
-                if is_call {
-                    lists.push(register);
-                } else {
-                    operands[n] = register;
-                    n += 1;
-                }
-            });
-            if is_call {
-                operands[0] = first_in_list;
-            }
+            let operands = self.operands(&node, &mut core.lists);
             // operands that end here free their registers before the result takes one
             self.order.operands(builder, &node, |x| {
                 allocation.release(x, time as u32, &self.registers)
@@ -129,9 +138,11 @@ impl Schedule<'_> {
                 held => held,
             };
             self.registers[v.index()] = to;
-            self.instructions[v.index()] = code.len() as u32;
+            if self.order.is_jumped[v.index()] {
+                groups.members.insert(v, core.code.len() as u32);
+            }
             let [a, b, c, d] = operands;
-            code.push(Instruction {
+            core.code.push(Instruction {
                 code: self.code_of(&node),
                 to,
                 a,
@@ -140,7 +151,28 @@ impl Schedule<'_> {
                 d,
             });
         }
-        (code, lists, allocation.size)
+        core.size = allocation.size;
+        core.sides = groups.finish(&self.order);
+        core
+    }
+
+    /// Returns the operands of an instruction: registers, or the place of the arguments of a call, which are listed.
+    fn operands(&self, node: &Node, lists: &mut Vec<u32>) -> [u32; 4] {
+        let mut operands = [0; 4];
+        if matches!(node, Node::Call { .. } | Node::Partial { .. }) {
+            operands[0] = lists.len() as u32;
+            self.order.operands(self.builder, node, |x| {
+                lists.push(self.registers[x.index()]);
+            });
+            return operands;
+        }
+        let mut places = operands.iter_mut();
+        self.order.operands(self.builder, node, |x| {
+            if let Some(place) = places.next() {
+                *place = self.registers[x.index()];
+            }
+        });
+        operands
     }
 
     fn code_of(&self, node: &Node) -> Code {
@@ -173,6 +205,47 @@ impl Schedule<'_> {
                 unreachable!("constants and inputs are registers, not instructions")
             }
         }
+    }
+}
+
+/// The sides of selections while their instructions are being placed.
+#[derive(Default)]
+struct Groups {
+    marks: Vec<Mark>,
+    /// number of the group of each selection that marks name
+    numbers: HashMap<Value, u32>,
+    /// selections that marks name, by number
+    named: Vec<Value>,
+    /// the instruction of each selection
+    members: HashMap<Value, u32>,
+}
+
+impl Groups {
+    fn mark(&mut self, first: Value, side: u8, is_end: bool, at: usize) {
+        let group = *self.numbers.entry(first).or_insert_with(|| {
+            self.named.push(first);
+            self.named.len() as u32 - 1
+        });
+        self.marks.push(Mark {
+            at: at as u32,
+            group,
+            side,
+            is_end,
+        });
+    }
+
+    fn finish(self, order: &Order) -> Sides {
+        let mut sides = Sides {
+            marks: self.marks,
+            ..Sides::default()
+        };
+        for first in &self.named {
+            let begin = sides.members.len();
+            let instructions = order.groups[first].iter().map(|v| self.members[v]);
+            sides.members.extend(instructions);
+            sides.groups.push(begin..sides.members.len());
+        }
+        sides
     }
 }
 

@@ -4,8 +4,10 @@
 //! A program whose branches are held is smooth as far as its functions are: a method of high order may step across the
 //! place where the branch ends, find that place on its interpolant, and go back there.
 
-use super::operation::{BinaryOp, Comparison, Node, UnaryOp, Value};
-use super::{Builder, Input};
+use super::builder::Builder;
+use super::input::Input;
+use super::node::{Node, Value};
+use super::operation::{BinaryOp, Comparison, UnaryOp};
 
 /// The branches of some outputs.
 struct Branches {

@@ -1,6 +1,9 @@
 //! What builder, schedule and machine promise, on small programs and on random ones.
 
+use super::operation::arithmetic_if;
 use super::*;
+use crate::expr::functions::Function;
+use crate::scalar::Scalar;
 use crate::scalar::{Dual, Jet, Lanes};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -167,6 +170,29 @@ fn same_bits(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
 }
 
+/// The program on each engine that there is here.
+fn engines(program: &Program) -> impl Iterator<Item = Program> {
+    [Engine::Interpreter, Engine::Native]
+        .into_iter()
+        .filter_map(|engine| program.with_engine(engine))
+}
+
+/// Whether all engines give the same bits.
+fn engines_agree(program: &Program, x: &[f64]) -> bool {
+    let outputs: Vec<Vec<f64>> = engines(program)
+        .map(|program| {
+            let (mut work, mut out) = (Work::default(), vec![0.0; program.n_outputs()]);
+            program.run(x, &mut work, &mut out);
+            out.push(program.value(x, &mut work));
+            out
+        })
+        .collect();
+    outputs.iter().all(|out| {
+        let pairs = out.iter().zip(&outputs[0]);
+        pairs.into_iter().all(|(a, b)| same_bits(*a, *b))
+    })
+}
+
 fn layout() -> [Input; N] {
     std::array::from_fn(|k| Input::Slot(k as u32))
 }
@@ -207,9 +233,8 @@ proptest! {
         let program = builder.finish_with_inputs(&outputs, &layout());
         let with_gradient = program.with_gradient(&layout());
         let (mut work, mut out) = (Work::default(), vec![0.0; outputs.len()]);
-        let (mut work_gradient, mut run) = (Work::default(), vec![0.0; with_gradient.n_outputs()]);
+        let mut run = vec![0.0; with_gradient.n_outputs()];
         let mut evaluated = run.clone();
-        let (mut work_threaded, mut threaded) = (Work::default(), run.clone());
         for x in [x, y] {
             program.run(&x, &mut work, &mut out);
             for (got, f) in out.iter().zip(&formulas) {
@@ -219,19 +244,14 @@ proptest! {
             if outputs.len() == 1 {
                 prop_assert!(same_bits(program.value(&x, &mut work), out[0]));
             }
-            with_gradient.run(&x, &mut work_gradient, &mut run);
             with_gradient.eval(&x, &mut Work::default(), &mut evaluated);
-            for (got, want) in run.iter().zip(&evaluated) {
-                prop_assert!(same_bits(*got, *want) || got == want, "{got} {want}");
+            for engine in engines(&with_gradient) {
+                engine.run(&x, &mut Work::default(), &mut run);
+                for (got, want) in run.iter().zip(&evaluated) {
+                    prop_assert!(same_bits(*got, *want) || got == want, "{got} {want}");
+                }
             }
-            with_gradient.threaded().run(&x, &mut work_threaded, &mut threaded);
-            for (got, want) in run.iter().zip(&threaded) {
-                prop_assert!(same_bits(*got, *want), "translated {got}, threaded {want}");
-            }
-            program.threaded().run(&x, &mut Work::default(), &mut threaded[..outputs.len()]);
-            for (got, want) in threaded.iter().zip(&out) {
-                prop_assert!(same_bits(*got, *want), "threaded {got}, translated {want}");
-            }
+            prop_assert!(engines_agree(&with_gradient, &x) && engines_agree(&program, &x));
         }
     }
 
@@ -473,26 +493,37 @@ fn registers_are_used_again() {
     assert!(program.work_size() <= fixed + 3, "{}", program.work_size());
 }
 
-/// Where there is no translation, this says nothing.
+/// Where there is no translation, this says nothing of it.
 #[test]
-#[cfg(all(target_arch = "x86_64", target_os = "linux", not(miri)))]
-fn programs_are_translated_when_they_first_run() {
+fn programs_that_run_often_are_translated() {
     let mut builder = Builder::new(Folding::Strict);
     let t = builder.input(Input::Time);
     let square = builder.binary(BinaryOp::Mul, t, t);
     let program = builder.finish(&[square]);
-    let mut out = [0.0];
-    program.eval(&[3.0], &mut Work::<f64>::default(), &mut out);
-    assert!(!program.machine.is_translated());
-    let mut work = Work::default();
-    program.run(&[3.0], &mut work, &mut out);
-    assert!(program.machine.is_translated());
-    assert_eq!(out, [9.0]);
-    // a copy has it from the start, and runs over the same registers
+    let best = match program.with_engine(Engine::Native) {
+        Some(native) => native.engine(),
+        None => Engine::Interpreter,
+    };
     let copy = program.clone();
-    assert!(copy.machine.is_translated());
+    let mut work = Work::default();
+    assert_eq!(program.value(&[3.0], &mut work), 9.0);
+    assert_eq!(program.engine(), Engine::Interpreter);
+    for k in 0..10_000 {
+        assert_eq!(program.value(&[f64::from(k)], &mut work), f64::from(k * k));
+    }
+    assert_eq!(program.engine(), best);
+    // copies share the translation, and run over the same registers
+    assert_eq!(copy.engine(), best);
     drop(program);
     assert_eq!(copy.value(&[4.0], &mut work), 16.0);
+}
+
+#[test]
+fn a_program_without_outputs_runs() {
+    let builder = Builder::new(Folding::Strict);
+    let program = builder.finish(&[]);
+    program.run(&[], &mut Work::default(), &mut []);
+    assert!(program.with_engine(Engine::Native).is_none());
 }
 
 #[test]
@@ -515,18 +546,17 @@ fn more_values_than_the_processor_has_registers_are_kept() {
     }
     let program = builder.finish(&[back, there]);
     let numbers: Vec<f64> = (0..n).map(|k| 0.2 + 0.01 * f64::from(k * k % 17)).collect();
-    let (mut translated, mut threaded, mut evaluated) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-    program.run(&numbers, &mut Work::default(), &mut translated);
-    program
-        .threaded()
-        .run(&numbers, &mut Work::default(), &mut threaded);
+    let (mut run, mut evaluated) = ([0.0; 2], [0.0; 2]);
     program.eval(&numbers, &mut Work::default(), &mut evaluated);
-    assert_eq!((translated, threaded), (evaluated, evaluated));
+    for engine in engines(&program) {
+        engine.run(&numbers, &mut Work::default(), &mut run);
+        assert_eq!(run, evaluated);
+    }
 }
 
 #[test]
 fn long_programs_need_no_stack() {
-    // an alternating sum of products, an IF now and then: the machine pauses many times
+    // an alternating sum of products, an IF now and then
     let mut b = Builder::new(Folding::Strict);
     let inputs = [0, 1, 2].map(|k| b.input(Input::Slot(k)));
     let mut v = inputs[0];
@@ -567,7 +597,12 @@ fn long_programs_need_no_stack() {
         .stack_size(128 * 1024)
         .spawn(move || {
             let mut work = Work::default();
-            [[0.5, -1.5, 0.75], [-2.0, 0.3, 1.9]].map(|x| (program.value(&x, &mut work), want(&x)))
+            engines(&program)
+                .flat_map(|program| {
+                    [[0.5, -1.5, 0.75], [-2.0, 0.3, 1.9]]
+                        .map(|x| (program.value(&x, &mut work), want(&x)))
+                })
+                .collect::<Vec<_>>()
         });
     for (got, want) in run.unwrap().join().unwrap() {
         assert_eq!(got, want);
@@ -632,7 +667,7 @@ fn a_difference_and_its_contrary_are_one_switch() {
     let mut b = Builder::new(Folding::Strict);
     let (x, y) = (b.input(Input::Slot(0)), b.input(Input::Slot(1)));
     let larger = b.call(Function::Max, &[x, y]);
-    let larger = b.expanded(&[larger], super::expand::Expand::Calls)[0];
+    let larger = b.expanded(&[larger], expand::Expand::Calls)[0];
     assert_eq!(b.switching(&[larger]).len(), 1);
     let (held, _) = b.held(&[larger], &[larger], |_| Input::Slot(2));
     let program = b.finish_with_inputs(&held, &layout());

@@ -1,9 +1,10 @@
 //! Where a program may break because of what depends on time alone: at times that are known before anything else is.
 
 use super::breaks::{Break, Levels};
+use super::builder::Builder;
 use super::expand::Expand;
-use super::operation::{Node, Value};
-use super::{Builder, Input};
+use super::input::Input;
+use super::node::{Node, Value};
 use std::collections::HashMap;
 
 /// Most knots of a table that was drawn by hand.

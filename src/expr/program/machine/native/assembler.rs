@@ -1,7 +1,7 @@
 //! The instructions of x86-64 that translated programs consist of, as bytes.
 //!
-//! Numbers are doubles in the low halves of the sixteen vector registers, or stand in the frame; the arithmetic is that of SSE2, which
-//! every processor of this kind has and which the compiler uses for the same operations: the bits are the same.
+//! Numbers are doubles in the low halves of the sixteen vector registers, or stand in the frame; the arithmetic is that of
+//! SSE2, which every processor of this kind has and which the compiler uses for the same operations: the bits are the same.
 
 /// A vector register, 0 … 15.
 pub(super) type Xmm = u8;
@@ -12,10 +12,8 @@ pub(super) enum Place {
     Xmm(Xmm),
     /// a register of the frame
     Slot(u32),
-    /// a number among the inputs
+    /// a number among the inputs, which are lost with the first call
     Input(u32),
-    /// a constant behind the code
-    Constant(u32),
 }
 
 /// Instructions on doubles: prefix and code.
@@ -63,10 +61,10 @@ pub(super) enum When {
     Unordered,
 }
 
-/// The registers for addresses that are used.
-const RDX: u8 = 2;
-const RBX: u8 = 3;
+/// The registers for addresses: inputs, and the frame in a function with calls and in one without.
 const RSI: u8 = 6;
+const RBX: u8 = 3;
+const RDI: u8 = 7;
 
 /// A jump whose distance is not known yet: the place of the distance in the code.
 #[derive(Clone, Copy, Debug)]
@@ -77,49 +75,25 @@ pub(super) struct Jump(usize);
 pub(super) struct Assembler {
     code: Vec<u8>,
     calls: bool,
-    /// distances to constants: where they stand in the code, and which constant
-    distances: Vec<(usize, u32)>,
 }
 
 impl Assembler {
-    /// Begins a function that is given the frame and the inputs as second and third argument.
+    /// Begins a function that is given the frame and the inputs.
     pub(super) fn new(calls: bool) -> Self {
         let mut code = Vec::new();
         if calls {
-            // push rbx (that aligns the stack); rbx = rsi
-            code.extend([0x53, 0x48, 0x89, 0xF3]);
+            // push rbx (that aligns the stack); rbx = rdi
+            code.extend([0x53, 0x48, 0x89, 0xFB]);
         }
-        Self {
-            code,
-            calls,
-            distances: Vec::new(),
-        }
+        Self { code, calls }
     }
 
-    /// Ends it: null is returned, and what is in the vector register 0.
-    pub(super) fn end(&mut self) {
-        // eax = 0
-        self.code.extend([0x31, 0xC0]);
+    /// Ends it; returns the code of the function, whose result is in the vector register 0.
+    pub(super) fn finish(mut self) -> Vec<u8> {
         if self.calls {
             self.code.push(0x5B);
         }
         self.code.push(0xC3);
-    }
-
-    /// The code, and behind it these constants.
-    pub(super) fn finish(mut self, constants: &[f64]) -> Vec<u8> {
-        if !constants.is_empty() {
-            self.code.resize(self.code.len().next_multiple_of(8), 0xCC);
-        }
-        let first = self.code.len();
-        for &(place, k) in &self.distances {
-            // counted from the next instruction
-            let distance = (first + 8 * k as usize - (place + 4)) as u32;
-            self.code[place..place + 4].copy_from_slice(&distance.to_le_bytes());
-        }
-        for c in constants {
-            self.code.extend(c.to_bits().to_le_bytes());
-        }
         self.code
     }
 
@@ -148,10 +122,6 @@ impl Assembler {
 
     /// All bits of `x` where it stands so to `place`, else none.
     pub(super) fn mask(&mut self, x: Xmm, relation: Relation, place: Place) {
-        debug_assert!(
-            !matches!(place, Place::Constant(_)),
-            "distances count from behind the operand"
-        );
         self.operate(MASK, x, place);
         self.code.push(relation as u8);
     }
@@ -190,15 +160,22 @@ impl Assembler {
         self.code[jump.0 - 4..jump.0].copy_from_slice(&distance.to_le_bytes());
     }
 
-    /// Calls a function with a first argument and the frame. All vector registers are lost, but for the result in the first.
-    pub(super) fn call(&mut self, function: usize, argument: usize) {
+    /// Calls a function of numbers, which are in the first vector registers. All vector registers are lost, but for results.
+    pub(super) fn call(&mut self, function: usize) {
         debug_assert!(self.calls, "the frame must survive the call");
-        // rdi = argument; rsi = rbx; rax = function; call rax
-        self.code.extend([0x48, 0xBF]);
-        self.code.extend((argument as u64).to_le_bytes());
-        self.code.extend([0x48, 0x89, 0xDE, 0x48, 0xB8]);
+        // rax = function; call rax
+        self.code.extend([0x48, 0xB8]);
         self.code.extend((function as u64).to_le_bytes());
         self.code.extend([0xFF, 0xD0]);
+    }
+
+    /// Calls a function with an address and the frame. All vector registers are lost.
+    pub(super) fn call_with_frame(&mut self, function: usize, argument: usize) {
+        // rdi = argument; rsi = rbx
+        self.code.extend([0x48, 0xBF]);
+        self.code.extend((argument as u64).to_le_bytes());
+        self.code.extend([0x48, 0x89, 0xDE]);
+        self.call(function);
     }
 
     /// What follows the prefix: extension of register numbers, code, operands.
@@ -214,17 +191,8 @@ impl Assembler {
                 return;
             }
             Place::Slot(k) if self.calls => (RBX, k),
-            Place::Slot(k) => (RSI, k),
-            Place::Input(k) => (RDX, k),
-            Place::Constant(k) => {
-                if high != 0 {
-                    self.code.push(0x44);
-                }
-                self.code.extend([0x0F, code, 0x05 | low << 3]);
-                self.distances.push((self.code.len(), k));
-                self.code.extend([0; 4]);
-                return;
-            }
+            Place::Slot(k) => (RDI, k),
+            Place::Input(k) => (RSI, k),
         };
         if high != 0 {
             self.code.push(0x44);

@@ -1,115 +1,125 @@
-//! The threaded code translated into code of the processor (x86-64 under Linux).
+//! Steps translated into code of the processor (x86-64 under Linux).
 //!
-//! The translation is one operation like any other: it is given the frame and the inputs, and does what all operations of
-//! the threaded code do, in the same order, with the same roundings: the results are the same bits. What has a handler of
-//! its own (functions, tables) is called. It is made when the program
-//! first runs. Where the system refuses that, the threaded code runs.
+//! The code does the operations of the steps in their order, with the same roundings: the results are the same bits. What
+//! the processor has no instruction for is called; what reaches into tables or has many arguments is given to the
+//! interpreter step by step.
 //!
 //! # Safety
 //!
-//! The code reads and writes what the threaded code does, which [`super::Machine::check`] has seen to be inside the frame;
-//! slots of the translation's own stand behind them ([`Native::n_spare`]).
+//! The code reads and writes slots and inputs that the steps name. [`Steps::are_sound`] has seen that all of them are inside
+//! the frame and inside the inputs, and that jumps lead forward; steps that are not sound are not translated. That frame and
+//! inputs are as long as they must be is asserted before each run.
 
 mod assembler;
-mod inline;
-mod pages;
-mod steps;
+mod calls;
+mod needs;
 mod translate;
 
-use super::{Handler, Op, Threaded, handlers};
-use pages::Pages;
+use super::super::code::Core;
+use super::steps::Steps;
+use calls::CalledStep;
+use memmap2::{Mmap, MmapMut};
 use std::collections::HashMap;
-use std::ffi::c_void;
-use std::sync::{Arc, OnceLock};
-use steps::{Step, Steps};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A program that is translated when it first runs.
-pub(super) struct Native {
-    threaded: Threaded,
-    loaded: OnceLock<Option<Loaded>>,
-}
+/// Most pieces of code at a time: a system allows some ten thousand mappings for a process; most are left to others.
+const MOST_MAPPINGS: usize = 20_000;
+static N_MAPPINGS: AtomicUsize = AtomicUsize::new(0);
+
+/// Most slots and inputs, whose distances in bytes are numbers of 31 bits.
+const MOST_NUMBERS: usize = 1 << 28;
+
+/// A function that works on a frame and reads inputs; returns the first output.
+type Entry = unsafe extern "sysv64" fn(frame: *mut f64, inputs: *const f64) -> f64;
 
 /// Code that can run.
-struct Loaded {
-    /// the operation that is the whole program
-    op: Op,
-    n_spare: usize,
+pub(super) struct Native {
+    entry: Entry,
+    n_slots: usize,
+    n_inputs: usize,
     /// where the code stands
-    _pages: Pages,
-    /// operations that it calls, each followed by the end
-    _called: Box<[[Op; 2]]>,
+    _code: Mapping,
+    /// the steps that it gives to the interpreter, by address
+    _called: Box<[CalledStep]>,
 }
 
-impl Threaded {
-    /// The parameters at a place in the frame.
-    fn parameters(&self, place: u32, length: u32) -> &[f64] {
-        let first = place as usize + self.parameters.len() - self.n_registers;
-        &self.parameters[first..first + length as usize]
-    }
-}
+/// Memory that holds code, counted.
+struct Mapping(Mmap);
 
 impl Native {
-    pub(super) fn of(threaded: Threaded) -> Option<Arc<Self>> {
-        // places in the frame are distances of 32 bits
-        (threaded.n_registers < 1 << 26).then(|| {
-            Arc::new(Self {
-                threaded,
-                loaded: OnceLock::new(),
+    /// Translates steps; `None` where the system gives no memory that can be executed.
+    #[allow(unsafe_code)]
+    pub(super) fn of(steps: &Arc<Steps>, core: &Arc<Core>) -> Option<Self> {
+        let n_inputs = core.used.iter().map(|&k| k as usize + 1).max().unwrap_or(0);
+        if core.outputs.is_empty()
+            || steps.n_slots().max(n_inputs) >= MOST_NUMBERS
+            || !steps.are_sound(core)
+        {
+            return None;
+        }
+        let numbered = (0u32..).zip(&steps.steps);
+        let (numbers, called): (Vec<u32>, Vec<CalledStep>) = numbered
+            .filter(|(_, step)| translate::is_performed(step))
+            .map(|(k, &step)| {
+                let (steps, core) = (steps.clone(), core.clone());
+                (k, CalledStep { step, steps, core })
             })
+            .unzip();
+        let called = called.into_boxed_slice();
+        let addresses: HashMap<u32, usize> = numbers
+            .into_iter()
+            .zip(
+                called
+                    .iter()
+                    .map(|step| std::ptr::from_ref(step).expose_provenance()),
+            )
+            .collect();
+        let code = Mapping::of(&translate::translate(steps, core, &addresses))?;
+        // SAFETY: the translation is a function of this kind, and `code` keeps it where it is
+        let entry = unsafe { std::mem::transmute::<*const u8, Entry>(code.0.as_ptr()) };
+        Some(Self {
+            entry,
+            n_slots: steps.n_slots(),
+            n_inputs,
+            _code: code,
+            _called: called,
         })
     }
 
-    fn loaded(&self) -> Option<&Loaded> {
-        self.loaded
-            .get_or_init(|| Loaded::new(&self.threaded))
-            .as_ref()
-    }
-
-    /// The operation that is the whole program; `None` where there can be none.
-    pub(super) fn start(&self) -> Option<*const Op> {
-        self.loaded().map(|loaded| std::ptr::from_ref(&loaded.op))
-    }
-
-    /// How many registers it needs behind those of the threaded code.
-    pub(super) fn n_spare(&self) -> usize {
-        self.loaded().map_or(0, |loaded| loaded.n_spare)
+    /// Runs over a frame whose constants are in place; returns the first output.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> f64 {
+        assert!(frame.len() >= self.n_slots && inputs.len() >= self.n_inputs);
+        // SAFETY: the code stays inside frame and inputs; see the head of this file
+        unsafe { (self.entry)(frame.as_mut_ptr(), inputs.as_ptr()) }
     }
 }
 
-impl Loaded {
-    fn new(threaded: &Threaded) -> Option<Self> {
-        let steps = Steps::of(threaded);
-        let end = Op {
-            run: handlers::halt,
-            operands: [0; 6],
-        };
-        let numbers: Vec<u32> = steps
-            .steps
-            .iter()
-            .filter_map(|step| match step {
-                Step::Call { op, .. } => Some(*op),
-                _ => None,
-            })
-            .collect();
-        let called: Box<[[Op; 2]]> = numbers
-            .iter()
-            .map(|&k| [threaded.ops[k as usize], end])
-            .collect();
-        let places: HashMap<u32, *const Op> = numbers
-            .into_iter()
-            .zip(called.iter().map(|pair| pair.as_ptr()))
-            .collect();
-        let pages = Pages::new(&translate::translate(&steps, &places, &threaded.outputs))?;
-        // SAFETY: the code is a function of this kind
-        let run = unsafe { std::mem::transmute::<*const c_void, Handler>(pages.start()) };
-        Some(Self {
-            op: Op {
-                run,
-                operands: [0; 6],
-            },
-            n_spare: steps.first_constant - threaded.n_registers,
-            _pages: pages,
-            _called: called,
-        })
+impl Mapping {
+    /// Returns memory that holds this code, which can be executed and no longer be written.
+    fn of(code: &[u8]) -> Option<Self> {
+        if N_MAPPINGS.fetch_add(1, Ordering::Relaxed) >= MOST_MAPPINGS {
+            N_MAPPINGS.fetch_sub(1, Ordering::Relaxed);
+            return None;
+        }
+        let written = MmapMut::map_anon(code.len()).and_then(|mut memory| {
+            memory.copy_from_slice(code);
+            memory.make_exec()
+        });
+        match written {
+            Ok(memory) => Some(Self(memory)),
+            Err(_) => {
+                N_MAPPINGS.fetch_sub(1, Ordering::Relaxed);
+                None
+            }
+        }
+    }
+}
+
+impl Drop for Mapping {
+    fn drop(&mut self) {
+        N_MAPPINGS.fetch_sub(1, Ordering::Relaxed);
     }
 }

@@ -1,13 +1,15 @@
 //! From steps to machine code: results stay in vector registers as long as there is room, and are stored when they must be.
 //!
-//! A result is stored before its register is given away, before a jump, a label, a call and at the end, and only if it is still
-//! needed. The register that is given away is the one whose value is needed last. Constants, inputs that were stored and other
-//! numbers in the frame are operands where they stand.
+//! A result is stored before its register is given away, before a jump or its target, before a call and at the end, and only
+//! if it is still needed. The register that is given away is the one whose value is needed last. Constants, inputs that were
+//! stored and other numbers in the frame are operands where they stand.
 
-use super::super::{Op, handlers};
+use super::super::super::code::Core;
+use super::super::super::operation::{BinaryOp, Comparison, UnaryOp};
+use super::super::steps::{Step, Steps};
 use super::assembler::{self, Assembler, Instruction, Jump, Place, Relation, When, Xmm};
-use super::steps::{NEVER, Next, Step, Steps};
-use handlers::{ADD, ALONG, DIV, MUL, SQRT, SUB};
+use super::calls;
+use super::needs::{NEVER, Next, needs, targets};
 use std::collections::HashMap;
 
 /// Registers that hold values of slots; the two behind them are for what lies between two instructions.
@@ -33,57 +35,118 @@ struct Translation<'a> {
     held: [Option<Held>; N_HOLDING],
     /// by slot: the register
     places: Vec<u8>,
-    /// slots from here on are constants
-    first_constant: usize,
     /// registers that the step at hand still needs
     pinned: u16,
-    /// by operation: the jumps that lead there
+    /// by step: the jumps that lead there
     jumps: HashMap<u32, Vec<Jump>>,
-    /// by operation: the address of what is called
-    calls: &'a HashMap<u32, *const Op>,
+    /// by step: the address of what is given to the interpreter
+    called: &'a HashMap<u32, usize>,
 }
 
-/// The code of these steps; `calls` are the operations that are called.
-pub(super) fn translate(
-    steps: &Steps,
-    calls: &HashMap<u32, *const Op>,
-    outputs: &[u32],
-) -> Vec<u8> {
+/// Returns whether a step is performed by the interpreter.
+pub(super) fn is_performed(step: &Step) -> bool {
+    matches!(step, Step::Instruction { .. } | Step::Prepared { .. })
+}
+
+/// Returns whether a step calls anything.
+fn is_call(step: &Step) -> bool {
+    match step {
+        Step::Unary { op, .. } => !matches!(op, UnaryOp::Sqrt | UnaryOp::Abs),
+        Step::Binary { op, .. } => instruction(*op).is_none() && *op != BinaryOp::Along,
+        Step::SineCosine { .. } => true,
+        step => is_performed(step),
+    }
+}
+
+/// Returns the instruction of the processor for an operation, if there is one.
+fn instruction(op: BinaryOp) -> Option<Instruction> {
+    match op {
+        BinaryOp::Add => Some(assembler::ADD),
+        BinaryOp::Sub => Some(assembler::SUBTRACT),
+        BinaryOp::Mul => Some(assembler::MULTIPLY),
+        BinaryOp::Div => Some(assembler::DIVIDE),
+        BinaryOp::Pow
+        | BinaryOp::Atan2
+        | BinaryOp::Rem
+        | BinaryOp::And
+        | BinaryOp::Or
+        | BinaryOp::Along => None,
+    }
+}
+
+/// Returns the code of these steps; `called` are the addresses of the steps that are performed by the interpreter.
+pub(super) fn translate(steps: &Steps, core: &Core, called: &HashMap<u32, usize>) -> Vec<u8> {
+    let is_target = targets(steps);
+    let needs = needs(steps, core, &is_target);
     let mut translation = Translation {
-        assembler: Assembler::new(steps.has_calls),
+        assembler: Assembler::new(steps.steps.iter().any(is_call)),
         held: [None; N_HOLDING],
-        places: vec![NOWHERE; steps.first_constant],
-        first_constant: steps.first_constant,
+        places: vec![NOWHERE; steps.n_slots()],
         pinned: 0,
         jumps: HashMap::new(),
-        calls,
+        called,
     };
-    for (&step, next) in steps.steps.iter().zip(&steps.next) {
-        translation.step(step, next, outputs);
+    for (k, (step, next)) in (0u32..).zip(steps.steps.iter().zip(&needs)) {
+        if is_target[k as usize] {
+            translation.target(k);
+        }
+        translation.step(k, *step, next);
     }
-    translation.assembler.finish(&steps.constants)
+    let end = steps.steps.len();
+    if is_target[end] {
+        translation.target(end as u32);
+    }
+    translation.store_all();
+    if let Some(&output) = core.outputs.first() {
+        let place = translation.place(output);
+        translation.assembler.load(0, place);
+    }
+    translation.assembler.finish()
 }
 
 impl Translation<'_> {
-    fn step(&mut self, step: Step, next: &Next, outputs: &[u32]) {
+    /// Jumps lead here.
+    fn target(&mut self, step: u32) {
+        self.store_all();
+        self.forget();
+        for jump in self.jumps.remove(&step).unwrap_or_default() {
+            self.assembler.lands(jump);
+        }
+    }
+
+    fn step(&mut self, k: u32, step: Step, next: &Next) {
         self.pinned = 0;
+        let result = next.results[0];
         match step {
-            Step::Label(op) => {
-                self.store_all();
-                self.forget();
-                for jump in self.jumps.remove(&op).unwrap_or_default() {
-                    self.assembler.lands(jump);
-                }
-            }
             Step::Input { number, to } => {
                 let x = self.take();
                 self.assembler.load(x, Place::Input(number));
-                self.hold(x, to, next[4]);
+                self.hold(x, to, result);
             }
-            Step::Arithmetic { code, a, b, to } => self.arithmetic(code, [a, b], to, next),
             Step::Copy { from, to } => {
-                let x = self.own(from, next[0]);
-                self.hold(x, to, next[4]);
+                let x = self.own(from, next.operands[0]);
+                self.hold(x, to, result);
+            }
+            Step::Unary { op, a, to } => match op {
+                UnaryOp::Sqrt => self.root(a, to, next),
+                UnaryOp::Abs => self.magnitude(a, to, next),
+                op => {
+                    self.call(calls::of_one_number(op), [a], next);
+                    self.hold(0, to, result);
+                }
+            },
+            Step::Binary { op, a, b, to } => match instruction(op) {
+                Some(instruction) => self.arithmetic(op, instruction, [a, b], to, next),
+                None if op == BinaryOp::Along => self.along(a, b, to, next),
+                None => {
+                    self.call(calls::of_two_numbers(op), [a, b], next);
+                    self.hold(0, to, result);
+                }
+            },
+            Step::SineCosine { a, sine, cosine } => {
+                self.call(calls::sine_and_cosine as *const () as usize, [a], next);
+                self.hold(0, sine, result);
+                self.hold(1, cosine, next.results[1]);
             }
             Step::Select {
                 comparison,
@@ -93,118 +156,123 @@ impl Translation<'_> {
                 no,
                 to,
             } => self.select(comparison, [a, b, yes, no], to, next),
+            Step::Instruction { .. } | Step::Prepared { .. } => {
+                self.store_all();
+                self.forget();
+                let function = calls::perform as *const () as usize;
+                self.assembler.call_with_frame(function, self.called[&k]);
+            }
             Step::Unless {
                 comparison,
                 a,
                 b,
                 target,
-            } => {
-                // a < b is b > a, which does not hold where one of them is no number
-                let (first, second) = if comparison == 2 { (a, b) } else { (b, a) };
-                let x = self.readable(first, ONE);
-                let second = self.place(second);
-                self.used([a, b], next);
-                self.store_all();
-                self.assembler.operate(assembler::COMPARE, x, second);
-                match comparison {
-                    0 => self.jump(When::BelowOrEqual, target),
-                    1 => self.jump(When::Below, target),
-                    _ => {
-                        self.jump(When::NotEqual, target);
-                        self.jump(When::Unordered, target);
-                    }
-                }
-            }
+            } => self.unless(comparison, [a, b], target, next),
             Step::Branch {
                 selector,
                 negative,
                 zero,
                 positive,
-            } => {
-                let x = self.readable(selector, ONE);
-                self.used([selector], next);
-                self.store_all();
-                let op = assembler::XOR;
-                self.assembler.operate(op, OTHER, Place::Xmm(OTHER));
-                self.assembler
-                    .operate(assembler::COMPARE, x, Place::Xmm(OTHER));
-                let on = self.assembler.jump(When::Unordered);
-                self.jump(When::Below, negative);
-                self.jump(When::Above, positive);
-                self.jump(When::Always, zero);
-                self.assembler.lands(on);
-            }
+            } => self.branch(selector, [negative, zero, positive], next),
             Step::Go { target } => {
                 self.store_all();
                 self.jump(When::Always, target);
                 self.forget();
             }
-            Step::Call { op, acc } => {
-                self.store_all();
-                if let Some(acc) = acc {
-                    let place = self.place(acc);
-                    self.assembler.load(0, place);
-                }
-                self.forget();
-                let op = self.calls[&op];
-                // SAFETY: the operation is among those that are kept for the code
-                let handler = unsafe { (*op).run } as usize;
-                self.assembler.call(handler, op.expose_provenance());
-            }
-            Step::End => {
-                self.store_all();
-                if let &[output] = outputs {
-                    let place = self.place(output);
-                    self.assembler.load(0, place);
-                }
-                self.assembler.end();
+        }
+    }
+
+    /// Calls a function of one or two numbers; what is still needed is stored before.
+    fn call<const N: usize>(&mut self, function: usize, slots: [u32; N], next: &Next) {
+        for (scratch, &slot) in [ONE, OTHER].into_iter().zip(&slots) {
+            let place = self.place(slot);
+            self.assembler.load(scratch, place);
+        }
+        self.used(slots, next);
+        self.store_all();
+        self.forget();
+        for (argument, scratch) in (0..N as Xmm).zip([ONE, OTHER]) {
+            self.assembler.copy(argument, scratch);
+        }
+        self.assembler.call(function);
+    }
+
+    fn unless(&mut self, comparison: Comparison, [a, b]: [u32; 2], target: u32, next: &Next) {
+        // a < b is b > a, which does not hold where one of them is no number
+        let (first, second) = match comparison {
+            Comparison::Eq => (a, b),
+            Comparison::Lt | Comparison::Le => (b, a),
+        };
+        let x = self.readable(first, ONE);
+        let second = self.place(second);
+        self.used([a, b], next);
+        self.store_all();
+        self.assembler.operate(assembler::COMPARE, x, second);
+        match comparison {
+            Comparison::Lt => self.jump(When::BelowOrEqual, target),
+            Comparison::Le => self.jump(When::Below, target),
+            Comparison::Eq => {
+                self.jump(When::NotEqual, target);
+                self.jump(When::Unordered, target);
             }
         }
     }
 
-    fn arithmetic(&mut self, code: u8, [mut a, mut b]: [u32; 2], to: u32, next: &Next) {
-        let [mut next_of_a, mut next_of_b, ..] = *next;
-        let op = match code {
-            SQRT => return self.root(a, to, next),
-            ADD => assembler::ADD,
-            SUB => assembler::SUBTRACT,
-            MUL => assembler::MULTIPLY,
-            DIV => assembler::DIVIDE,
-            ALONG => return self.along(a, b, to, next),
-            _ => return self.magnitude(a, to, next),
-        };
+    fn branch(&mut self, selector: u32, [negative, zero, positive]: [u32; 3], next: &Next) {
+        let x = self.readable(selector, ONE);
+        self.used([selector], next);
+        self.store_all();
+        self.bits(assembler::XOR, OTHER, OTHER);
+        self.assembler
+            .operate(assembler::COMPARE, x, Place::Xmm(OTHER));
+        let on = self.assembler.jump(When::Unordered);
+        self.jump(When::Below, negative);
+        self.jump(When::Above, positive);
+        self.jump(When::Always, zero);
+        self.assembler.lands(on);
+    }
+
+    fn arithmetic(
+        &mut self,
+        op: BinaryOp,
+        instruction: Instruction,
+        [mut a, mut b]: [u32; 2],
+        to: u32,
+        next: &Next,
+    ) {
+        let [mut next_of_a, mut next_of_b, ..] = next.operands;
         // the result takes the place of an operand that is not needed any more
         let goes =
             |this: &Self, slot: u32, next: u32| next == NEVER && this.register(slot) != NOWHERE;
-        let is_symmetric = matches!(code, ADD | MUL);
+        let is_symmetric = matches!(op, BinaryOp::Add | BinaryOp::Mul);
         if is_symmetric && goes(self, b, next_of_b) && !goes(self, a, next_of_a) {
             (a, b) = (b, a);
             (next_of_a, next_of_b) = (next_of_b, next_of_a);
         }
         let second = self.place(b);
         let x = self.own(a, next_of_a);
-        self.assembler.operate(op, x, second);
+        self.assembler.operate(instruction, x, second);
         self.used_once(b, next_of_b);
-        self.hold(x, to, next[4]);
+        self.hold(x, to, next.results[0]);
     }
 
     fn root(&mut self, a: u32, to: u32, next: &Next) {
-        let x = self.own(a, next[0]);
+        let x = self.own(a, next.operands[0]);
         self.assembler.operate(assembler::ROOT, x, Place::Xmm(x));
-        self.hold(x, to, next[4]);
+        self.hold(x, to, next.results[0]);
     }
 
     fn magnitude(&mut self, a: u32, to: u32, next: &Next) {
-        let x = self.own(a, next[0]);
+        let x = self.own(a, next.operands[0]);
         self.assembler.all_but_sign_bit(OTHER);
         self.bits(assembler::AND, x, OTHER);
-        self.hold(x, to, next[4]);
+        self.hold(x, to, next.results[0]);
     }
 
     /// −a, 0 or a by the sign of b; no number where b is none.
     fn along(&mut self, a: u32, b: u32, to: u32, next: &Next) {
         let sign = self.place(b);
-        let x = self.own(a, next[0]);
+        let x = self.own(a, next.operands[0]);
         // a with the sign of b reversed or not
         self.assembler.load(ONE, sign);
         self.assembler.sign_bit(OTHER);
@@ -219,15 +287,15 @@ impl Translation<'_> {
         self.assembler
             .mask(ONE, Relation::Unordered, Place::Xmm(ONE));
         self.bits(assembler::OR, x, ONE);
-        self.used_once(b, next[1]);
-        self.hold(x, to, next[4]);
+        self.used_once(b, next.operands[1]);
+        self.hold(x, to, next.results[0]);
     }
 
-    fn select(&mut self, comparison: u8, [a, b, yes, no]: [u32; 4], to: u32, next: &Next) {
+    fn select(&mut self, comparison: Comparison, [a, b, yes, no]: [u32; 4], to: u32, next: &Next) {
         let relation = match comparison {
-            0 => Relation::Less,
-            1 => Relation::LessOrEqual,
-            _ => Relation::Equal,
+            Comparison::Lt => Relation::Less,
+            Comparison::Le => Relation::LessOrEqual,
+            Comparison::Eq => Relation::Equal,
         };
         let [a_at, b_at, yes_at, no_at] = [a, b, yes, no].map(|slot| self.place(slot));
         let x = self.take();
@@ -240,7 +308,7 @@ impl Translation<'_> {
         self.bits(assembler::OR, OTHER, ONE);
         self.assembler.copy(x, OTHER);
         self.used([a, b, yes, no], next);
-        self.hold(x, to, next[4]);
+        self.hold(x, to, next.results[0]);
     }
 
     fn bits(&mut self, op: Instruction, x: Xmm, y: Xmm) {
@@ -254,15 +322,12 @@ impl Translation<'_> {
 
     /// The register of a slot.
     fn register(&self, slot: u32) -> u8 {
-        self.places.get(slot as usize).copied().unwrap_or(NOWHERE)
+        self.places[slot as usize]
     }
 
     /// Where the value of a slot stands. It stays there for this step.
     fn place(&mut self, slot: u32) -> Place {
         match self.register(slot) {
-            _ if slot as usize >= self.first_constant => {
-                Place::Constant(slot - self.first_constant as u32)
-            }
             NOWHERE => Place::Slot(slot),
             x => {
                 self.pinned |= 1 << x;
@@ -332,7 +397,7 @@ impl Translation<'_> {
 
     /// Notes when slots that were read are needed again.
     fn used<const N: usize>(&mut self, slots: [u32; N], next: &Next) {
-        for (slot, next) in slots.into_iter().zip(next) {
+        for (slot, next) in slots.into_iter().zip(&next.operands) {
             self.used_once(slot, *next);
         }
     }

@@ -1,0 +1,110 @@
+//! How soon each value is needed again: what the translator keeps in registers and what it stores.
+//!
+//! Jumps lead forward only, so that one pass from the end sees what is still needed.
+
+use super::super::super::code::Core;
+use super::super::steps::{Extra, Step, Steps};
+
+/// The value is not needed any more.
+pub(super) const NEVER: u32 = u32::MAX;
+/// It is perhaps needed behind a jump or a target.
+const FAR: u32 = u32::MAX - 1;
+
+/// When the slots of a step are needed again behind it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Next {
+    /// in the order of [`Step::operands`]
+    pub(super) operands: [u32; 4],
+    /// in the order of [`Step::results`]
+    pub(super) results: [u32; 2],
+}
+
+/// Returns which steps are jumped to; the last element stands for the end.
+pub(super) fn targets(steps: &Steps) -> Vec<bool> {
+    let mut is_target = vec![false; steps.steps.len() + 1];
+    for target in steps.steps.iter().flat_map(Step::targets) {
+        is_target[target as usize] = true;
+    }
+    is_target
+}
+
+/// Returns for each step when its slots are needed again.
+///
+/// What is read behind a jump may be needed; slots for what lies between the steps of one instruction never outlast it.
+pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> Vec<Next> {
+    let nothing = Next {
+        operands: [NEVER; 4],
+        results: [NEVER; 2],
+    };
+    let mut needs = vec![nothing; steps.steps.len()];
+    let mut future = Future {
+        noted: vec![(u32::MAX, NEVER); steps.n_slots()],
+        is_read_later: vec![false; steps.n_slots()],
+        stretch: 0,
+        steps,
+    };
+    let end = steps.steps.len();
+    for &slot in &core.outputs {
+        future.read(slot, end);
+    }
+    future.stretch += u32::from(is_target[end]);
+    for (k, step) in steps.steps.iter().enumerate().rev() {
+        if step.targets().next().is_some() {
+            future.stretch += 1;
+        }
+        let (results, n) = step.results();
+        for (slot, next) in results[..n].iter().zip(&mut needs[k].results) {
+            *next = future.next(*slot);
+        }
+        for &slot in &results[..n] {
+            future.noted[slot as usize] = (future.stretch, NEVER);
+        }
+        let (operands, n) = step.operands();
+        for (slot, next) in operands[..n].iter().zip(&mut needs[k].operands) {
+            *next = future.next(*slot);
+        }
+        operands[..n].iter().for_each(|&slot| future.read(slot, k));
+        match *step {
+            Step::Instruction { number } => {
+                core.operands(&core.code[number as usize], |slot| future.read(slot, k));
+            }
+            Step::Prepared { number } => {
+                let variables = steps.prepared[number as usize].variables;
+                variables.iter().for_each(|&slot| future.read(slot, k));
+            }
+            _ => {}
+        }
+        future.stretch += u32::from(is_target[k]);
+    }
+    needs
+}
+
+/// What is known of the steps behind the one at hand.
+struct Future<'a> {
+    /// by slot: the stretch without jumps and targets in which this was noted, and the step
+    noted: Vec<(u32, u32)>,
+    is_read_later: Vec<bool>,
+    stretch: u32,
+    steps: &'a Steps,
+}
+
+impl Future<'_> {
+    fn read(&mut self, slot: u32, step: usize) {
+        self.noted[slot as usize] = (self.stretch, step as u32);
+        self.is_read_later[slot as usize] = true;
+    }
+
+    fn next(&self, slot: u32) -> u32 {
+        let (stretch, step) = self.noted[slot as usize];
+        if stretch == self.stretch {
+            return step;
+        }
+        let extra = slot.checked_sub(self.steps.n_registers);
+        let outlasts = extra.is_none_or(|k| self.steps.extras[k as usize] != Extra::Between);
+        if outlasts && self.is_read_later[slot as usize] {
+            FAR
+        } else {
+            NEVER
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The steps of the machine of plain numbers: one operation each, jumps forward only, over the slots of a frame.
+//!
+//! The frame is `registers of the straight code | constants and intermediate results of the steps`. Both engines work on
+//! this one list: the interpreter goes through it, the translator makes code of the processor of it.
+
+use super::super::code::Core;
+use super::super::operation::{BinaryOp, Comparison, UnaryOp};
+use super::prepared::PreparedCall;
+
+/// One step; operands and results are slots, jumps are numbers of steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Step {
+    /// input → to
+    Input { number: u32, to: u32 },
+    /// from → to
+    Copy { from: u32, to: u32 },
+    /// op a → to
+    Unary { op: UnaryOp, a: u32, to: u32 },
+    /// a op b → to
+    Binary {
+        op: BinaryOp,
+        a: u32,
+        b: u32,
+        to: u32,
+    },
+    /// sin a → sine, cos a → cosine
+    SineCosine { a: u32, sine: u32, cosine: u32 },
+    /// a ? b : yes, no → to
+    Select {
+        comparison: Comparison,
+        a: u32,
+        b: u32,
+        yes: u32,
+        no: u32,
+        to: u32,
+    },
+    /// an instruction of the straight code
+    Instruction { number: u32 },
+    /// a function whose parameters are constant
+    Prepared { number: u32 },
+    /// goes on where a ? b holds, else at `target`
+    Unless {
+        comparison: Comparison,
+        a: u32,
+        b: u32,
+        target: u32,
+    },
+    /// goes on by the sign of the selector; with the next step where it is NaN
+    Branch {
+        selector: u32,
+        negative: u32,
+        zero: u32,
+        positive: u32,
+    },
+    /// goes on at `target`
+    Go { target: u32 },
+}
+
+/// A slot behind the registers of the straight code.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Extra {
+    /// holds this number for ever
+    Constant(f64),
+    /// holds a result between the steps of one instruction
+    Between,
+}
+
+/// The steps of a program.
+#[derive(Debug)]
+pub(super) struct Steps {
+    pub(super) steps: Vec<Step>,
+    pub(super) prepared: Vec<PreparedCall>,
+    /// number of registers of the straight code
+    pub(super) n_registers: u32,
+    /// what stands behind them
+    pub(super) extras: Vec<Extra>,
+}
+
+impl Step {
+    /// Returns the steps that it may jump to.
+    pub(super) fn targets(&self) -> impl Iterator<Item = u32> {
+        let (targets, n) = match *self {
+            Step::Unless { target, .. } | Step::Go { target } => ([target; 3], 1),
+            Step::Branch {
+                negative,
+                zero,
+                positive,
+                ..
+            } => ([negative, zero, positive], 3),
+            Step::Input { .. }
+            | Step::Copy { .. }
+            | Step::Unary { .. }
+            | Step::Binary { .. }
+            | Step::SineCosine { .. }
+            | Step::Select { .. }
+            | Step::Instruction { .. }
+            | Step::Prepared { .. } => ([0; 3], 0),
+        };
+        targets.into_iter().take(n)
+    }
+
+    /// Returns the slots that it names as operands, at most four, and their number.
+    pub(super) fn operands(&self) -> ([u32; 4], usize) {
+        match *self {
+            Step::Unary { a, .. } | Step::SineCosine { a, .. } => ([a, 0, 0, 0], 1),
+            Step::Binary { a, b, .. } | Step::Unless { a, b, .. } => ([a, b, 0, 0], 2),
+            Step::Copy { from, .. } => ([from, 0, 0, 0], 1),
+            Step::Select { a, b, yes, no, .. } => ([a, b, yes, no], 4),
+            Step::Branch { selector, .. } => ([selector, 0, 0, 0], 1),
+            Step::Input { .. }
+            | Step::Instruction { .. }
+            | Step::Prepared { .. }
+            | Step::Go { .. } => ([0; 4], 0),
+        }
+    }
+
+    /// Returns the slots that it names as results, at most two, and their number.
+    pub(super) fn results(&self) -> ([u32; 2], usize) {
+        match *self {
+            Step::Input { to, .. }
+            | Step::Copy { to, .. }
+            | Step::Unary { to, .. }
+            | Step::Binary { to, .. }
+            | Step::Select { to, .. } => ([to, 0], 1),
+            Step::SineCosine { sine, cosine, .. } => ([sine, cosine], 2),
+            Step::Instruction { .. }
+            | Step::Prepared { .. }
+            | Step::Unless { .. }
+            | Step::Branch { .. }
+            | Step::Go { .. } => ([0; 2], 0),
+        }
+    }
+}
+
+impl Steps {
+    /// Returns how many slots a frame has.
+    pub(super) fn n_slots(&self) -> usize {
+        self.n_registers as usize + self.extras.len()
+    }
+}
+
+impl Steps {
+    /// Returns whether all slots are inside the frame, all inputs are among those that the program reads and come first, and
+    /// all jumps lead forward and not beyond the end.
+    pub(super) fn are_sound(&self, core: &Core) -> bool {
+        let (n_slots, end) = (self.n_slots(), self.steps.len());
+        let is_slot = |slot: &u32| (*slot as usize) < n_slots;
+        let is_register = |register: u32| register < core.size;
+        let is_sound = |(k, step): (usize, &Step)| {
+            let (operands, n) = step.operands();
+            let (results, m) = step.results();
+            let mut sound = operands[..n].iter().chain(&results[..m]).all(is_slot)
+                && step.targets().all(|t| k < t as usize && t as usize <= end);
+            match *step {
+                Step::Input { number, .. } => sound &= core.used.get(k) == Some(&number),
+                Step::Instruction { number } => match core.code.get(number as usize) {
+                    Some(instruction) => {
+                        sound &= is_register(instruction.to);
+                        core.operands(instruction, |register| sound &= is_register(register));
+                    }
+                    None => sound = false,
+                },
+                Step::Prepared { number } => match self.prepared.get(number as usize) {
+                    Some(call) => {
+                        let results = call.slopes.iter().chain([&call.value]).flatten();
+                        sound &= call.variables.iter().chain(results).all(is_slot);
+                    }
+                    None => sound = false,
+                },
+                Step::Copy { .. }
+                | Step::Unary { .. }
+                | Step::Binary { .. }
+                | Step::SineCosine { .. }
+                | Step::Select { .. }
+                | Step::Unless { .. }
+                | Step::Branch { .. }
+                | Step::Go { .. } => {}
+            }
+            sound
+        };
+        self.n_registers == core.size
+            && core.outputs.iter().all(is_slot)
+            && self.steps.iter().enumerate().all(is_sound)
+    }
+}

@@ -1,0 +1,207 @@
+//! Programs, and the work arrays that they run over.
+
+use super::code::Core;
+use super::input::Input;
+use super::machine::{Engine, Machine};
+use crate::scalar::Scalar;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Straight-line code with several outputs. Made by [`Builder::finish`](super::Builder::finish); never changes.
+///
+/// Copies share the code.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// tells whose registers a [`Work`] holds
+    id: u64,
+    /// what the host supplies, in this order
+    inputs: Vec<Input>,
+    machine: Arc<Machine>,
+}
+
+/// The registers of a program while it runs. Any program may use any work; changing between them costs a preparation.
+#[derive(Clone, Debug)]
+pub struct Work<S = f64> {
+    owner: u64,
+    registers: Vec<S>,
+}
+
+/// Added to the owner of registers that are laid out for the machine, which needs more of them.
+const FOR_THE_MACHINE: u64 = 1;
+
+impl<S> Default for Work<S> {
+    fn default() -> Self {
+        Self {
+            owner: 0,
+            registers: Vec::new(),
+        }
+    }
+}
+
+impl Program {
+    pub(super) fn new(inputs: Vec<Input>, core: Core) -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(2);
+        Self {
+            id: NEXT.fetch_add(2, Ordering::Relaxed),
+            inputs,
+            machine: Arc::new(Machine::new(Arc::new(core))),
+        }
+    }
+
+    pub(super) fn core(&self) -> &Core {
+        self.machine.core()
+    }
+
+    /// Returns the same program, run over plain numbers by one engine from the first run on; `None` where that engine is not
+    /// to be had. For comparing the two: by itself a program changes to the faster when that pays.
+    pub fn with_engine(&self, engine: Engine) -> Option<Self> {
+        Some(Self {
+            machine: Arc::new(self.machine.with_engine(engine)?),
+            ..self.clone()
+        })
+    }
+
+    /// Returns the engine that runs it over plain numbers at present.
+    pub fn engine(&self) -> Engine {
+        self.machine.engine()
+    }
+
+    /// Returns what the host supplies, in this order.
+    pub fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+    /// Returns whether the input at a position among them is read at all.
+    pub fn reads(&self, position: usize) -> bool {
+        self.core().used.iter().any(|&k| k as usize == position)
+    }
+    /// Returns how many numbers come out.
+    pub fn n_outputs(&self) -> usize {
+        self.core().outputs.len()
+    }
+    /// Returns how many operations it takes.
+    pub fn n_operations(&self) -> usize {
+        self.core().code.len()
+    }
+    /// Returns how many steps it takes over plain numbers, at most.
+    pub fn n_steps(&self) -> usize {
+        self.machine.n_steps()
+    }
+    /// Returns how many registers it takes.
+    pub fn work_size(&self) -> usize {
+        self.core().size as usize
+    }
+    /// Returns the numbers that come out, if they depend on no input.
+    pub fn constant_outputs(&self) -> Option<Vec<f64>> {
+        let core = self.core();
+        core.outputs
+            .iter()
+            .map(|&r| core.constants.get(r as usize).copied())
+            .collect()
+    }
+
+    /// Runs over plain numbers. Once `work` has been used with this program it allocates nothing, but for the one run in
+    /// which the program is translated.
+    ///
+    /// # Panics
+    ///
+    /// When there are fewer inputs or more places for outputs than the program has.
+    #[inline]
+    pub fn run(&self, inputs: &[f64], work: &mut Work, out: &mut [f64]) {
+        let outputs = &self.core().outputs;
+        assert!(
+            out.len() <= outputs.len(),
+            "the program has {} outputs",
+            outputs.len()
+        );
+        self.enter_machine(inputs, work);
+        self.machine.run(&mut work.registers, inputs);
+        for (out, &r) in out.iter_mut().zip(outputs) {
+            *out = work.registers[r as usize];
+        }
+    }
+
+    /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a single number.
+    ///
+    /// # Panics
+    ///
+    /// When there are fewer inputs than the program has, or no output.
+    #[inline]
+    pub fn value(&self, inputs: &[f64], work: &mut Work) -> f64 {
+        assert!(!self.core().outputs.is_empty(), "the program has no output");
+        self.enter_machine(inputs, work);
+        self.machine.run(&mut work.registers, inputs)
+    }
+
+    /// Runs over any number.
+    ///
+    /// # Panics
+    ///
+    /// When there are fewer inputs or more places for outputs than the program has.
+    pub fn eval<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>, out: &mut [S]) {
+        let core = self.core();
+        assert!(
+            out.len() <= core.outputs.len(),
+            "the program has {} outputs",
+            core.outputs.len()
+        );
+        self.check_inputs(inputs.len());
+        if work.owner != self.id {
+            self.prepare(work);
+        }
+        let registers = &mut work.registers[..];
+        for (register, &k) in registers[core.constants.len()..].iter_mut().zip(&core.used) {
+            *register = inputs[k as usize];
+        }
+        for instruction in &core.code {
+            core.perform(instruction, registers);
+        }
+        for (out, &r) in out.iter_mut().zip(&core.outputs) {
+            *out = registers[r as usize];
+        }
+    }
+
+    #[inline(always)]
+    fn check_inputs(&self, n: usize) {
+        if n < self.inputs.len() {
+            self.lacks_inputs(n);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn lacks_inputs(&self, n: usize) -> ! {
+        panic!("the program reads {} inputs, not {n}", self.inputs.len());
+    }
+
+    /// Checks the inputs, and lays out the frame of the machine unless it is that of this program.
+    #[inline(always)]
+    fn enter_machine(&self, inputs: &[f64], work: &mut Work) {
+        self.check_inputs(inputs.len());
+        if work.owner != self.id + FOR_THE_MACHINE {
+            self.prepare_machine(work);
+        }
+    }
+
+    /// Lays out the registers for this program.
+    #[cold]
+    fn prepare<S: Scalar>(&self, work: &mut Work<S>) {
+        let core = self.core();
+        // whatever happens here, these registers belong to nobody until they are complete
+        work.owner = 0;
+        work.registers.clear();
+        work.registers
+            .extend(core.constants.iter().map(|&c| S::constant(c)));
+        work.registers
+            .resize(core.size as usize, S::constant(f64::NAN));
+        work.owner = self.id;
+    }
+
+    /// Lays out the frame of the machine.
+    #[cold]
+    fn prepare_machine(&self, work: &mut Work) {
+        self.prepare(work);
+        work.owner = 0;
+        work.registers.extend(self.machine.extras());
+        work.owner = self.id + FOR_THE_MACHINE;
+    }
+}
