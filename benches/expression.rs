@@ -1,9 +1,10 @@
 //! Expressions against native code and against the fastest public evaluators, in one interleaved run.
 //!
-//! `cargo bench --no-default-features --bench expression` prints, for twelve expressions, medians of nanoseconds per
-//! evaluation and ratios: the value against a hand-written Rust function, value and gradient against the same function over
-//! hand-written dual numbers, batches of 1024 points against the compiled loop; then what parsing and compiling costs and how
-//! often an evaluation allocates. Each round runs every contestant once, so that a busy moment hits all of them.
+//! `cargo bench --no-default-features --features native --bench expression` prints, for twelve expressions, medians of
+//! nanoseconds per evaluation and ratios: the value against a hand-written Rust function, value and gradient against the same
+//! function over hand-written dual numbers, batches of 1024 points against the compiled loop, generated code against the
+//! interpreter; then what parsing, compiling and translating cost and how often an evaluation allocates. Each round runs
+//! every contestant once, so that a busy moment hits all of them.
 //!
 //! Rules. Every contestant sits behind one boxed call and reads 64 random points of eight numbers (TIME, DX, DY, DZ, VX, VY,
 //! VZ, VR). Functions that a peer lacks are native callbacks with their constant arguments built in (fasteval), or custom
@@ -14,7 +15,7 @@
 use cognate::expr::compile::Compiler;
 use cognate::expr::interpolation::Bindings;
 use cognate::expr::measures::Measure;
-use cognate::expr::program::{Input, Program, Work};
+use cognate::expr::program::{Engine, Input, Program, Work};
 use cognate::expr::{Profile, ast::Dialect, parse};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::hint::black_box;
@@ -520,6 +521,7 @@ fn main() {
     values(&cases, &points, rounds).print();
     gradients(&cases, &points, rounds).print();
     batches(&cases, rounds).print();
+    engines(&cases, &points, rounds);
     compiling(&cases);
     allocations(&cases, &points);
 }
@@ -642,6 +644,52 @@ fn batches(cases: &[Case], rounds: usize) -> Table {
 }
 
 /// How long parsing and compiling takes, per operator, and that it is linear.
+/// Value and gradient by each engine; how long a translation takes, and for how many runs the interpreter is the faster.
+fn engines(cases: &[Case], points: &[[f64; SLOTS]], rounds: usize) {
+    println!("\nEngines: value and gradient, ns; translation, µs");
+    println!(
+        "{:14}{:>14}{:>14}{:>14}{:>14}{:>14}{:>14}",
+        "", "steps", "native", "interpreted", "interpreted ×", "translation", "runs to win"
+    );
+    let mut ratios = Vec::new();
+    for case in cases {
+        let program = compiled(&case.text);
+        let program = program.with_gradient(program.inputs());
+        let of = |engine| program.with_engine(engine);
+        let (Some(native), Some(interpreted)) = (of(Engine::Native), of(Engine::Interpreter))
+        else {
+            println!("no code of the processor here");
+            return;
+        };
+        let mut contestants: Vec<Contestant> = [native, interpreted]
+            .into_iter()
+            .map(|program| -> Contestant {
+                let (mut work, mut out) = (Work::default(), vec![0.0; program.n_outputs()]);
+                Box::new(move |k| {
+                    program.run(&points[k], &mut work, &mut out);
+                    out[0]
+                })
+            })
+            .collect();
+        let (times, ratio) = medians(&mut contestants, POINTS, rounds);
+        let translation = mean_of_own_time(|| {
+            black_box(program.with_engine(Engine::Native));
+        });
+        println!(
+            "{:14}{:14}{:14.2}{:14.2}{:14.2}{:14.2}{:14.0}",
+            case.name,
+            program.n_steps(),
+            times[0],
+            times[1],
+            ratio[1],
+            translation,
+            translation * 1e3 / (times[1] - times[0])
+        );
+        ratios.push(ratio[1]);
+    }
+    println!("{:56}{:14.2}", "mean", geometric_mean(&ratios));
+}
+
 fn compiling(cases: &[Case]) {
     println!("\nParse and compile, µs");
     println!(

@@ -8,11 +8,11 @@ mod expressions;
 
 use cognate::expr::ast::{Ast, Dialect};
 use cognate::expr::compile::compile;
-use cognate::expr::program::{Input, Program, Work};
+use cognate::expr::program::{Engine, Input, Program, Work};
 use cognate::expr::walk::{self, Host};
 use cognate::scalar::{Dual, Germ, Jet, Scalar};
 use counting::allocations_so_far;
-use expressions::{Anything, Contents, bindings, tree};
+use expressions::{Anything, Contents, ENGINES, bindings, engines_agree, tree};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -347,16 +347,47 @@ fn evaluating_allocates_nothing() {
         let (mut one, mut all) = ([0.0], vec![0.0; 1 + inputs.len()]);
         let (mut dual_out, mut jet_out) = ([Dual::constant(0.0)], [Jet::constant(0.0)]);
         let mut column = [0.0; 64];
-        let mut round = || {
+        let mut round = |program: &Program, gradient: &Program| {
             program.run(&inputs, &mut plain, &mut one);
             gradient.run(&inputs, &mut other, &mut all);
             program.eval(&duals, &mut dual, &mut dual_out);
             program.eval(&jets, &mut jet, &mut jet_out);
             batch.run(&columns, &mut [&mut column]);
         };
-        round();
+        for engine in ENGINES {
+            let of = |program: &Program| program.with_engine(engine);
+            let (Some(program), Some(gradient)) = (of(&program), of(&gradient)) else {
+                continue;
+            };
+            round(&program, &gradient);
+            let before = allocations_so_far();
+            round(&program, &gradient);
+            assert_eq!(allocations_so_far() - before, 0, "{ast}: {engine:?}");
+        }
+    }
+}
+
+/// A program allocates when its work is laid out and, once, when it is translated.
+#[test]
+fn a_translation_is_made_once() {
+    let (ast, time) = &trees(1)[0];
+    let program = compile(&[ast], &bindings()).unwrap();
+    let inputs = values(&program, *time);
+    let (mut work, mut out) = (Work::default(), [0.0]);
+    program.run(&inputs, &mut work, &mut out);
+    let mut busy = 0;
+    for _ in 0..20_000 {
         let before = allocations_so_far();
-        round();
-        assert_eq!(allocations_so_far() - before, 0, "{ast}");
+        program.run(&inputs, &mut work, &mut out);
+        busy += usize::from(allocations_so_far() > before);
+    }
+    assert_eq!(busy == 1, program.engine() == Engine::Native);
+    assert!(busy <= 1, "{busy} runs that allocate");
+}
+
+#[test]
+fn both_engines_give_the_same_bits() {
+    for (ast, time) in trees(1500) {
+        engines_agree(&ast, time);
     }
 }

@@ -8,7 +8,7 @@ use cognate::expr::ast::{Ast, BinaryOp, Callee, Constant, Dialect, Node, NodeIx}
 use cognate::expr::functions::Function;
 use cognate::expr::interpolation::{Bindings, Interpolation, Spline};
 use cognate::expr::measures::Measure;
-use cognate::expr::program::{Input, Program, Work};
+use cognate::expr::program::{Engine, Input, Program, Work};
 use cognate::expr::signature::{Choice, Kind};
 use cognate::expr::spline::{Ends, Extrapolation};
 use cognate::expr::walk::{self, Host};
@@ -405,14 +405,57 @@ pub fn laws_of_trees(bytes: &[u8], dialect: Dialect, time: f64) {
     }
 }
 
+/// All engines over plain numbers.
+pub const ENGINES: [Engine; 2] = [Engine::Interpreter, Engine::Native];
+
+/// Whatever engines there are here give the same bits from a tree that compiles and from its gradient, at several times.
+pub fn engines_agree(ast: &Ast, time: f64) {
+    let Ok(program) = compile(&[ast], &bindings()) else {
+        return;
+    };
+    let gradient = program.with_gradient(program.inputs());
+    for program in [program, gradient] {
+        let mut results: Vec<(Engine, Vec<f64>)> = Vec::new();
+        for engine in ENGINES {
+            let Some(program) = program.with_engine(engine) else {
+                continue;
+            };
+            let (mut work, mut all) = (Work::default(), Vec::new());
+            for time in [time, 0.0, -time, 1.0 + time] {
+                let host = Anything {
+                    time,
+                    bindings: bindings(),
+                };
+                let number = |&input| host.input(input).unwrap_or(f64::NAN);
+                let inputs: Vec<f64> = program.inputs().iter().map(number).collect();
+                let mut out = vec![0.0; program.n_outputs()];
+                program.run(&inputs, &mut work, &mut out);
+                out.push(program.value(&inputs, &mut work));
+                all.extend(out);
+            }
+            results.push((engine, all));
+        }
+        for (engine, got) in &results[1..] {
+            for (a, b) in got.iter().zip(&results[0].1) {
+                assert!(
+                    a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(),
+                    "{ast}: {engine:?} {a:?}, {:?} {b:?}",
+                    results[0].0
+                );
+            }
+        }
+    }
+}
+
 /// A claim about any bytes.
 pub type Law = fn(&[u8]);
 
 /// What fuzzing calls, by the name of the target.
-pub const TARGETS: [(&str, Law); 3] = [
+pub const TARGETS: [(&str, Law); 4] = [
     ("parse", fuzz_parse),
     ("evaluate", fuzz_evaluate),
     ("expression", fuzz_expression),
+    ("engines", fuzz_engines),
 ];
 
 /// Bytes as text.
@@ -433,5 +476,17 @@ pub fn fuzz_evaluate(bytes: &[u8]) {
 pub fn fuzz_expression(bytes: &[u8]) {
     if let Some((&time, rest)) = bytes.split_first() {
         laws_of_trees(rest, Dialect::Expression, f64::from(time) / 64.0 - 2.0);
+    }
+}
+
+/// Bytes as a time and a tree of either language.
+pub fn fuzz_engines(bytes: &[u8]) {
+    if let Some((&time, rest)) = bytes.split_first() {
+        let dialect = match time % 2 {
+            0 => Dialect::Function,
+            _ => Dialect::Expression,
+        };
+        let ast = tree(rest, Contents::all(dialect));
+        engines_agree(&ast, f64::from(time) / 64.0 - 2.0);
     }
 }

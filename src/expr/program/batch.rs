@@ -1,9 +1,9 @@
 //! Many points at once: every instruction runs over a block of points before the next one starts.
 //!
-//! A register is a block of 128 numbers; the working set of an expression stays in the innermost cache, and the inner
-//! loops are what compilers turn into vector instructions. The same code is compiled for several sets of vector
-//! instructions; which one runs is decided when the batch is made. The result of each point is that of [`Program::run`], to
-//! the bit.
+//! A register is a block of 128 numbers; the working set of an expression stays in the innermost
+//! cache, and the inner loops are what compilers turn into vector instructions. The same code is
+//! compiled for several sets of vector instructions; which one runs is decided when the batch is
+//! made. The result of each point is that of [`Program::run`], to the bit.
 
 use super::code::{Code, Instruction, gathered, partial};
 use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
@@ -82,7 +82,8 @@ enum Arithmetic {
 }
 
 impl Step {
-    /// This step and the next as one, where the next takes the result of this and puts its own in the same register.
+    /// Returns this step and the next as one, where the next takes the result of this and puts its
+    /// own in the same register.
     fn followed_by(&self, next: &Step) -> Option<Step> {
         let (Step::Plain(this), Step::Plain(next)) = (self, next) else {
             return None;
@@ -108,7 +109,7 @@ fn arithmetic(code: Code) -> Option<Arithmetic> {
 }
 
 impl Program {
-    /// For running over many points at once.
+    /// Makes a batch, which runs over many points at once.
     pub fn batch(&self) -> Batch {
         let core = self.core();
         let nothing = Block([Vector::constant(f64::NAN); VECTORS]);
@@ -175,17 +176,18 @@ impl Instructions {
 }
 
 impl Batch {
-    /// The program.
+    /// Returns the program.
     pub fn program(&self) -> &Program {
         &self.program
     }
 
-    /// Runs over columns: one per input of the program, in its order, and one per output wanted. Allocates nothing.
+    /// Runs over columns: one per input of the program, in its order, and one per output wanted.
+    /// Allocates nothing.
     ///
     /// # Panics
     ///
-    /// When there are fewer input columns or more output columns than the program has, or an input column is shorter than
-    /// the longest output column.
+    /// When there are fewer input columns or more output columns than the program has, or an input
+    /// column is shorter than the longest output column.
     pub fn run(&mut self, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) {
         let n = outputs.iter().map(|out| out.len()).max().unwrap_or(0);
         assert!(
@@ -284,7 +286,7 @@ impl Batch {
         self.steps();
     }
 
-    /// All instructions over the block in the registers.
+    /// Performs all instructions over the block in the registers.
     #[inline(always)]
     fn steps(&mut self) {
         let r = &mut self.registers[..];
@@ -304,8 +306,8 @@ impl Batch {
     }
 }
 
-/// `to = f(a, …)` for all points of the block. A macro, because what it calls must be compiled for the vector instructions of
-/// its surroundings.
+/// `to = f(a, …)` for all points of the block. A macro, because what it calls must be compiled for
+/// the vector instructions of its surroundings.
 macro_rules! each {
     ($r:ident, $to:ident = |$($x:ident = $register:ident),+| $value:expr) => {{
         let to = $to as usize;
@@ -327,7 +329,7 @@ macro_rules! lanes {
     }};
 }
 
-/// (a p b) q c → to
+/// Computes (a p b) q c → to.
 #[inline(always)]
 fn two(p: Arithmetic, q: Arithmetic, [a, b, c, to]: [u32; 4], r: &mut [Block]) {
     use Arithmetic::{Add, Bus, Mul, Sub};

@@ -1,4 +1,5 @@
-//! Where a program may stop being smooth: comparisons, roundings, knots of tables, poles and edges of domains.
+//! Where a program may stop being smooth: comparisons, roundings, knots of tables, poles and edges
+//! of domains.
 
 use super::builder::Builder;
 use super::expand::Expand;
@@ -31,8 +32,9 @@ pub(crate) enum Levels {
 }
 
 impl Builder {
-    /// The output with calls expanded into operations, and all values at whose levels it may break: where a comparison turns, at
-    /// steps of roundings, at knots of tables, at poles and at the edges of domains. More than enough: not all of them are breaks.
+    /// Returns the output with calls expanded into operations, and all values at whose levels it
+    /// may break: where a comparison turns, at steps of roundings, at knots of tables, at poles and
+    /// at the edges of domains. More than enough: not all of them are breaks.
     pub(crate) fn breaks(&mut self, output: Value) -> (Value, Vec<Break>) {
         let output = self.expanded(&[output], Expand::Calls)[0];
         let mut needed = vec![false; output.index() + 1];
@@ -61,7 +63,8 @@ impl Builder {
         (output, breaks)
     }
 
-    /// Whether two values are at their levels together: they are one value, or a difference and its contrary.
+    /// Returns whether two values are at their levels together: they are one value, or a difference
+    /// and its contrary.
     fn has_level_with(&self, one: &Break, other: &Break) -> bool {
         let difference = |v: Value| match self.nodes[v.index()] {
             Node::Binary(BinaryOp::Sub, a, b) => Some((a, b)),
@@ -119,7 +122,7 @@ impl Builder {
         }
     }
 
-    /// The inputs that values read, in the order of asking.
+    /// Returns the inputs that values read, in the order of asking.
     pub(crate) fn inputs_of(&self, values: &[Value]) -> Vec<Input> {
         let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
         let mut needed = vec![false; n];
@@ -152,7 +155,7 @@ impl Levels {
         }
     }
 
-    /// Which place between the levels a number has: odd between two of them, even on one.
+    /// Returns which place between the levels a number has: odd between two of them, even on one.
     pub(crate) fn place(&self, x: f64) -> f64 {
         let whole = |x: f64| 2.0 * x.floor() + f64::from(u8::from(x != x.floor()));
         match self {
@@ -170,7 +173,7 @@ impl Levels {
         }
     }
 
-    /// The nearest level.
+    /// Returns the nearest level.
     pub(crate) fn nearest(&self, x: f64) -> f64 {
         match self {
             Levels::Zero => 0.0,
@@ -190,7 +193,7 @@ impl Levels {
     }
 }
 
-/// What stands behind the switching function: nothing for zero.
+/// The words behind the switching function: nothing for zero.
 impl std::fmt::Display for Levels {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {

@@ -1,7 +1,8 @@
 //! Recording a program: equal parts become one node, constants fold, and nothing is recorded twice.
 //!
-//! Nodes stand in one vector, operands before their users, and a table of hashes finds equal ones: recording is linear
-//! in time. Nothing here depends on the order of a hash map; the same calls make the same program.
+//! Nodes stand in one vector, operands before their users, and a table of hashes finds equal ones:
+//! recording is linear in time. Nothing here depends on the order of a hash map; the same calls
+//! make the same program.
 
 use super::input::Input;
 use super::node::{Node, Value};
@@ -11,13 +12,14 @@ use crate::scalar::{Scalar, Table};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// How far a builder may simplify.
+/// The extent to which a builder may simplify.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Folding {
-    /// Only what keeps every bit of every result, NaN and signed zeros included: the compiled expression is the walked one.
+    /// Only what keeps every bit of every result, NaN and signed zeros included: the compiled
+    /// expression is the walked one.
     Strict,
-    /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `(x + y) − y → x`, `0/x → 0`. For recorded physics, where a zero is
-    /// a part that is not there.
+    /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `(x + y) − y → x`, `0/x →
+    /// 0`. For recorded physics, where a zero is a part that is not there.
     Structural,
 }
 
@@ -40,7 +42,7 @@ pub struct Builder {
 const EMPTY: u32 = u32::MAX;
 
 impl Builder {
-    /// An empty one.
+    /// Makes an empty builder.
     pub fn new(folding: Folding) -> Self {
         Self {
             folding,
@@ -54,34 +56,34 @@ impl Builder {
         }
     }
 
-    /// How far it simplifies.
+    /// Returns how far it simplifies.
     pub fn folding(&self) -> Folding {
         self.folding
     }
-    /// From now on simplifies so far; what is recorded stays.
+    /// Sets how far it simplifies from now on; what is recorded stays.
     pub fn set_folding(&mut self, folding: Folding) {
         self.folding = folding;
     }
-    /// How many nodes are recorded, needed or not.
+    /// Returns how many nodes are recorded, needed or not.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
-    /// Whether nothing is recorded yet.
+    /// Returns whether nothing is recorded yet.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
-    /// The inputs asked for, in the order of asking.
+    /// Returns the inputs asked for, in the order of asking.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
     }
-    /// The number a value is, when it is a constant.
+    /// Returns the number a value is, when it is a constant.
     pub fn constant_of(&self, v: Value) -> Option<f64> {
         match self.nodes[v.index()] {
             Node::Constant(bits) => Some(f64::from_bits(bits)),
             _ => None,
         }
     }
-    /// The input a value is, when it is one.
+    /// Returns the input a value is, when it is one.
     pub fn input_of(&self, v: Value) -> Option<Input> {
         match self.nodes[v.index()] {
             Node::Input(k) => Some(self.inputs[k as usize]),
@@ -89,7 +91,7 @@ impl Builder {
         }
     }
 
-    /// What the host supplies; the same input is the same value.
+    /// Records an input, which the host supplies; the same input is the same value.
     pub fn input(&mut self, input: Input) -> Value {
         if let Some(&v) = self.input_nodes.get(&input) {
             return v;
@@ -101,12 +103,12 @@ impl Builder {
         v
     }
 
-    /// A number.
+    /// Records a number.
     pub fn constant(&mut self, x: f64) -> Value {
         self.intern(Node::Constant(x.to_bits()))
     }
 
-    /// An operation on one value.
+    /// Records an operation on one value.
     pub fn unary(&mut self, op: UnaryOp, x: Value) -> Value {
         if let Some(c) = self.constant_of(x) {
             return self.constant(op.apply(c));
@@ -120,7 +122,7 @@ impl Builder {
         }
     }
 
-    /// Power with a whole exponent.
+    /// Records a power with a whole exponent.
     pub fn powi(&mut self, x: Value, n: i32) -> Value {
         if let Some(c) = self.constant_of(x) {
             return self.constant(Scalar::powi(c, n));
@@ -133,7 +135,7 @@ impl Builder {
         }
     }
 
-    /// An operation on two values.
+    /// Records an operation on two values.
     pub fn binary(&mut self, op: BinaryOp, a: Value, b: Value) -> Value {
         let (ca, cb) = (self.constant_of(a), self.constant_of(b));
         if let (Some(x), Some(y)) = (ca, cb) {
@@ -152,7 +154,7 @@ impl Builder {
         }
     }
 
-    /// The same value by less, if the folding allows it. Not both operands are constant.
+    /// Records the same value by less, if the folding allows it. Not both operands are constant.
     fn simpler(
         &mut self,
         op: BinaryOp,
@@ -193,7 +195,21 @@ impl Builder {
         if structural && let Some(v) = self.cancelled(op, a, b, ca, cb) {
             return Some(v);
         }
-        // minus signs: a + (−b) is a − b to the bit, and so on
+        self.without_minus_signs(op, a, b, ca, cb)
+    }
+
+    /// Records the same value with minus signs moved outward or into constants: a + (−b) is a − b to the bit,
+    /// and so on.
+    fn without_minus_signs(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        ca: Option<f64>,
+        cb: Option<f64>,
+    ) -> Option<Value> {
+        use BinaryOp::{Add, Along, Div, Mul, Sub};
+        let structural = self.folding == Folding::Structural;
         let negated = |v: Value| match self.nodes[v.index()] {
             Node::Unary(UnaryOp::Neg, y) => Some(y),
             _ => None,
@@ -234,8 +250,9 @@ impl Builder {
         }
     }
 
-    /// Sums of which a part goes, and constants that meet: `(x + y) − y → x`, `c₁ (c₂ x) → (c₁ c₂) x`. That is the arm of a lever, the difference of
-    /// two places on one part, without the rounding of these places.
+    /// Sums of which a part goes, and constants that meet: `(x + y) − y → x`, `c₁ (c₂ x) → (c₁ c₂)
+    /// x`. That is the arm of a lever, the difference of two places on one part, without the
+    /// rounding of these places.
     fn cancelled(
         &mut self,
         op: BinaryOp,
@@ -301,7 +318,8 @@ impl Builder {
         })
     }
 
-    /// A power with a constant exponent, by the same multiplications and roots that `f64`'s `powf` uses.
+    /// Records a power with a constant exponent, by the same multiplications and roots that `f64`'s
+    /// `powf` uses.
     fn simpler_power(&mut self, a: Value, exponent: f64) -> Option<Value> {
         use crate::scalar::Exponent;
         match Exponent::of(exponent) {
@@ -315,7 +333,8 @@ impl Builder {
         }
     }
 
-    /// Base and `n ≥ 1` of a product that is `xⁿ √x`. At x = 0 the root has no finite derivative, the product has.
+    /// Returns base and `n ≥ 1` of a product that is `xⁿ √x`. At x = 0 the root has no finite
+    /// derivative, the product has.
     pub(super) fn half_power(&self, node: &Node) -> Option<(Value, i32)> {
         let Node::Binary(BinaryOp::Mul, a, b) = *node else {
             return None;
@@ -334,7 +353,7 @@ impl Builder {
         of_factors(a, b).or_else(|| of_factors(b, a))
     }
 
-    /// A comparison, as a condition: 1 or 0.
+    /// Records a comparison, as a condition: 1 or 0.
     pub fn compare(&mut self, comparison: Comparison, a: Value, b: Value) -> Value {
         if let (Some(x), Some(y)) = (self.constant_of(a), self.constant_of(b)) {
             let holds = comparison.apply(x, y);
@@ -356,7 +375,7 @@ impl Builder {
         self.intern(Node::Compare(comparison, a, b))
     }
 
-    /// Whether a value is 0 or 1 by construction.
+    /// Returns whether a value is 0 or 1 by construction.
     fn is_condition(&self, v: Value) -> bool {
         match self.nodes[v.index()] {
             Node::Compare(..) | Node::Unary(UnaryOp::Not, _) => true,
@@ -366,7 +385,7 @@ impl Builder {
         }
     }
 
-    /// Both conditions.
+    /// Records that both conditions hold.
     pub fn and(&mut self, a: Value, b: Value) -> Value {
         match (self.constant_of(a), self.constant_of(b)) {
             (Some(0.0), _) | (_, Some(0.0)) => self.constant(0.0),
@@ -376,7 +395,7 @@ impl Builder {
             _ => self.binary(BinaryOp::And, a, b),
         }
     }
-    /// Either condition.
+    /// Records that either condition holds.
     pub fn or(&mut self, a: Value, b: Value) -> Value {
         match (self.constant_of(a), self.constant_of(b)) {
             (Some(0.0), _) => b,
@@ -386,12 +405,12 @@ impl Builder {
             _ => self.binary(BinaryOp::Or, a, b),
         }
     }
-    /// The contrary of a condition.
+    /// Records the contrary of a condition.
     pub fn not(&mut self, a: Value) -> Value {
         self.unary(UnaryOp::Not, a)
     }
 
-    /// `yes` where the condition is not 0, else `no`.
+    /// Records a selection: `yes` where the condition is not 0, else `no`.
     pub fn select(&mut self, condition: Value, yes: Value, no: Value) -> Value {
         if let Some(c) = self.constant_of(condition) {
             return if 0.0 < c { yes } else { no };
@@ -410,7 +429,7 @@ impl Builder {
         self.intern(Node::Select(condition, yes, no))
     }
 
-    /// `IF(selector: negative, zero, positive)`; NaN where the selector is NaN.
+    /// Records `IF(selector: negative, zero, positive)`; NaN where the selector is NaN.
     pub fn arithmetic_if(
         &mut self,
         selector: Value,
@@ -436,7 +455,7 @@ impl Builder {
         self.intern(Node::If(first))
     }
 
-    /// Value or derivative of a table at `x`.
+    /// Records the value or a derivative of a table at `x`.
     pub fn lookup(&mut self, table: &Arc<dyn Table>, order: u32, x: Value) -> Value {
         if let Some(c) = self.constant_of(x) {
             return self.constant(table.at(c, order));
@@ -456,7 +475,7 @@ impl Builder {
         })
     }
 
-    /// A function of the table as one operation.
+    /// Records a function of the table as one operation.
     pub fn call(&mut self, function: Function, args: &[Value]) -> Value {
         let mut numbers = [0.0; 40];
         if args.len() <= numbers.len() {
@@ -489,7 +508,8 @@ impl Builder {
         v
     }
 
-    /// The node, or the equal one that is there already. Arguments of a list node must be the last of the list.
+    /// Returns the node, or the equal one that is there already. Arguments of a list node must be
+    /// the last of the list.
     pub(super) fn intern(&mut self, node: Node) -> Value {
         if (self.nodes.len() + 1) * 4 > self.slots.len() * 3 {
             self.grow();
@@ -527,7 +547,7 @@ impl Builder {
         self.slots = slots;
     }
 
-    /// Where the operands of a node stand in the list of arguments.
+    /// Returns where the operands of a node stand in the list of arguments.
     pub(super) fn list(&self, node: &Node) -> Option<std::ops::Range<usize>> {
         match *node {
             Node::If(first) => Some(first as usize..first as usize + 4),
@@ -581,7 +601,8 @@ impl Builder {
     }
 
     fn hash(&self, node: &Node) -> u64 {
-        // all bits of a product reach all bits of the hash: numbers such as 2.5 have zeros in all low bits
+        // all bits of a product reach all bits of the hash: numbers such as 2.5 have zeros in all
+        // low bits
         let mix = |h: u64, word: u64| {
             let product =
                 u128::from(h ^ word ^ 0x9E37_79B9_7F4A_7C15) * u128::from(0xD6E8_FEB8_6659_FD93u64);
@@ -613,7 +634,7 @@ impl Builder {
     }
 }
 
-/// Whether dividing by `c` is exactly multiplying by `1/c`.
+/// Returns whether dividing by `c` is exactly multiplying by `1/c`.
 fn is_power_of_two(c: f64) -> bool {
     const FRACTION: u64 = (1 << 52) - 1;
     c.is_normal() && c.to_bits() & FRACTION == 0 && (1.0 / c).is_normal()

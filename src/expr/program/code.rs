@@ -1,7 +1,8 @@
 //! Straight code: the operations of a program in order, their operands and results in registers.
 //!
-//! It runs over any number: both sides of every selection are computed, then one is chosen. Which instructions only one side
-//! needs is noted beside it ([`Sides`]), for the machine of plain numbers, which jumps.
+//! It runs over any number: both sides of every selection are computed, then one is chosen. Which
+//! instructions only one side needs is noted beside it ([`Sides`]), for the machine of plain
+//! numbers, which jumps.
 
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if, from_mask, truth};
 use crate::expr::functions::Function;
@@ -9,7 +10,7 @@ use crate::scalar::{Dual, Scalar, Table};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What an instruction does.
+/// The operation of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Code {
     Unary(UnaryOp),
@@ -47,7 +48,8 @@ pub(super) struct Instruction {
     pub(super) d: u32,
 }
 
-/// The operations of a program and what they need; the registers are `constants | inputs | temporaries`.
+/// The operations of a program and what they need; the registers are `constants | inputs |
+/// temporaries`.
 #[derive(Debug)]
 pub(super) struct Core {
     pub(super) constants: Vec<f64>,
@@ -64,7 +66,8 @@ pub(super) struct Core {
     pub(super) outputs: Vec<u32>,
 }
 
-/// Which instructions are needed only where a selection takes one of its sides, if skipping them is worth a jump.
+/// Which instructions are needed only where a selection takes one of its sides, if skipping them is
+/// worth a jump.
 #[derive(Debug, Default)]
 pub(super) struct Sides {
     /// in the order of the code, nested like parentheses

@@ -1,10 +1,13 @@
-//! Which directions an output has a derivative along: the pattern of a program's Jacobian, seen from its code without running it.
+//! The directions along which an output has a derivative: the pattern of a program's Jacobian, seen
+//! from its code without running it.
 //!
 //! ```text
-//! D(input) = the directions that change it        D(a ∘ b) = D(a) ∪ D(b)        D(c ? a : b) = D(a) ∪ D(b)        D(a < b) = ∅
+//! D(input) = the directions that change it        D(a ∘ b) = D(a) ∪ D(b)
+//! D(c ? a : b) = D(a) ∪ D(b)                      D(a < b) = ∅
 //! ```
 //!
-//! A superset of what any numbers can give: products that happen to be zero count. Conditions have no derivative.
+//! A superset of what any numbers can give: products that happen to be zero count. Conditions have
+//! no derivative.
 
 use super::code::{Code, Core, Instruction};
 use super::operation::BinaryOp;
@@ -14,8 +17,9 @@ use super::run::Program;
 const BITS: usize = u64::BITS as usize;
 
 impl Program {
-    /// For each output the directions, ascending, along which its derivative is not zero whatever the numbers are.
-    /// `along`: for each position among the inputs the directions that change it; positions beyond its end have none.
+    /// Returns for each output the directions, ascending, along which its derivative is not zero
+    /// whatever the numbers are. `along`: for each position among the inputs the directions that
+    /// change it; positions beyond its end have none.
     pub fn dependence(&self, along: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let core = self.core();
         let n = along.iter().flatten().map(|&d| d as usize + 1).max();
@@ -54,7 +58,7 @@ impl Program {
 }
 
 impl Core {
-    /// The registers by which the result of an instruction has derivatives.
+    /// Returns the registers by which the result of an instruction has derivatives.
     fn differentiated(&self, instruction: &Instruction, mut each: impl FnMut(u32)) {
         let Instruction {
             code, a, b, c, d, ..

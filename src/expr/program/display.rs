@@ -9,7 +9,7 @@ use super::run::Program;
 use std::fmt;
 
 impl fmt::Display for Program {
-    /// `r5 = sin r2` and so on; constants and inputs stand for themselves.
+    /// Writes `r5 = Sin r2` and so on; constants and inputs stand for themselves.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let core = self.core();
         let name = |r: u32| self.name(r);
@@ -62,7 +62,7 @@ impl Program {
             .join(", ")
     }
 
-    /// A register as a reader would call it.
+    /// Returns a register as a reader would call it.
     fn name(&self, register: u32) -> String {
         let constants = &self.core().constants;
         let register = register as usize;
@@ -86,7 +86,7 @@ impl Program {
 const LONGEST: usize = 80;
 
 impl Builder {
-    /// A value as a formula, shortened when it is long.
+    /// Returns a value as a formula, shortened when it is long.
     pub(crate) fn text(&self, v: Value) -> String {
         let mut text = String::new();
         self.write(v, 0, &mut text);
@@ -96,7 +96,7 @@ impl Builder {
         text
     }
 
-    /// `above`: how strongly the surroundings bind (1 sum, 2 product, 3 power).
+    /// Writes a value; `above`: how strongly the surroundings bind (1 sum, 2 product, 3 power).
     fn write(&self, v: Value, above: u8, text: &mut String) {
         if text.len() > 2 * LONGEST {
             return;

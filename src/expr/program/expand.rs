@@ -1,4 +1,5 @@
-//! Rewriting recorded values: calls of table functions, and their partial derivatives, as the operations of their rows.
+//! Rewriting recorded values: calls of table functions, and their partial derivatives, as the
+//! operations of their rows.
 
 use super::builder::{Builder, Folding};
 use super::code::partial;
@@ -6,7 +7,7 @@ use super::node::{Node, Value};
 use super::record::Sym;
 use std::cell::RefCell;
 
-/// What is expanded.
+/// The nodes that are expanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Expand {
     /// partial derivatives of calls
@@ -16,7 +17,7 @@ pub(super) enum Expand {
 }
 
 impl Builder {
-    /// The same values with calls or their partial derivatives expanded.
+    /// Returns the same values with calls or their partial derivatives expanded.
     pub(super) fn expanded(&mut self, values: &[Value], what: Expand) -> Vec<Value> {
         let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
         let mut needed = vec![false; n];
@@ -46,7 +47,7 @@ impl Builder {
 }
 
 impl Builder {
-    /// The same operation over the images of its operands.
+    /// Returns the same operation over the images of its operands.
     pub(super) fn again(&mut self, v: Value, of: impl Fn(Value) -> Value) -> Value {
         let node = self.nodes[v.index()];
         let arguments = |builder: &Self| {
@@ -94,7 +95,7 @@ impl Expand {
     }
 }
 
-/// The node over the images of its operands.
+/// Returns the node over the images of its operands.
 fn image(cell: &RefCell<Builder>, v: Value, images: &[Value], what: Expand) -> Value {
     let of = |v: Value| images[v.index()];
     let mut builder = cell.borrow_mut();

@@ -1,8 +1,10 @@
-//! The adjoint of a program: one sweep from an output back to the inputs gives all partial derivatives.
+//! The adjoint of a program: one sweep from an output back to the inputs gives all partial
+//! derivatives.
 //!
-//! Every node passes `bar = ∂output/∂node` on to its operands, times its own partial derivatives. Those of a function of the
-//! table are its row evaluated over duals ([`Node::Partial`]). Where a contribution leaves a side of a selection it is zero
-//! unless that side is taken, so that a branch without a value does not spoil the derivatives of the other.
+//! Every node passes `bar = ∂output/∂node` on to its operands, times its own partial derivatives.
+//! Those of a function of the table are its row evaluated over duals ([`Node::Partial`]). Where a
+//! contribution leaves a side of a selection it is zero unless that side is taken, so that a branch
+//! without a value does not spoil the derivatives of the other.
 
 use super::builder::{Builder, Folding};
 use super::code::partial;
@@ -15,7 +17,7 @@ use BinaryOp::{Add, Along, Div, Mul, Sub};
 use std::f64::consts::LOG10_E;
 
 impl Builder {
-    /// The partial derivatives of a value with respect to others, usually inputs.
+    /// Returns the partial derivatives of a value with respect to others, usually inputs.
     ///
     /// At a switching point the derivative is that of the side that supplies the value.
     pub fn gradient(&mut self, output: Value, with_respect_to: &[Value]) -> Vec<Value> {
@@ -27,12 +29,12 @@ impl Builder {
         gradient
     }
 
-    /// The `k`-th partial derivative of a call.
+    /// Records the `k`-th partial derivative of a call.
     fn partial(&mut self, call: Value, k: u32) -> Value {
         self.intern(Node::Partial { call, k })
     }
 
-    /// The `k`-th partial derivative of a function at these arguments.
+    /// Records the `k`-th partial derivative of a function at these arguments.
     pub(super) fn partial_of(&mut self, function: Function, args: &[Value], k: u32) -> Value {
         let call = self.call(function, args);
         match self.nodes[call.index()] {
@@ -61,7 +63,8 @@ struct Adjoint<'b> {
 impl<'b> Adjoint<'b> {
     fn new(builder: &'b mut Builder, output: Value, with_respect_to: &[Value]) -> Self {
         let n = output.index() + 1;
-        // what is differentiated by is wanted in any case, so that contributions from a side are zero elsewhere
+        // what is differentiated by is wanted in any case, so that contributions from a side are
+        // zero elsewhere
         let wanted: Vec<Value> = [output].iter().chain(with_respect_to).copied().collect();
         let guards = Guards::new(builder, &wanted);
         let mut active = vec![false; builder.nodes.len()];
@@ -161,7 +164,7 @@ impl<'b> Adjoint<'b> {
         }
     }
 
-    /// √(1 − x²)
+    /// Records √(1 − x²).
     fn root_of_one_less_square(&mut self, x: Value) -> Value {
         let one = self.constant(1.0);
         let square = self.op(Mul, x, x);
@@ -238,7 +241,7 @@ impl<'b> Adjoint<'b> {
         }
     }
 
-    /// `b aᵇ⁻¹`, from the power itself where the base is not zero.
+    /// Records `b aᵇ⁻¹`, from the power itself where the base is not zero.
     fn power_slope(&mut self, a: Value, b: Value, v: Value) -> Value {
         let [zero, one] = [0.0, 1.0].map(|c| self.builder.constant(c));
         let quotient = self.op(Div, v, a);
@@ -250,7 +253,7 @@ impl<'b> Adjoint<'b> {
         self.builder.select(is_zero, at_zero, quotient)
     }
 
-    /// v = angle of (x, y): dv = (x dy − y dx)/(x² + y²)
+    /// Passes on the bar of v = angle of (x, y): dv = (x dy − y dx)/(x² + y²)
     fn atan2(&mut self, y: Value, x: Value, v: Value, bar: Value) {
         let here = self.guards.of[v.index()];
         let (yy, xx) = (self.op(Mul, y, y), self.op(Mul, x, x));
@@ -349,7 +352,7 @@ impl<'b> Adjoint<'b> {
     fn negative(&mut self, a: Value) -> Value {
         self.builder.unary(UnaryOp::Neg, a)
     }
-    /// The multiple of a value; of a multiple, the multiple of what is in it.
+    /// Records the multiple of a value; of a multiple, the multiple of what is in it.
     fn times(&mut self, a: Value, factor: f64) -> Value {
         if let Node::Binary(Mul, x, y) = self.builder.nodes[a.index()] {
             for (c, other) in [(x, y), (y, x)] {
@@ -369,8 +372,19 @@ impl<'b> Adjoint<'b> {
 /// Makes the adjoints of the operations on one number.
 macro_rules! adjoints {
     (
-        methods { $($(#[$doc:meta])* $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $method_rule:expr;)+ }
-        bodies { $($(#[$body_doc:meta])* $body_op:ident |$x:ident| $body:expr, $body_cost:literal, $body_edges:ident, $body_rule:expr;)+ }
+        methods {
+            $(
+                $(#[$doc:meta])*
+                $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $method_rule:expr;
+            )+
+        }
+        bodies {
+            $(
+                $(#[$body_doc:meta])*
+                $body_op:ident |$x:ident| $body:expr,
+                $body_cost:literal, $body_edges:ident, $body_rule:expr;
+            )+
+        }
     ) => {
         impl<'b> Adjoint<'b> {
             /// Returns the part of `bar` for the operand `x` of an operation with the result `y`.
@@ -389,7 +403,7 @@ macro_rules! adjoints {
 }
 unary_operations!(adjoints);
 
-/// `a + b`; two selections by the same condition become one.
+/// Records `a + b`; two selections by the same condition become one.
 fn sum(builder: &mut Builder, a: Value, b: Value) -> Value {
     let (node_a, node_b) = (builder.nodes[a.index()], builder.nodes[b.index()]);
     if let (Node::Select(c, a1, a2), Node::Select(d, b1, b2)) = (node_a, node_b)

@@ -1,8 +1,9 @@
 //! Under which conditions a node is needed: the sides of selections that all its users lie on.
 //!
-//! A node that is used only for one side of an IF need not be computed where the other side is taken, and its derivatives
-//! must not be counted there. Guards form a tree; that of a node is the nearest common ancestor of the guards of its uses.
-//! Selections by the same condition under the same guard share their sides.
+//! A node that is used only for one side of an IF need not be computed where the other side is
+//! taken, and its derivatives must not be counted there. Guards form a tree; that of a node is the
+//! nearest common ancestor of the guards of its uses. Selections by the same condition under the
+//! same guard share their sides.
 
 use super::builder::Builder;
 use super::node::{Node, Value};
@@ -40,7 +41,7 @@ pub(super) struct Guards {
 }
 
 impl Guards {
-    /// For the needed nodes of a builder; nothing that is not needed gets a guard.
+    /// Finds the guards of the needed nodes of a builder; nothing that is not needed gets a guard.
     pub(super) fn new(builder: &Builder, outputs: &[Value]) -> Self {
         let n = outputs.iter().map(|v| v.index() + 1).max().unwrap_or(0);
         let root = Guard {
@@ -81,7 +82,7 @@ impl Guards {
         guards
     }
 
-    /// The guard of one side of a needed selection.
+    /// Returns the guard of one side of a needed selection.
     pub(super) fn side(&self, selection: Value, side: u8) -> GuardIx {
         self.sides[selection.index()] + u32::from(side)
     }
@@ -108,7 +109,7 @@ impl Guards {
         }
     }
 
-    /// Whether `inner` is `outer` or lies inside it.
+    /// Returns whether `inner` is `outer` or lies inside it.
     pub(super) fn is_within(&self, mut inner: GuardIx, outer: GuardIx) -> bool {
         if inner == NEVER {
             return false;
@@ -128,7 +129,7 @@ impl Guards {
         };
     }
 
-    /// The nearest common ancestor.
+    /// Returns the nearest common ancestor.
     fn common(&self, mut a: GuardIx, mut b: GuardIx) -> GuardIx {
         while a != b {
             if self.tree[a as usize].depth >= self.tree[b as usize].depth {

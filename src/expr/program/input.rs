@@ -2,7 +2,7 @@
 
 use crate::expr::measures::Measure;
 
-/// What a program asks of its host.
+/// A number that a program asks of its host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Input {
     /// simulation time

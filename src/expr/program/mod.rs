@@ -1,10 +1,12 @@
-//! Straight-line code: constants, inputs, operations, outputs; the builder that records it and the machines that run it.
+//! Straight-line code: constants, inputs, operations, outputs; the builder that records it and the
+//! machines that run it.
 //!
-//! Two makers share it: the compiler of expressions, and the scene, which records its own equations as they run over the
-//! recording scalar [`Sym`].
+//! Two makers share it: the compiler of expressions, and the scene, which records its own equations
+//! as they run over the recording scalar [`Sym`].
 //!
 //! ```text
-//! builder (nodes) → schedule (order, registers) → program (straight code) → machine (steps) → code of the processor
+//! builder (nodes) → schedule (order, registers) → program (straight code)
+//!         → machine (steps): interpreter, or code of the processor
 //! ```
 //!
 //! ```

@@ -1,15 +1,16 @@
 //! The elementary operations, one row each, meaning the same over every number.
 //!
-//! A row of [`unary_operations`] says all that this folder knows of an operation on one number. To add one is to add its row
-//! (and its method to `Scalar`): enum, evaluation, recording, adjoint, printing, breaks and calls from generated code
-//! follow.
+//! A row of [`unary_operations`] says all that this folder knows of an operation on one number. To
+//! add one is to add its row (and its method to `Scalar`): enum, evaluation, recording, adjoint,
+//! printing, breaks and calls from generated code follow.
 
 use crate::scalar::{Mask, Scalar};
 
 /// Hands the table of operations on one number to the macro `$make`.
 ///
-/// Columns: name and doc; the method of `Scalar`, or the body; cost in additions; where it may stop being smooth; the
-/// adjoint: its part of `bar` for the operand `x`, where `y` is the result and `d` writes operations down.
+/// Columns: name and doc; the method of `Scalar`, or the body; cost in additions; where it may stop
+/// being smooth; the adjoint: its part of `bar` for the operand `x`, where `y` is the result and
+/// `d` writes operations down.
 macro_rules! unary_operations {
     ($make:ident) => {
         $make! {
@@ -122,8 +123,19 @@ pub(super) enum Edges {
 /// Makes the enum of operations on one number, their evaluation, cost and edges.
 macro_rules! define_unary {
     (
-        methods { $($(#[$doc:meta])* $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;)+ }
-        bodies { $($(#[$body_doc:meta])* $body_op:ident |$x:ident| $body:expr, $body_cost:literal, $body_edges:ident, $_s:expr;)+ }
+        methods {
+            $(
+                $(#[$doc:meta])*
+                $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;
+            )+
+        }
+        bodies {
+            $(
+                $(#[$body_doc:meta])*
+                $body_op:ident |$x:ident| $body:expr,
+                $body_cost:literal, $body_edges:ident, $_s:expr;
+            )+
+        }
     ) => {
         /// An operation on one number.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -162,7 +174,8 @@ macro_rules! define_unary {
 }
 unary_operations!(define_unary);
 
-/// Hands the table of operations on two numbers to the macro `$make`: name and doc, body, cost in additions.
+/// Hands the table of operations on two numbers to the macro `$make`: name and doc, body, cost in
+/// additions.
 macro_rules! binary_operations {
     ($make:ident) => {
         $make! {

@@ -1,9 +1,10 @@
 //! In which order the needed nodes of a builder are computed, and which of them may be skipped.
 //!
-//! Operands come near their first use, the more demanding one first (Sethi and Ullman). What only one side of a selection
-//! needs stands between `Begin` and `End` of that side, if it is worth a jump; a machine that cannot jump ignores those
-//! marks and computes both sides. Nodes that one operation can yield together follow each other: sine and cosine of one
-//! angle, a function and its partial derivatives.
+//! Operands come near their first use, the more demanding one first (Sethi and Ullman). What only
+//! one side of a selection needs stands between `Begin` and `End` of that side, if it is worth a
+//! jump; a machine that cannot jump ignores those marks and computes both sides. Nodes that one
+//! operation can yield together follow each other: sine and cosine of one angle, a function and its
+//! partial derivatives.
 
 use super::builder::Builder;
 use super::guard::{ALWAYS, GuardIx, Guards, NEVER};
@@ -30,19 +31,21 @@ pub(super) struct Order {
     pub(super) uses: Vec<u32>,
     /// comparisons that exist only inside the selections they decide
     pub(super) inlined: Vec<bool>,
-    /// selections whose sides stand together, by the one that `Begin` and `End` name, in the order of their values
+    /// selections whose sides stand together, by the one that `Begin` and `End` name, in the order
+    /// of their values
     pub(super) groups: HashMap<Value, Vec<Value>>,
     /// whether a node is one of these
     pub(super) is_jumped: Vec<bool>,
 }
 
-/// A side of a selection is skipped by a jump if what it computes costs at least so much. An IF was written by somebody who
-/// expects one side to be computed, mostly by time; other selections are sides of a kink that change more often.
+/// A side of a selection is skipped by a jump if what it computes costs at least so much. An IF was
+/// written by somebody who expects one side to be computed, mostly by time; other selections are
+/// sides of a kink that change more often.
 const WORTH_A_JUMP: u32 = 8;
 const WORTH_A_JUMP_IN_IF: u32 = 2;
 
-/// Most selections whose sides stand together, most candidates that are looked at for it, and most nodes that are looked at
-/// to see that one does not need another: recording stays linear.
+/// Most selections whose sides stand together, most candidates that are looked at for it, and most
+/// nodes that are looked at to see that one does not need another: recording stays linear.
 const MOST_TOGETHER: usize = 16;
 const MOST_CANDIDATES: usize = 32;
 const MOST_SEARCHED: usize = 200;
@@ -66,7 +69,7 @@ impl Order {
         order
     }
 
-    /// Uses, and comparisons that only decide selections.
+    /// Counts uses, and finds comparisons that only decide selections.
     fn count(&mut self, builder: &Builder, outputs: &[Value], guards: &Guards) {
         let mut decides = vec![0; builder.nodes.len()];
         for v in outputs {
@@ -95,8 +98,8 @@ impl Order {
         }
     }
 
-    /// Calls `f` with the operands of a node; those of an inlined comparison in place of it, and the base of a power behind
-    /// its factors.
+    /// Calls `f` with the operands of a node; those of an inlined comparison in place of it, and
+    /// the base of a power behind its factors.
     pub(super) fn operands(&self, builder: &Builder, node: &Node, mut f: impl FnMut(Value)) {
         if let Node::Select(condition, yes, no) = *node
             && let (true, Node::Compare(_, a, b)) = (
@@ -114,7 +117,7 @@ impl Order {
     }
 }
 
-/// What remains to be done.
+/// A part of the work that remains.
 #[derive(Clone, Copy, Debug)]
 enum Task {
     /// place the node and before it its operands
@@ -230,7 +233,7 @@ impl<'a> Walk<'a> {
         });
     }
 
-    /// The operands that decide a selection.
+    /// Returns the operands that decide a selection.
     fn deciders(&self, node: &Node) -> Vec<Value> {
         let mut operands = Vec::new();
         self.order
@@ -281,7 +284,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The selections whose sides are placed together with those of `v`: they share its sides, and none needs another.
+    /// Returns the selections whose sides are placed together with those of `v`: they share its
+    /// sides, and none needs another.
     fn group(&mut self, v: Value) -> Vec<Value> {
         let Some(alike) = self.alike.get_mut(&self.guards.side(v, 0)) else {
             return vec![v];
@@ -313,8 +317,9 @@ impl<'a> Walk<'a> {
         group
     }
 
-    /// Whether all that a selection needs may be placed here: nothing waits for a selection that is being placed, and nothing is
-    /// needed where the open sides are not taken. `false` where that is not seen soon.
+    /// Returns whether all that a selection needs may be placed here: nothing waits for a selection
+    /// that is being placed, and nothing is needed where the open sides are not taken. `false`
+    /// where that is not seen soon.
     fn is_ready(&self, w: Value) -> bool {
         let here = self.open.last().copied().unwrap_or(ALWAYS);
         let mut seen = std::collections::HashSet::new();
@@ -335,7 +340,7 @@ impl<'a> Walk<'a> {
         is_ready
     }
 
-    /// Whether neither value needs the other; `false` where that is not seen soon.
+    /// Returns whether neither value needs the other; `false` where that is not seen soon.
     fn are_independent(&self, a: Value, b: Value) -> bool {
         let (below, above) = (a.min(b), a.max(b));
         let mut seen = std::collections::HashSet::new();
@@ -382,7 +387,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The values that a selection chooses from.
+/// Returns the values that a selection chooses from.
 pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
     match *node {
         Node::Select(_, yes, no) => vec![yes, no],
@@ -393,7 +398,7 @@ pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
     }
 }
 
-/// Needed selections by the guard of their first side.
+/// Returns needed selections by the guard of their first side.
 fn alike(builder: &Builder, guards: &Guards) -> HashMap<GuardIx, VecDeque<Value>> {
     let mut alike: HashMap<GuardIx, VecDeque<Value>> = HashMap::new();
     for (k, node) in builder.nodes.iter().enumerate() {
@@ -405,7 +410,7 @@ fn alike(builder: &Builder, guards: &Guards) -> HashMap<GuardIx, VecDeque<Value>
     alike
 }
 
-/// What nodes that are computed together have in common, except sine and cosine: the call.
+/// Returns the call that nodes have in common which are computed together.
 fn group(node: &Node) -> Option<Value> {
     match *node {
         Node::Partial { call, .. } => Some(call),
@@ -413,7 +418,7 @@ fn group(node: &Node) -> Option<Value> {
     }
 }
 
-/// Needed nodes that one operation yields together.
+/// Returns needed nodes that one operation yields together.
 fn partners(builder: &Builder, guards: &Guards) -> HashMap<Value, Vec<Value>> {
     let mut partners: HashMap<Value, Vec<Value>> = HashMap::new();
     let mut angles: HashMap<Value, Value> = HashMap::new();
@@ -443,7 +448,7 @@ fn partners(builder: &Builder, guards: &Guards) -> HashMap<Value, Vec<Value>> {
     partners
 }
 
-/// How many registers the tree below each node would need.
+/// Returns how many registers the tree below each node would need.
 fn demand(builder: &Builder) -> Vec<u16> {
     let mut demand = vec![0u16; builder.nodes.len()];
     let mut below: Vec<u16> = Vec::new();
@@ -461,7 +466,7 @@ fn demand(builder: &Builder) -> Vec<u16> {
     demand
 }
 
-/// What is computed only under each guard, in additions.
+/// Returns the cost of all that is computed only under each guard, in additions.
 fn weights(builder: &Builder, guards: &Guards) -> Vec<u32> {
     let mut weights = vec![0u32; guards.tree.len()];
     for (node, &guard) in builder.nodes.iter().zip(&guards.of) {

@@ -1,4 +1,5 @@
-//! A number that records what is done to it: any formula generic over `Scalar` becomes part of a program by running once.
+//! A number that records what is done to it: any formula generic over `Scalar` becomes part of a
+//! program by running once.
 
 use super::builder::Builder;
 use super::input::Input;
@@ -28,19 +29,19 @@ pub enum Condition<'b> {
 }
 
 impl<'b> Sym<'b> {
-    /// A value of a builder as a number.
+    /// Returns a value of a builder as a number.
     pub fn of(value: Value, builder: &'b RefCell<Builder>) -> Self {
         match builder.borrow().constant_of(value) {
             Some(c) => Sym::Constant(c),
             None => Sym::Recorded(value, builder),
         }
     }
-    /// An input of a builder as a number.
+    /// Returns an input of a builder as a number.
     pub fn input(input: Input, builder: &'b RefCell<Builder>) -> Self {
         let value = builder.borrow_mut().input(input);
         Sym::Recorded(value, builder)
     }
-    /// The value in the builder, where a constant may have to be recorded first.
+    /// Returns the value in the builder, where a constant may have to be recorded first.
     pub fn value(self, builder: &mut Builder) -> Value {
         match self {
             Sym::Constant(c) => builder.constant(c),
@@ -91,7 +92,7 @@ impl<'b> Condition<'b> {
             None => Condition::Recorded(value, builder),
         }
     }
-    /// The condition in the builder, as 0 or 1.
+    /// Returns the condition in the builder, as 0 or 1.
     pub fn value(self, builder: &mut Builder) -> Value {
         match self {
             Condition::Known(holds) => builder.constant(f64::from(u8::from(holds))),
@@ -205,7 +206,12 @@ impl std::ops::SubAssign for Sym<'_> {
 /// Makes the methods of `Scalar` that are operations on one number.
 macro_rules! recorded {
     (
-        methods { $($(#[$doc:meta])* $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;)+ }
+        methods {
+            $(
+                $(#[$doc:meta])*
+                $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;
+            )+
+        }
         bodies { $($others:tt)+ }
     ) => { $(
         fn $method(self) -> Self {

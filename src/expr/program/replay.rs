@@ -60,9 +60,11 @@ impl Program {
         core.outputs.iter().map(|&r| values[r as usize]).collect()
     }
 
-    /// Returns the same outputs, then for each of them its partial derivatives with respect to `inputs`, in that order.
+    /// Returns the same outputs, then for each of them its partial derivatives with respect to
+    /// `inputs`, in that order.
     ///
-    /// One reverse sweep per output is appended at once; it costs about as much as the value. The layout of the inputs stays.
+    /// One reverse sweep per output is appended at once; it costs about as much as the value. The
+    /// layout of the inputs stays.
     pub fn with_gradient(&self, inputs: &[Input]) -> Program {
         let mut builder = Builder::new(Folding::Strict);
         let mut outputs = self.record(&mut builder);

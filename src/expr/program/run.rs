@@ -7,7 +7,8 @@ use crate::scalar::Scalar;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Straight-line code with several outputs. Made by [`Builder::finish`](super::Builder::finish); never changes.
+/// Straight-line code with several outputs. Made by [`Builder::finish`](super::Builder::finish);
+/// never changes.
 ///
 /// Copies share the code.
 #[derive(Clone, Debug)]
@@ -19,7 +20,8 @@ pub struct Program {
     machine: Arc<Machine>,
 }
 
-/// The registers of a program while it runs. Any program may use any work; changing between them costs a preparation.
+/// The registers of a program while it runs. Any program may use any work; changing between them
+/// costs a preparation.
 #[derive(Clone, Debug)]
 pub struct Work<S = f64> {
     owner: u64,
@@ -52,8 +54,9 @@ impl Program {
         self.machine.core()
     }
 
-    /// Returns the same program, run over plain numbers by one engine from the first run on; `None` where that engine is not
-    /// to be had. For comparing the two: by itself a program changes to the faster when that pays.
+    /// Returns the same program, run over plain numbers by one engine from the first run on; `None`
+    /// where that engine is not to be had. For comparing the two: by itself a program changes to
+    /// the faster when that pays.
     pub fn with_engine(&self, engine: Engine) -> Option<Self> {
         Some(Self {
             machine: Arc::new(self.machine.with_engine(engine)?),
@@ -99,8 +102,8 @@ impl Program {
             .collect()
     }
 
-    /// Runs over plain numbers. Once `work` has been used with this program it allocates nothing, but for the one run in
-    /// which the program is translated.
+    /// Runs over plain numbers. Once `work` has been used with this program it allocates nothing,
+    /// but for the one run in which the program is translated.
     ///
     /// # Panics
     ///
@@ -120,7 +123,8 @@ impl Program {
         }
     }
 
-    /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a single number.
+    /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a
+    /// single number.
     ///
     /// # Panics
     ///

@@ -1,7 +1,8 @@
-//! From the nodes of a builder to straight-line code: what is needed, in which order, in which registers.
+//! From the nodes of a builder to straight-line code: what is needed, in which order, in which
+//! registers.
 //!
-//! The frame is `constants | inputs | temporaries`. A register is free again after its last use, so that the working set
-//! stays small.
+//! The frame is `constants | inputs | temporaries`. A register is free again after its last use, so
+//! that the working set stays small.
 
 use super::builder::Builder;
 use super::code::{Code, Core, Instruction, Mark, Sides};
@@ -15,16 +16,18 @@ use std::collections::HashMap;
 const NONE: u32 = u32::MAX;
 
 impl Builder {
-    /// The program that computes these values, and nothing else.
+    /// Returns the program that computes these values, and nothing else.
     ///
     /// Its inputs are those it needs, in the order in which the builder was asked for them.
     pub fn finish(&self, outputs: &[Value]) -> Program {
         program(self, outputs, None)
     }
 
-    /// As [`Builder::finish`], for inputs that the host lays out itself; what is not needed is not read.
+    /// Returns the program as [`Builder::finish`] does, for inputs that the host lays out itself;
+    /// what is not needed is not read.
     ///
-    /// An input that is needed and missing in `layout` is appended to it: compare `program.inputs()`.
+    /// An input that is needed and missing in `layout` is appended to it: compare
+    /// `program.inputs()`.
     pub fn finish_with_inputs(&self, outputs: &[Value], layout: &[Input]) -> Program {
         program(self, outputs, Some(layout))
     }
@@ -91,7 +94,8 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
 }
 
 impl Schedule<'_> {
-    /// Gives every node a register and an instruction; returns the code, without constants, inputs and outputs.
+    /// Gives every node a register and an instruction; returns the code, without constants, inputs
+    /// and outputs.
     fn allocate(&mut self, outputs: &[Value], first_temporary: u32) -> Core {
         let builder = self.builder;
         let mut allocation = Allocation::new(&self.order, builder, outputs, first_temporary);
@@ -111,7 +115,8 @@ impl Schedule<'_> {
                 Item::Node(v) => v,
                 Item::Begin(first, side) => {
                     if side == 0 {
-                        // the values of all sides go to registers that are held for them from the first side on
+                        // the values of all sides go to registers that are held for them from the
+                        // first side on
                         for &member in &self.order.groups[&first] {
                             self.registers[member.index()] = allocation.take();
                         }
@@ -156,7 +161,8 @@ impl Schedule<'_> {
         core
     }
 
-    /// Returns the operands of an instruction: registers, or the place of the arguments of a call, which are listed.
+    /// Returns the operands of an instruction: registers, or the place of the arguments of a call,
+    /// which are listed.
     fn operands(&self, node: &Node, lists: &mut Vec<u32>) -> [u32; 4] {
         let mut operands = [0; 4];
         if matches!(node, Node::Call { .. } | Node::Partial { .. }) {
@@ -286,7 +292,8 @@ impl Allocation {
         })
     }
 
-    /// Frees the register of `v` if this is its last use. An operand that stands twice is freed once.
+    /// Frees the register of `v` if this is its last use. An operand that stands twice is freed
+    /// once.
     fn release(&mut self, v: Value, time: u32, registers: &[u32]) {
         let register = registers[v.index()];
         if self.last_use[v.index()] == time && register >= self.first_temporary && register != NONE

@@ -1,8 +1,9 @@
-//! Where a program changes branch: the differences whose signs its comparisons and IFs ask for; and the same program with
-//! its branches held.
+//! Where a program changes branch: the differences whose signs its comparisons and IFs ask for; and
+//! the same program with its branches held.
 //!
-//! A program whose branches are held is smooth as far as its functions are: a method of high order may step across the
-//! place where the branch ends, find that place on its interpolant, and go back there.
+//! A program whose branches are held is smooth as far as its functions are: a method of high order
+//! may step across the place where the branch ends, find that place on its interpolant, and go back
+//! there.
 
 use super::builder::Builder;
 use super::input::Input;
@@ -18,19 +19,23 @@ struct Branches {
 }
 
 impl Builder {
-    /// Values that change sign where one of the outputs changes branch, each once, in the order of recording.
+    /// Values that change sign where one of the outputs changes branch, each once, in the order of
+    /// recording.
     ///
-    /// For `a < b` and `a ≤ b` that is `a − b`, for IF its selector, for |x| its argument. Comparisons for equality are left
-    /// out, and so are those of zero with what is never negative: they hold at isolated points only.
+    /// For `a < b` and `a ≤ b` that is `a − b`, for IF its selector, for |x| its argument.
+    /// Comparisons for equality are left out, and so are those of zero with what is never negative:
+    /// they hold at isolated points only.
     pub fn switching(&mut self, outputs: &[Value]) -> Vec<Value> {
         self.branches(outputs).differences
     }
 
-    /// The outputs with the branches of `sources` held, and the values that change sign where these change, with the others held.
+    /// Returns the outputs with the branches of `sources` held, and the values that change sign
+    /// where these change, with the others held.
     ///
-    /// What decides a branch is not computed but read: the sign of the `k`-th of these values, as −1, 0 or 1, from the input
-    /// `sign(k)`. A root or a power of one of these values goes on beyond its end as that of the magnitude, with the sign of the value where the
-    /// power has one: without that, a step far beyond the end of a contact would see no force anywhere.
+    /// The decision of a branch is not computed but read: the sign of the `k`-th of these values,
+    /// as −1, 0 or 1, from the input `sign(k)`. A root or a power of one of these values goes on
+    /// beyond its end as that of the magnitude, with the sign of the value where the power has one:
+    /// without that, a step far beyond the end of a contact would see no force anywhere.
     pub fn held(
         &mut self,
         outputs: &[Value],
@@ -92,7 +97,8 @@ impl Builder {
         )
     }
 
-    /// Which of the first `n` nodes change sign with one of the differences only: these, their contraries, and choices of such.
+    /// Returns which of the first `n` nodes change sign with one of the differences only: these,
+    /// their contraries, and choices of such.
     fn watched(&self, differences: &[Value], n: usize) -> Vec<bool> {
         let mut watched = vec![false; n];
         let mut contrary = std::collections::HashSet::new();
@@ -115,7 +121,7 @@ impl Builder {
         watched
     }
 
-    /// Which of the first `n` nodes some values need.
+    /// Returns which of the first `n` nodes some values need.
     fn needed(&self, values: &[Value], n: usize) -> Vec<bool> {
         let mut needed = vec![false; n];
         for v in values {
@@ -172,13 +178,14 @@ impl Builder {
         Branches { differences, asked }
     }
 
-    /// Whether one of two compared values is zero and the other is never negative, whatever the inputs.
+    /// Returns whether one of two compared values is zero and the other is never negative, whatever
+    /// the inputs.
     fn is_bound(&self, a: Value, b: Value) -> bool {
         let zero = |v: Value| self.constant_of(v) == Some(0.0);
         zero(b) && self.never_negative(a, 8) || zero(a) && self.never_negative(b, 8)
     }
 
-    /// Whether a value is never negative by construction, looking `depth` operations deep.
+    /// Returns whether a value is never negative by construction, looking `depth` operations deep.
     fn never_negative(&self, v: Value, depth: usize) -> bool {
         if depth == 0 {
             return false;

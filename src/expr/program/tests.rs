@@ -105,7 +105,8 @@ fn formula() -> impl Strategy<Value = Formula> {
     })
 }
 
-/// Formulas of what the machine treats specially: arithmetic that fuses, branches that are jumped over, sums of steps.
+/// Formulas of what the machine treats specially: arithmetic that fuses, branches that are jumped
+/// over, sums of steps.
 fn dense_formula() -> impl Strategy<Value = Formula> {
     let number = prop::sample::select(vec![0.5, 1.0, 2.0, -0.25, 3.0]);
     let leaf =
@@ -277,7 +278,8 @@ proptest! {
         let mut out = [0.0];
         program.run(&x, &mut Work::default(), &mut out);
         let want = f.eval(&x);
-        // a structural zero hides what is not finite, and the sign of a zero may differ under a division or atan2
+        // a structural zero hides what is not finite, and the sign of a zero may differ under a
+        // division or atan2
         if want.is_finite() && out[0].is_finite() && x.iter().all(|x| x.abs() > 1e-3) && !has_sign_of_zero(&f) {
             prop_assert!((out[0] - want).abs() <= 1e-9 * want.abs().max(1.0), "{} {want}", out[0]);
         }
@@ -528,7 +530,8 @@ fn a_program_without_outputs_runs() {
 
 #[test]
 fn more_values_than_the_processor_has_registers_are_kept() {
-    // all sums are needed until the end, in the order in which they were made and in the contrary one
+    // all sums are needed until the end, in the order in which they were made and in the contrary
+    // one
     let n = 60;
     let mut builder = Builder::new(Folding::Strict);
     let inputs: Vec<Value> = (0..n).map(|k| builder.input(Input::Slot(k))).collect();
@@ -623,7 +626,8 @@ fn recording_looks_at_few_places_per_node() {
     assert_eq!(b.finish(&[v]).n_operations(), 2 * n as usize);
     assert!(b.probes < 3 * 5 * n as u64, "{} probes", b.probes);
 }
-/// Value and derivatives choose by the same two conditions, and the derivative by each needs the value of the other.
+/// Value and derivatives choose by the same two conditions, and the derivative by each needs the
+/// value of the other.
 #[test]
 fn selections_that_need_each_other_crosswise_are_not_placed_together() {
     let mut b = Builder::new(Folding::Strict);

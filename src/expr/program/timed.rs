@@ -1,4 +1,5 @@
-//! Where a program may break because of what depends on time alone: at times that are known before anything else is.
+//! Where a program may break because of what depends on time alone: at times that are known before
+//! anything else is.
 
 use super::breaks::{Break, Levels};
 use super::builder::Builder;
@@ -11,8 +12,8 @@ use std::collections::HashMap;
 const FEW: usize = 64;
 
 impl Builder {
-    /// Values that depend on `time` alone, and are not looked up in a table, at whose levels some outputs may break. Calls are expanded; tables of
-    /// many knots are left out.
+    /// Values that depend on `time` alone, and are not looked up in a table, at whose levels some
+    /// outputs may break. Calls are expanded; tables of many knots are left out.
     pub(crate) fn timed_breaks(&mut self, outputs: &[Value], time: Input) -> Vec<Break> {
         let outputs = self.expanded(outputs, Expand::Calls);
         let n = outputs.iter().map(|v| v.index() + 1).max().unwrap_or(0);
@@ -42,7 +43,7 @@ impl Builder {
         breaks
     }
 
-    /// Which values are made of one input and of constants, without tables.
+    /// Returns which values are made of one input and of constants, without tables.
     fn dependent_on(&self, input: Input) -> Vec<bool> {
         // none: a constant
         let mut only: Vec<Option<bool>> = Vec::with_capacity(self.nodes.len());
@@ -64,7 +65,8 @@ impl Builder {
 }
 
 impl Levels {
-    /// Whether they are the knots of a table of more than a few points: measured data, which no step need heed one by one.
+    /// Returns whether they are the knots of a table of more than a few points: measured data,
+    /// which no step need heed one by one.
     fn are_many(&self) -> bool {
         matches!(self, Levels::Knots(table) if table.knots().len() > FEW)
     }

@@ -1,4 +1,5 @@
-//! No code of the processor: for builds without the feature `native`, and for processors and systems that it does not know.
+//! No code of the processor: for builds without the feature `native`, and for processors and
+//! systems that it does not know.
 
 use super::super::code::Core;
 use super::steps::Steps;

@@ -1,6 +1,7 @@
 //! The interpreter: goes through the steps one by one, in safe Rust.
 //!
-//! It runs programs that are not worth a translation, all programs where there is none, and is the reference in tests.
+//! It runs programs that are not worth a translation, all programs where there is none, and is the
+//! reference in tests.
 
 use super::super::code::Core;
 use super::super::operation::Comparison;

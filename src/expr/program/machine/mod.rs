@@ -1,14 +1,15 @@
 //! The machine of plain numbers: two engines that go through one list of steps.
 //!
-//! Straight code is lowered to [`steps`] when a program first runs over plain numbers: sides of selections are jumped over
-//! where that pays, functions with constant parameters are prepared. The interpreter goes through the steps in safe Rust.
-//! With the feature `native`, on processors that we know, a program that runs often is translated into code of the
-//! processor; what is won is the dispatch, and stores of what nobody reads. Both engines do the same operations in the same
+//! Straight code is lowered to [`steps`] when a program first runs over plain numbers: sides of
+//! selections are jumped over where that pays, functions with constant parameters are prepared. The
+//! interpreter goes through the steps in safe Rust. With the feature `native`, on processors that
+//! we know, a program that runs often is translated into code of the processor; what is won is the
+//! dispatch, and stores of what nobody reads. Both engines do the same operations in the same
 //! order: every bit of every result is the same.
 //!
-//! A program is interpreted until that has taken about as long as its translation, measured: see [`RUNS_PER_TRANSLATION`].
+//! A program is interpreted until that has taken about as long as its translation, measured: see
+//! [`RUNS_PER_TRANSLATION`].
 
-mod formula;
 mod interpreter;
 mod lower;
 #[cfg(all(
@@ -37,7 +38,8 @@ use steps::{Extra, Steps};
 
 /// Interpreted runs that take as long as the translation of a long program.
 const RUNS_PER_TRANSLATION: usize = 30;
-/// Interpreted steps that take as long as the part of a translation that does not grow with the program.
+/// Interpreted steps that take as long as the part of a translation that does not grow with the
+/// program.
 const STEPS_PER_TRANSLATION: usize = 5000;
 
 /// An engine that runs programs over plain numbers. Both give the same bits.
@@ -83,7 +85,8 @@ impl Machine {
         &self.core
     }
 
-    /// Returns the same machine with one engine from the first run on; `None` where that is not to be had.
+    /// Returns the same machine with one engine from the first run on; `None` where that is not to
+    /// be had.
     pub(super) fn with_engine(&self, engine: Engine) -> Option<Self> {
         let machine = Self {
             chosen: Some(engine),
@@ -130,7 +133,8 @@ impl Machine {
             .as_ref()
     }
 
-    /// Runs over a frame whose constants are in place; returns the first output, NaN if there is none.
+    /// Runs over a frame whose constants are in place; returns the first output, NaN if there is
+    /// none.
     #[inline(always)]
     pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> f64 {
         match self.native.get() {
@@ -153,7 +157,8 @@ impl Machine {
             .map_or(f64::NAN, |&output| frame[output as usize])
     }
 
-    /// Counts a run; returns whether the program has been interpreted for as long as a translation takes.
+    /// Counts a run; returns whether the program has been interpreted for as long as a translation
+    /// takes.
     fn is_worth_a_translation(&self) -> bool {
         if self.chosen.is_some() || self.native.get().is_some() {
             return false;

@@ -1,7 +1,9 @@
-//! The steps of the machine of plain numbers: one operation each, jumps forward only, over the slots of a frame.
+//! The steps of the machine of plain numbers: one operation each, jumps forward only, over the
+//! slots of a frame.
 //!
-//! The frame is `registers of the straight code | constants and intermediate results of the steps`. Both engines work on
-//! this one list: the interpreter goes through it, the translator makes code of the processor of it.
+//! The frame is `registers of the straight code | constants and intermediate results of the steps`.
+//! Both engines work on this one list: the interpreter goes through it, the translator makes code
+//! of the processor of it.
 
 use super::super::code::Core;
 use super::super::operation::{BinaryOp, Comparison, UnaryOp};
@@ -140,8 +142,8 @@ impl Steps {
 }
 
 impl Steps {
-    /// Returns whether all slots are inside the frame, all inputs are among those that the program reads and come first, and
-    /// all jumps lead forward and not beyond the end.
+    /// Returns whether all slots are inside the frame, all inputs are among those that the program
+    /// reads and come first, and all jumps lead forward and not beyond the end.
     pub(super) fn are_sound(&self, core: &Core) -> bool {
         let (n_slots, end) = (self.n_slots(), self.steps.len());
         let is_slot = |slot: &u32| (*slot as usize) < n_slots;

@@ -1,7 +1,8 @@
 //! The instructions of x86-64 that translated programs consist of, as bytes.
 //!
-//! Numbers are doubles in the low halves of the sixteen vector registers, or stand in the frame; the arithmetic is that of
-//! SSE2, which every processor of this kind has and which the compiler uses for the same operations: the bits are the same.
+//! Numbers are doubles in the low halves of the sixteen vector registers, or stand in the frame;
+//! the arithmetic is that of SSE2, which every processor of this kind has and which the compiler
+//! uses for the same operations: the bits are the same.
 
 /// A vector register, 0 … 15.
 pub(super) type Xmm = u8;
@@ -40,7 +41,7 @@ pub(super) const AND_NOT: Instruction = Instruction(0x66, 0x55);
 pub(super) const OR: Instruction = Instruction(0x66, 0x56);
 pub(super) const XOR: Instruction = Instruction(0x66, 0x57);
 
-/// What a mask is set by.
+/// The relation by which a mask is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Relation {
     Equal = 0,
@@ -97,13 +98,13 @@ impl Assembler {
         self.code
     }
 
-    /// `x ← x op place`
+    /// Emits `x ← x op place`.
     pub(super) fn operate(&mut self, op: Instruction, x: Xmm, place: Place) {
         self.code.push(op.0);
         self.operands(op.1, x, place);
     }
 
-    /// `x ← y`, all of it.
+    /// Emits `x ← y`, all of it.
     pub(super) fn copy(&mut self, x: Xmm, y: Xmm) {
         self.operands(0x28, x, Place::Xmm(y));
     }
@@ -120,20 +121,20 @@ impl Assembler {
         self.operate(STORE, x, Place::Slot(slot));
     }
 
-    /// All bits of `x` where it stands so to `place`, else none.
+    /// Sets all bits of `x` where it stands so to `place`, else none.
     pub(super) fn mask(&mut self, x: Xmm, relation: Relation, place: Place) {
         self.operate(MASK, x, place);
         self.code.push(relation as u8);
     }
 
-    /// The bit of the sign alone.
+    /// Sets the bit of the sign alone.
     pub(super) fn sign_bit(&mut self, x: Xmm) {
         self.operate(ONES, x, Place::Xmm(x));
         self.operate(SHIFT, 6, Place::Xmm(x));
         self.code.push(63);
     }
 
-    /// All bits but that of the sign.
+    /// Sets all bits but that of the sign.
     pub(super) fn all_but_sign_bit(&mut self, x: Xmm) {
         self.operate(ONES, x, Place::Xmm(x));
         self.operate(SHIFT, 2, Place::Xmm(x));
@@ -154,13 +155,14 @@ impl Assembler {
         Jump(self.code.len())
     }
 
-    /// A jump leads here.
+    /// Lets a jump lead here.
     pub(super) fn lands(&mut self, jump: Jump) {
         let distance = (self.code.len() - jump.0) as u32;
         self.code[jump.0 - 4..jump.0].copy_from_slice(&distance.to_le_bytes());
     }
 
-    /// Calls a function of numbers, which are in the first vector registers. All vector registers are lost, but for results.
+    /// Calls a function of numbers, which are in the first vector registers. All vector registers
+    /// are lost, but for results.
     pub(super) fn call(&mut self, function: usize) {
         debug_assert!(self.calls, "the frame must survive the call");
         // rax = function; call rax
@@ -178,7 +180,7 @@ impl Assembler {
         self.call(function);
     }
 
-    /// What follows the prefix: extension of register numbers, code, operands.
+    /// Emits the rest of an instruction: extension of register numbers, code, operands.
     fn operands(&mut self, code: u8, x: Xmm, place: Place) {
         let (low, high) = (x & 7, x >> 3);
         let (base, number) = match place {

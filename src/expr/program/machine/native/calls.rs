@@ -1,4 +1,5 @@
-//! What generated code calls: operations that the processor has no instruction for, and whole steps.
+//! What generated code calls: operations that the processor has no instruction for, and whole
+//! steps.
 
 use super::super::super::code::Core;
 use super::super::super::operation::{BinaryOp, UnaryOp, binary_operations, unary_operations};
@@ -24,7 +25,8 @@ pub(super) struct CalledStep {
 ///
 /// # Safety
 ///
-/// `called` is valid, and `frame` has the slots of its steps, which nobody else reads or writes meanwhile.
+/// `called` is valid, and `frame` has the slots of its steps, which nobody else reads or writes
+/// meanwhile.
 #[allow(unsafe_code)]
 pub(super) unsafe extern "sysv64" fn perform(called: *const CalledStep, frame: *mut f64) {
     // SAFETY: as the caller says
@@ -45,8 +47,19 @@ pub(super) extern "sysv64" fn sine_and_cosine(x: f64) -> Pair {
 /// Makes the functions that operations on one number are called by.
 macro_rules! unary_functions {
     (
-        methods { $($(#[$doc:meta])* $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;)+ }
-        bodies { $($(#[$body_doc:meta])* $body_op:ident |$x:ident| $body:expr, $body_cost:literal, $body_edges:ident, $_s:expr;)+ }
+        methods {
+            $(
+                $(#[$doc:meta])*
+                $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;
+            )+
+        }
+        bodies {
+            $(
+                $(#[$body_doc:meta])*
+                $body_op:ident |$x:ident| $body:expr,
+                $body_cost:literal, $body_edges:ident, $_s:expr;
+            )+
+        }
     ) => {
         /// Returns the address of the function of one number that is this operation.
         pub(super) fn of_one_number(op: UnaryOp) -> usize {

@@ -1,14 +1,15 @@
 //! Steps translated into code of the processor (x86-64 under Linux).
 //!
-//! The code does the operations of the steps in their order, with the same roundings: the results are the same bits. What
-//! the processor has no instruction for is called; what reaches into tables or has many arguments is given to the
-//! interpreter step by step.
+//! The code does the operations of the steps in their order, with the same roundings: the results
+//! are the same bits. What the processor has no instruction for is called; what reaches into tables
+//! or has many arguments is given to the interpreter step by step.
 //!
 //! # Safety
 //!
-//! The code reads and writes slots and inputs that the steps name. [`Steps::are_sound`] has seen that all of them are inside
-//! the frame and inside the inputs, and that jumps lead forward; steps that are not sound are not translated. That frame and
-//! inputs are as long as they must be is asserted before each run.
+//! The code reads and writes slots and inputs that the steps name. [`Steps::are_sound`] has seen
+//! that all of them are inside the frame and inside the inputs, and that jumps lead forward; steps
+//! that are not sound are not translated. That frame and inputs are as long as they must be is
+//! asserted before each run.
 
 mod assembler;
 mod calls;
@@ -23,7 +24,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Most pieces of code at a time: a system allows some ten thousand mappings for a process; most are left to others.
+/// Most pieces of code at a time: a system allows some ten thousand mappings for a process; most
+/// are left to others.
 const MOST_MAPPINGS: usize = 20_000;
 static N_MAPPINGS: AtomicUsize = AtomicUsize::new(0);
 

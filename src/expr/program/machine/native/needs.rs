@@ -30,7 +30,8 @@ pub(super) fn targets(steps: &Steps) -> Vec<bool> {
 
 /// Returns for each step when its slots are needed again.
 ///
-/// What is read behind a jump may be needed; slots for what lies between the steps of one instruction never outlast it.
+/// A value that is read behind a jump may be needed; slots for what lies between the steps of one
+/// instruction never outlast it.
 pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> Vec<Next> {
     let nothing = Next {
         operands: [NEVER; 4],
@@ -79,7 +80,7 @@ pub(super) fn needs(steps: &Steps, core: &Core, is_target: &[bool]) -> Vec<Next>
     needs
 }
 
-/// What is known of the steps behind the one at hand.
+/// The knowledge of the steps behind the one at hand.
 struct Future<'a> {
     /// by slot: the stretch without jumps and targets in which this was noted, and the step
     noted: Vec<(u32, u32)>,

@@ -1,8 +1,10 @@
-//! From steps to machine code: results stay in vector registers as long as there is room, and are stored when they must be.
+//! From steps to machine code: results stay in vector registers as long as there is room, and are
+//! stored when they must be.
 //!
-//! A result is stored before its register is given away, before a jump or its target, before a call and at the end, and only
-//! if it is still needed. The register that is given away is the one whose value is needed last. Constants, inputs that were
-//! stored and other numbers in the frame are operands where they stand.
+//! A result is stored before its register is given away, before a jump or its target, before a call
+//! and at the end, and only if it is still needed. The register that is given away is the one whose
+//! value is needed last. Constants, inputs that were stored and other numbers in the frame are
+//! operands where they stand.
 
 use super::super::super::code::Core;
 use super::super::super::operation::{BinaryOp, Comparison, UnaryOp};
@@ -12,7 +14,8 @@ use super::calls;
 use super::needs::{NEVER, Next, needs, targets};
 use std::collections::HashMap;
 
-/// Registers that hold values of slots; the two behind them are for what lies between two instructions.
+/// Registers that hold values of slots; the two behind them are for what lies between two
+/// instructions.
 const N_HOLDING: usize = 14;
 const ONE: Xmm = 14;
 const OTHER: Xmm = 15;
@@ -74,7 +77,8 @@ fn instruction(op: BinaryOp) -> Option<Instruction> {
     }
 }
 
-/// Returns the code of these steps; `called` are the addresses of the steps that are performed by the interpreter.
+/// Returns the code of these steps; `called` are the addresses of the steps that are performed by
+/// the interpreter.
 pub(super) fn translate(steps: &Steps, core: &Core, called: &HashMap<u32, usize>) -> Vec<u8> {
     let is_target = targets(steps);
     let needs = needs(steps, core, &is_target);
@@ -269,7 +273,7 @@ impl Translation<'_> {
         self.hold(x, to, next.results[0]);
     }
 
-    /// −a, 0 or a by the sign of b; no number where b is none.
+    /// Emits −a, 0 or a by the sign of b; no number where b is none.
     fn along(&mut self, a: u32, b: u32, to: u32, next: &Next) {
         let sign = self.place(b);
         let x = self.own(a, next.operands[0]);
@@ -320,12 +324,12 @@ impl Translation<'_> {
         self.jumps.entry(target).or_default().push(jump);
     }
 
-    /// The register of a slot.
+    /// Returns the register of a slot.
     fn register(&self, slot: u32) -> u8 {
         self.places[slot as usize]
     }
 
-    /// Where the value of a slot stands. It stays there for this step.
+    /// Returns where the value of a slot stands. It stays there for this step.
     fn place(&mut self, slot: u32) -> Place {
         match self.register(slot) {
             NOWHERE => Place::Slot(slot),
@@ -336,7 +340,7 @@ impl Translation<'_> {
         }
     }
 
-    /// The value of a slot in a register that must not be changed: its own, or `scratch`.
+    /// Brings the value of a slot into a register that must not be changed: its own, or `scratch`.
     fn readable(&mut self, slot: u32, scratch: Xmm) -> Xmm {
         match self.place(slot) {
             Place::Xmm(x) => x,
@@ -347,7 +351,8 @@ impl Translation<'_> {
         }
     }
 
-    /// The value of a slot in a register that may be changed: its own if it is not needed any more.
+    /// Brings the value of a slot into a register that may be changed: its own if it is not needed
+    /// any more.
     fn own(&mut self, slot: u32, next: u32) -> Xmm {
         let place = self.place(slot);
         if let (Place::Xmm(x), NEVER) = (place, next) {
@@ -360,7 +365,7 @@ impl Translation<'_> {
         x
     }
 
-    /// A free register, if need be one whose value is needed late.
+    /// Takes a free register, if need be one whose value is needed late.
     fn take(&mut self) -> Xmm {
         let free = (0..N_HOLDING as u8)
             .find(|&x| self.held[x as usize].is_none() && self.pinned & 1 << x == 0);
@@ -378,7 +383,7 @@ impl Translation<'_> {
         x
     }
 
-    /// A register holds the new value of a slot.
+    /// Notes that a register holds the new value of a slot.
     fn hold(&mut self, x: Xmm, slot: u32, next: u32) {
         let before = self.places[slot as usize];
         if before != NOWHERE {

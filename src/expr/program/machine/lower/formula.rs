@@ -1,13 +1,13 @@
 //! Prepared functions written out as steps: their rows, recorded, in place of a call.
 //!
-//! Value and slope are recorded by running the row over recording numbers and over duals of them. The ends of a step are
-//! jumped to, as its row does over plain numbers.
+//! Value and slope are recorded by running the row over recording numbers and over duals of them.
+//! The ends of a step are jumped to, as its row does over plain numbers.
 
-use super::super::builder::{Builder, Folding};
-use super::super::input::Input;
-use super::super::node::{Node, Value};
-use super::super::operation::{BinaryOp, UnaryOp};
-use super::super::record::Sym;
+use super::super::super::builder::{Builder, Folding};
+use super::super::super::input::Input;
+use super::super::super::node::{Node, Value};
+use super::super::super::operation::{BinaryOp, UnaryOp};
+use super::super::super::record::Sym;
 use crate::expr::functions::prepared::{self, Prepared};
 use crate::expr::functions::step::{cubic, quintic};
 use crate::scalar::Dual;
@@ -44,7 +44,8 @@ pub(super) struct Formula {
 }
 
 impl Formula {
-    /// Returns the formula of a prepared function, and of its slope if that is wanted; `None` where it is called.
+    /// Returns the formula of a prepared function, and of its slope if that is wanted; `None` where
+    /// it is called.
     pub(super) fn of(function: Prepared, parameters: &[f64], slope: bool) -> Option<Formula> {
         if parameters.len() > MOST_PARAMETERS {
             return None;
