@@ -732,7 +732,10 @@ fn allocations(cases: &[Case], points: &[[f64; SLOTS]]) {
         let wanted: Vec<Input> = case.slots.iter().map(|&k| layout()[k]).collect();
         let program = compiled(&case.text).with_gradient(&wanted);
         let (mut work, mut out) = (Work::default(), vec![0.0; wanted.len() + 1]);
-        program.run(&points[0], &mut work, &mut out);
+        // until it has been translated
+        for x in points.iter().cycle().take(10_000) {
+            program.run(x, &mut work, &mut out);
+        }
         let before = ALLOCATIONS.load(Ordering::Relaxed);
         for x in points {
             program.run(x, &mut work, &mut out);

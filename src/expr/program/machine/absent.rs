@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub(super) enum Native {}
 
 impl Native {
-    pub(super) fn of(_: &Arc<Steps>, _: &Arc<Core>) -> Option<Self> {
+    pub(super) fn of(_: &Steps, _: &Arc<Core>) -> Option<Self> {
         None
     }
     pub(super) fn run(&self, _: &mut [f64], _: &[f64]) -> f64 {

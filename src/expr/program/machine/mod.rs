@@ -32,7 +32,7 @@ mod steps;
 
 use super::code::Core;
 use native::Native;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 use steps::{Extra, Steps};
 
@@ -54,11 +54,11 @@ pub enum Engine {
 /// Straight code as steps and as code of the processor, each made when it is first needed.
 pub(super) struct Machine {
     core: Arc<Core>,
-    /// the engine that runs from the first run on; by the number of runs if `None`
-    chosen: Option<Engine>,
     n_runs: AtomicU32,
-    steps: OnceLock<Arc<Steps>>,
-    native: OnceLock<Option<Native>>,
+    steps: OnceLock<Steps>,
+    native: OnceLock<Native>,
+    /// whether there is to be no other attempt at a translation
+    is_decided: AtomicBool,
 }
 
 impl std::fmt::Debug for Machine {
@@ -74,10 +74,10 @@ impl Machine {
     pub(super) fn new(core: Arc<Core>) -> Self {
         Self {
             core,
-            chosen: None,
             n_runs: AtomicU32::new(0),
             steps: OnceLock::new(),
             native: OnceLock::new(),
+            is_decided: AtomicBool::new(false),
         }
     }
 
@@ -85,25 +85,22 @@ impl Machine {
         &self.core
     }
 
-    /// Returns the same machine with one engine from the first run on; `None` where that is not to
-    /// be had.
+    /// Returns the same machine with one engine from the first run on; `None` where that is not to be
+    /// had.
     pub(super) fn with_engine(&self, engine: Engine) -> Option<Self> {
-        let machine = Self {
-            chosen: Some(engine),
-            steps: self.steps.clone(),
-            ..Self::new(self.core.clone())
-        };
+        let machine = Self::new(self.core.clone());
         match engine {
-            Engine::Interpreter => Some(machine),
-            Engine::Native => machine.translated().is_some().then_some(machine),
+            Engine::Interpreter => machine.is_decided.store(true, Ordering::Relaxed),
+            Engine::Native => machine.translate(),
         }
+        (machine.engine() == engine).then_some(machine)
     }
 
     /// Returns the engine that runs at present.
     pub(super) fn engine(&self) -> Engine {
         match self.native.get() {
-            Some(Some(_)) => Engine::Native,
-            _ => Engine::Interpreter,
+            Some(_) => Engine::Native,
+            None => Engine::Interpreter,
         }
     }
 
@@ -119,51 +116,58 @@ impl Machine {
         })
     }
 
-    fn steps(&self) -> &Arc<Steps> {
+    fn steps(&self) -> &Steps {
         self.steps.get_or_init(|| {
             let steps = lower::lower(&self.core);
             debug_assert!(steps.are_sound(&self.core), "{steps:?}");
-            Arc::new(steps)
+            steps
         })
     }
 
-    fn translated(&self) -> Option<&Native> {
-        self.native
-            .get_or_init(|| Native::of(self.steps(), &self.core))
-            .as_ref()
-    }
-
-    /// Runs over a frame whose constants are in place; returns the first output, NaN if there is
-    /// none.
-    #[inline(always)]
-    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> f64 {
-        match self.native.get() {
-            Some(Some(native)) => native.run(frame, inputs),
-            _ => self.interpret(frame, inputs),
-        }
-    }
-
-    #[inline(never)]
-    fn interpret(&self, frame: &mut [f64], inputs: &[f64]) -> f64 {
-        if self.is_worth_a_translation()
-            && let Some(native) = self.translated()
+    /// Translates the steps, once.
+    fn translate(&self) {
+        if !self.is_decided.swap(true, Ordering::Relaxed)
+            && let Some(native) = Native::of(self.steps(), &self.core)
         {
-            return native.run(frame, inputs);
+            // nobody else gets so far
+            let _ = self.native.set(native);
         }
-        self.steps().run(&self.core, frame, inputs);
-        self.core
-            .outputs
-            .first()
-            .map_or(f64::NAN, |&output| frame[output as usize])
     }
 
-    /// Counts a run; returns whether the program has been interpreted for as long as a translation
-    /// takes.
-    fn is_worth_a_translation(&self) -> bool {
-        if self.chosen.is_some() || self.native.get().is_some() {
-            return false;
+    /// Runs over a frame whose constants are in place.
+    #[inline(always)]
+    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) {
+        match self.native.get() {
+            Some(native) => {
+                native.run(frame, inputs);
+            }
+            None => self.interpret(frame, inputs),
         }
-        let n_runs = self.n_runs.fetch_add(1, Ordering::Relaxed) as usize;
-        n_runs >= RUNS_PER_TRANSLATION + STEPS_PER_TRANSLATION / self.n_steps().max(1)
+    }
+
+    /// Runs, and returns the first output, of which there is one.
+    #[inline(always)]
+    pub(super) fn value(&self, frame: &mut [f64], inputs: &[f64]) -> f64 {
+        match self.native.get() {
+            Some(native) => native.run(frame, inputs),
+            None => {
+                self.interpret(frame, inputs);
+                frame[self.core.outputs[0] as usize]
+            }
+        }
+    }
+
+    /// Goes through the steps; translates them for the next run when that pays.
+    #[inline(never)]
+    fn interpret(&self, frame: &mut [f64], inputs: &[f64]) {
+        let steps = self.steps();
+        steps.run(&self.core, frame, inputs);
+        if !self.is_decided.load(Ordering::Relaxed) {
+            let n_runs = self.n_runs.fetch_add(1, Ordering::Relaxed) as usize;
+            let n_steps = steps.steps.len().max(1);
+            if n_runs >= RUNS_PER_TRANSLATION + STEPS_PER_TRANSLATION / n_steps {
+                self.translate();
+            }
+        }
     }
 }

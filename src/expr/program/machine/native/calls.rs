@@ -3,8 +3,10 @@
 
 use super::super::super::code::Core;
 use super::super::super::operation::{BinaryOp, UnaryOp, binary_operations, unary_operations};
+use super::super::prepared::PreparedCall;
 use super::super::steps::{Step, Steps};
-use crate::scalar::Scalar;
+use crate::expr::functions::prepared::Prepared;
+use crate::scalar::{Exponent, Scalar};
 use std::sync::Arc;
 
 /// Two results, in the vector registers 0 and 1.
@@ -14,28 +16,134 @@ pub(super) struct Pair {
     second: f64,
 }
 
-/// A step that generated code has performed by the interpreter.
+/// A step that generated code does not do itself.
 pub(super) struct CalledStep {
-    pub(super) step: Step,
-    pub(super) steps: Arc<Steps>,
-    pub(super) core: Arc<Core>,
+    operation: Operation,
+    n_slots: usize,
+}
+
+enum Operation {
+    Instruction { number: u32, core: Arc<Core> },
+    Prepared(PreparedCall),
+}
+
+impl CalledStep {
+    /// Returns what there is to call for a step; `None` where generated code does the step itself.
+    pub(super) fn of(step: &Step, steps: &Steps, core: &Arc<Core>) -> Option<Self> {
+        let operation = match *step {
+            Step::Instruction { number } => {
+                let core = core.clone();
+                Operation::Instruction { number, core }
+            }
+            Step::Prepared { number } => {
+                Operation::Prepared(steps.prepared[number as usize].clone())
+            }
+            Step::Input { .. }
+            | Step::Copy { .. }
+            | Step::Unary { .. }
+            | Step::Binary { .. }
+            | Step::SineCosine { .. }
+            | Step::Select { .. }
+            | Step::Unless { .. }
+            | Step::Branch { .. }
+            | Step::Go { .. } => return None,
+        };
+        Some(Self {
+            operation,
+            n_slots: steps.n_slots(),
+        })
+    }
+
+    /// Returns the address of the function that performs it, given its own address and that of the frame.
+    pub(super) fn function(&self) -> usize {
+        /// A function made for one prepared function, with slopes or without.
+        macro_rules! made_for {
+            ($function:expr) => {
+                match self.has_slopes() {
+                    true => made_for!($function, true),
+                    false => made_for!($function, false),
+                }
+            };
+            ($function:expr, $has_slopes:literal) => {{
+                #[allow(unsafe_code)]
+                unsafe extern "sysv64" fn made(called: *const CalledStep, frame: *mut f64) {
+                    // SAFETY: as for `perform`
+                    let (called, frame) = unsafe { referenced(called, frame) };
+                    if let Operation::Prepared(call) = &called.operation {
+                        call.perform_as($function, $has_slopes, frame);
+                    }
+                }
+                made
+            }};
+        }
+        use Exponent::{Half, Other, Whole};
+        use Prepared::{Bistop, Cheby, Forcos, Forsin, Havsin, Impact, Poly, Step, Step5};
+        let function: unsafe extern "sysv64" fn(*const CalledStep, *mut f64) = match &self.operation
+        {
+            Operation::Instruction { .. } => perform,
+            Operation::Prepared(call) => match call.function {
+                Havsin => made_for!(Havsin),
+                Forcos => made_for!(Forcos),
+                Forsin => made_for!(Forsin),
+                Impact(Whole(1)) => made_for!(Impact(Whole(1))),
+                Impact(Half(1)) => made_for!(Impact(Half(1))),
+                Impact(Whole(2)) => made_for!(Impact(Whole(2))),
+                Impact(Other) => made_for!(Impact(Other)),
+                Bistop(Whole(1)) => made_for!(Bistop(Whole(1))),
+                Bistop(Half(1)) => made_for!(Bistop(Half(1))),
+                Bistop(Whole(2)) => made_for!(Bistop(Whole(2))),
+                Bistop(Other) => made_for!(Bistop(Other)),
+                Impact(Whole(_) | Half(_)) | Bistop(Whole(_) | Half(_)) => perform,
+                Step | Step5 | Poly | Cheby => perform,
+            },
+        };
+        function as usize
+    }
+
+    fn has_slopes(&self) -> bool {
+        match &self.operation {
+            Operation::Instruction { .. } => false,
+            Operation::Prepared(call) => call.has_slopes(),
+        }
+    }
 }
 
 /// Performs a step over the frame.
 ///
 /// # Safety
 ///
-/// `called` is valid, and `frame` has the slots of its steps, which nobody else reads or writes
-/// meanwhile.
+/// `called` is valid, and `frame` has the slots that it says, which nobody else reads or writes meanwhile.
 #[allow(unsafe_code)]
-pub(super) unsafe extern "sysv64" fn perform(called: *const CalledStep, frame: *mut f64) {
+unsafe extern "sysv64" fn perform(called: *const CalledStep, frame: *mut f64) {
     // SAFETY: as the caller says
-    let (called, frame) = unsafe {
+    let (called, frame) = unsafe { referenced(called, frame) };
+    match &called.operation {
+        Operation::Instruction { number, core } => {
+            core.perform(&core.code[*number as usize], frame);
+        }
+        Operation::Prepared(call) => call.perform(frame),
+    }
+}
+
+/// Returns the step and the frame that generated code passes.
+///
+/// # Safety
+///
+/// As for [`perform`].
+#[inline(always)]
+#[allow(unsafe_code)]
+unsafe fn referenced<'a>(
+    called: *const CalledStep,
+    frame: *mut f64,
+) -> (&'a CalledStep, &'a mut [f64]) {
+    // SAFETY: as the caller says
+    unsafe {
         let called = &*called;
-        let n_slots = called.steps.n_slots();
-        (called, std::slice::from_raw_parts_mut(frame, n_slots))
-    };
-    called.steps.perform(called.step, &called.core, frame);
+        (
+            called,
+            std::slice::from_raw_parts_mut(frame, called.n_slots),
+        )
+    }
 }
 
 /// Returns sine and cosine.

@@ -23,6 +23,7 @@ use memmap2::{Mmap, MmapMut};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use translate::Call;
 
 /// Most pieces of code at a time: a system allows some ten thousand mappings for a process; most
 /// are left to others.
@@ -42,7 +43,7 @@ pub(super) struct Native {
     n_inputs: usize,
     /// where the code stands
     _code: Mapping,
-    /// the steps that it gives to the interpreter, by address
+    /// the steps that it calls, by address
     _called: Box<[CalledStep]>,
 }
 
@@ -52,7 +53,7 @@ struct Mapping(Mmap);
 impl Native {
     /// Translates steps; `None` where the system gives no memory that can be executed.
     #[allow(unsafe_code)]
-    pub(super) fn of(steps: &Arc<Steps>, core: &Arc<Core>) -> Option<Self> {
+    pub(super) fn of(steps: &Steps, core: &Arc<Core>) -> Option<Self> {
         let n_inputs = core.used.iter().map(|&k| k as usize + 1).max().unwrap_or(0);
         if core.outputs.is_empty()
             || steps.n_slots().max(n_inputs) >= MOST_NUMBERS
@@ -60,24 +61,17 @@ impl Native {
         {
             return None;
         }
-        let numbered = (0u32..).zip(&steps.steps);
-        let (numbers, called): (Vec<u32>, Vec<CalledStep>) = numbered
-            .filter(|(_, step)| translate::is_performed(step))
-            .map(|(k, &step)| {
-                let (steps, core) = (steps.clone(), core.clone());
-                (k, CalledStep { step, steps, core })
-            })
-            .unzip();
+        let called = (0u32..)
+            .zip(&steps.steps)
+            .filter_map(|(k, step)| Some((k, CalledStep::of(step, steps, core)?)));
+        let (numbers, called): (Vec<u32>, Vec<CalledStep>) = called.unzip();
         let called = called.into_boxed_slice();
-        let addresses: HashMap<u32, usize> = numbers
-            .into_iter()
-            .zip(
-                called
-                    .iter()
-                    .map(|step| std::ptr::from_ref(step).expose_provenance()),
-            )
-            .collect();
-        let code = Mapping::of(&translate::translate(steps, core, &addresses))?;
+        let addresses = called.iter().map(|step| Call {
+            function: step.function(),
+            argument: std::ptr::from_ref(step).expose_provenance(),
+        });
+        let calls: HashMap<u32, Call> = numbers.into_iter().zip(addresses).collect();
+        let code = Mapping::of(&translate::translate(steps, core, &calls))?;
         // SAFETY: the translation is a function of this kind, and `code` keeps it where it is
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(code.0.as_ptr()) };
         Some(Self {

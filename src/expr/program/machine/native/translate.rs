@@ -42,13 +42,15 @@ struct Translation<'a> {
     pinned: u16,
     /// by step: the jumps that lead there
     jumps: HashMap<u32, Vec<Jump>>,
-    /// by step: the address of what is given to the interpreter
-    called: &'a HashMap<u32, usize>,
+    /// by step: what is called for it
+    calls: &'a HashMap<u32, Call>,
 }
 
-/// Returns whether a step is performed by the interpreter.
-pub(super) fn is_performed(step: &Step) -> bool {
-    matches!(step, Step::Instruction { .. } | Step::Prepared { .. })
+/// A function that performs a step, given an address and the frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Call {
+    pub(super) function: usize,
+    pub(super) argument: usize,
 }
 
 /// Returns whether a step calls anything.
@@ -56,8 +58,13 @@ fn is_call(step: &Step) -> bool {
     match step {
         Step::Unary { op, .. } => !matches!(op, UnaryOp::Sqrt | UnaryOp::Abs),
         Step::Binary { op, .. } => instruction(*op).is_none() && *op != BinaryOp::Along,
-        Step::SineCosine { .. } => true,
-        step => is_performed(step),
+        Step::SineCosine { .. } | Step::Instruction { .. } | Step::Prepared { .. } => true,
+        Step::Input { .. }
+        | Step::Copy { .. }
+        | Step::Select { .. }
+        | Step::Unless { .. }
+        | Step::Branch { .. }
+        | Step::Go { .. } => false,
     }
 }
 
@@ -77,9 +84,8 @@ fn instruction(op: BinaryOp) -> Option<Instruction> {
     }
 }
 
-/// Returns the code of these steps; `called` are the addresses of the steps that are performed by
-/// the interpreter.
-pub(super) fn translate(steps: &Steps, core: &Core, called: &HashMap<u32, usize>) -> Vec<u8> {
+/// Returns the code of these steps; `calls` are the steps that are called, by number.
+pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) -> Vec<u8> {
     let is_target = targets(steps);
     let needs = needs(steps, core, &is_target);
     let mut translation = Translation {
@@ -88,7 +94,7 @@ pub(super) fn translate(steps: &Steps, core: &Core, called: &HashMap<u32, usize>
         places: vec![NOWHERE; steps.n_slots()],
         pinned: 0,
         jumps: HashMap::new(),
-        called,
+        calls,
     };
     for (k, (step, next)) in (0u32..).zip(steps.steps.iter().zip(&needs)) {
         if is_target[k as usize] {
@@ -163,8 +169,8 @@ impl Translation<'_> {
             Step::Instruction { .. } | Step::Prepared { .. } => {
                 self.store_all();
                 self.forget();
-                let function = calls::perform as *const () as usize;
-                self.assembler.call_with_frame(function, self.called[&k]);
+                let Call { function, argument } = self.calls[&k];
+                self.assembler.call_with_frame(function, argument);
             }
             Step::Unless {
                 comparison,
