@@ -53,6 +53,8 @@ pub(super) struct Instruction {
 #[derive(Debug)]
 pub(super) struct Core {
     pub(super) constants: Vec<f64>,
+    /// how many inputs the host supplies
+    pub(super) n_inputs: usize,
     /// positions among the inputs of those that are read, one register each
     pub(super) used: Vec<u32>,
     pub(super) code: Vec<Instruction>,

@@ -116,23 +116,54 @@ impl Program {
             "the program has {} outputs",
             outputs.len()
         );
-        self.enter_machine(inputs, work);
-        self.machine.run(&mut work.registers, inputs);
+        if self.run_at_once(inputs, work).is_none() {
+            self.enter_and_run(inputs, work);
+        }
         for (out, &r) in out.iter_mut().zip(outputs) {
             *out = work.registers[r as usize];
         }
     }
 
-    /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a
-    /// single number.
+    /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a single
+    /// number.
     ///
     /// # Panics
     ///
     /// When there are fewer inputs than the program has, or no output.
     #[inline]
     pub fn value(&self, inputs: &[f64], work: &mut Work) -> f64 {
-        self.enter_machine(inputs, work);
-        self.machine.value(&mut work.registers, inputs)
+        match self.run_at_once(inputs, work) {
+            Some(value) => value,
+            None => self.enter_and_value(inputs, work),
+        }
+    }
+
+    /// Runs as code of the processor, and returns the first output; `None` where anything has to be
+    /// done or said before that.
+    #[inline(always)]
+    fn run_at_once(&self, inputs: &[f64], work: &mut Work) -> Option<f64> {
+        if work.owner != self.id + FOR_THE_MACHINE {
+            return None;
+        }
+        self.machine.run_native(&mut work.registers, inputs)
+    }
+
+    /// Checks the inputs, lays out the frame of the machine unless it is that of this program, and runs.
+    #[inline(never)]
+    fn enter_and_run(&self, inputs: &[f64], work: &mut Work) {
+        self.check_inputs(inputs.len());
+        if work.owner != self.id + FOR_THE_MACHINE {
+            self.prepare_machine(work);
+        }
+        if self.run_at_once(inputs, work).is_none() {
+            self.machine.interpret(&mut work.registers, inputs);
+        }
+    }
+
+    #[inline(never)]
+    fn enter_and_value(&self, inputs: &[f64], work: &mut Work) -> f64 {
+        self.enter_and_run(inputs, work);
+        work.registers[self.core().outputs[0] as usize]
     }
 
     /// Runs over any number.
@@ -163,26 +194,12 @@ impl Program {
         }
     }
 
-    #[inline(always)]
     fn check_inputs(&self, n: usize) {
-        if n < self.inputs.len() {
-            self.lacks_inputs(n);
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn lacks_inputs(&self, n: usize) -> ! {
-        panic!("the program reads {} inputs, not {n}", self.inputs.len());
-    }
-
-    /// Checks the inputs, and lays out the frame of the machine unless it is that of this program.
-    #[inline(always)]
-    fn enter_machine(&self, inputs: &[f64], work: &mut Work) {
-        self.check_inputs(inputs.len());
-        if work.owner != self.id + FOR_THE_MACHINE {
-            self.prepare_machine(work);
-        }
+        assert!(
+            n >= self.inputs.len(),
+            "the program reads {} inputs, not {n}",
+            self.inputs.len()
+        );
     }
 
     /// Lays out the registers for this program.

@@ -83,14 +83,13 @@ fn program(builder: &Builder, outputs: &[Value], layout: Option<&[Input]>) -> Pr
         .iter()
         .map(|v| schedule.registers[v.index()])
         .collect();
-    Program::new(
-        inputs,
-        Core {
-            constants,
-            used,
-            ..core
-        },
-    )
+    let core = Core {
+        constants,
+        n_inputs: inputs.len(),
+        used,
+        ..core
+    };
+    Program::new(inputs, core)
 }
 
 impl Schedule<'_> {
@@ -101,6 +100,7 @@ impl Schedule<'_> {
         let mut allocation = Allocation::new(&self.order, builder, outputs, first_temporary);
         let mut core = Core {
             constants: Vec::new(),
+            n_inputs: 0,
             used: Vec::new(),
             code: Vec::with_capacity(self.order.items.len()),
             lists: Vec::new(),

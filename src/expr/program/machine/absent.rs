@@ -12,7 +12,7 @@ impl Native {
     pub(super) fn of(_: &Steps, _: &Arc<Core>) -> Option<Self> {
         None
     }
-    pub(super) fn run(&self, _: &mut [f64], _: &[f64]) -> f64 {
+    pub(super) fn run(&self, _: &mut [f64], _: &[f64]) -> Option<f64> {
         match *self {}
     }
 }

@@ -134,32 +134,15 @@ impl Machine {
         }
     }
 
-    /// Runs over a frame whose constants are in place.
+    /// Runs as code of the processor, over a frame whose constants are in place; returns the first
+    /// output, or `None` where there is no such code, or frame or inputs are too short.
     #[inline(always)]
-    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) {
-        match self.native.get() {
-            Some(native) => {
-                native.run(frame, inputs);
-            }
-            None => self.interpret(frame, inputs),
-        }
-    }
-
-    /// Runs, and returns the first output, of which there is one.
-    #[inline(always)]
-    pub(super) fn value(&self, frame: &mut [f64], inputs: &[f64]) -> f64 {
-        match self.native.get() {
-            Some(native) => native.run(frame, inputs),
-            None => {
-                self.interpret(frame, inputs);
-                frame[self.core.outputs[0] as usize]
-            }
-        }
+    pub(super) fn run_native(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
+        self.native.get()?.run(frame, inputs)
     }
 
     /// Goes through the steps; translates them for the next run when that pays.
-    #[inline(never)]
-    fn interpret(&self, frame: &mut [f64], inputs: &[f64]) {
+    pub(super) fn interpret(&self, frame: &mut [f64], inputs: &[f64]) {
         let steps = self.steps();
         steps.run(&self.core, frame, inputs);
         if !self.is_decided.load(Ordering::Relaxed) {

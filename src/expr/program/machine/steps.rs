@@ -181,6 +181,7 @@ impl Steps {
             sound
         };
         self.n_registers == core.size
+            && core.used.iter().all(|&k| (k as usize) < core.n_inputs)
             && core.outputs.iter().all(is_slot)
             && self.steps.iter().enumerate().all(is_sound)
     }

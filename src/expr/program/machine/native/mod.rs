@@ -54,9 +54,8 @@ impl Native {
     /// Translates steps; `None` where the system gives no memory that can be executed.
     #[allow(unsafe_code)]
     pub(super) fn of(steps: &Steps, core: &Arc<Core>) -> Option<Self> {
-        let n_inputs = core.used.iter().map(|&k| k as usize + 1).max().unwrap_or(0);
         if core.outputs.is_empty()
-            || steps.n_slots().max(n_inputs) >= MOST_NUMBERS
+            || steps.n_slots().max(core.n_inputs) >= MOST_NUMBERS
             || !steps.are_sound(core)
         {
             return None;
@@ -77,19 +76,22 @@ impl Native {
         Some(Self {
             entry,
             n_slots: steps.n_slots(),
-            n_inputs,
+            n_inputs: core.n_inputs,
             _code: code,
             _called: called,
         })
     }
 
-    /// Runs over a frame whose constants are in place; returns the first output.
+    /// Runs over a frame whose constants are in place, and returns the first output; `None` where frame
+    /// or inputs are too short.
     #[inline(always)]
     #[allow(unsafe_code)]
-    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> f64 {
-        assert!(frame.len() >= self.n_slots && inputs.len() >= self.n_inputs);
+    pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
+        if frame.len() < self.n_slots || inputs.len() < self.n_inputs {
+            return None;
+        }
         // SAFETY: the code stays inside frame and inputs; see the head of this file
-        unsafe { (self.entry)(frame.as_mut_ptr(), inputs.as_ptr()) }
+        Some(unsafe { (self.entry)(frame.as_mut_ptr(), inputs.as_ptr()) })
     }
 }
 
