@@ -43,8 +43,9 @@
 //! # Features
 //!
 //! Without any, the crate is an evaluator of expressions and has no linear algebra in its
-//! dependency tree. `solver` adds models and their simulation, `geometry` the contacts of convex
-//! solids that need parry, `cli` the command line.
+//! dependency tree. `native` makes code of the processor at hand for programs that run often;
+//! without it there is no unsafe Rust here. `solver` adds models and their simulation, `geometry` the
+//! contacts of convex solids that need parry, `cli` the command line.
 //!
 //! # Floors
 //!
