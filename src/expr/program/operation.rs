@@ -174,36 +174,6 @@ macro_rules! define_unary {
 }
 unary_operations!(define_unary);
 
-/// Hands the table of operations on two numbers to the macro `$make`: name and doc, body, cost in
-/// additions.
-macro_rules! binary_operations {
-    ($make:ident) => {
-        $make! {
-            /// a + b
-            Add |a, b| a + b, 1;
-            /// a − b
-            Sub |a, b| a - b, 1;
-            /// a·b
-            Mul |a, b| a * b, 1;
-            /// a/b
-            Div |a, b| a / b, 4;
-            /// `a**b` as `Scalar::powf`
-            Pow |a, b| a.powf(b), 30;
-            /// angle in radians of the point (b, a)
-            Atan2 |a, b| a.atan2(b), 30;
-            /// exact remainder with the sign of a
-            Rem |a, b| a.rem(b), 30;
-            /// both conditions
-            And |a, b| from_mask(truth(a).and(truth(b))), 1;
-            /// either condition
-            Or |a, b| from_mask(truth(a).or(truth(b))), 1;
-            /// −a, 0 or a by the sign of b; NaN where b is
-            Along |a, b| arithmetic_if(b, -a, S::zero(), a), 1;
-        }
-    };
-}
-pub(super) use binary_operations;
-
 /// Makes the enum of operations on two numbers, their evaluation and cost.
 macro_rules! define_binary {
     ($($(#[$doc:meta])* $op:ident |$a:ident, $b:ident| $body:expr, $cost:literal;)+) => {
@@ -231,7 +201,29 @@ macro_rules! define_binary {
         }
     };
 }
-binary_operations!(define_binary);
+// name and doc, body, cost in additions
+define_binary! {
+    /// a + b
+    Add |a, b| a + b, 1;
+    /// a − b
+    Sub |a, b| a - b, 1;
+    /// a·b
+    Mul |a, b| a * b, 1;
+    /// a/b
+    Div |a, b| a / b, 4;
+    /// `a**b` as `Scalar::powf`
+    Pow |a, b| a.powf(b), 30;
+    /// angle in radians of the point (b, a)
+    Atan2 |a, b| a.atan2(b), 30;
+    /// exact remainder with the sign of a
+    Rem |a, b| a.rem(b), 30;
+    /// both conditions
+    And |a, b| from_mask(truth(a).and(truth(b))), 1;
+    /// either condition
+    Or |a, b| from_mask(truth(a).or(truth(b))), 1;
+    /// −a, 0 or a by the sign of b; NaN where b is
+    Along |a, b| arithmetic_if(b, -a, S::zero(), a), 1;
+}
 
 /// A comparison of two numbers; it yields a condition, 1 or 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,7 +2,7 @@
 //! steps.
 
 use super::super::super::code::Core;
-use super::super::super::operation::{BinaryOp, UnaryOp, binary_operations, unary_operations};
+use super::super::super::operation::{BinaryOp, UnaryOp, unary_operations};
 use super::super::prepared::PreparedCall;
 use super::super::steps::{Step, Steps};
 use crate::expr::functions::prepared::Prepared;
@@ -191,21 +191,27 @@ macro_rules! unary_functions {
 }
 unary_operations!(unary_functions);
 
-/// Makes the functions that operations on two numbers are called by.
-macro_rules! binary_functions {
-    ($($(#[$doc:meta])* $op:ident |$a:ident, $b:ident| $body:expr, $cost:literal;)+) => {
-        /// Returns the address of the function of two numbers that is this operation.
-        pub(super) fn of_two_numbers(op: BinaryOp) -> usize {
-            let function: extern "sysv64" fn(f64, f64) -> f64 = match op {
-                $(BinaryOp::$op => {
-                    extern "sysv64" fn called(a: f64, b: f64) -> f64 {
-                        BinaryOp::$op.apply(a, b)
-                    }
-                    called
-                })+
-            };
-            function as usize
-        }
+/// Returns the address of the function of two numbers that is this operation.
+pub(super) fn of_two_numbers(op: BinaryOp) -> usize {
+    macro_rules! called {
+        ($op:ident) => {{
+            extern "sysv64" fn called(a: f64, b: f64) -> f64 {
+                BinaryOp::$op.apply(a, b)
+            }
+            called
+        }};
+    }
+    let function: extern "sysv64" fn(f64, f64) -> f64 = match op {
+        BinaryOp::Add => called!(Add),
+        BinaryOp::Sub => called!(Sub),
+        BinaryOp::Mul => called!(Mul),
+        BinaryOp::Div => called!(Div),
+        BinaryOp::Pow => called!(Pow),
+        BinaryOp::Atan2 => called!(Atan2),
+        BinaryOp::Rem => called!(Rem),
+        BinaryOp::And => called!(And),
+        BinaryOp::Or => called!(Or),
+        BinaryOp::Along => called!(Along),
     };
+    function as usize
 }
-binary_operations!(binary_functions);
