@@ -49,15 +49,15 @@
 //!
 //! # Floors
 //!
-//! A module uses lower floors only. Physics stands above the model because it gives laws to the
-//! elements that the model lists; results stand beside the scene because they know nothing of it:
+//! A module uses lower floors only. The model stands above physics because its joints are rows of
+//! the table of joints; results stand beside the scene because they know nothing of it:
 //!
 //! ```text
 //! 6  cli                        the command line
 //! 5  analysis   report          simulations of a scene; plots of results
-//! 4  scene      results         equations of a model; records and files of results
-//! 3  dataset    physics         files of models; laws of elements and of measures
-//! 2  model                      the elements as the user wrote them
+//! 4  dataset  scene  results    files of models; equations of a model; records and files of results
+//! 3  model                      the elements as the user wrote them
+//! 2  physics                    laws of single elements, and of measures
 //! 1  expr  space  numeric       the language; frames; methods and linear algebra
 //! 0  scalar  diagnostic         numbers; messages and places
 //! ```
@@ -78,13 +78,13 @@ pub mod expr;
 pub mod numeric;
 pub mod space;
 // floor 2
-#[cfg(feature = "solver")]
-pub mod model;
+pub mod physics;
 // floor 3
 #[cfg(feature = "solver")]
-pub mod dataset;
-pub mod physics;
+pub mod model;
 // floor 4
+#[cfg(feature = "solver")]
+pub mod dataset;
 #[cfg(feature = "solver")]
 pub mod results;
 #[cfg(feature = "solver")]

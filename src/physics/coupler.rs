@@ -22,14 +22,11 @@
 //!
 //! *Constant*: the manuals write zero, but a marker may be set anywhere along an axis only if the
 //! constant is not zero. c is therefore taken from the assembled configuration, and a SCREW,
-//! RACKPIN or COUPLER whose c is not zero is reported. [`Options::strict`] takes zero.
+//! RACKPIN or COUPLER whose c is not zero is reported. The option `strict` of a scene takes zero.
 //!
 //! *Reactions*: a coupler turns or pushes I of each joint along its axis and J oppositely. The
 //! force of a gear pair (pressure angle zero) acts at CV along z_c on the first body and oppositely
-//! on the second; it loads the bearings as the teeth would. force acts at CV along z_c on the first
-//! body and oppositely on the second; it loads the bearings as the teeth would.
-//!
-//! [`Options::strict`]: crate::scene::build::Options::strict
+//! on the second; it loads the bearings as the teeth would.
 
 use crate::scalar::Scalar;
 use crate::space::{Frame, Vec3};

@@ -9,7 +9,6 @@ pub mod contact;
 pub mod coupler;
 pub mod field;
 pub mod friction;
-#[cfg(feature = "solver")]
 pub mod joint;
 pub mod kinematic;
 pub mod nodal_force;
