@@ -55,7 +55,7 @@
 //! ```text
 //! 6  cli                        the command line
 //! 5  analysis   report          simulations of a scene; plots of results
-//! 4  dataset  scene  results    files of models; equations of a model; records and files of results
+//! 4  dataset  scene  results    files of models; equations; records and files of results
 //! 3  model                      the elements as the user wrote them
 //! 2  physics                    laws of single elements, and of measures
 //! 1  expr  space  numeric       the language; frames; methods and linear algebra
