@@ -213,15 +213,17 @@ fn engines_agree_about_values(text: &str) -> Result<(), String> {
     let Ok(expr) = expr else {
         return Ok(()); // a mistake whatever the inputs are
     };
-    let program = match expr.compile(&bindings()) {
-        Ok(program) => program,
-        Err(e) => return Err(format!("{text}: {e}")),
-    };
     let times = [0.0, 0.25, 0.5, 1.0];
     let hosts = times.map(|time| Anything {
         time,
         bindings: bindings(),
     });
+    let program = match expr.compile(&bindings()) {
+        Ok(program) => program,
+        // a mistake of constants that curves yield
+        Err(_) if hosts.iter().all(|host| expr.eval_with(host).is_err()) => return Ok(()),
+        Err(e) => return Err(format!("{text}: {e}")),
+    };
     let of = |host: &Anything, input| host.input(input).unwrap_or(f64::NAN);
     let lanes: Vec<Lanes<4>> = (program.inputs().iter())
         .map(|&i| Lanes(std::array::from_fn(|k| of(&hosts[k], i))))

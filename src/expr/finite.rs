@@ -8,6 +8,11 @@
 //! of such an operand from the result. That is 0 wherever x is a number, so no bit changes, and the
 //! result has no value where x has none. Expressions without such an operand cost nothing.
 //!
+//! Recorded equations take zeros as structure and fold `x - x` away: in `run` an operand can still be
+//! lost. There an operation of its own is needed, `kept(value, x)`: the value where `x` is finite, else
+//! NaN; the derivatives are those of the value alone; it folds to the value where `x` is constant,
+//! and it has no break.
+//!
 //! Inputs are finite: the host sees to that. A sum or a product that is too large for a number
 //! counts as finite unless an operand is at risk.
 
@@ -73,6 +78,11 @@ fn of_call(ast: &Ast, callee: Callee, args: &[NodeIx], worst: Risk) -> Risk {
         Callee::Measure(_) => Risk::None,
         Callee::Interpolation(Interpolation::Curve) => Risk::NotANumber,
         Callee::Interpolation(_) => worst.min(Risk::NotANumber),
+        Callee::Function(Function::Sqrt | Function::ExpressionSqrt)
+            if args.iter().all(|&a| is_not_negative(ast, a)) =>
+        {
+            worst
+        }
         Callee::Function(f) => match handling(f) {
             Handling::Unbounded => Risk::Infinite,
             Handling::Passes => worst,
@@ -154,6 +164,26 @@ pub(super) fn watched(ast: &Ast, node: &Node, risks: &[Risk], mut watch: impl Fn
             ref args,
         } => args.iter().for_each(|&arg| from(Risk::NotANumber, arg)),
         _ => {}
+    }
+}
+
+/// Returns whether a node is certainly no negative number, as a sum of squares is none.
+fn is_not_negative(ast: &Ast, ix: NodeIx) -> bool {
+    use Function as F;
+    match *ast.node(ix) {
+        Node::Number { literal, .. } => literal >= 0.0,
+        Node::Plus(x) => is_not_negative(ast, x),
+        Node::Binary(BinaryOp::Add, a, b) => is_not_negative(ast, a) && is_not_negative(ast, b),
+        Node::Binary(BinaryOp::Mul, a, b) => {
+            let factors = is_not_negative(ast, a) && is_not_negative(ast, b);
+            factors || (ast.input(a).is_some() && ast.input(a) == ast.input(b))
+        }
+        Node::Binary(BinaryOp::Pow, _, b) => literal(ast, b).is_some_and(|e| e % 2.0 == 0.0),
+        Node::Call { callee, .. } => matches!(
+            callee,
+            Callee::Function(F::Abs | F::Exp | F::Sqrt | F::ExpressionAbs | F::ExpressionExp)
+        ),
+        _ => false,
     }
 }
 

@@ -31,7 +31,7 @@ fn argument(ast: &Ast, ix: NodeIx, function: Function, args: &[NodeIx]) -> Optio
     let span = place(ast, ix);
     match function {
         F::Sin | F::Cos | F::Tan => {
-            if let Some(n) = times_time(ast, x).filter(|n| n % 45.0 == 0.0 && degree_sized(*n)) {
+            if let Some((_, n)) = times_time(ast, x) {
                 let message = format!("{name} takes radians: {}", speeds(n));
                 let help = format!("the suffix D makes degrees of a literal: {n}D*TIME");
                 return Some(Doubt::new(span, CODE, message, help));
@@ -64,16 +64,17 @@ fn argument(ast: &Ast, ix: NodeIx, function: Function, args: &[NodeIx]) -> Optio
     }
 }
 
-/// Returns the factor n of n*TIME.
-fn times_time(ast: &Ast, ix: NodeIx) -> Option<f64> {
+/// Returns the factor n of n*TIME, with its node, where it looks like degrees.
+fn times_time(ast: &Ast, ix: NodeIx) -> Option<(NodeIx, f64)> {
     let Node::Binary(BinaryOp::Mul, a, b) = *ast.node(ix) else {
         return None;
     };
-    match (ast.node(a), ast.node(b)) {
-        (_, Node::Constant(Constant::Time)) => number(ast, a),
-        (Node::Constant(Constant::Time), _) => number(ast, b),
-        _ => None,
-    }
+    let factor = match (ast.node(a), ast.node(b)) {
+        (_, Node::Constant(Constant::Time)) => a,
+        (Node::Constant(Constant::Time), _) => b,
+        _ => return None,
+    };
+    Some((factor, number(ast, factor)?)).filter(|(_, n)| n % 45.0 == 0.0 && degree_sized(*n))
 }
 
 /// Returns `45*TIME is 7.16 turns in a unit of time, 45D*TIME is 0.125`.
@@ -169,11 +170,11 @@ pub(super) fn of_several_axes(ast: &Ast) -> Vec<Doubt> {
 pub fn degrees_in_angle(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     let mut doubts = Vec::new();
     for (sign, term) in terms(ast) {
-        let speed = times_time(ast, term).filter(|n| n % 45.0 == 0.0 && degree_sized(*n));
+        let speed = times_time(ast, term);
         let angle = number(ast, term).filter(|&n| looks_like_degrees(n));
-        let (span, message, n) = if let Some(n) = speed {
+        let (span, message, n) = if let Some((factor, n)) = speed {
             (
-                place(ast, term),
+                place(ast, factor),
                 format!("the angle is in radians: {}", speeds(n)),
                 format!("{n}D*TIME"),
             )
@@ -227,6 +228,7 @@ fn terms(ast: &Ast) -> Vec<(f64, NodeIx)> {
             Node::Binary(BinaryOp::Add, a, b) => rest.extend([(sign, b), (sign, a)]),
             Node::Binary(BinaryOp::Sub, a, b) => rest.extend([(-sign, b), (sign, a)]),
             Node::Plus(x) => rest.push((sign, x)),
+            Node::Negate(x) => rest.push((-sign, x)),
             _ => found.push((sign, ix)),
         }
     }

@@ -208,6 +208,31 @@ mod tests {
     }
 
     #[test]
+    fn angles_of_a_drive_are_doubted_at_their_literals() {
+        let at = |text: &str| -> Vec<usize> {
+            let ast = parse(text, Dialect::Function, Profile::Adams).unwrap();
+            let found = degrees_in_angle(&ast, text);
+            found.iter().map(|d| d.column).collect()
+        };
+        for (text, columns) in [
+            ("360*TIME", vec![1]),
+            ("-TIME*360", vec![7]),
+            ("0.1 + STEP(TIME, 0, 0, 1, 90)", vec![27]),
+            ("90 - 45*TIME", vec![1, 6]),
+            ("-90", vec![2]),
+            ("30*TIME", vec![]),
+            ("360D*TIME", vec![]),
+            ("2*PI*TIME", vec![]),
+            ("STEP(TIME, 0, 0, 90, 1)", vec![]),
+        ] {
+            assert_eq!(at(text), columns, "{text}");
+        }
+        let speed = "360";
+        let ast = parse(speed, Dialect::Function, Profile::Adams).unwrap();
+        assert_eq!(degrees_in_speed(&ast, speed).len(), 1);
+    }
+
+    #[test]
     fn numbers_are_told_in_three_digits() {
         for (x, text) in [
             (0.0, "0"),

@@ -3,7 +3,6 @@
 //! number and what it means.
 
 use super::*;
-use crate::expr::Expr;
 use crate::expr::lint::{degrees_in_angle, degrees_in_speed, reads_as_degrees};
 
 const CODE: &str = "degrees_or_radians";
@@ -84,12 +83,12 @@ fn drive(out: &mut Out, who: Who, motion: &Motion) {
     let Formula::Expression { text, .. } = &motion.function else {
         return;
     };
-    let Ok(expr) = Expr::parse(text) else {
+    let Ok(ast) = text.ast() else {
         return; // another rule says so
     };
     let doubts = match motion.level {
-        Level::Displacement => degrees_in_angle(expr.ast(), text),
-        Level::Velocity => degrees_in_speed(expr.ast(), text),
+        Level::Displacement => degrees_in_angle(ast, text),
+        Level::Velocity => degrees_in_speed(ast, text),
         Level::Acceleration => Vec::new(),
     };
     for d in doubts {
