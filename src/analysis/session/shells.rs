@@ -7,10 +7,11 @@ use crate::scene::contacts::Shell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What to do about a shell that cannot be used.
+/// Advice about a shell that cannot be used.
 const ADVICE: &str = "export it as STL, OBJ or SHL in the units of the model, beside the dataset";
 
-/// The shells of all GRAPHICS that contacts name, by the numbers of these; or why there is none.
+/// Reads the shells of all GRAPHICS that contacts name, by the numbers of these; or the reason why
+/// there is none.
 pub fn load(model: &Model, folders: &[PathBuf]) -> BTreeMap<u32, Result<Shell, String>> {
     let sides = |c: &crate::model::Contact| [c.i_geometry.clone(), c.j_geometry.clone()].concat();
     let mut out = BTreeMap::new();
@@ -70,8 +71,8 @@ fn hull(_: &[[f64; 3]]) -> Result<(Vec<[f64; 3]>, f64), String> {
     Err("this program was built without the feature geometry".into())
 }
 
-/// The file of this name, as given or beside the dataset; of a path of another machine its last
-/// part.
+/// Finds the file of this name, as given or beside the dataset; of a path of another machine its
+/// last part.
 fn find(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let here = [PathBuf::new()];

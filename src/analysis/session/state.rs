@@ -16,11 +16,12 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
-/// The mark of these files, and which form they have.
+/// The mark of these files, with the number of their form.
 const MARK: &str = "cognate_state";
 const VERSION: u64 = 1;
 
-/// The name of the file for a name that SAVE or RELOAD gives: its own ending, or `.state.json`.
+/// Returns the name of the file for a name that SAVE or RELOAD gives: its own ending, or
+/// `.state.json`.
 pub fn file_name(name: &str) -> String {
     let name = name.trim().trim_matches('"');
     let file = std::path::Path::new(name).file_name();
@@ -32,7 +33,7 @@ pub fn file_name(name: &str) -> String {
     }
 }
 
-/// A state that was read: the model, and where it stands.
+/// A state that was read: the model, and the state of its session.
 #[derive(Debug)]
 pub struct Saved {
     model: Model,
@@ -43,7 +44,7 @@ impl Saved {
     /// Reads the bytes of a file.
     ///
     /// # Errors
-    /// What is wrong with it; the binary files that Adams saves are no such states.
+    /// Bytes that are no state: also the binary files that Adams saves.
     pub fn read(bytes: &[u8]) -> Result<Self, Diagnostic> {
         let text = std::str::from_utf8(bytes).ok();
         let value: Option<Value> = text.and_then(|t| serde_json::from_str(t).ok());
@@ -85,14 +86,14 @@ impl Saved {
         Ok(Self { model, carried })
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Model {
         &self.model
     }
 }
 
 impl Session {
-    /// Where the session stands, as a text.
+    /// Writes the state of the session as a text.
     pub fn save(&self) -> String {
         let inactive: Vec<Value> = (self.model.inactive.iter())
             .map(|id| json!([id.kind.keyword(), id.number]))
@@ -107,7 +108,7 @@ impl Session {
         format!("{value:#}\n")
     }
 
-    /// Goes on from where a session stood.
+    /// Goes on from a state.
     ///
     /// # Errors
     /// When the model of the state asks for other results than those that this run already has.

@@ -1,4 +1,4 @@
-//! What holds near a position and not only there: dependent rows are looked at again where the
+//! Dependence of rows near a position: it is looked at again where the
 //! mechanism stands a little differently.
 //!
 //! A step along random free directions, with all motions at slightly different values, is closed
@@ -22,14 +22,14 @@ pub struct Place {
     pub q: Vec<f64>,
 }
 
-/// What was found there.
+/// The rank of the rows at another position.
 #[derive(Clone, Debug)]
 pub struct Around {
     /// rows that are independent near here
     pub independent: Vec<usize>,
     /// rows that depend on others here and there
     pub redundant: Vec<Redundant>,
-    /// where
+    /// that position
     pub q: Place,
 }
 
@@ -47,8 +47,8 @@ const STEPS: [(f64, bool); 9] = [
     (0.002, false),
 ];
 
-/// Rank near a position, by the place among those tried where it is largest; `None`: no other
-/// position was found.
+/// Finds the rank near a position, by the place among those tried where it is largest; `None`: no
+/// other position was found.
 ///
 /// `here`: rows that are independent at `q`; they are preferred.
 pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Option<Around> {
@@ -128,7 +128,7 @@ pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize])
     best.filter(|b| b.independent.len() >= here.len())
 }
 
-/// Largest difference of a coordinate, lengths relative to the mechanism.
+/// Returns the largest difference of a coordinate, lengths relative to the mechanism.
 fn distance(scene: &Scene, w: &[f64], a: &[f64], b: &[f64]) -> f64 {
     let change: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - a).collect();
     let tangent = Mover::new(scene).tangent(a, &change, w.len());
@@ -139,7 +139,7 @@ fn distance(scene: &Scene, w: &[f64], a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Numbers in (−1, 1), the same on every run.
+/// Draws numbers in (−1, 1), the same on every run.
 struct Draw(u64);
 
 impl Draw {

@@ -9,7 +9,7 @@ use crate::space::Vec3;
 use nalgebra::DVector;
 use std::fmt;
 
-/// What is not balanced where no equilibrium is found.
+/// The load that is not balanced where no equilibrium is found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Imbalance {
     /// the loads cannot be written down; why

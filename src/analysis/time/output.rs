@@ -1,4 +1,4 @@
-//! When the results of a simulation are asked for.
+//! Output times of a simulation.
 
 /// The most output times of one simulation.
 pub const MOST: usize = 10_000_000;
@@ -13,7 +13,7 @@ pub enum Output {
 }
 
 impl Output {
-    /// How many times there are, `usize::MAX` at most.
+    /// Returns the number of times, `usize::MAX` at most.
     pub fn count(self, start: f64, end: f64) -> usize {
         match self {
             Output::Steps(n) => n.max(1),
@@ -22,7 +22,7 @@ impl Output {
         }
     }
 
-    /// The times, [`MOST`] at most, after `start`, up to `end` and including it.
+    /// Returns the times, [`MOST`] at most, after `start`, up to `end` and including it.
     pub fn times(self, start: f64, end: f64) -> Vec<f64> {
         let n = self.count(start, end).min(MOST);
         let distance = match self {

@@ -15,7 +15,7 @@ use crate::scene::layout::Layout;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// What an element may be weakened to, most usual first.
+/// Ties that an element may be weakened to, most usual first.
 const CANDIDATES: [Tie; 12] = [
     Tie::Joint(JointKind::Spherical),
     Tie::Joint(JointKind::Cylindrical),
@@ -40,7 +40,7 @@ pub struct Advice {
     pub change: Change,
 }
 
-/// What to do with an element that has superfluous rows.
+/// Advice for an element that has superfluous rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// all of its rows follow from others
@@ -116,7 +116,7 @@ pub(super) fn advice(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly
         .collect()
 }
 
-/// Whether a tie can stand in the place of an element.
+/// Returns whether a tie can stand in the place of an element.
 fn fits(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, c: usize, tie: Tie) -> bool {
     let element = &scene.constraints[c];
     let Some((changed, configuration)) = scene.with_tie(c, tie) else {
