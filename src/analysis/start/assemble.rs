@@ -343,7 +343,7 @@ fn contradictions(scene: Configured<'_>, g: &DVector<f64>, numbers: &[f64]) -> V
         .map(|r| {
             let row = &scene.rows[r];
             Diagnostic::error("assembly", format!("cannot be satisfied: {}", gap(&scene, &at, r, g[r])))
-                .element(row.element.clone())
+                .element(row.element)
                 .help("move the parts nearer to where the joints want them, or remove a constraint that contradicts")
         })
         .collect()

@@ -35,7 +35,7 @@ fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f
             row.equation
         ),
     )
-    .element(row.element.clone())
+    .element(row.element)
     .help(format!(
         "prescribe less, or rates that go together: there are {}",
         motions.join(", ")

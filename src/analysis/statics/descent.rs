@@ -109,12 +109,12 @@ struct Taken {
     wanted: f64,
 }
 
-/// The result of trying steps, each shorter than the one before.
-enum Search {
-    Found(Taken),
+/// The reason why no step is taken, however short.
+enum NoStep {
     /// Newton's steps no longer improve: what is left is rounding
     Arrived,
-    Nothing,
+    /// the loads at the end of each are not those that were foretold
+    Unforeseen,
 }
 
 /// The size of what is left, against what rounding does.
@@ -176,10 +176,10 @@ impl Settler<'_> {
             };
             let length = course.length.unwrap_or_else(|| self.first(p)).min(longest);
             let step = match self.search(p, jacobian, &left, (length, longest)) {
-                Search::Found(step) => step,
-                Search::Arrived => return Ok(()),
-                Search::Nothing if left.small || self.converged(p) => return Ok(()),
-                Search::Nothing => return self.unless_rounding(p, jacobian, &left),
+                Ok(step) => step,
+                Err(NoStep::Arrived) => return Ok(()),
+                Err(NoStep::Unforeseen) if left.small || self.converged(p) => return Ok(()),
+                Err(NoStep::Unforeseen) => return self.unless_rounding(p, jacobian, &left),
             };
             // take it
             let arrived = course.advance(p, &step, left.small, longest);
@@ -245,7 +245,7 @@ impl Settler<'_> {
         jacobian: &DMatrix<f64>,
         left: &Left,
         (mut length, longest): (f64, f64),
-    ) -> Search {
+    ) -> Result<Taken, NoStep> {
         let mut wanted = 0.0;
         loop {
             let pace = Pace::new(length, jacobian, self.n_v());
@@ -255,7 +255,7 @@ impl Settler<'_> {
                     .or_else(|| self.corrected(p, left.floor, step, &pace))
             });
             if let Some((point, quality, shortened)) = found {
-                return Search::Found(Taken {
+                return Ok(Taken {
                     point,
                     quality,
                     shortened,
@@ -264,11 +264,11 @@ impl Settler<'_> {
                 });
             }
             if left.small && length >= longest {
-                return Search::Arrived;
+                return Err(NoStep::Arrived);
             }
             length *= 0.25;
             if length < 1e-14 * longest.min(1e6) {
-                return Search::Nothing;
+                return Err(NoStep::Unforeseen);
             }
         }
     }
