@@ -66,24 +66,21 @@ fn explained(what: &str) -> Result<String, Diagnostic> {
             code.name, code.summary, code.explanation
         ));
     }
-    functions::of_name(what)
-        .map(|cards| functions::text(&cards))
-        .map_err(|of_names| {
-            let near = near_names(what, all().map(|c| c.name));
-            let unknown = Diagnostic::error(
-                "unknown_name",
-                format!("`{what}` is no code, and the language has no such name"),
-            );
-            match (near.is_empty(), of_names.help.first()) {
-                (false, _) => unknown.help(format!("did you mean {}?", near.join(" or "))),
-                (true, Some(help)) if help.starts_with("did you mean") => {
-                    unknown.help(help.clone())
-                }
-                _ => {
-                    unknown.help("`cognate explain` lists all codes, `cognate functions` all names")
-                }
-            }
-        })
+    let cards = functions::known(what);
+    if !cards.is_empty() {
+        return Ok(functions::text(&cards));
+    }
+    let mut near = near_names(what, all().map(|c| c.name));
+    if near.is_empty() {
+        near = functions::near(what);
+    }
+    let message = format!("`{what}` is no code, and the language has no such name");
+    let unknown = Diagnostic::error("unknown_name", message);
+    Err(if near.is_empty() {
+        unknown.help("`cognate explain` lists all codes, `cognate functions` all names")
+    } else {
+        unknown.help(format!("did you mean {}?", near.join(" or ")))
+    })
 }
 
 fn is_model(what: &str) -> bool {

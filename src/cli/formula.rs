@@ -164,14 +164,13 @@ impl Formula {
 impl Formula {
     /// Returns advice: the command or option that gives the input of a mistake.
     fn what_is_missing(&self, d: &Diagnostic, data: &Data) -> String {
-        let about = |i: &&Input| d.message.starts_with(&i.to_string());
-        match self.program.inputs().iter().find(about) {
-            Some(Input::Measure(measure, arguments)) => {
+        match d.span.and_then(|span| self.expr.input_at(span)) {
+            Some(input @ Input::Measure(measure, arguments)) => {
                 let row = measure.row();
                 let missing: Vec<String> = row
                     .arguments
                     .iter()
-                    .zip(arguments)
+                    .zip(&arguments)
                     .filter(|(a, id)| {
                         matches!(
                             a.kind,
@@ -194,14 +193,12 @@ impl Formula {
                             missing[0]
                         )
                     }
-                    _ => format!(
-                        "the model would know: give it a value (`--set '{0}=2.5'`; in the REPL `:let {0} = 2.5`)",
-                        d.message
-                            .split(" has no value")
-                            .next()
-                            .unwrap_or_default()
-                            .replace(' ', "")
-                    ),
+                    _ => {
+                        let call = input.to_string().replace(' ', "");
+                        format!(
+                            "the model would know: give it a value (`--set '{call}=2.5'`; in the REPL `:let {call} = 2.5`)"
+                        )
+                    }
                 }
             }
             _ => "give it a value: `--set`; in the REPL `:let`".into(),

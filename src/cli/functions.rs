@@ -40,17 +40,26 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Done)
 }
 
+/// Returns the names of the languages that are near to another.
+pub fn near(name: &str) -> Vec<&'static str> {
+    near_names(name, card::all().iter().map(|c| c.name))
+}
+
+/// Returns the cards of a name; none when no language knows it.
+pub fn known(name: &str) -> Vec<Card> {
+    card::of(name.trim().trim_end_matches("()"))
+}
+
 /// Returns the cards of a name.
 ///
 /// # Errors
 /// When no language knows it; the advice lists near names.
 pub fn of_name(name: &str) -> Result<Vec<Card>, Diagnostic> {
-    let cards = card::of(name.trim().trim_end_matches("()"));
+    let cards = known(name);
     if !cards.is_empty() {
         return Ok(cards);
     }
-    let all = card::all();
-    let near = near_names(name, all.iter().map(|c| c.name));
+    let near = near(name);
     let unknown = Diagnostic::error("unknown_name", format!("the language has no `{name}`"));
     Err(if near.is_empty() {
         unknown.help("`cognate functions` lists all names")

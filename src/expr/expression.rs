@@ -8,7 +8,7 @@ use super::parse::parse;
 use super::program::{Input, Program};
 use super::symbols::Profile;
 use super::walk::{self, Host};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Span};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
@@ -156,6 +156,15 @@ impl Expr {
             }
         }
         found
+    }
+
+    /// Returns the input whose text stands at a place.
+    pub fn input_at(&self, span: Span) -> Option<Input> {
+        let at = |(ix, place): (usize, &Span)| {
+            let input = self.ast.input(ix as NodeIx);
+            input.filter(|_| *place == span)
+        };
+        self.ast.spans.iter().enumerate().find_map(at)
     }
 
     /// Returns the names of its inputs that depend on the past: DELAY, and angles that count turns.
