@@ -285,9 +285,9 @@ fn poisson_gives_back_its_part_of_the_speed() {
                 last(&s, "VZ(2,1)")
             );
             assert!(
-                s.run.record.warnings.iter().any(|w| w.contains("POISSON")),
+                s.run.record.warned().iter().any(|w| w.contains("POISSON")),
                 "{:?}",
-                s.run.record.warnings
+                s.run.record.warned()
             );
         }
     }

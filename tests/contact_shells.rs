@@ -117,7 +117,7 @@ fn a_brick_from_a_file_falls_as_the_box_does() {
             assert!((a - b).abs() < 1e-5, "{shape} {c}: {a} {b}");
         }
         let hull = |w: &&String| w.contains("convex hull") && w.contains("8 corners of");
-        assert_eq!(s.run.record.warnings.iter().filter(hull).count(), 2);
+        assert_eq!(s.run.record.warned().iter().filter(hull).count(), 2);
     }
 }
 

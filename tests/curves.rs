@@ -41,7 +41,7 @@ fn column<'s>(s: &'s Session, name: &str) -> &'s [f64] {
 fn first(text: &str, columns: &[&str], analysis: Analysis) -> (Vec<f64>, Vec<String>) {
     let s = run(text, columns, analysis, 0.01);
     let values = columns.iter().map(|c| column(&s, c)[0]).collect();
-    (values, s.run.record.warnings.clone())
+    (values, s.run.record.warned())
 }
 
 fn near(found: &[f64], expected: &[f64], tolerance: f64) {

@@ -230,7 +230,7 @@ fn below_the_angle_of_friction_a_block_creeps_within_the_stiction_velocity() {
     assert!(
         s.run
             .record
-            .warnings
+            .warned()
             .iter()
             .any(|w| w.contains("FRICTION/1") && w.contains("creeps"))
     );

@@ -21,7 +21,7 @@ fn start(text: &str, columns: &[&str], analysis: Analysis) -> (Vec<f64>, Vec<Str
         .unwrap_or_else(|e| panic!("{e:?}"));
     assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
     let values = columns.iter().map(|c| s.run.column(c).unwrap()[0]);
-    (values.collect(), s.run.record.warnings.clone())
+    (values.collect(), s.run.record.warned())
 }
 
 fn near(found: &[f64], expected: &[f64]) {

@@ -326,13 +326,8 @@ fn motions_whose_acceleration_jumps_run_with_a_warning() {
         ),
     ] {
         let s = run(&driven(function), &["DZ(20,1)"], 2.0);
-        let told = s
-            .run
-            .record
-            .warnings
-            .iter()
-            .find(|w| w.contains("MOTION/1"))
-            .unwrap();
+        let warned = s.run.record.warned();
+        let told = warned.iter().find(|w| w.contains("MOTION/1")).unwrap();
         assert!(
             told.contains("acceleration") && times.iter().all(|t| told.contains(t)),
             "{told}"
@@ -345,9 +340,9 @@ fn motions_whose_acceleration_jumps_run_with_a_warning() {
         2.0,
     );
     assert!(
-        s.run.record.warnings.is_empty(),
+        s.run.record.warned().is_empty(),
         "{:?}",
-        s.run.record.warnings
+        s.run.record.warned()
     );
 }
 

@@ -34,9 +34,9 @@ fn refused(text: &str) -> Diagnostic {
     let found = verify(&model(text)).unwrap_or_else(|e| panic!("{e:?}"));
     let element = said[0].element.as_deref().unwrap();
     assert!(
-        found.warnings.iter().any(|w| w.contains(element)),
+        found.warned().iter().any(|w| w.contains(element)),
         "verify says it too: {:?}",
-        found.warnings
+        found.warned()
     );
     said[0].clone()
 }

@@ -47,8 +47,8 @@ fn a_column_that_loses_its_value_is_told_once_with_its_time() {
     let mut s = session(&text, &["SQRT(0.7-TIME)"], 1e-6);
     go(&mut s, Analysis::Dynamic, 1.0, 4);
     go(&mut s, Analysis::Dynamic, 2.0, 4);
-    let told = |name: &str| -> Vec<&String> {
-        let all = s.run.record.warnings.iter();
+    let told = |name: &str| -> Vec<String> {
+        let all = s.run.record.warned().into_iter();
         all.filter(|w| w.starts_with(name) && w.contains("no finite value"))
             .collect()
     };
@@ -144,7 +144,7 @@ fn a_spring_between_markers_that_coincide_is_named() {
     ] {
         let mut s = session(&spring(soft), &["DZ(2)"], 1e-6);
         go(&mut s, Analysis::Dynamic, 0.1, 4);
-        let told = &s.run.record.warnings;
+        let told = &s.run.record.warned();
         assert!(
             told.iter()
                 .any(|w| w.contains("/7: its markers MARKER/2 and MARKER/3 coincide")),
@@ -171,7 +171,7 @@ fn a_spring_between_markers_that_coincide_is_named() {
     ] {
         let mut s = session(&spring(fine), &[], 1e-6);
         go(&mut s, Analysis::Dynamic, 0.01, 1);
-        let told = &s.run.record.warnings;
+        let told = &s.run.record.warned();
         assert!(!told.iter().any(|w| w.contains("coincide")), "{told:?}");
     }
 }

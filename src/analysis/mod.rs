@@ -12,11 +12,14 @@
 //! watch        the hooks of a caller
 //! ```
 
+pub mod direction;
 pub mod linear;
+pub(in crate::analysis) mod quantity;
 pub mod session;
 pub mod start;
 pub mod statics;
 pub mod system;
 pub mod time;
 pub mod verify;
+pub mod warning;
 pub mod watch;

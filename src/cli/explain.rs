@@ -106,7 +106,7 @@ fn as_json(o: &Outline) -> Value {
         "operations": { "rate": o.operations.0, "projection": o.operations.1 },
         "elimination": o.elimination,
         "switches": o.switches,
-        "warnings": o.warnings,
+        "warnings": o.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
 
@@ -136,7 +136,8 @@ fn as_text(o: &Outline) -> String {
     list("prescribed", &o.prescribed);
     list("rows", &o.rows);
     list("left out", &o.left_out);
-    list("warnings", &o.warnings);
+    let warnings: Vec<String> = o.warnings.iter().map(ToString::to_string).collect();
+    list("warnings", &warnings);
     out += &format!(
         "recorded\n  {} operations for the rates, by {}\n",
         o.operations.0, o.elimination

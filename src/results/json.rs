@@ -30,7 +30,7 @@ pub fn record(run: &Run) -> Value {
         "energy_drift": r.energy_drift,
         "constraint_drift": r.constraint_drift,
         "outputs": run.table_rows().count(),
-        "warnings": r.warnings,
+        "warnings": r.warned(),
         "piecewise": r.piecewise.iter().map(jump).collect::<Vec<_>>(),
         "versions": { "cognate": env!("CARGO_PKG_VERSION"), "record": 1 },
         "files": Map::new(),

@@ -21,7 +21,9 @@ mod units;
 pub use file::{read, write, write_text};
 pub use log::Event;
 pub use number::digits;
-pub use record::{Counts, Jump, Quantity, RankChange, Record, RowChange, Simulation, Status};
+pub use record::{
+    Counts, Jump, Quantity, RankChange, Record, RowChange, Simulation, Status, Warning,
+};
 pub use run::{Column, Component, Entity, Kind, Run, Sequence};
 pub use units::{Units, component_unit};
 

@@ -105,12 +105,31 @@ pub struct Record {
     pub energy_drift: Option<f64>,
     /// largest residual of a constraint row over the run; `None`: there are no rows
     pub constraint_drift: Option<f64>,
-    /// what the user should know, one sentence each
-    pub warnings: Vec<String>,
+    /// what the user should know although the run went on
+    pub warnings: Vec<Warning>,
     /// jumps of what motions prescribe that were run all the same
     pub piecewise: Vec<Jump>,
     /// one per SIMULATE command
     pub simulations: Vec<Simulation>,
+}
+
+impl Record {
+    /// Returns the sentences of its warnings.
+    pub fn warned(&self) -> Vec<String> {
+        let sentences = self.warnings.iter().map(|w| w.sentence.clone());
+        sentences.collect()
+    }
+}
+
+/// A warning: its kind, the element, and the sentence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// stable short name of its kind, which `cognate explain` explains
+    pub code: &'static str,
+    /// the element or column that it is about
+    pub element: Option<String>,
+    /// all of it in a sentence
+    pub sentence: String,
 }
 
 /// A jump of what a MOTION prescribes.

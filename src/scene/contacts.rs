@@ -343,7 +343,7 @@ impl Builder<'_> {
             what += &format!("; the shell stands out of it by {outside:.3e} at most");
         }
         let warning =
-            Diagnostic::warning("approximate", what).element(ElementKind::Graphics.id(id));
+            Diagnostic::warning("convex_hull", what).element(ElementKind::Graphics.id(id));
         if !self.scene.warnings.contains(&warning) {
             self.scene.warnings.push(warning);
         }

@@ -37,7 +37,7 @@ impl Builder<'_> {
             match friction(f, kind) {
                 Ok(law) => {
                     let what = "what should stick creeps below the stiction velocity, and at rest there is no friction";
-                    let warning = Diagnostic::warning("approximate", what).element(name);
+                    let warning = Diagnostic::warning("creeping_friction", what).element(name);
                     self.scene.warnings.push(warning);
                     let law = ForceLaw::Friction {
                         law: Box::new(law),

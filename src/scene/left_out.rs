@@ -259,7 +259,7 @@ impl Builder<'_> {
                         "reads {} of {what}, which is left out: zero",
                         measure.name()
                     );
-                    let warning = Diagnostic::warning("skipped", what).element(&formula.name);
+                    let warning = Diagnostic::warning("reads_zero", what).element(&formula.name);
                     if !told.contains(&warning) {
                         told.push(warning);
                     }

@@ -629,7 +629,7 @@ fn models_that_lack_something_stand_without_it() {
             .simulate(Analysis::InitialConditions, 0.0, 1, &mut Unwatched)
             .unwrap_or_else(|e| panic!("{file}: {}", e[0]));
         assert_eq!(status, Status::Completed, "{file}");
-        let warnings = &session.run.record.warnings;
+        let warnings = &session.run.record.warned();
         for said in [gone, reader] {
             assert!(warnings.iter().any(|w| w.contains(said)), "{file}: {said}");
         }
@@ -650,7 +650,7 @@ fn a_planar_robot_is_put_together_as_in_adams_with_its_initial_condition_as_view
         [Some(-0.1815), Some(-146.9925875)]
     );
     let (session, values) = at_the_start(model, &["DZ(3,4,4)", "VZ(3,4,4,4)"], true);
-    let warnings = &session.run.record.warnings;
+    let warnings = &session.run.record.warned();
     assert!(
         warnings
             .iter()

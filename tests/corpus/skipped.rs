@@ -32,7 +32,7 @@ fn run(path: &PathBuf, columns: Vec<String>, end: f64) -> Session {
     let said = |w: &&String| {
         w.contains("CONTACT/") && w.contains("is left out") && w.contains("CAD kernel")
     };
-    let n = s.run.record.warnings.iter().filter(said).count();
+    let n = s.run.record.warned().iter().filter(said).count();
     assert_eq!(n, s.model.contacts.len(), "every contact is told");
     s
 }

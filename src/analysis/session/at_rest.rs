@@ -6,6 +6,7 @@ use super::simulate::Span;
 use super::stop_reason::StopReason;
 use crate::analysis::statics::{self, NoEquilibrium, Settings};
 use crate::analysis::system::System;
+use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
 use crate::numeric::Stats;
@@ -96,7 +97,8 @@ impl Session {
             });
             let stability = found.stability.words();
             if found.stability.unstable > 0 {
-                self.warn(&format!("the equilibrium at time {t} is {stability}"));
+                let directions = found.stability.unstable;
+                self.warn(RunWarning::Unstable { at: t, directions });
             }
             all.method = format!("EQUILIBRIUM, {stability}");
             all.rows.push(system.numbers.clone());

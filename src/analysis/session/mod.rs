@@ -96,6 +96,8 @@ pub struct Session {
     pub folders: Vec<std::path::PathBuf>,
     /// a sensor ended the run, not only its simulation
     halted: bool,
+    /// columns that have been told to have gaps
+    gaps: BTreeSet<String>,
     shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
 }
 
@@ -130,6 +132,7 @@ impl Session {
             saved: std::collections::BTreeMap::new(),
             folders: Vec::new(),
             halted: false,
+            gaps: BTreeSet::new(),
             shells: None,
         }
     }

@@ -8,6 +8,7 @@ use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::time::{ranks, valueless};
+use crate::analysis::warning::{RunWarning, Warning};
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};
 use crate::results::{self, Counts, Event, Kind, RowChange, Status};
@@ -47,42 +48,23 @@ impl Session {
         self.run.begin(kind);
         columns::append(&mut self.run, program, rows);
         self.run.end();
-        self.told_of_gaps(rows.len());
+        self.warn_of_gaps(rows.len());
     }
 
-    /// Names the columns that have values, but not in all of the last rows.
-    fn told_of_gaps(&mut self, n: usize) {
+    /// Warns, once for each, of columns that have values, but not in all of the last rows.
+    fn warn_of_gaps(&mut self, n: usize) {
         let from = self.run.rows().saturating_sub(n);
         let time = &self.run.columns[0].values;
-        let gap = |column: &results::Column| -> Option<String> {
+        let gap = |column: &results::Column| {
             let gap = column.values[from..].iter().position(|x| !x.is_finite())?;
             let some = column.values.iter().any(|x| x.is_finite());
-            some.then(|| {
-                format!(
-                    "{} has no finite value at time {}",
-                    column.name,
-                    time[from + gap]
-                )
-            })
+            some.then(|| (column.name.clone(), time[from + gap]))
         };
-        let known = |what: &String| {
-            let name = what.split(" has no").next().unwrap_or_default();
-            let told = format!("{name} has no finite value");
-            self.run
-                .record
-                .warnings
-                .iter()
-                .any(|w| w.starts_with(&told))
-        };
-        let gaps: Vec<String> = self
-            .run
-            .columns
-            .iter()
-            .filter_map(gap)
-            .filter(|w| !known(w))
-            .collect();
-        for what in gaps {
-            self.warn(&what);
+        let gaps: Vec<(String, f64)> = self.run.columns.iter().filter_map(gap).collect();
+        for (column, at) in gaps {
+            if self.gaps.insert(column.clone()) {
+                self.warn(RunWarning::Gap { column, at });
+            }
         }
     }
 
@@ -106,7 +88,7 @@ impl Session {
         }
         columns::append(&mut self.run, &program, &trajectory.rows[from..]);
         self.run.end();
-        self.told_of_gaps(trajectory.rows.len());
+        self.warn_of_gaps(trajectory.rows.len());
     }
 
     /// Tells when and where the rank of the rows changed.
@@ -160,24 +142,17 @@ impl Session {
         }
         told.sort_by(|a, b| a.time.total_cmp(&b.time));
         for change in told.iter().take(20) {
-            let rows = change.rows.join(", ");
-            let time = change.time;
-            self.warn(&match change.change {
-                RowChange::Passes => format!(
-                    "at time {time:.9} the rank of the constraints falls in passing: {rows} depends on others where {}",
-                    ranks::words(&change.place)
-                ),
-                RowChange::Restored => format!("at time {time:.9} {rows} no longer follows from the others; it is kept from there"),
-                RowChange::Exchanged => format!("at time {time:.9} other rows are kept: {rows} in place of what they make superfluous"),
-            });
+            self.warn(RunWarning::Rank(change.clone()));
         }
         self.run.record.rank_changes.extend(told);
     }
 
-    pub(in crate::analysis) fn warn(&mut self, what: &str) {
-        if !self.run.record.warnings.iter().any(|w| w == what) {
-            self.run.record.warnings.push(what.to_string());
-            self.run.log.push(Event::Warning(what.to_string()));
+    /// Adds a warning to the record and the log, unless it has been given before.
+    pub(in crate::analysis) fn warn(&mut self, what: impl Into<Warning>) {
+        let warning = what.into().record();
+        if !self.run.record.warnings.contains(&warning) {
+            self.run.log.push(Event::Warning(warning.sentence.clone()));
+            self.run.record.warnings.push(warning);
         }
     }
 

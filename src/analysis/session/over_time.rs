@@ -7,6 +7,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::options::{self, Options};
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::time::{dynamics, kinematics};
+use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
 use crate::numeric;
@@ -128,9 +129,11 @@ impl Session {
     fn warn_of_rounding(&mut self, trajectory: &Trajectory, error: f64) {
         let (below, steps) = (trajectory.stats.below_rounding, trajectory.stats.steps);
         if below > 0 {
-            self.warn(&format!(
-                "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} steps, which are as exact as rounding permits"
-            ));
+            self.warn(RunWarning::BelowRounding {
+                error,
+                below,
+                steps,
+            });
         }
     }
 }

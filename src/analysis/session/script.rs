@@ -4,6 +4,7 @@ use crate::analysis::linear::Wanted;
 use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Analysis, Session};
 use crate::analysis::time::output::Output;
+use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Linear, Simulate, SimulationKind, Step};
 use crate::diagnostic::Diagnostic;
@@ -159,10 +160,10 @@ impl Session {
     ) -> Result<Option<Status>, Vec<Diagnostic>> {
         let now = self.time();
         if simulate.is_over(now) {
-            self.warn(&format!(
-                "{}: the clock shows {now} already, there is nothing to simulate",
-                step.text
-            ));
+            self.warn(RunWarning::NothingToSimulate {
+                command: step.text.clone(),
+                now,
+            });
             return Ok(None);
         }
         let resolved = simulate.resolved(now);

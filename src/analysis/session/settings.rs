@@ -4,6 +4,7 @@ use super::Session;
 use crate::analysis::system::System;
 use crate::analysis::system::implicit::Formulation;
 use crate::analysis::time::options::{self, Options};
+use crate::analysis::warning::RunWarning;
 use crate::diagnostic::Diagnostic;
 use crate::numeric;
 
@@ -115,7 +116,7 @@ impl Session {
         };
         if let Err(why) = system.make_implicit(formulation) {
             for d in why {
-                self.warn(&format!("{}: RADAU5 takes its place", d.message));
+                self.warn(RunWarning::MethodReplaced(d));
             }
             settings.method = "RADAU5".into();
         }

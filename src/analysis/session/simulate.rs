@@ -7,6 +7,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::drives;
 use crate::analysis::time::output::{self, Output};
 use crate::analysis::verify::massless::massless;
+use crate::analysis::warning::{RunWarning, Warning};
 use crate::analysis::watch::Watch;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::program::Program;
@@ -89,7 +90,7 @@ impl Session {
             Analysis::Transient if assembly.freedom > 0 => Analysis::Dynamic,
             Analysis::Transient => Analysis::Kinematic,
             Analysis::Dynamic if assembly.freedom == 0 => {
-                self.warn("the mechanism has no freedom: it is moved by its motions alone");
+                self.warn(RunWarning::NoFreedom);
                 Analysis::Kinematic
             }
             Analysis::Kinematic if assembly.freedom > 0 => {
@@ -141,7 +142,7 @@ impl Session {
             return Err(refused);
         }
         for warning in drives::warnings(&breaks, self.options.piecewise) {
-            self.warn(&warning);
+            self.warn(warning);
         }
         let jumps = breaks.into_iter().filter(|b| b.order < 2);
         self.run.record.piecewise.extend(jumps.map(|b| b.into()));
@@ -151,11 +152,10 @@ impl Session {
     /// Warns of what assembly and the scene found.
     fn warn_of_start(&mut self, system: &System, assembly: &Assembly) {
         for warning in &assembly.warnings {
-            self.warn(warning);
+            self.warn(warning.clone());
         }
         for found in &system.scene.warnings {
-            let element = found.element.as_deref().unwrap_or("the model");
-            self.warn(&format!("{element}: {}", found.message));
+            self.warn(Warning::Scene(found.clone()));
         }
     }
 
@@ -186,7 +186,7 @@ impl Session {
                 };
                 return Err(vec![refused]);
             }
-            self.warn(&complaint.to_string());
+            self.warn(RunWarning::EmptyColumn(complaint));
         }
         self.columns_program = Some(program.clone());
         Ok(program)

@@ -6,9 +6,11 @@ use super::shells;
 use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::misalignment::Exchanged;
 use crate::analysis::start::{coincident, initial_conditions, misalignment, placement, velocities};
 use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{external_inputs, samples};
+use crate::analysis::warning::{ConditionWarning, Warning};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Model, Place};
 use crate::scene::Scene;
@@ -187,20 +189,16 @@ impl Session {
         let mut assembly = start.positions()?;
         let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
         let warnings = &mut assembly.warnings;
-        warnings.extend(initial_conditions::unmet(
-            here,
-            &conditions,
-            &contacts,
-            t,
-            q,
-            x,
-        ));
-        warnings.splice(0..0, misaligned);
-        warnings.extend(exchanged);
+        let unmet = initial_conditions::unmet(here, &conditions, &contacts, t, q, x);
+        warnings.extend(unmet.into_iter().map(Warning::from));
+        warnings.splice(0..0, misaligned.into_iter().map(Warning::from));
+        warnings.extend(exchanged.into_iter().map(Warning::from));
         let still = vec![0.0; here.layout.n_v];
         let numbers = assemble::numbers(here, t, q, &still, x);
-        warnings.extend(misalignment::turned(here, &self.model, &numbers));
-        warnings.extend(coincident::lines(here, &numbers)?);
+        let turned = misalignment::turned(here, &self.model, &numbers);
+        let coincident = coincident::lines(here, &numbers)?;
+        let of_assembly = turned.into_iter().chain(coincident);
+        warnings.extend(of_assembly.map(Warning::from));
         Ok(assembly)
     }
 
@@ -259,7 +257,7 @@ impl Session {
 
     /// Exchanges the numbers of initial conditions that are to be read the other way round; returns
     /// warnings of these and of doubtful ones.
-    fn exchange(&mut self, scene: &Scene) -> Vec<String> {
+    fn exchange(&mut self, scene: &Scene) -> Vec<ConditionWarning> {
         let found = misalignment::exchanged(scene, &self.model);
         for e in found.iter().filter(|e| e.believed) {
             if let Some(joint) = self.model.joints.get_mut(&e.joint) {
@@ -271,7 +269,7 @@ impl Session {
                 given.reverse();
             }
         }
-        found.into_iter().map(|e| e.told).collect()
+        found.iter().map(Exchanged::warning).collect()
     }
 
     /// Returns the shells of contacts, read when they are first asked for.

@@ -1,8 +1,9 @@
 //! Why a simulation ended before all was done that was asked for: as data, and as the code, the
 //! status and the sentence of its record.
 
+use crate::analysis::quantity::place;
 use crate::analysis::statics::Imbalance;
-use crate::analysis::time::ranks::{self, Lock};
+use crate::analysis::time::ranks::Lock;
 use crate::analysis::time::valueless::Valueless;
 use crate::results::Status;
 use crate::scene::cams::Broken;
@@ -202,7 +203,7 @@ impl fmt::Display for StopReason {
                         "the constraints can be kept no longer: {row} has become dependent on others"
                     )?,
                 }
-                write!(f, ", where {}", ranks::words(&lock.place))
+                write!(f, ", where {}", place(&lock.place))
             }
             StopReason::Method {
                 at,

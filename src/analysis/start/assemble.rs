@@ -4,9 +4,10 @@
 //! found there by reflections (`numeric/rank.rs`), translations first; a row that depends on
 //! earlier ones is left out, and is no contradiction as long as it holds.
 
-use crate::analysis::start::direction::{AXIS_LETTERS, Direction};
+use crate::analysis::direction::{AXIS_LETTERS, Direction};
+use crate::analysis::quantity::{length, short};
 use crate::analysis::start::nearby;
-use crate::analysis::start::quantity::{length, short};
+use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
@@ -56,7 +57,7 @@ pub struct Assembly {
     /// largest change of a coordinate
     pub moved: f64,
     /// warnings for the user
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Returns the numbers that programs read, with these positions, velocities and states.
@@ -87,7 +88,7 @@ fn hold(
     t: f64,
     q: &[f64],
     x: &[f64],
-) -> Vec<String> {
+) -> Vec<Warning> {
     let (shown, _, _) = rows_at(scene.within(configuration), t, q, x);
     let mut told = Vec::new();
     begin_motions(scene, configuration, t, q, x);
@@ -105,10 +106,11 @@ fn hold(
             *constant = 0.0;
         }
         if *constant != 0.0 && sum.contact.is_none() {
-            told.push(format!(
-                "{}: its displacements sum up to {constant:.6e} where they are assembled; that sum is held, not zero",
-                row.element
-            ));
+            let held = AssemblyWarning::HeldSum {
+                element: row.element,
+                sum: *constant,
+            };
+            told.push(held.into());
         }
     }
     told

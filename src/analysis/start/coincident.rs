@@ -7,8 +7,8 @@
 //! Where f(0) = 0 the force goes through zero whatever the direction is, and the model can move
 //! from there. Where it is not, nothing says which way the force points: the model has to.
 
+use crate::analysis::warning::AssemblyWarning;
 use crate::diagnostic::Diagnostic;
-use crate::model::ElementKind;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::forces::{ForceElement, ForceLaw};
@@ -21,7 +21,10 @@ const COINCIDENT: f64 = 1e-12;
 ///
 /// # Errors
 /// For forces that are not.
-pub fn lines(scene: Configured<'_>, numbers: &[f64]) -> Result<Vec<String>, Vec<Diagnostic>> {
+pub fn lines(
+    scene: Configured<'_>,
+    numbers: &[f64],
+) -> Result<Vec<AssemblyWarning>, Vec<Diagnostic>> {
     let at = Equations::new(scene, numbers);
     let (mut told, mut wrong) = (Vec::new(), Vec::new());
     for force in &scene.forces {
@@ -32,29 +35,24 @@ pub fn lines(scene: Configured<'_>, numbers: &[f64]) -> Result<Vec<String>, Vec<
         if between.norm() > COINCIDENT * scene.length || !magnitude.is_finite() {
             continue;
         }
-        let name = force.id;
-        let id = |place: usize| {
-            let found = scene.marker_of.iter().find(|(_, m)| **m == place);
-            found.map_or_else(String::new, |(id, _)| ElementKind::Marker.id(*id).into())
-        };
-        let what = format!(
-            "its markers {} and {} coincide: the line between them has no direction",
-            id(force.i),
-            id(j)
-        );
+        let [i, j] = [force.i, j].map(|m| scene.markers[m].id);
         if magnitude == 0.0 {
-            told.push(format!(
-                "{name}: {what}; its force is zero there, so that it can begin, but Adams refuses it"
-            ));
-        } else {
-            let problem = Diagnostic::error(
-                "coincident",
-                format!("{what}, and its force of {magnitude:.6} there none either"),
-            );
-            wrong.push(problem.element(name).help(
-                "place one of them where the force should pull from, or use VFORCE, BUSHING or SFORCE with ACTIONONLY",
-            ));
+            told.push(AssemblyWarning::Coincident {
+                element: force.id,
+                markers: [i, j],
+            });
+            continue;
         }
+        let problem = Diagnostic::error(
+            "coincident",
+            format!(
+                "its markers MARKER/{i} and MARKER/{j} coincide: the line between them has no direction, \
+                 and its force of {magnitude:.6} there none either"
+            ),
+        );
+        wrong.push(problem.element(force.id).help(
+            "place one of them where the force should pull from, or use VFORCE, BUSHING or SFORCE with ACTIONONLY",
+        ));
     }
     if wrong.is_empty() {
         Ok(told)

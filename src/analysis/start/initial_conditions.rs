@@ -14,9 +14,10 @@
 //! of contacts count always: they choose among the ways in which the parts can be put together.
 
 use crate::analysis::start::assemble::{self, least_change, rows_at};
+use crate::analysis::warning::ConditionWarning;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{ElementKind, Model};
+use crate::model::{ElementId, ElementKind, Model};
 use crate::physics::cam::Contact;
 use crate::physics::coupler::Gauge;
 use crate::physics::kinematic::kinematic;
@@ -53,8 +54,9 @@ enum Given {
 /// An initial condition: a quantity and the value it should have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InitialCondition {
-    /// "JOINT/3 IC", "PART/2 EXACT X"
-    name: String,
+    element: ElementId,
+    /// "IC", "EXACT X"
+    argument: &'static str,
     given: Given,
     value: f64,
     angle: bool,
@@ -78,6 +80,16 @@ pub(in crate::analysis) fn of_joints(model: &Model) -> Vec<(u32, Gauge, [Option<
     found
 }
 
+/// The arguments of EXACT, by the components of a part's frame.
+const EXACT: [&str; 6] = [
+    "EXACT X",
+    "EXACT Y",
+    "EXACT Z",
+    "EXACT PSI",
+    "EXACT THETA",
+    "EXACT PHI",
+];
+
 /// Collects the initial conditions of a model.
 pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
     let mut conditions = Vec::new();
@@ -91,7 +103,8 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
         });
         if let ([Some(i), Some(j)], Some(value), false) = (markers, given[0], driven) {
             conditions.push(InitialCondition {
-                name: format!("{} IC", ElementKind::Joint.id(id)),
+                element: ElementKind::Joint.id(id),
+                argument: "IC",
                 given: Given::Joint { gauge, i, j },
                 value,
                 angle: gauge.is_angle(),
@@ -102,10 +115,10 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
         let Some(exact) = model.body(part.id).map(|p| p.exact) else {
             continue;
         };
-        let name = part.id;
-        let mut condition = |component: usize, what: &str, given: Given, value: f64| {
+        let mut condition = |component: usize, argument: &'static str, given: Given, value: f64| {
             conditions.push(InitialCondition {
-                name: format!("{name} EXACT {what}"),
+                element: part.id,
+                argument,
                 given,
                 value,
                 angle: component > 2,
@@ -115,12 +128,12 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
             if exact[component] {
                 let value = part.initial.position.0[component];
                 let given = Given::Part { part: k, component };
-                condition(component, ["X", "Y", "Z"][component], given, value);
+                condition(component, EXACT[component], given, value);
             }
         }
         if exact[3..] == [true; 3] {
             for axis in 0..3 {
-                condition(3, "PSI:THETA:PHI", Given::Turn { part: k, axis }, 0.0);
+                condition(3, "EXACT PSI:THETA:PHI", Given::Turn { part: k, axis }, 0.0);
             }
             continue;
         }
@@ -132,8 +145,8 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
         for component in 3..6 {
             if exact[component] {
                 let given = Given::Part { part: k, component };
-                let what = ["PSI", "THETA", "PHI"][component - 3];
-                condition(component, what, given, angle(&state, component));
+                let value = angle(&state, component);
+                condition(component, EXACT[component], given, value);
             }
         }
     }
@@ -309,24 +322,24 @@ pub fn unmet(
     t: f64,
     q: &[f64],
     x: &[f64],
-) -> Vec<String> {
+) -> Vec<ConditionWarning> {
     let numbers = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
     let at = Equations::new(scene, &numbers);
     let told = conditions.iter().filter_map(|condition| {
         let found = condition.quantity(&scene, &at);
         let unit = if condition.angle { 1.0 } else { scene.length };
         let off = condition.residual(found);
-        (off.abs() > MET_TOLERANCE * unit).then(|| {
-            format!(
-                "{} cannot be met: the constraints leave {found:.6e} instead of {:.6e}",
-                condition.name, condition.value
-            )
+        (off.abs() > MET_TOLERANCE * unit).then_some(ConditionWarning::Unmet {
+            element: condition.element,
+            argument: condition.argument,
+            found,
+            wanted: condition.value,
         })
     });
-    let mut told: Vec<String> = told.collect();
+    let mut told: Vec<ConditionWarning> = told.collect();
     for start in starts {
         let cam = &scene.cams[start.cam];
-        let names: &[&str] = match cam.contact {
+        let names: &[&'static str] = match cam.contact {
             Contact::Point(_) => &["DISP"],
             Contact::Curves(..) => &["IDISP", "JDISP"],
         };
@@ -337,13 +350,13 @@ pub fn unmet(
             };
             let off = (path.at::<f64>(reached[k], 0) - path.at(given, 0)).norm();
             if off > MET_TOLERANCE * scene.length {
-                let off = crate::analysis::start::quantity::length(off, &scene.length_unit);
-                told.push(format!(
-                    "{} {} cannot be met: the constraints put the contact {off} away from the point of CURVE/{} next to it",
-                    cam.id,
-                    names[k],
-                    cam.curves[k]
-                ));
+                told.push(ConditionWarning::UnmetContact {
+                    element: cam.id,
+                    argument: names[k],
+                    curve: cam.curves[k],
+                    off,
+                    unit: scene.length_unit.clone(),
+                });
             }
         }
     }

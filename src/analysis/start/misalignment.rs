@@ -1,8 +1,8 @@
 //! How well the parts of a dataset fit together before and after assembly: by how much joints are
 //! off, and which parts had to be turned round.
 
-use crate::analysis::start::direction::Axis;
-use crate::analysis::start::quantity::{length, short};
+use crate::analysis::direction::Axis;
+use crate::analysis::warning::{AssemblyWarning, ConditionWarning};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
@@ -29,10 +29,10 @@ fn ties(model: &Model) -> Vec<(ElementId, Tie, u32, u32)> {
 }
 
 /// Joints that do not fit as the dataset places the parts: by how much, and in which direction.
-pub fn misaligned(scene: &Scene, model: &Model) -> Vec<String> {
+pub fn misaligned(scene: &Scene, model: &Model) -> Vec<AssemblyWarning> {
     let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
-    let mut told = Vec::new();
-    for (name, tie, i, j) in ties(model) {
+    let mut found = Vec::new();
+    for (element, tie, i, j) in ties(model) {
         let (Some(I), Some(J)) = (frame(i), frame(j)) else {
             continue;
         };
@@ -53,23 +53,19 @@ pub fn misaligned(scene: &Scene, model: &Model) -> Vec<String> {
             }
         }
         let axes = [(j, J.rotation), (i, I.rotation)];
-        let mut off = Vec::new();
-        if offset.norm() > WORTH_TELLING * scene.length {
-            let by = length(offset.norm(), &scene.length_unit);
-            off.push(format!("{by} along {}", Axis::along(offset, &axes)));
-        }
-        if turn.norm() > WORTH_TELLING {
-            let by = short(turn.norm().to_degrees());
-            off.push(format!("{by} deg about {}", Axis::along(turn, &axes)));
-        }
-        if !off.is_empty() {
-            told.push(format!(
-                "{name}: in the dataset its markers are off by {}; assembly moves the parts",
-                off.join(" and ")
-            ));
+        let offset = (offset.norm() > WORTH_TELLING * scene.length)
+            .then(|| (offset.norm(), Axis::along(offset, &axes)));
+        let turn = (turn.norm() > WORTH_TELLING).then(|| (turn.norm(), Axis::along(turn, &axes)));
+        if offset.is_some() || turn.is_some() {
+            found.push(AssemblyWarning::Misaligned {
+                element,
+                offset,
+                unit: scene.length_unit.clone(),
+                turn,
+            });
         }
     }
-    told
+    found
 }
 
 /// A joint whose initial condition fits the dataset better with its numbers exchanged.
@@ -79,10 +75,24 @@ pub struct Exchanged {
     pub joint: u32,
     /// whether it is the condition of its rotation
     pub turns: bool,
+    /// its numbers as they stand
+    pub given: [f64; 2],
+    /// where the parts stand
+    pub stands: f64,
     /// whether it is read so
     pub believed: bool,
-    /// what is told
-    pub told: String,
+}
+
+impl Exchanged {
+    /// Makes a warning of it.
+    pub fn warning(&self) -> ConditionWarning {
+        ConditionWarning::Exchanged {
+            element: ElementKind::Joint.id(self.joint),
+            given: self.given,
+            stands: self.stands,
+            believed: self.believed,
+        }
+    }
 }
 
 /// Joints whose initial condition fits the dataset better with its numbers exchanged.
@@ -112,22 +122,12 @@ pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
             let stands = law.value(&I, &J, None);
             let off = |x: f64| (x - stands).abs();
             if second != 0.0 && off(first) > 0.01 * size && off(second) < 0.2 * off(first) {
-                let believed = joint.place.name.is_some();
-                let [first, second, stands] = [first, second, stands].map(short);
-                let told = if believed {
-                    format!(
-                        "JOINT/{id}: its initial condition {first}, {second} is read as velocity {first} and displacement {second}, as Adams View writes it: the parts stand at {stands}"
-                    )
-                } else {
-                    format!(
-                        "JOINT/{id}: its initial condition {first}, {second} is read as displacement {first} and velocity {second}, but the parts stand at {stands}; Adams View writes velocity, displacement: exchange the two if that is meant"
-                    )
-                };
                 found.push(Exchanged {
                     joint: id,
                     turns,
-                    believed,
-                    told,
+                    given: [first, second],
+                    stands,
+                    believed: joint.place.name.is_some(),
                 });
             }
         }
@@ -137,9 +137,9 @@ pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
 
 /// What assembly has turned round: parts that stand the other way than in the dataset, joints whose
 /// axes point against each other.
-pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<String> {
+pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<AssemblyWarning> {
     let at = Equations::new(scene, numbers);
-    let mut told = Vec::new();
+    let mut found = Vec::new();
     for (k, part) in scene
         .parts
         .iter()
@@ -151,22 +151,22 @@ pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<Stri
         let trace: f64 = (0..3).map(|k| between.0[k][k]).sum();
         let angle = (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos();
         if angle > TURNED {
-            told.push(format!(
-                "{} is assembled on another branch: turned by {} deg against the dataset",
-                part.id,
-                short(angle.to_degrees())
-            ));
+            found.push(AssemblyWarning::OtherBranch {
+                element: part.id,
+                angle,
+            });
         }
     }
-    for (name, _, i, j) in ties(model).into_iter().filter(|t| t.1.keeps_z()) {
+    for (element, _, i, j) in ties(model).into_iter().filter(|t| t.1.keeps_z()) {
         let frame = |id: u32| scene.marker_of.get(&id).map(|&m| at.marker(m).R_GM);
         if let (Some(I), Some(J)) = (frame(i), frame(j))
             && I.column(2).dot(J.column(2)) < -0.5
         {
-            told.push(format!(
-                "{name} is assembled the wrong way round: the z axes of MARKER/{i} and MARKER/{j} point against each other"
-            ));
+            found.push(AssemblyWarning::WrongWayRound {
+                element,
+                markers: [i, j],
+            });
         }
     }
-    told
+    found
 }

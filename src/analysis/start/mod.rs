@@ -3,10 +3,8 @@
 
 pub mod assemble;
 pub(super) mod coincident;
-pub mod direction;
 pub(super) mod initial_conditions;
 pub mod misalignment;
 pub mod nearby;
 pub mod placement;
-pub(super) mod quantity;
 pub mod velocities;

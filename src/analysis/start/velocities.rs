@@ -1,9 +1,9 @@
 //! Velocities to start with: those nearest to the dataset's that satisfy the rows.
 
 use super::assemble::{EMPTY, directions, least_change, null_space, numbers, rank_of, rows_at};
-use super::direction::Direction;
 use super::initial_conditions::of_joints;
-use super::quantity::{length, short};
+use crate::analysis::direction::Direction;
+use crate::analysis::quantity::{length, short};
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scene::Scene;

@@ -6,10 +6,11 @@
 //! given as an acceleration two.
 
 use crate::analysis::system::complaints;
+use crate::analysis::warning::{self, RunWarning};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Input;
 use crate::expr::smoothness::{Breakpoint, smoothness};
-use crate::model::Level;
+use crate::model::{ElementKind, Level};
 use crate::results::{Jump, Quantity};
 use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
@@ -49,9 +50,6 @@ fn quantity(order: usize) -> Quantity {
     }
 }
 
-/// Breakpoints that a sentence names, at most.
-const MAX_NAMED: usize = 5;
-
 /// Finds the jumps of displacements, velocities or accelerations that motions prescribe between two
 /// times.
 ///
@@ -89,52 +87,39 @@ pub fn breaks(scene: Configured<'_>, start: f64, end: f64) -> Result<Vec<Break>,
 /// Returns errors for the motions that cannot be run because the displacement that they prescribe,
 /// or its rate, jumps.
 pub fn refused(breaks: &[Break]) -> Vec<Diagnostic> {
-    told(breaks, |b| b.order < 2)
-        .into_iter()
-        .map(|(motion, what)| {
-            Diagnostic::error("motion_jumps", what)
-                .element(format!("MOTION/{motion}"))
-                .help("join its pieces by STEP5, or insist on it with --piecewise")
-        })
-        .collect()
-}
-
-/// Sentences about motions whose acceleration jumps, or about all when somebody insists.
-pub fn warnings(breaks: &[Break], piecewise: bool) -> Vec<String> {
-    let mild = told(breaks, |b| b.order == 2);
-    let all = if piecewise {
-        told(breaks, |b| b.order < 2)
-    } else {
-        Vec::new()
+    let all = by_motion(breaks, |b| b.order < 2).into_iter();
+    let error = |(motion, quantity, times): (u32, Quantity, Vec<(f64, f64)>)| {
+        Diagnostic::error("motion_jumps", warning::jumps(quantity, &times))
+            .element(ElementKind::Motion.id(motion))
+            .help("join its pieces by STEP5, or insist on it with --piecewise")
     };
-    let piece = |(m, what): (u32, String)| format!("MOTION/{m}: {what}; it runs piecewise");
-    let bend = |(m, what): (u32, String)| format!("MOTION/{m}: {what}; forces jump there");
-    all.into_iter()
-        .map(piece)
-        .chain(mild.into_iter().map(bend))
-        .collect()
+    all.map(error).collect()
 }
 
-/// Per motion: what jumps, and when.
-fn told(breaks: &[Break], which: impl Fn(&Break) -> bool) -> Vec<(u32, String)> {
+/// Warns of motions whose acceleration jumps, and of all that jump when somebody insists.
+pub fn warnings(breaks: &[Break], piecewise: bool) -> Vec<RunWarning> {
+    let insisted = by_motion(breaks, |b| piecewise && b.order < 2).into_iter();
+    let mild = by_motion(breaks, |b| b.order == 2);
+    let warning = |(motion, quantity, jumps)| RunWarning::MotionJumps {
+        motion,
+        quantity,
+        jumps,
+    };
+    insisted.chain(mild).map(warning).collect()
+}
+
+/// Sorts some breaks by their motions: the lowest derivative that jumps, and when and by how much any
+/// does.
+fn by_motion(
+    breaks: &[Break],
+    which: impl Fn(&Break) -> bool,
+) -> Vec<(u32, Quantity, Vec<(f64, f64)>)> {
     let mut motions: Vec<u32> = breaks.iter().map(|b| b.motion).collect();
     motions.dedup();
-    motions
-        .into_iter()
-        .filter_map(|m| {
-            let own: Vec<&Break> = (breaks.iter())
-                .filter(|b| b.motion == m && which(b))
-                .collect();
-            let worst = own.iter().map(|b| b.order).min()?;
-            let what = quantity(worst).word();
-            let mut times: Vec<String> = (own.iter().take(MAX_NAMED))
-                .map(|b| format!("{} (by {:.6})", b.at, b.by))
-                .collect();
-            if own.len() > MAX_NAMED {
-                times.push(format!("{} more times", own.len() - MAX_NAMED));
-            }
-            let times = times.join(", ");
-            Some((m, format!("the {what} it prescribes jumps at time {times}")))
-        })
-        .collect()
+    let of = |m: u32| {
+        let own = breaks.iter().filter(|b| b.motion == m && which(b));
+        let worst = own.clone().map(|b| b.order).min()?;
+        Some((m, quantity(worst), own.map(|b| (b.at, b.by)).collect()))
+    };
+    motions.into_iter().filter_map(of).collect()
 }

@@ -3,9 +3,9 @@
 //! Directions satisfy all rows to first order, and are combined so that each has an unknown of its
 //! own: as few parts as can be had cheaply move in each.
 
+use crate::analysis::direction::Axis;
+use crate::analysis::quantity::point;
 use crate::analysis::start::assemble;
-use crate::analysis::start::direction::Axis;
-use crate::analysis::start::quantity::point;
 use crate::model::Model;
 use crate::numeric::rank::Rank;
 use crate::scene::configuration::Configured;

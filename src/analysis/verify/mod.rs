@@ -19,11 +19,14 @@ mod words;
 pub use advice::{Advice, Change};
 pub use free::{Free, Moving};
 
+use crate::analysis::direction::Direction;
 use crate::analysis::start::assemble::{self, Assembly};
-use crate::analysis::start::direction::Direction;
 use crate::analysis::start::nearby::Place;
 use crate::analysis::start::{initial_conditions, misalignment, placement, velocities};
+use crate::analysis::warning::{VerificationWarning, Warning};
 use crate::diagnostic::Diagnostic;
+use crate::expr::measures::Measure;
+use crate::expr::program::Input;
 use crate::model::{ElementId, ElementKind, Family, Formula, Level, Model};
 use crate::scene::Scene;
 use crate::scene::build::Options;
@@ -117,12 +120,21 @@ pub struct Verification {
     /// rows that cannot be satisfied
     pub inconsistent: Vec<Diagnostic>,
     /// what else the user should know
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// iterations of the assembly, and the largest change of a coordinate
     pub assembly: (usize, f64),
 }
 
 impl Verification {
+    fn warn(&mut self, warnings: impl IntoIterator<Item = impl Into<Warning>>) {
+        self.warnings.extend(warnings.into_iter().map(Into::into));
+    }
+
+    /// Returns the sentences of its warnings.
+    pub fn warned(&self) -> Vec<String> {
+        self.warnings.iter().map(ToString::to_string).collect()
+    }
+
     /// Names of the rows that depend on others.
     pub fn redundant(&self) -> Vec<&str> {
         self.dependent.iter().map(|d| d.row.as_str()).collect()
@@ -147,7 +159,7 @@ fn skeleton(model: &Model) -> Model {
 
 /// Sets variables that routines compute to zero, as their values are not known; motions that depend
 /// on them keep the place that the dataset shows.
-fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
+fn stand_still(model: &mut Model, warnings: &mut Vec<Warning>) {
     let mut unknown: BTreeSet<u32> = BTreeSet::new();
     for (&id, variable) in &mut model.variables {
         if matches!(variable.function, Formula::User { .. }) {
@@ -157,14 +169,13 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
     }
     let reads = |function: &Formula, unknown: &BTreeSet<u32>| match function {
         Formula::User { .. } => true,
-        Formula::Expression { text, .. } => {
-            let text = text.to_ascii_uppercase().replace(' ', "");
-            let mut calls = text.split("VARVAL(").skip(1);
-            calls.any(|rest| {
-                let id: String = rest.chars().take_while(char::is_ascii_digit).collect();
-                id.parse().is_ok_and(|id| unknown.contains(&id))
+        Formula::Expression { text, .. } => text.expression().is_ok_and(|expr| {
+            let mut inputs = expr.inputs().into_iter();
+            inputs.any(|input| match input {
+                Input::Measure(Measure::Varval, [id, ..]) => unknown.contains(&id),
+                _ => false,
             })
-        }
+        }),
     };
     // variables of such variables
     loop {
@@ -182,28 +193,25 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<String>) {
             motion.function = Formula::text("0");
             motion.level = Level::Velocity;
             (motion.ic_displacement, motion.ic_velocity) = (None, None);
-            warnings.push(format!(
-                "MOTION/{id} is computed by a routine: it is taken to stand still"
-            ));
+            let motion = ElementKind::Motion.id(*id);
+            warnings.push(VerificationWarning::StandsStill(motion).into());
         }
     }
 }
 
 /// Constraints that a routine computes, or whose curve does not stand in the dataset, are counted,
 /// but cannot be among the rows: nobody knows what they hold.
-fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<String>) {
+fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<Warning>) {
     for unknown in unknown_constraints(model) {
         let Unknown {
-            id,
-            equations: n,
-            why,
-            ..
+            id, equations, why, ..
         } = unknown;
-        let plural = if n == 1 { "" } else { "s" };
-        warnings.push(format!(
-            "{id} is counted with {n} equation{plural}, but what it holds is unknown: {why}; \
-             the freedom from the rank is that without it, and up to {n} too large"
-        ));
+        let counted = VerificationWarning::UnknownConstraint {
+            element: id,
+            equations,
+            why,
+        };
+        warnings.push(counted.into());
         model.inactive.insert(id);
     }
 }
@@ -255,14 +263,11 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
         ..Options::default()
     };
     let scene = Scene::compile(&model, &options)?;
-    for d in &scene.warnings {
-        let element = d.element.clone().unwrap_or_default();
-        warnings.push(format!("{element} {}", d.message));
-    }
+    warnings.extend(scene.warnings.iter().cloned().map(Warning::Scene));
     // its assembled position
     let mut found = count(&model, counted, warnings);
     let misaligned = misalignment::misaligned(&scene, &model);
-    found.warnings.extend(misaligned);
+    found.warn(misaligned);
     let mut configuration = Configuration::new(&scene);
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
@@ -284,9 +289,9 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     if let Err(contradictions) = velocities::velocities(scene, &model, 0.0, &q, &x) {
         found.inconsistent = contradictions;
     }
-    found.warnings.extend(assembly.warnings.iter().cloned());
+    found.warn(assembly.warnings.iter().cloned());
     let unmet = initial_conditions::unmet(scene, &[], &starts, 0.0, &q, &x);
-    found.warnings.extend(unmet);
+    found.warn(unmet);
     found.examine(scene, &model, &assembly, (&q, &x));
     Ok(found)
 }
@@ -295,7 +300,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
 fn count(
     model: &Model,
     counted: Vec<(String, usize, usize)>,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 ) -> Verification {
     let moving = |kind: ElementKind| {
         let bodies = model.bodies().filter(|(id, _)| id.kind == kind);
@@ -329,22 +334,15 @@ impl Verification {
         self.freedom_nearby = Some(assembly.freedom);
         let numbers = assemble::numbers(scene, 0.0, q, &vec![0.0; scene.layout.n_v], x);
         let turned = misalignment::turned(scene, model, &numbers);
-        self.warnings.extend(turned);
+        self.warn(turned);
         explain(scene, &numbers, assembly, self);
         self.free = free::motions(scene, model, 0.0, q, x);
         self.advice = advice::advice(scene, &numbers, assembly);
         let massless = massless::massless(scene, model, 0.0, q, x);
-        let dynamic = massless.iter().map(|d| {
-            let element = d.element.as_deref().unwrap_or("the model");
-            format!("{element}: {}; a dynamic simulation needs it", d.message)
-        });
-        self.warnings.extend(dynamic);
-        if assembly.freedom != assembly.freedom_here {
-            self.warnings.push(format!(
-                "at this position {} of the free directions lead nowhere, or to another branch: nearby the freedom is {}",
-                assembly.freedom_here.abs_diff(assembly.freedom),
-                assembly.freedom
-            ));
+        self.warn(massless.into_iter().map(VerificationWarning::Massless));
+        let (here, nearby) = (assembly.freedom_here, assembly.freedom);
+        if here != nearby {
+            self.warn([VerificationWarning::FreedomNearby { here, nearby }]);
         }
     }
 }

@@ -4,6 +4,7 @@
 use crate::analysis::start::{assemble, initial_conditions, misalignment, placement, velocities};
 use crate::analysis::system::System;
 use crate::analysis::verify::start;
+use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Family, Model};
 use crate::scene::build::{Options, unknown_names};
@@ -47,7 +48,7 @@ pub struct Outline {
     /// "mass matrix" or "articulated bodies"
     pub elimination: &'static str,
     /// what else the user should know
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Returns the kinds of elements that a model may hold without being solved, where only its
@@ -70,7 +71,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     let scene = Scene::compile(model, &options)?;
     let mut configuration = Configuration::new(&scene);
     let mut out = Outline {
-        warnings: misalignment::misaligned(&scene, model),
+        warnings: warnings(misalignment::misaligned(&scene, model)),
         ..Outline::default()
     };
     for d in &scene.warnings {
@@ -90,7 +91,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     out.warnings.extend(assembly.warnings.iter().cloned());
     let numbers = assemble::numbers(here, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
     let turned = misalignment::turned(here, model, &numbers);
-    out.warnings.extend(turned);
+    out.warnings.extend(warnings(turned));
     for r in &assembly.redundant {
         let on: Vec<String> = (r.combination.iter().take(4))
             .map(|c| row_name(&scene.rows[c.0]))
@@ -170,4 +171,8 @@ fn forest(scene: &Scene, out: &mut Outline) {
             coordinates,
         });
     }
+}
+
+fn warnings(of_assembly: Vec<AssemblyWarning>) -> Vec<Warning> {
+    of_assembly.into_iter().map(Warning::from).collect()
 }

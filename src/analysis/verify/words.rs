@@ -1,6 +1,6 @@
 //! The axes in which reactions are told.
 
-use crate::analysis::start::direction::SAME_DIRECTION;
+use crate::analysis::direction::SAME_DIRECTION;
 use crate::scene::equations::Equations;
 use crate::space::Mat3;
 

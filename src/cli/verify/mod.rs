@@ -126,6 +126,6 @@ fn as_json(v: &Verification) -> Value {
         "advice": v.advice.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "free": free,
         "assembly": { "iterations": v.assembly.0, "moved": v.assembly.1 },
-        "warnings": v.warnings,
+        "warnings": v.warned(),
     })
 }

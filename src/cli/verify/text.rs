@@ -172,7 +172,7 @@ fn groups<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<(&T, Vec<&T>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::start::direction::{Axis, Direction};
+    use crate::analysis::direction::{Axis, Direction};
     use crate::analysis::verify::Change;
 
     fn dependent(k: usize, fixed_by: &[&str]) -> Dependent {

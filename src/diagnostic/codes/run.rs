@@ -126,4 +126,29 @@ begin to hold. The run goes on; reactions may jump there.",
         summary: "a constraint that a routine computes, or whose curve is not in the dataset",
         explanation: "`cognate verify` counts its equations, but cannot tell which motions it forbids: the freedom from the rank is without it.",
     },
+    Code {
+        name: "wrong_way_round",
+        summary: "a joint is assembled with its z axes pointing against each other",
+        explanation: "The joint holds either way. Turn one of its markers by 180 degrees, or the parts, if the other way is meant.",
+    },
+    Code {
+        name: "nothing_to_simulate",
+        summary: "a SIMULATE command ends before it begins",
+        explanation: "The clock shows its end already: END = is a time, DURATION = counts from now.",
+    },
+    Code {
+        name: "reads_zero",
+        summary: "a function reads something of what is left out",
+        explanation: "Left-out elements exert nothing and have no place: functions read zero of them. The message names the function and what it reads.",
+    },
+    Code {
+        name: "creeping_friction",
+        summary: "friction in a joint that creeps where it should stick",
+        explanation: "Below the stiction velocity the friction is proportional to the velocity: what should stick creeps, and at rest there is no friction.",
+    },
+    Code {
+        name: "convex_hull",
+        summary: "a contact takes the convex hull of a shell",
+        explanation: "Solids of contacts are convex. Hollows of the shell are filled; the message says how far it stands out of the hull.",
+    },
 ];

@@ -32,8 +32,6 @@ const PREFERENCE: f64 = 3.0;
 /// Least of what rows determine beyond each other, as a part of the least among better ones, below
 /// which they are exchanged.
 const WORTH_EXCHANGING: f64 = 0.3;
-/// Coordinates that a sentence names, at most.
-const MAX_NAMED: usize = 4;
 
 /// Returns how many states are kept to find positions at which rows become dependent: the cost of
 /// one grows with the cube of the number of velocities.
@@ -248,17 +246,4 @@ fn place(scene: &Scene, numbers: &[f64], touched: &[bool]) -> Vec<(String, f64)>
         .collect();
     all.sort_by_key(|c| c.0);
     all.into_iter().map(|(_, name, x)| (name, x)).collect()
-}
-
-/// Writes a place: "JOINT/1 angle = 1.571, JOINT/2 angle = 0"
-pub fn words(place: &[(String, f64)]) -> String {
-    let some = place.iter().take(MAX_NAMED);
-    let some: Vec<String> = some
-        .map(|(name, x)| {
-            let x = if x.abs() < 1e-12 { 0.0 } else { *x };
-            format!("{name} = {}", crate::analysis::start::quantity::short(x))
-        })
-        .collect();
-    let more = if place.len() > MAX_NAMED { ", …" } else { "" };
-    format!("{}{more}", some.join(", "))
 }

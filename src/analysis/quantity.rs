@@ -28,6 +28,22 @@ pub(in crate::analysis) fn short(x: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_string()
 }
 
+/// Writes values of coordinates, the first four: "JOINT/1 angle = 1.571, JOINT/2 angle = 0".
+pub(in crate::analysis) fn place(coordinates: &[(String, f64)]) -> String {
+    const SHOWN: usize = 4;
+    let rounded = |x: f64| if x.abs() < 1e-12 { 0.0 } else { x };
+    let some = coordinates.iter().take(SHOWN);
+    let some: Vec<String> = some
+        .map(|(name, x)| format!("{name} = {}", short(rounded(*x))))
+        .collect();
+    let more = if coordinates.len() > SHOWN {
+        ", …"
+    } else {
+        ""
+    };
+    format!("{}{more}", some.join(", "))
+}
+
 /// Writes the three components of a vector with four decimals each.
 pub(in crate::analysis) fn point(p: Vec3<f64>) -> String {
     let largest = p.0.iter().fold(0.0, |m: f64, x| m.max(x.abs()));

@@ -1,0 +1,176 @@
+//! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
+
+use crate::analysis::quantity::place;
+use crate::diagnostic::Diagnostic;
+use crate::model::ElementKind;
+use crate::results::{Quantity, RankChange, RowChange};
+use crate::scene::equations::Unsupported;
+use std::fmt;
+
+/// Something that a simulation met.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunWarning {
+    /// a dynamic simulation of a mechanism without freedom
+    NoFreedom,
+    /// a simulation would end before it begins
+    NothingToSimulate {
+        /// text of the command
+        command: String,
+        /// the clock
+        now: f64,
+    },
+    /// what a motion prescribes jumps
+    MotionJumps {
+        /// user's number of the MOTION
+        motion: u32,
+        /// the lowest derivative that jumps
+        quantity: Quantity,
+        /// times, and by how much
+        jumps: Vec<(f64, f64)>,
+    },
+    /// a method cannot take the model, for this reason; RADAU5 takes its place
+    MethodReplaced(Diagnostic),
+    /// a column has no value at any time
+    EmptyColumn(Unsupported),
+    /// a column has no value at some time
+    Gap {
+        /// its name
+        column: String,
+        /// the first such time
+        at: f64,
+    },
+    /// the rank of the constraints changes
+    Rank(RankChange),
+    /// an equilibrium would be left after a small push
+    Unstable {
+        /// when
+        at: f64,
+        /// number of directions in which it leaves
+        directions: usize,
+    },
+    /// a smaller error is asked for than rounding permits
+    BelowRounding {
+        /// the error
+        error: f64,
+        /// number of steps that it was asked for in vain
+        below: usize,
+        /// number of all steps
+        steps: usize,
+    },
+}
+
+impl RunWarning {
+    /// Returns its stable short name.
+    pub(super) fn code(&self) -> &'static str {
+        match self {
+            RunWarning::NoFreedom => "freedom",
+            RunWarning::NothingToSimulate { .. } => "nothing_to_simulate",
+            RunWarning::MotionJumps { .. } => "motion_jumps",
+            RunWarning::MethodReplaced(_) => "method",
+            RunWarning::EmptyColumn(_) => "unavailable",
+            RunWarning::Gap { .. } => "no_finite_value",
+            RunWarning::Rank(_) => "rank_change",
+            RunWarning::Unstable { .. } => "unstable_equilibrium",
+            RunWarning::BelowRounding { .. } => "below_rounding",
+        }
+    }
+
+    /// Returns the element or column that it is about.
+    pub(super) fn element(&self) -> Option<String> {
+        match self {
+            RunWarning::MotionJumps { motion, .. } => {
+                Some(ElementKind::Motion.id(*motion).to_string())
+            }
+            RunWarning::MethodReplaced(d) => d.element.clone(),
+            RunWarning::EmptyColumn(unsupported) => Some(unsupported.asked_by.clone()),
+            RunWarning::Gap { column, .. } => Some(column.clone()),
+            RunWarning::NoFreedom
+            | RunWarning::NothingToSimulate { .. }
+            | RunWarning::Rank(_)
+            | RunWarning::Unstable { .. }
+            | RunWarning::BelowRounding { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for RunWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RunWarning::NoFreedom => {
+                f.write_str("the mechanism has no freedom: it is moved by its motions alone")
+            }
+            RunWarning::NothingToSimulate { command, now } => write!(
+                f,
+                "{command}: the clock shows {now} already, there is nothing to simulate"
+            ),
+            RunWarning::MotionJumps {
+                motion,
+                quantity,
+                jumps: all,
+            } => {
+                let then = match quantity {
+                    Quantity::Displacement | Quantity::Velocity => "it runs piecewise",
+                    Quantity::Acceleration => "forces jump there",
+                };
+                write!(f, "MOTION/{motion}: {}; {then}", jumps(*quantity, all))
+            }
+            RunWarning::MethodReplaced(d) => write!(f, "{}: RADAU5 takes its place", d.message),
+            RunWarning::EmptyColumn(unsupported) => unsupported.fmt(f),
+            RunWarning::Gap { column, at } => {
+                write!(f, "{column} has no finite value at time {at}")
+            }
+            RunWarning::Rank(change) => of_rank(change, f),
+            RunWarning::Unstable { at, directions } => {
+                let plural = if *directions == 1 { "" } else { "s" };
+                write!(
+                    f,
+                    "the equilibrium at time {at} is unstable in {directions} direction{plural}"
+                )
+            }
+            RunWarning::BelowRounding {
+                error,
+                below,
+                steps,
+            } => write!(
+                f,
+                "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} \
+                 steps, which are as exact as rounding permits"
+            ),
+        }
+    }
+}
+
+/// Most times that a sentence names.
+const MOST_TIMES: usize = 5;
+
+/// Writes what a motion prescribes that jumps, and when.
+pub fn jumps(quantity: Quantity, all: &[(f64, f64)]) -> String {
+    let shown = all.iter().take(MOST_TIMES);
+    let mut times: Vec<String> = shown.map(|(at, by)| format!("{at} (by {by:.6})")).collect();
+    if all.len() > MOST_TIMES {
+        times.push(format!("{} more times", all.len() - MOST_TIMES));
+    }
+    let (what, times) = (quantity.word(), times.join(", "));
+    format!("the {what} it prescribes jumps at time {times}")
+}
+
+/// Writes when and where the rank of the constraints changes.
+fn of_rank(change: &RankChange, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let (time, rows) = (change.time, change.rows.join(", "));
+    match change.change {
+        RowChange::Passes => write!(
+            f,
+            "at time {time:.9} the rank of the constraints falls in passing: \
+             {rows} depends on others where {}",
+            place(&change.place)
+        ),
+        RowChange::Restored => write!(
+            f,
+            "at time {time:.9} {rows} no longer follows from the others; it is kept from there"
+        ),
+        RowChange::Exchanged => write!(
+            f,
+            "at time {time:.9} other rows are kept: {rows} in place of what they make superfluous"
+        ),
+    }
+}
