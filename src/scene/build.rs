@@ -529,7 +529,7 @@ impl<'m> Builder<'m> {
                 continue;
             }
             if let Some(offence) = offence(&self.scene, motion.formula, Allowed::Time) {
-                let what = format!("its function reads {}: {}", offence.what, offence.why);
+                let what = offence.to_string();
                 c.errors.push(
                     Diagnostic::error("motion_reads", what)
                         .element(ElementKind::Motion.id(motion.id))

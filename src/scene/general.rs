@@ -36,7 +36,7 @@ impl Builder<'_> {
             }
             if let Some(offence) = offence(&self.scene, formula, Allowed::Places) {
                 c.errors.push(
-                    Diagnostic::error("gcon_reads", format!("its function reads {}: {}", offence.what, offence.why))
+                    Diagnostic::error("gcon_reads", offence.to_string())
                         .element(name)
                         .help("a GCON relates places: displacements and angles of markers, TIME, and VARIABLEs of these"),
                 );

@@ -7,6 +7,7 @@
 use super::{Entry, Scene};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
+use std::fmt;
 
 /// What a function may read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,13 +18,79 @@ pub(super) enum Allowed {
     Places,
 }
 
-/// What a function reads that it may not.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Something that a function reads although it may not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Offence {
-    /// "DX(1,2)", or "DX(1,2) (in VARIABLE/7)"
-    pub what: String,
-    /// why that is none of what is allowed
-    pub why: &'static str,
+    /// what is read
+    input: Input,
+    /// user's number of the VARIABLE that reads it, where it is not the function itself
+    variable: Option<u32>,
+    /// why it may not be read
+    why: Refusal,
+}
+
+/// Why a function may not read an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Refusal {
+    /// a VARIABLE that depends on itself
+    VariableLoop,
+    /// a VARIABLE that does not exist
+    NoVariable,
+    /// an equation without a rate
+    NoRate,
+    /// an entry of an ARRAY that depends on itself
+    Loop,
+    /// an entry of an ARRAY that is no number
+    NoNumber,
+    /// a delayed value, which has no rates
+    Delayed,
+    /// a place that no function of the model is
+    NoFunction,
+    /// the place of a floating marker
+    FloatingMarker,
+    /// a place
+    Place,
+    /// a velocity
+    Velocity,
+    /// an acceleration
+    Acceleration,
+    /// a force
+    Force,
+    /// a state
+    State,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Refusal::VariableLoop => "its VARIABLE depends on itself",
+            Refusal::NoVariable => "there is no such VARIABLE",
+            Refusal::NoRate => "its equation does not tell its rate",
+            Refusal::Loop => "it depends on itself",
+            Refusal::NoNumber => "it is no number of an ARRAY with NUMBERS",
+            Refusal::Delayed => "a delayed value has no rates",
+            Refusal::NoFunction => "it is no function of the model",
+            Refusal::FloatingMarker => {
+                "it depends on a floating marker, whose place other constraints find"
+            }
+            Refusal::Place => "it depends on where the parts are",
+            Refusal::Velocity => "it depends on how the parts move",
+            Refusal::Acceleration => "it depends on accelerations",
+            Refusal::Force => "it depends on forces",
+            Refusal::State => "it is a state with equations of its own",
+        })
+    }
+}
+
+/// Writes "its function reads DX(1,2) (in VARIABLE/7): it depends on where the parts are".
+impl fmt::Display for Offence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "its function reads {}", input_name(self.input))?;
+        if let Some(id) = self.variable {
+            write!(f, " (in VARIABLE/{id})")?;
+        }
+        write!(f, ": {}", self.why)
+    }
 }
 
 /// The first thing that a formula reads although it may not.
@@ -39,28 +106,23 @@ fn search(
 ) -> Option<Offence> {
     let f = scene.formulas.get(formula)?;
     open.push(formula);
-    let found = f.program.inputs().iter().find_map(|input| {
+    let found = f.program.inputs().iter().find_map(|&input| {
+        let offence = |why| Offence {
+            input,
+            variable: None,
+            why,
+        };
         if let Input::Measure(Measure::Varval, [id, ..]) = input {
-            let name = input_name(*input);
-            return match scene.variables.get(id) {
-                Some(&v) if open.contains(&v) => Some(Offence {
-                    what: name,
-                    why: "its VARIABLE depends on itself",
-                }),
-                Some(&v) => search(scene, v, allowed, open).map(|o| within(o, *id)),
-                None => Some(Offence {
-                    what: name,
-                    why: "there is no such VARIABLE",
-                }),
+            return match scene.variables.get(&id) {
+                Some(&v) if open.contains(&v) => Some(offence(Refusal::VariableLoop)),
+                Some(&v) => search(scene, v, allowed, open).map(|o| o.within(id)),
+                None => Some(offence(Refusal::NoVariable)),
             };
         }
-        if let (Some(equation), Allowed::Time) = (state(scene, *input), allowed) {
+        if let (Some(equation), Allowed::Time) = (state(scene, input), allowed) {
             let d = &scene.differentials[equation];
             if d.implicit || d.state.is_none() {
-                return Some(Offence {
-                    what: input_name(*input),
-                    why: "its equation does not tell its rate",
-                });
+                return Some(offence(Refusal::NoRate));
             }
             // a rate may depend on the state itself
             if open.contains(&d.formula) {
@@ -68,21 +130,14 @@ fn search(
             }
             return search(scene, d.formula, allowed, open);
         }
-        if let Some(Entry::Formula(f)) = entry(scene, *input) {
+        if let Some(Entry::Formula(f)) = entry(scene, input) {
             return if open.contains(&f) {
-                Some(Offence {
-                    what: input_name(*input),
-                    why: "it depends on itself",
-                })
+                Some(offence(Refusal::Loop))
             } else {
                 search(scene, f, allowed, open)
             };
         }
-        let why = refused(scene, *input, allowed)?;
-        Some(Offence {
-            what: input_name(*input),
-            why,
-        })
+        refused(scene, input, allowed).map(offence)
     });
     open.pop();
     found
@@ -108,29 +163,29 @@ fn state(scene: &Scene, input: Input) -> Option<usize> {
     }
 }
 
-fn within(offence: Offence, variable: u32) -> Offence {
-    if offence.what.ends_with(')') && offence.what.contains("(in VARIABLE") {
-        return offence;
-    }
-    Offence {
-        what: format!("{} (in VARIABLE/{variable})", offence.what),
-        ..offence
+impl Offence {
+    /// Names the VARIABLE that reads it, unless a deeper one does.
+    fn within(self, variable: u32) -> Self {
+        Self {
+            variable: self.variable.or(Some(variable)),
+            ..self
+        }
     }
 }
 
 /// Why an input may not be read; `None`: it may.
-fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<&'static str> {
+fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<Refusal> {
     let measure = match input {
         Input::Time | Input::Mode => return None,
         Input::Measure(measure, _) => {
             if measure == Measure::Aryval {
                 let known = matches!(entry(scene, input), Some(Entry::Number(_)));
-                return (!known).then_some("it is no number of an ARRAY with NUMBERS");
+                return (!known).then_some(Refusal::NoNumber);
             }
             measure
         }
-        Input::Delayed(_) => return Some("a delayed value has no rates"),
-        Input::Slot(_) => return Some("it is no function of the model"),
+        Input::Delayed(_) => return Some(Refusal::Delayed),
+        Input::Slot(_) => return Some(Refusal::NoFunction),
     };
     if let (Input::Measure(m, ids), Allowed::Places) = (input, allowed) {
         let first = if m == Measure::Orient { 2 } else { 0 };
@@ -138,16 +193,16 @@ fn refused(scene: &Scene, input: Input, allowed: Allowed) -> Option<&'static str
             .iter()
             .any(|id| scene.floating.contains_key(id))
         {
-            return Some("it depends on a floating marker, whose place other constraints find");
+            return Some(Refusal::FloatingMarker);
         }
     }
     Some(match (measure.row().family, allowed) {
         (Family::Displacement, Allowed::Places) => return None,
-        (Family::Displacement, Allowed::Time) => "it depends on where the parts are",
-        (Family::Velocity, _) => "it depends on how the parts move",
-        (Family::Acceleration, _) => "it depends on accelerations",
-        (Family::GenericForce | Family::ElementForce, _) => "it depends on forces",
-        (Family::System, _) => "it is a state with equations of its own",
+        (Family::Displacement, Allowed::Time) => Refusal::Place,
+        (Family::Velocity, _) => Refusal::Velocity,
+        (Family::Acceleration, _) => Refusal::Acceleration,
+        (Family::GenericForce | Family::ElementForce, _) => Refusal::Force,
+        (Family::System, _) => Refusal::State,
     })
 }
 

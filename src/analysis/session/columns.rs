@@ -1,7 +1,7 @@
 //! What a run reports: one formula of an instant per column.
 
 use crate::expr::measures::Measure;
-use crate::expr::program::{Program, Work};
+use crate::expr::program::{Input, Program, Work};
 use crate::model::{ElementId, ElementKind, Formula, Model, Part, Place, RequestKind, Text};
 use crate::physics::kinematic;
 use crate::results::{Component, Entity, Run, Units};
@@ -38,15 +38,9 @@ pub struct Columns {
 }
 
 /// The unit of what an expression yields, where it is a single measure.
-fn unit_of(text: &str, units: &Units) -> String {
-    let Some((name, rest)) = text.split_once('(') else {
-        return String::new();
-    };
-    let single = rest
-        .trim_end()
-        .strip_suffix(')')
-        .is_some_and(|inner| !inner.contains(['(', ')']));
-    let Some(measure) = Measure::by_name(name.trim()).filter(|_| single) else {
+fn unit_of(text: &Text, units: &Units) -> String {
+    let input = text.ast().ok().and_then(|ast| ast.input(ast.root));
+    let Some(Input::Measure(measure, [_, _, component, _])) = input else {
         return String::new();
     };
     let (l, t, f, a) = (&units.length, &units.time, &units.force, &units.angle);
@@ -60,9 +54,9 @@ fn unit_of(text: &str, units: &Units) -> String {
         "force" => f.clone(),
         "torque" => format!("{f}-{l}"),
         // NAME(id, jflag, comp, rm): components 1 to 4 are of the force, 5 to 8 of the torque
-        "force or torque" => match rest.split(',').nth(2).and_then(|c| c.trim().parse().ok()) {
-            Some(1..=4u32) => f.clone(),
-            Some(5..=8) => format!("{f}-{l}"),
+        "force or torque" => match component {
+            1..=4 => f.clone(),
+            5..=8 => format!("{f}-{l}"),
             _ => String::new(),
         },
         _ => String::new(),
@@ -209,9 +203,10 @@ impl Columns {
     }
 
     fn text(&mut self, run: &mut Run, name: String, text: &str, units: &Units) -> usize {
-        let k = self.extra.len();
-        self.extra.push((name.clone(), text.into()));
-        self.push(run, name, unit_of(text, units), What::Text(k))
+        let (k, text) = (self.extra.len(), Text::from(text));
+        let unit = unit_of(&text, units);
+        self.extra.push((name.clone(), text));
+        self.push(run, name, unit, What::Text(k))
     }
 
     /// Positions of all parts, then velocities, then accelerations.

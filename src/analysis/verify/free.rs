@@ -6,7 +6,7 @@
 use crate::analysis::direction::Axis;
 use crate::analysis::quantity::point;
 use crate::analysis::start::assemble;
-use crate::model::Model;
+use crate::model::{ElementId, Model};
 use crate::numeric::rank::Rank;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
@@ -22,8 +22,8 @@ const MAX_NAMED: usize = 8;
 /// The motion of a part in a free direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moving {
-    /// "PART/3"
-    pub part: String,
+    /// the PART or POINT_MASS
+    pub part: ElementId,
     /// "slides along its Z"
     pub words: String,
     /// angular velocity, ground axes
@@ -121,7 +121,7 @@ fn moving_parts(
     parts
         .into_iter()
         .map(|(k, p, state, angular, linear, _)| Moving {
-            part: scene.parts[k].id.to_string(),
+            part: scene.parts[k].id,
             words: how(scene, p, &state, angular, linear),
             angular: angular.0,
             linear: linear.0,
@@ -135,7 +135,7 @@ fn sentence(first: &Moving, rest: &[Moving]) -> String {
     let mut text = format!("{} {}", first.part, first.words);
     if !rest.is_empty() {
         let some = rest.iter().take(MAX_NAMED);
-        let names: Vec<&str> = some.map(|p| p.part.as_str()).collect();
+        let names: Vec<String> = some.map(|p| p.part.to_string()).collect();
         text += &format!("; with it {}", names.join(", "));
         if rest.len() > MAX_NAMED {
             text += &format!(" and {} more", rest.len() - MAX_NAMED);

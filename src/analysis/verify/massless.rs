@@ -15,7 +15,7 @@
 use super::free::{self, Free, Moving};
 use crate::analysis::start::assemble;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Model, Part};
+use crate::model::Model;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
@@ -128,7 +128,7 @@ fn twists(scene: Configured<'_>, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec
 fn element(free: &Free) -> String {
     free.parts
         .first()
-        .map_or_else(|| free.unknown.clone(), |p| p.part.clone())
+        .map_or_else(|| free.unknown.clone(), |p| p.part.to_string())
 }
 
 fn said(model: &Model, free: &Free) -> Diagnostic {
@@ -145,13 +145,7 @@ fn said(model: &Model, free: &Free) -> Diagnostic {
 
 /// What a part would need to resist its motion.
 fn lacking(model: &Model, part: &Moving) -> &'static str {
-    let id = part
-        .part
-        .rsplit('/')
-        .next()
-        .and_then(|n| n.parse().ok())
-        .unwrap_or(0);
-    let data: Option<&Part> = model.parts.get(&id).or_else(|| model.point_masses.get(&id));
+    let data = model.body(part.part);
     match data {
         Some(data) if data.mass > 0.0 => "inertia (IP)",
         _ if part.angular == [0.0; 3] => "MASS",

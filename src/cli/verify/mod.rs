@@ -99,7 +99,7 @@ fn as_json(v: &Verification) -> Value {
         .map(|f| {
             let parts: Vec<Value> = (f.parts.iter())
                 .map(|p| {
-                    json!({ "part": p.part, "words": p.words, "angular": p.angular, "linear": p.linear, "at": p.at })
+                    json!({ "part": p.part.to_string(), "words": p.words, "angular": p.angular, "linear": p.linear, "at": p.at })
                 })
                 .collect();
             json!({ "unknown": f.unknown, "words": f.words, "parts": parts })
