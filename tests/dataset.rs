@@ -2,6 +2,7 @@
 #![cfg(feature = "solver")]
 
 use cognate::dataset::command::{Command, Script, SimulationKind};
+use cognate::dataset::statement::STATEMENTS;
 use cognate::dataset::{self, Reading};
 use cognate::diagnostic::Severity;
 use cognate::model::*;
@@ -880,5 +881,13 @@ fn deep_nesting_and_long_lines_are_read_in_reasonable_time() {
         let r = dataset::read_text(&text);
         assert!(!r.diagnostics.is_empty());
         let _ = Script::from_text(&text);
+    }
+}
+
+#[test]
+fn every_kind_of_element_has_one_statement() {
+    for &kind in ElementKind::ALL {
+        let rows = STATEMENTS.iter().filter(|row| row.kind() == Some(kind));
+        assert_eq!(rows.count(), 1, "{kind}");
     }
 }

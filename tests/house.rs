@@ -105,3 +105,41 @@ fn places_of_numbers_are_known_to_the_layout_alone() {
     }
     assert!(offences.is_empty(), "{}", offences.join("\n"));
 }
+
+/// Keywords of elements stand in the tables; everywhere else an element is an `ElementId`, which
+/// prints itself: no text is compared to find out which element is meant.
+#[cfg(feature = "solver")]
+#[test]
+fn keywords_of_elements_are_compared_nowhere() {
+    use cognate::model::ElementKind;
+    let compared = |line: &str, keyword: &str| {
+        let word = format!("\"{keyword}\"");
+        let begins = ["", "/"].map(|end| format!("starts_with(\"{keyword}{end}\")"));
+        let begins = begins.iter().any(|begins| line.contains(begins));
+        let pairs = ["== ", "!= ", "| "]
+            .iter()
+            .any(|before| line.contains(&format!("{before}{word}")));
+        pairs || line.contains(&format!("{word} =>")) || begins
+    };
+    assert!(compared("if force.keyword == \"NFORCE\" {", "NFORCE"));
+    assert!(compared("\"VFORCE\" => 0..3,", "VFORCE"));
+    assert!(!compared(
+        "names(ElementKind::Joint, [(\"JOINT\", n)])",
+        "JOINT"
+    ));
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let tables = ["model/element.rs", "dataset/statement.rs"].map(|table| src.join(table));
+    let mut offences = Vec::new();
+    for path in sources(&src).iter().filter(|path| !tables.contains(path)) {
+        let text = fs::read_to_string(path).expect("a readable source");
+        for (k, line) in text.lines().enumerate() {
+            let compares = ElementKind::ALL
+                .iter()
+                .any(|kind| compared(line, kind.keyword()));
+            if compares || line.contains("(String, u32)") {
+                offences.push(format!("{}:{}: {}", path.display(), k + 1, line.trim()));
+            }
+        }
+    }
+    assert!(offences.is_empty(), "{}", offences.join("\n"));
+}

@@ -13,6 +13,7 @@ pub mod contacts;
 mod couplers;
 pub mod equations;
 pub mod external_inputs;
+mod force_elements;
 pub mod forces;
 pub mod forest;
 mod formula;
