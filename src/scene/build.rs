@@ -3,27 +3,19 @@
 use super::compile::{Compiler, NamedTie};
 use super::contacts::Shell;
 use super::equations::Unsupported;
-use super::external_inputs::{ExternalInput, HookKind, HookName, SceneDelay, SceneHook};
+use super::external_inputs::HookName;
+use super::functions::Owner;
 use super::left_out::LeftOut;
 use super::loops::{self, Key};
-use super::reads::{Allowed, offence};
 use super::sweep::Freedom;
-use super::{
-    ConstraintElement, Counted, Entry, Formula, LinkMotion, Row, RowKind, Scene, SceneMotion,
-    Source,
-};
+use super::{ConstraintElement, Counted, Entry, LinkMotion, RowKind, Scene, Source};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::interpolation::Bindings;
-use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
-use crate::model::{
-    ArrayKind, Driven, ElementId, ElementKind, Formula as ModelFormula, Level, Model, RequestKind,
-    Text,
-};
-use crate::physics::joint::{Displacements, Tie};
-use crate::physics::row::Law;
+use crate::expr::program::Input;
+use crate::model::{ArrayKind, ElementKind, Model, Text};
+use crate::physics::joint::Tie;
 use crate::space::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::sync::Arc;
 
 /// How a scene is made.
@@ -51,33 +43,6 @@ pub struct Options {
     pub changing: BTreeSet<u32>,
     /// what the files of GRAPHICS hold, or why they do not, by the numbers of these
     pub shells: Arc<BTreeMap<u32, Result<Shell, String>>>,
-}
-
-/// Whose function a formula is, and its name in messages.
-#[derive(Clone, Debug)]
-pub(super) struct Owner {
-    /// `None`: it is asked for beside those of the model
-    pub element: Option<ElementId>,
-    /// "SFORCE/3 FUNCTION"
-    pub name: String,
-}
-
-impl Owner {
-    /// Returns the owner of a function of an element; `part` is its argument, or which of several equations it is.
-    pub fn of(element: ElementId, part: impl fmt::Display) -> Self {
-        Self {
-            element: Some(element),
-            name: format!("{element} {part}"),
-        }
-    }
-
-    /// Returns the owner of an expression asked for beside those of the model.
-    pub fn asked(name: &str) -> Self {
-        Self {
-            element: None,
-            name: name.to_string(),
-        }
-    }
 }
 
 impl Scene {
@@ -203,22 +168,13 @@ fn coupled_joints(model: &Model) -> BTreeSet<u32> {
     couplers.chain(gears).collect()
 }
 
-/// What a motion drives, resolved.
-struct Drive {
-    motion: usize,
-    joint: Option<u32>,
-    law: Law,
-    markers: (u32, u32),
-    id: ElementId,
-}
-
 pub(super) struct Builder<'m> {
     pub(super) scene: Scene,
     pub(super) model: &'m Model,
-    bindings: Bindings,
+    pub(super) bindings: Bindings,
     /// splines that cannot be used: told when something asks for one
-    unusable: Vec<Diagnostic>,
-    hooks: &'m [HookName],
+    pub(super) unusable: Vec<Diagnostic>,
+    pub(super) hooks: &'m [HookName],
     pub(super) zero_user: bool,
     pub(super) shells: &'m BTreeMap<u32, Result<Shell, String>>,
 }
@@ -234,303 +190,6 @@ impl<'m> Builder<'m> {
             if let ArrayKind::Ic(numbers) = &array.kind {
                 let numbers = numbers.iter().copied().map(Entry::Number).collect();
                 self.scene.arrays.insert(id, numbers);
-            }
-        }
-    }
-
-    /// Compiles an expression; its index in the scene's formulas.
-    pub(super) fn formula(
-        &mut self,
-        c: &mut Compiler,
-        owner: &Owner,
-        formula: &ModelFormula,
-    ) -> usize {
-        match formula {
-            ModelFormula::Expression { text, .. } => self.compiled(c, owner, text),
-            ModelFormula::User { .. } => self.user(c, owner, formula, 1, &[])[0],
-        }
-    }
-
-    /// A formula that has been compiled; its index.
-    fn push(&mut self, owner: &Owner, text: &str, program: Program, delayed: Vec<usize>) -> usize {
-        self.scene.formulas.push(Formula {
-            element: owner.element,
-            name: owner.name.clone(),
-            text: text.to_string(),
-            program,
-            gradient: None,
-            delayed,
-        });
-        self.scene.formulas.len() - 1
-    }
-
-    fn compiled(&mut self, c: &mut Compiler, owner: &Owner, text: &Text) -> usize {
-        let compiled = match super::formula::compile(text, &self.bindings) {
-            Ok(compiled) => compiled,
-            Err(mut d) => {
-                d.element = Some(owner.name.clone());
-                if d.code == "unknown_element" {
-                    c.errors.append(&mut self.unusable);
-                }
-                c.errors.push(d);
-                // never evaluated: a scene with errors is not made
-                return usize::MAX;
-            }
-        };
-        // all parts of an expression number its delayed values alike
-        let first = self.scene.delays.len();
-        let n = compiled.delays.len();
-        let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(ExternalInput::Delay(first + k)))
-            .collect();
-        for programs in compiled.delays {
-            let [expression, delay, history] =
-                programs.map(|p| self.push(owner, text, p, places.clone()));
-            self.scene.delays.push(SceneDelay {
-                expression,
-                delay,
-                history,
-            });
-        }
-        self.push(owner, text, compiled.program, places)
-    }
-
-    /// A place for a number from outside.
-    pub(super) fn supply(&mut self, what: ExternalInput) -> usize {
-        self.scene.external_inputs.push(what);
-        self.scene.layout.n_external = self.scene.external_inputs.len();
-        self.scene.external_inputs.len() - 1
-    }
-
-    /// `n` numbers that a closure of the user's computes for an element, as formulas; `reads`: what it is given beside its own
-    /// inputs.
-    pub(super) fn user(
-        &mut self,
-        c: &mut Compiler,
-        owner: &Owner,
-        formula: &ModelFormula,
-        n: usize,
-        reads: &[String],
-    ) -> Vec<usize> {
-        self.user_reading(c, owner, formula, n, reads, &[])
-    }
-
-    /// As [`user`](Self::user), for closures that are given values of further formulas as well.
-    pub(super) fn user_reading(
-        &mut self,
-        c: &mut Compiler,
-        owner: &Owner,
-        formula: &ModelFormula,
-        n: usize,
-        reads: &[String],
-        further: &[usize],
-    ) -> Vec<usize> {
-        let ModelFormula::User { constants, .. } = formula else {
-            return vec![self.formula(c, owner, formula); n];
-        };
-        if self.zero_user {
-            return vec![self.compiled(c, owner, &"0".into()); n];
-        }
-        let known = owner.element.and_then(|element| {
-            let mut hooks = self.hooks.iter();
-            let closure = hooks.position(|h| h.stands_for(element, formula));
-            closure.map(|closure| (element, closure))
-        });
-        let Some((element, closure)) = known else {
-            let message = "USER needs a routine that is not part of the dataset";
-            c.errors.push(Diagnostic::error("user_routine", message).element(&owner.name).help(
-                "register a closure for it through the library, switch the element off, or take what USER would compute as zero (--zero-user)",
-            ));
-            return vec![usize::MAX; n];
-        };
-        let texts = self.hooks[closure].inputs.iter().chain(reads);
-        let mut inputs: Vec<usize> = texts
-            .map(|text| self.compiled(c, owner, &text.as_str().into()))
-            .collect();
-        inputs.extend(further);
-        let hook = self.scene.hooks.len();
-        let places: Vec<usize> = (0..n)
-            .map(|k| self.supply(ExternalInput::Hook(hook, k)))
-            .collect();
-        self.scene.hooks.push(SceneHook {
-            kind: HookKind::User { closure, inputs },
-            output_only: element.kind == ElementKind::Request,
-            element,
-            constants: constants.clone(),
-            n,
-            place: places[0],
-        });
-        let text = format!("USER, {}", self.hooks[closure].name);
-        let outside = |place| self.supplied_formula(owner, &text, place);
-        places.into_iter().map(outside).collect()
-    }
-
-    /// A number from outside as a formula.
-    pub(super) fn supplied_formula(&mut self, owner: &Owner, text: &str, place: usize) -> usize {
-        let mut recorder = Recorder::new(Folding::Strict);
-        let value = recorder.input(Input::Delayed(0));
-        self.push(owner, text, recorder.finish(&[value]), vec![place])
-    }
-
-    /// REQUEST, FUNCTION=USER: eight components, where there is a closure for it.
-    fn user_requests(&mut self, c: &mut Compiler) {
-        for (id, request) in self
-            .model
-            .active(ElementKind::Request, &self.model.requests)
-        {
-            let RequestKind::User(user) = &request.kind else {
-                continue;
-            };
-            // one that nobody computes harms nobody
-            let before = c.errors.len();
-            let owner = Owner::of(ElementKind::Request.id(id), "FUNCTION");
-            let all = self.user(c, &owner, user, 8, &[]);
-            if c.errors.len() == before {
-                self.scene.requests.insert(id, all);
-            } else {
-                c.errors.truncate(before);
-            }
-        }
-    }
-
-    fn motions(&mut self, c: &mut Compiler) -> Vec<Drive> {
-        let mut drives = Vec::new();
-        for (id, motion) in self.model.active(ElementKind::Motion, &self.model.motions) {
-            let name = ElementKind::Motion.id(id);
-            // a closure yields the value and its first two derivatives
-            let formula = match &motion.function {
-                user @ ModelFormula::User { .. } => {
-                    let all = self.user(c, &Owner::of(name, "FUNCTION"), user, 3, &[]);
-                    all[0]
-                }
-                text => self.formula(c, &Owner::of(name, "FUNCTION"), text),
-            };
-            let m = self.scene.motions.len();
-            let places = match motion.level {
-                Level::Displacement => 0,
-                Level::Velocity => 1,
-                Level::Acceleration => 2,
-            };
-            let state = (places > 0).then_some(self.scene.layout.n_x);
-            self.scene.layout.n_x += places;
-            self.scene.motions.push(SceneMotion {
-                id,
-                level: motion.level,
-                formula,
-                state,
-                coordinate: None,
-                held: false,
-            });
-            let (joint, turn) = match motion.driven {
-                Driven::JointTranslation(j) => (j, false),
-                Driven::JointRotation(j) => (j, true),
-                Driven::Joint(j) => (
-                    j,
-                    self.model
-                        .joints
-                        .get(&j)
-                        .is_some_and(|j| j.kind.displacements() == Displacements::Rotation),
-                ),
-                Driven::Markers { i, j, component } => {
-                    let law = match component {
-                        0..=2 => Law::Along(component),
-                        _ => Law::BodyAngle(component - 3),
-                    };
-                    drives.push(Drive {
-                        motion: m,
-                        joint: None,
-                        law,
-                        markers: (i, j),
-                        id: name,
-                    });
-                    continue;
-                }
-            };
-            let Some(j) = self.model.joints.get(&joint) else {
-                c.error(name, format!("JOINT/{joint} does not exist"));
-                continue;
-            };
-            let has = j.kind.displacements();
-            let allowed = if turn { has.turns() } else { has.slides() };
-            if !allowed {
-                let what = if turn { "rotation" } else { "translation" };
-                c.error(name, format!("JOINT/{joint} has no {what} to drive: a motion needs a revolute, translational or cylindrical joint"));
-                continue;
-            }
-            let law = if turn { Law::Angle } else { Law::Along(2) };
-            if c.driven.insert((joint, turn), m).is_some() {
-                c.error(name, format!("JOINT/{joint} is driven twice"));
-            }
-            drives.push(Drive {
-                motion: m,
-                joint: Some(joint),
-                law,
-                markers: (j.i, j.j),
-                id: name,
-            });
-        }
-        drives
-    }
-
-    /// Motions that no coordinate took: rows.
-    fn driven_rows(&mut self, c: &mut Compiler, drives: &[Drive]) {
-        for (k, coordinate) in c.coordinates.iter().enumerate() {
-            if let Source::Driven(m) = coordinate.source {
-                self.scene.motions[m].coordinate = Some(k);
-            }
-        }
-        for drive in drives {
-            let id = self.scene.motions[drive.motion].id;
-            let coordinate = self.scene.motions[drive.motion].coordinate;
-            let begins = self.model.motions.get(&id).and_then(|m| m.ic_displacement);
-            let motion = &mut self.scene.motions[drive.motion];
-            motion.held = coordinate.is_none() && motion.state.is_some() && begins.is_none();
-            let first = c.rows.len();
-            let (i, j) = (
-                c.marker(drive.markers.0, drive.id),
-                c.marker(drive.markers.1, drive.id),
-            );
-            if let (None, Some(i), Some(j)) = (coordinate, i, j) {
-                let kind = RowKind::Markers {
-                    law: drive.law,
-                    i,
-                    j,
-                    motion: Some(drive.motion),
-                };
-                c.rows.push(Row {
-                    element: drive.id,
-                    equation: drive.law.name(),
-                    kind,
-                });
-            }
-            let rows = first..c.rows.len();
-            let markers = i.zip(j);
-            c.constraints.push(ConstraintElement {
-                id: drive.id,
-                markers,
-                acts_on: markers.iter().map(|m| m.0).collect(),
-                about: markers.map(|m| m.0),
-                carries: None,
-                rows,
-                coordinate,
-            });
-        }
-    }
-
-    /// Motions are prescribed by time alone.
-    fn timed(&mut self, c: &mut Compiler) {
-        for motion in &self.scene.motions {
-            // a closure tells the derivatives itself
-            if self.scene.computed(motion.formula).is_some() {
-                continue;
-            }
-            if let Some(offence) = offence(&self.scene, motion.formula, Allowed::Time) {
-                let what = offence.to_string();
-                c.errors.push(
-                    Diagnostic::error("motion_reads", what)
-                        .element(ElementKind::Motion.id(motion.id))
-                        .help("a MOTION is prescribed by TIME and states that depend on nothing else; relate places to each other by a COUPLER or GCON, react to what happens by a force"),
-                );
             }
         }
     }

@@ -259,102 +259,48 @@ impl<'m> Compiler<'m> {
             .initial_frame(j)
             .inverse()
             .compose(&self.initial_frame(i)); // X_JI
-        let fitted = fit(chain, &relative);
+        // fit the joint's variables to where the dataset has its markers
+        let mut fitted = fit(chain, &relative);
+        if backward {
+            let turned_back = rotation::to_quaternion(&relative.rotation.transpose());
+            for (motion, fitted) in chain.iter().zip(&mut fitted) {
+                if *motion == Motion::Ball {
+                    fitted.copy_from_slice(&turned_back);
+                }
+            }
+        }
+        // begin at the carrier's marker, on the carrier's link
         let (from, to) = if backward { (i, j) } else { (j, i) };
-        // the carrier's marker, on the carrier's link
-        let carrier = self.markers[from].part;
-        let (mut parent, mut placement) = match carrier {
+        let (mut parent, mut placement) = match self.markers[from].part {
             None => (None, self.markers[from].frame),
             Some(p) => (
                 self.parts[p].link,
                 self.parts[p].frame.compose(&self.markers[from].frame),
             ),
         };
-        // numbered in the order of the links, so that what carries comes first; kept in the order of the joint's table
+        // add a link per motion: numbered in the order of the links, so that what carries comes
+        // first; kept in the order of the joint's table
         let steps: Vec<usize> = if backward {
             (0..chain.len()).rev().collect()
         } else {
             (0..chain.len()).collect()
         };
-        let sign = if backward { -1.0 } else { 1.0 };
         let mut own = vec![Vec::new(); chain.len()];
         for k in steps {
-            let first = self.coordinates.len();
-            let motion = match chain[k] {
-                Motion::QuarterX => {
-                    let quarter = if backward {
-                        quarter_x().transpose()
-                    } else {
-                        quarter_x()
-                    };
-                    placement = placement.compose(&Frame {
-                        rotation: quarter,
-                        position: Vec3::zero(),
-                    });
-                    continue;
-                }
-                Motion::Slide(axis) => LinkMotion::Slide {
-                    axis,
-                    sign,
-                    coordinate: first,
-                },
-                Motion::Turn(axis) => LinkMotion::Turn {
-                    axis,
-                    sign,
-                    coordinate: first,
-                },
-                Motion::Ball => LinkMotion::Ball {
-                    coordinate: first,
-                    quaternion: self.n_q,
-                },
-            };
-            let angular = !matches!(chain[k], Motion::Slide(_));
-            let drive = tie
-                .joint
-                .and_then(|id| self.driven.get(&(id, angular)))
-                .copied();
-            let fixed_axis = matches!(chain[k], Motion::Slide(2) | Motion::Turn(2));
-            for f in 0..chain[k].freedoms() {
-                let name = format!("{} {}", tie.id, variable_name(chain, k, f));
-                let source = match drive {
-                    Some(motion) if fixed_axis => Source::Driven(motion),
-                    _ => {
-                        self.n_v += 1;
-                        Source::Free {
-                            q: self.n_q,
-                            v: self.n_v - 1,
-                        }
-                    }
-                };
-                own[k].push(self.coordinates.len());
-                self.coordinates.push(Coordinate {
-                    initial: if fitted[k].len() == 1 {
-                        Some(fitted[k][0])
-                    } else {
-                        None
-                    },
-                    name,
-                    joint: tie.joint,
-                    angular,
-                    source,
-                    link: 0,
-                });
-                if let (Source::Free { .. }, LinkMotion::Slide { .. } | LinkMotion::Turn { .. }) =
-                    (source, motion)
-                {
-                    self.q.push(fitted[k][0]);
-                    self.n_q += 1;
-                }
-            }
-            if let LinkMotion::Ball { .. } = motion {
-                let backward_turn = relative.rotation.transpose();
-                self.q.extend(if backward {
-                    rotation::to_quaternion(&backward_turn)
+            if chain[k] == Motion::QuarterX {
+                let quarter = if backward {
+                    quarter_x().transpose()
                 } else {
-                    quaternion(&fitted[k])
+                    quarter_x()
+                };
+                placement = placement.compose(&Frame {
+                    rotation: quarter,
+                    position: Vec3::zero(),
                 });
-                self.n_q += 4;
+                continue;
             }
+            let motion = self.link_motion(chain[k], backward);
+            own[k] = self.add_coordinates(tie, chain, k, &fitted[k]);
             parent = self.push_link(parent, placement, motion, &own[k]);
             placement = Frame::identity();
         }
@@ -368,6 +314,70 @@ impl<'m> Compiler<'m> {
         }
         // what is left of the placement (a trailing quarter turn) belongs to the part's frame on the last link
         (parent, placement.compose(&self.markers[to].frame.inverse()))
+    }
+
+    /// Returns the motion of a link whose coordinates come next; backward it is passed from I to J.
+    fn link_motion(&self, motion: Motion, backward: bool) -> LinkMotion {
+        let sign = if backward { -1.0 } else { 1.0 };
+        let coordinate = self.coordinates.len();
+        match motion {
+            Motion::QuarterX => LinkMotion::Rigid,
+            Motion::Slide(axis) => LinkMotion::Slide {
+                axis,
+                sign,
+                coordinate,
+            },
+            Motion::Turn(axis) => LinkMotion::Turn {
+                axis,
+                sign,
+                coordinate,
+            },
+            Motion::Ball => LinkMotion::Ball {
+                coordinate,
+                quaternion: self.n_q,
+            },
+        }
+    }
+
+    /// Adds the coordinates of motion `k` of a tie's chain, driven or free, and the positions of the
+    /// free ones: `fitted`, one number or a quaternion. Returns the indices of the coordinates.
+    fn add_coordinates(
+        &mut self,
+        tie: &NamedTie,
+        chain: &[Motion],
+        k: usize,
+        fitted: &[f64],
+    ) -> Vec<usize> {
+        let angular = !matches!(chain[k], Motion::Slide(_));
+        let fixed_axis = matches!(chain[k], Motion::Slide(2) | Motion::Turn(2));
+        let drive = (tie.joint.filter(|_| fixed_axis))
+            .and_then(|id| self.driven.get(&(id, angular)).copied());
+        let first = self.coordinates.len();
+        for f in 0..chain[k].freedoms() {
+            let source = match drive {
+                Some(motion) => Source::Driven(motion),
+                None => {
+                    self.n_v += 1;
+                    Source::Free {
+                        q: self.n_q,
+                        v: self.n_v - 1,
+                    }
+                }
+            };
+            self.coordinates.push(Coordinate {
+                initial: (fitted.len() == 1).then(|| fitted[0]),
+                name: format!("{} {}", tie.id, variable_name(chain, k, f)),
+                joint: tie.joint,
+                angular,
+                source,
+                link: 0,
+            });
+        }
+        if drive.is_none() {
+            self.q.extend_from_slice(fitted);
+            self.n_q += fitted.len();
+        }
+        (first..self.coordinates.len()).collect()
     }
 
     /// Links for a part that nothing carries: three slides along ground axes and a ball at its centre of mass.
@@ -588,10 +598,6 @@ fn variable_name(chain: &[Motion], k: usize, freedom: usize) -> String {
         Motion::Ball => format!("rotation {}", axis(freedom)),
         Motion::QuarterX => String::new(),
     }
-}
-
-fn quaternion(fitted: &[f64]) -> [f64; 4] {
-    [fitted[0], fitted[1], fitted[2], fitted[3]]
 }
 
 /// Coordinates of a chain that bring it as near as may be to the frame `X_JI`: numbers per motion (a quaternion for a ball).

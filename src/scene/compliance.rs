@@ -1,8 +1,9 @@
 //! FIELD, BEAM and NFORCE of a model as force elements of the scene.
 
-use super::build::{Builder, Owner};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::forces::{ForceElement, ForceLaw};
+use super::functions::Owner;
 use crate::diagnostic::Diagnostic;
 use crate::model::{BeamFormulation, ElementKind};
 use crate::physics::beam::Section;

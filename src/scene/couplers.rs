@@ -12,6 +12,7 @@ use super::{
     ConstraintElement, Displacement, JointVariable, LinkMotion, MarkerOnLink, Row, RowKind, Scene,
     Source, Sum,
 };
+use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, ElementKind, Joint, MarkerOwner};
 use crate::physics::coupler::{Gauge, GearedJoint, gear_factors};
 use crate::physics::joint::{Displacements, Relation, Tie, Unclear};
@@ -21,6 +22,20 @@ use std::f64::consts::TAU;
 
 /// Differences below this are rounding.
 const SAME: f64 = 1e-11;
+
+/// One of the two bodies of a GEAR.
+struct GearBody {
+    /// markers of its joint
+    i: usize,
+    j: usize,
+    /// velocity along z of CV per rate of each of [`GearBody::GAUGES`]
+    factors: [f64; 2],
+}
+
+impl GearBody {
+    /// The variables of a joint that carries a gear.
+    const GAUGES: [Gauge; 2] = [Gauge::Angle(2), Gauge::Distance];
+}
 
 impl Builder<'_> {
     /// Rows for all equations between displacements.
@@ -153,92 +168,102 @@ impl Builder<'_> {
         Some(displacement(&self.scene, gauge, i, j))
     }
 
-    /// GEAR: factors from where CV stands in the carrier.
+    /// Adds the row of a GEAR, with factors from where CV stands in the carrier.
     fn gear(&mut self, c: &mut Compiler, id: u32, joints: [u32; 2], cv: u32) {
         let name = ElementKind::Gear.id(id);
-        let owner = |m: u32| c.model.markers.get(&m).map(|m| m.owner);
-        let carrier = owner(cv);
         let Some(cv_marker) = c.marker(cv, name) else {
             return;
         };
-        let cv_frame = self.in_part(cv);
+        let [first, second] = joints;
+        let Some(first) = self.gear_body(c, name, first, cv) else {
+            return;
+        };
+        let Some(second) = self.gear_body(c, name, second, cv) else {
+            return;
+        };
         let mut terms = Vec::new();
-        let mut bodies = Vec::new();
-        let mut first_j = None;
-        for (joint_id, sign) in joints.into_iter().zip([1.0, -1.0]) {
-            let Some(joint) = active_joint(c, name, joint_id) else {
-                return;
-            };
-            let displacements = joint.kind.displacements();
-            if displacements == Displacements::None {
-                c.error(name, format!("JOINT/{joint_id} cannot carry a gear: it must be revolute, translational or cylindrical"));
-                return;
-            }
-            let (turns, slides) = (displacements.turns(), displacements.slides());
-            if owner(joint.j) != carrier {
-                let on = |o: Option<MarkerOwner>| {
-                    let body = o.and_then(MarkerOwner::body);
-                    body.map_or_else(|| "no part".into(), String::from)
-                };
-                let advice = if owner(joint.i) == carrier {
-                    format!("exchange I and J of JOINT/{joint_id}")
-                } else {
-                    "both joints of a gear must share one carrier, on which CV is fixed".into()
-                };
-                c.errors.push(
-                    crate::diagnostic::Diagnostic::error(
-                        "gear_carrier",
-                        format!(
-                            "J of JOINT/{joint_id} is on {}, but CV (MARKER/{cv}) is on {}: the carrier must own both J markers and CV",
-                            on(owner(joint.j)),
-                            on(carrier)
-                        ),
-                    )
-                    .element(name)
-                    .help(advice),
-                );
-                return;
-            }
-            let (Some(i), Some(j)) = (c.marker(joint.i, name), c.marker(joint.j, name)) else {
-                return;
-            };
-            let geared = GearedJoint {
-                j: self.in_part(joint.j),
-                turns,
-                slides,
-            };
-            let Some([a, b]) = gear_factors(&geared, &cv_frame) else {
-                let why = if slides {
-                    "z of CV is square to the direction of translation"
-                } else {
-                    "z of CV is parallel to the axis of rotation or points at it: it must be tangent to the pitch circle"
-                };
-                c.errors.push(
-                    crate::diagnostic::Diagnostic::error(
-                        "gear_line_of_action",
-                        format!("JOINT/{joint_id} gives CV (MARKER/{cv}) no velocity along its z axis: {why}"),
-                    )
-                    .element(name)
-                    .help("place CV where the pitch circles touch, with z along the common tangent"),
-                );
-                return;
-            };
-            for (factor, gauge) in [(a, Gauge::Angle(2)), (b, Gauge::Distance)] {
+        for (body, sign) in [(&first, 1.0), (&second, -1.0)] {
+            for (factor, gauge) in body.factors.into_iter().zip(GearBody::GAUGES) {
                 if factor != 0.0 {
-                    terms.push((sign * factor, displacement(&self.scene, gauge, i, j)));
+                    let shown = displacement(&self.scene, gauge, body.i, body.j);
+                    terms.push((sign * factor, shown));
                 }
             }
-            bodies.push(i);
-            first_j = first_j.or(Some(j));
         }
-        let bodies = [bodies[0], bodies[1]];
         let sum = Sum {
             terms,
             constant: 0.0,
             held: true,
-            contact: Some((cv_marker, bodies)),
+            contact: Some((cv_marker, [first.i, second.i])),
         };
-        self.relation(name, None, Some(bodies[0]), first_j, sum);
+        self.relation(name, None, Some(first.i), Some(first.j), sum);
+    }
+
+    /// Resolves a geared body by its joint; an error is told where that cannot carry a gear.
+    fn gear_body(
+        &self,
+        c: &mut Compiler,
+        name: ElementId,
+        joint_id: u32,
+        cv: u32,
+    ) -> Option<GearBody> {
+        let joint = active_joint(c, name, joint_id)?;
+        let displacements = joint.kind.displacements();
+        if displacements == Displacements::None {
+            c.error(name, format!("JOINT/{joint_id} cannot carry a gear: it must be revolute, translational or cylindrical"));
+            return None;
+        }
+        let (turns, slides) = (displacements.turns(), displacements.slides());
+        // the carrier owns CV and the J markers of both joints
+        let owner = |m: u32| self.model.markers.get(&m).map(|m| m.owner);
+        let carrier = owner(cv);
+        if owner(joint.j) != carrier {
+            let on = |o: Option<MarkerOwner>| {
+                let body = o.and_then(MarkerOwner::body);
+                body.map_or_else(|| "no part".into(), String::from)
+            };
+            let advice = if owner(joint.i) == carrier {
+                format!("exchange I and J of JOINT/{joint_id}")
+            } else {
+                "both joints of a gear must share one carrier, on which CV is fixed".into()
+            };
+            let what = format!(
+                "J of JOINT/{joint_id} is on {}, but CV (MARKER/{cv}) is on {}: the carrier must own both J markers and CV",
+                on(owner(joint.j)),
+                on(carrier)
+            );
+            c.errors.push(
+                Diagnostic::error("gear_carrier", what)
+                    .element(name)
+                    .help(advice),
+            );
+            return None;
+        }
+        let (i, j) = (c.marker(joint.i, name)?, c.marker(joint.j, name)?);
+        let geared = GearedJoint {
+            j: self.in_part(joint.j),
+            turns,
+            slides,
+        };
+        let Some(factors) = gear_factors(&geared, &self.in_part(cv)) else {
+            let why = if slides {
+                "z of CV is square to the direction of translation"
+            } else {
+                "z of CV is parallel to the axis of rotation or points at it: it must be tangent to the pitch circle"
+            };
+            let what = format!(
+                "JOINT/{joint_id} gives CV (MARKER/{cv}) no velocity along its z axis: {why}"
+            );
+            c.errors.push(
+                Diagnostic::error("gear_line_of_action", what)
+                    .element(name)
+                    .help(
+                        "place CV where the pitch circles touch, with z along the common tangent",
+                    ),
+            );
+            return None;
+        };
+        Some(GearBody { i, j, factors })
     }
 
     /// Frame of a marker in its part, as the dataset has it; the reader has checked that there is one.

@@ -5,9 +5,10 @@
 //! `frictions.rs`. A new kind of element is an arm here that the compiler asks for.
 
 use super::LinkIx;
-use super::build::{Builder, Owner};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::forces::{ForceElement, ForceLaw};
+use super::functions::Owner;
 use crate::model::{ById, COMPONENTS, ElementId, ElementKind, VectorForce};
 use crate::physics::bushing::Bushing;
 use crate::physics::spring_damper::SpringDamper;

@@ -12,10 +12,11 @@
 //! *Reaction*: λ ∂e/∂(twist), in the units of force where e is a length. The reaction of a GCON is what acts on the part of its I marker,
 //! about that marker, and is read as FX(I, J) … with J the other marker that e reads.
 
-use super::build::{Builder, Owner};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::configuration::Configuration;
 use super::equations::Equations;
+use super::functions::Owner;
 use super::reads::{Allowed, offence};
 use super::{ConstraintElement, Entry, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;

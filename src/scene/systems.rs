@@ -10,9 +10,10 @@
 //!
 //! So circles through inputs and outputs, derivatives, statics and messages are those of all formulas.
 
-use super::build::{Builder, Owner};
+use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, SceneSampler, SceneSensor};
+use super::functions::Owner;
 use super::{Entry, Formula, SceneDifferential};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program, Sym};

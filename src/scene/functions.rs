@@ -1,0 +1,195 @@
+//! Functions of the model as formulas of the scene: expressions, and numbers that closures of the
+//! user's compute.
+
+use super::Formula;
+use super::build::Builder;
+use super::compile::Compiler;
+use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook};
+use crate::diagnostic::Diagnostic;
+use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
+use crate::model::{ElementId, ElementKind, Formula as ModelFormula, RequestKind, Text};
+use std::fmt;
+
+/// Whose function a formula is, and its name in messages.
+#[derive(Clone, Debug)]
+pub(super) struct Owner {
+    /// `None`: it is asked for beside those of the model
+    pub element: Option<ElementId>,
+    /// "SFORCE/3 FUNCTION"
+    pub name: String,
+}
+
+impl Owner {
+    /// Returns the owner of a function of an element; `part` is its argument, or which of several equations it is.
+    pub fn of(element: ElementId, part: impl fmt::Display) -> Self {
+        Self {
+            element: Some(element),
+            name: format!("{element} {part}"),
+        }
+    }
+
+    /// Returns the owner of an expression asked for beside those of the model.
+    pub fn asked(name: &str) -> Self {
+        Self {
+            element: None,
+            name: name.to_string(),
+        }
+    }
+}
+
+impl Builder<'_> {
+    /// Compiles an expression; its index in the scene's formulas.
+    pub(super) fn formula(
+        &mut self,
+        c: &mut Compiler,
+        owner: &Owner,
+        formula: &ModelFormula,
+    ) -> usize {
+        match formula {
+            ModelFormula::Expression { text, .. } => self.compiled(c, owner, text),
+            ModelFormula::User { .. } => self.user(c, owner, formula, 1, &[])[0],
+        }
+    }
+
+    /// A formula that has been compiled; its index.
+    fn push(&mut self, owner: &Owner, text: &str, program: Program, delayed: Vec<usize>) -> usize {
+        self.scene.formulas.push(Formula {
+            element: owner.element,
+            name: owner.name.clone(),
+            text: text.to_string(),
+            program,
+            gradient: None,
+            delayed,
+        });
+        self.scene.formulas.len() - 1
+    }
+
+    pub(super) fn compiled(&mut self, c: &mut Compiler, owner: &Owner, text: &Text) -> usize {
+        let compiled = match super::formula::compile(text, &self.bindings) {
+            Ok(compiled) => compiled,
+            Err(mut d) => {
+                d.element = Some(owner.name.clone());
+                if d.code == "unknown_element" {
+                    c.errors.append(&mut self.unusable);
+                }
+                c.errors.push(d);
+                // never evaluated: a scene with errors is not made
+                return usize::MAX;
+            }
+        };
+        // all parts of an expression number its delayed values alike
+        let first = self.scene.delays.len();
+        let n = compiled.delays.len();
+        let places: Vec<usize> = (0..n)
+            .map(|k| self.supply(ExternalInput::Delay(first + k)))
+            .collect();
+        for programs in compiled.delays {
+            let [expression, delay, history] =
+                programs.map(|p| self.push(owner, text, p, places.clone()));
+            self.scene.delays.push(SceneDelay {
+                expression,
+                delay,
+                history,
+            });
+        }
+        self.push(owner, text, compiled.program, places)
+    }
+
+    /// A place for a number from outside.
+    pub(super) fn supply(&mut self, what: ExternalInput) -> usize {
+        self.scene.external_inputs.push(what);
+        self.scene.layout.n_external = self.scene.external_inputs.len();
+        self.scene.external_inputs.len() - 1
+    }
+
+    /// `n` numbers that a closure of the user's computes for an element, as formulas; `reads`: what it is given beside its own
+    /// inputs.
+    pub(super) fn user(
+        &mut self,
+        c: &mut Compiler,
+        owner: &Owner,
+        formula: &ModelFormula,
+        n: usize,
+        reads: &[String],
+    ) -> Vec<usize> {
+        self.user_reading(c, owner, formula, n, reads, &[])
+    }
+
+    /// As [`user`](Self::user), for closures that are given values of further formulas as well.
+    pub(super) fn user_reading(
+        &mut self,
+        c: &mut Compiler,
+        owner: &Owner,
+        formula: &ModelFormula,
+        n: usize,
+        reads: &[String],
+        further: &[usize],
+    ) -> Vec<usize> {
+        let ModelFormula::User { constants, .. } = formula else {
+            return vec![self.formula(c, owner, formula); n];
+        };
+        if self.zero_user {
+            return vec![self.compiled(c, owner, &"0".into()); n];
+        }
+        let known = owner.element.and_then(|element| {
+            let mut hooks = self.hooks.iter();
+            let closure = hooks.position(|h| h.stands_for(element, formula));
+            closure.map(|closure| (element, closure))
+        });
+        let Some((element, closure)) = known else {
+            let message = "USER needs a routine that is not part of the dataset";
+            c.errors.push(Diagnostic::error("user_routine", message).element(&owner.name).help(
+                "register a closure for it through the library, switch the element off, or take what USER would compute as zero (--zero-user)",
+            ));
+            return vec![usize::MAX; n];
+        };
+        let texts = self.hooks[closure].inputs.iter().chain(reads);
+        let mut inputs: Vec<usize> = texts
+            .map(|text| self.compiled(c, owner, &text.as_str().into()))
+            .collect();
+        inputs.extend(further);
+        let hook = self.scene.hooks.len();
+        let places: Vec<usize> = (0..n)
+            .map(|k| self.supply(ExternalInput::Hook(hook, k)))
+            .collect();
+        self.scene.hooks.push(SceneHook {
+            kind: HookKind::User { closure, inputs },
+            output_only: element.kind == ElementKind::Request,
+            element,
+            constants: constants.clone(),
+            n,
+            place: places[0],
+        });
+        let text = format!("USER, {}", self.hooks[closure].name);
+        let outside = |place| self.supplied_formula(owner, &text, place);
+        places.into_iter().map(outside).collect()
+    }
+
+    /// A number from outside as a formula.
+    pub(super) fn supplied_formula(&mut self, owner: &Owner, text: &str, place: usize) -> usize {
+        let mut recorder = Recorder::new(Folding::Strict);
+        let value = recorder.input(Input::Delayed(0));
+        self.push(owner, text, recorder.finish(&[value]), vec![place])
+    }
+
+    /// REQUEST, FUNCTION=USER: eight components, where there is a closure for it.
+    pub(super) fn user_requests(&mut self, c: &mut Compiler) {
+        for (id, request) in self
+            .model
+            .active(ElementKind::Request, &self.model.requests)
+        {
+            let RequestKind::User(user) = &request.kind else {
+                continue;
+            };
+            // one that nobody computes harms nobody
+            let before = c.errors.len();
+            let owner = Owner::of(ElementKind::Request.id(id), "FUNCTION");
+            let all = self.user(c, &owner, user, 8, &[]);
+            if c.errors.len() == before {
+                self.scene.requests.insert(id, all);
+            } else {
+                c.errors.truncate(before);
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! MOTIONs: which coordinate of the forest each drives, or which row it is, and what their
+//! functions may read.
+
+use super::build::Builder;
+use super::compile::Compiler;
+use super::functions::Owner;
+use super::reads::{Allowed, offence};
+use super::{ConstraintElement, Row, RowKind, SceneMotion, Source};
+use crate::diagnostic::Diagnostic;
+use crate::model::{
+    Driven, ElementId, ElementKind, Formula as ModelFormula, Joint, JointKind, Level,
+};
+use crate::physics::joint::Displacements;
+use crate::physics::row::Law;
+
+/// What a motion drives, resolved.
+pub(super) struct Drive {
+    motion: usize,
+    pub(super) joint: Option<u32>,
+    law: Law,
+    markers: (u32, u32),
+    id: ElementId,
+}
+
+impl Builder<'_> {
+    /// Adds all MOTIONs with their states; returns those that drive something, resolved.
+    pub(super) fn motions(&mut self, c: &mut Compiler) -> Vec<Drive> {
+        let model = self.model;
+        let mut drives = Vec::new();
+        for (id, motion) in model.active(ElementKind::Motion, &model.motions) {
+            let element = ElementKind::Motion.id(id);
+            let owner = Owner::of(element, "FUNCTION");
+            // a closure yields the value and its first two derivatives
+            let formula = match &motion.function {
+                user @ ModelFormula::User { .. } => self.user(c, &owner, user, 3, &[])[0],
+                text @ ModelFormula::Expression { .. } => self.formula(c, &owner, text),
+            };
+            let m = self.scene.motions.len();
+            let places = match motion.level {
+                Level::Displacement => 0,
+                Level::Velocity => 1,
+                Level::Acceleration => 2,
+            };
+            let state = (places > 0).then_some(self.scene.layout.n_x);
+            self.scene.layout.n_x += places;
+            self.scene.motions.push(SceneMotion {
+                id,
+                level: motion.level,
+                formula,
+                state,
+                coordinate: None,
+                held: false,
+            });
+            drives.extend(self.drive(c, element, m, motion.driven));
+        }
+        drives
+    }
+
+    /// Resolves what motion `m` drives; an error is told where it can drive nothing there.
+    fn drive(&self, c: &mut Compiler, id: ElementId, m: usize, driven: Driven) -> Option<Drive> {
+        let joints = &self.model.joints;
+        let (joint, turn) = match driven {
+            Driven::JointTranslation(j) => (j, false),
+            Driven::JointRotation(j) => (j, true),
+            Driven::Joint(j) => {
+                let turns = |j: &Joint| j.kind.displacements() == Displacements::Rotation;
+                (j, joints.get(&j).is_some_and(turns))
+            }
+            Driven::Markers { i, j, component } => {
+                let law = match component {
+                    0..=2 => Law::Along(component),
+                    _ => Law::BodyAngle(component - 3),
+                };
+                return Some(Drive {
+                    motion: m,
+                    joint: None,
+                    law,
+                    markers: (i, j),
+                    id,
+                });
+            }
+        };
+        let Some(found) = joints.get(&joint) else {
+            c.error(id, format!("JOINT/{joint} does not exist"));
+            return None;
+        };
+        let has = found.kind.displacements();
+        let allowed = if turn { has.turns() } else { has.slides() };
+        if !allowed {
+            let what = if turn { "rotation" } else { "translation" };
+            c.error(id, format!("JOINT/{joint} has no {what} to drive: a motion needs a revolute, translational or cylindrical joint"));
+            return None;
+        }
+        if c.driven.insert((joint, turn), m).is_some() {
+            c.error(id, format!("JOINT/{joint} is driven twice"));
+        }
+        Some(Drive {
+            motion: m,
+            joint: Some(joint),
+            law: if turn { Law::Angle } else { Law::Along(2) },
+            markers: (found.i, found.j),
+            id,
+        })
+    }
+
+    /// Adds a row for each motion that no coordinate took.
+    pub(super) fn driven_rows(&mut self, c: &mut Compiler, drives: &[Drive]) {
+        for (k, coordinate) in c.coordinates.iter().enumerate() {
+            if let Source::Driven(m) = coordinate.source {
+                self.scene.motions[m].coordinate = Some(k);
+            }
+        }
+        for drive in drives {
+            let id = self.scene.motions[drive.motion].id;
+            let coordinate = self.scene.motions[drive.motion].coordinate;
+            let begins = self.model.motions.get(&id).and_then(|m| m.ic_displacement);
+            let motion = &mut self.scene.motions[drive.motion];
+            motion.held = coordinate.is_none() && motion.state.is_some() && begins.is_none();
+            let first = c.rows.len();
+            let (i, j) = (
+                c.marker(drive.markers.0, drive.id),
+                c.marker(drive.markers.1, drive.id),
+            );
+            if let (None, Some(i), Some(j)) = (coordinate, i, j) {
+                let kind = RowKind::Markers {
+                    law: drive.law,
+                    i,
+                    j,
+                    motion: Some(drive.motion),
+                };
+                c.rows.push(Row {
+                    element: drive.id,
+                    equation: drive.law.name(),
+                    kind,
+                });
+            }
+            let rows = first..c.rows.len();
+            let markers = i.zip(j);
+            c.constraints.push(ConstraintElement {
+                id: drive.id,
+                markers,
+                acts_on: markers.iter().map(|m| m.0).collect(),
+                about: markers.map(|m| m.0),
+                carries: None,
+                rows,
+                coordinate,
+            });
+        }
+    }
+
+    /// Refuses motions whose functions read more than time and what depends on time alone.
+    pub(super) fn timed(&mut self, c: &mut Compiler) {
+        for motion in &self.scene.motions {
+            // a closure tells the derivatives itself
+            if self.scene.computed(motion.formula).is_some() {
+                continue;
+            }
+            if let Some(offence) = offence(&self.scene, motion.formula, Allowed::Time) {
+                let what = offence.to_string();
+                c.errors.push(
+                    Diagnostic::error("motion_reads", what)
+                        .element(ElementKind::Motion.id(motion.id))
+                        .help("a MOTION is prescribed by TIME and states that depend on nothing else; relate places to each other by a COUPLER or GCON, react to what happens by a force"),
+                );
+            }
+        }
+    }
+}
