@@ -1,7 +1,9 @@
-//! The mass matrix of a forest without forming it: articulated inertia, linear in the number of links.
+//! The mass matrix of a forest without forming it: articulated inertia, linear in the number of
+//! links.
 //!
-//! `M = Lᵀ D L` where L and D come from eliminating one freedom after the other from the inertia that a link shows to its
-//! carrier. The 6×6 inertia of a link, about its origin in its axes, stands in three blocks:
+//! `M = Lᵀ D L` where L and D come from eliminating one freedom after the other from the inertia
+//! that a link shows to its carrier. The 6×6 inertia of a link, about its origin in its axes,
+//! stands in three blocks:
 //!
 //! ```text
 //! f = A a + Bᵀ α        n = B a + C α

@@ -18,14 +18,15 @@ use crate::space::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// How a scene is made.
+/// Choices in making a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// make rows of all joints: the absolute-coordinate formulation, for comparison
     pub cut_all: bool,
     /// value of MODE: 1 kinematic, 3 initial conditions, 4 dynamic, 5 static
     pub mode: u32,
-    /// COUPLER, SCREW, RACKPIN: the sum of displacements is zero, as in the manuals, rather than what the assembled configuration shows
+    /// COUPLER, SCREW, RACKPIN: the sum of displacements is zero, as in the manuals, rather than
+    /// what the assembled configuration shows
     pub strict: bool,
     /// variables of joints are to be shown
     pub variables: bool,
@@ -39,7 +40,8 @@ pub struct Options {
     pub zero_user: bool,
     /// VARIABLEs to which numbers from outside are added: inputs of a linear system
     pub plant_inputs: Vec<u32>,
-    /// VARIABLEs whose functions commands will change: where one is a number, it is supplied from outside rather than part of the equations
+    /// VARIABLEs whose functions commands will change: where one is a number, it is supplied from
+    /// outside rather than part of the equations
     pub changing: BTreeSet<u32>,
     /// what the files of GRAPHICS hold, or why they do not, by the numbers of these
     pub shells: Arc<BTreeMap<u32, Result<Shell, String>>>,
@@ -120,7 +122,8 @@ impl Scene {
     }
 }
 
-/// Largest distance of a constraint's marker from the middle of all, as the dataset places them; one when all coincide.
+/// Largest distance of a constraint's marker from the middle of all, as the dataset places them;
+/// one when all coincide.
 fn span(scene: &Scene) -> f64 {
     let ends = |c: &ConstraintElement| c.markers.map(|(i, j)| [i, j]);
     let points: Vec<Vec3<f64>> = (scene.constraints.iter().filter_map(ends).flatten())

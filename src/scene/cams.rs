@@ -1,8 +1,10 @@
-//! PTCV and CVCV: their rows, where their contacts begin, how these are followed while parts are put together, and what ends them.
+//! PTCV and CVCV: their rows, where their contacts begin, how these are followed while parts are
+//! put together, and what ends them.
 //!
-//! The parameter of a contact is a state: its rate is that of the point which the rows hold, so that any method predicts it with
-//! the accuracy of all else, and Newton's iteration inside the equations has next to nothing to do. Where no time passes (assembly, equilibrium)
-//! it is followed from one position to the next; where nothing is known yet the whole curve is searched.
+//! The parameter of a contact is a state: its rate is that of the point which the rows hold, so
+//! that any method predicts it with the accuracy of all else, and Newton's iteration inside the
+//! equations has next to nothing to do. Where no time passes (assembly, equilibrium) it is followed
+//! from one position to the next; where nothing is known yet the whole curve is searched.
 
 use super::build::Builder;
 use super::compile::Compiler;
@@ -28,7 +30,8 @@ pub struct Cam {
     pub j: usize,
     /// users' numbers of the curves
     pub curves: Vec<u32>,
-    /// users' numbers of the markers between which the reaction is asked for: floating ones where there are
+    /// users' numbers of the markers between which the reaction is asked for: floating ones where
+    /// there are
     pub between: (u32, u32),
     /// first place of its parameters in x
     pub state: usize,
@@ -38,12 +41,12 @@ pub struct Cam {
     pub velocity: Vec<Option<f64>>,
 }
 
-/// Conditions of a contact count as holding below this.
-const HOLDS: f64 = 1e-9;
+/// Conditions of a contact hold below this, relative to the length of its curve.
+const CONTACT_GAP_TOLERANCE: f64 = 1e-9;
 /// Largest change of a parameter from one iterate to the next; a whole curve is 2.
-const STRIDE: f64 = 0.1;
+const MAX_PARAMETER_STEP: f64 = 0.1;
 /// Planes count as one below this sine of the angle between them.
-const COPLANAR: f64 = 1e-6;
+const COPLANAR_SINE: f64 = 1e-6;
 
 impl Builder<'_> {
     /// Two rows for each PTCV and CVCV.
@@ -217,7 +220,8 @@ pub struct Start {
     pub given: [Option<f64>; 2],
 }
 
-/// All contacts that are asked to begin somewhere. ICM markers count where they are at this instant.
+/// All contacts that are asked to begin somewhere. ICM markers count where they are at this
+/// instant.
 pub fn starts(scene: Configured<'_>, numbers: &[f64]) -> Vec<Start> {
     if scene
         .cams
@@ -247,7 +251,8 @@ pub fn starts(scene: Configured<'_>, numbers: &[f64]) -> Vec<Start> {
     found
 }
 
-/// Takes contacts to be where they are asked to begin; where one curve has no place, with its point next to that of the other.
+/// Takes contacts to be where they are asked to begin; where one curve has no place, with its point
+/// next to that of the other.
 pub fn place(scene: &Scene, configuration: &mut Configuration, starts: &[Start], numbers: &[f64]) {
     if starts.is_empty() {
         return;
@@ -288,13 +293,13 @@ fn follow(contact: &Contact, i: &Frame<f64>, j: &Frame<f64>, s: [f64; 2]) -> Opt
         if !longest.is_finite() {
             return None;
         }
-        let shorter = (STRIDE / longest).min(1.0);
+        let shorter = (MAX_PARAMETER_STEP / longest).min(1.0);
         s = [s[0] + shorter * step[0], s[1] + shorter * step[1]];
         if longest < 1e-14 {
             break;
         }
     }
-    (contact.missing(i, j, s) < HOLDS).then_some(s)
+    (contact.missing(i, j, s) < CONTACT_GAP_TOLERANCE).then_some(s)
 }
 
 /// The contact among all: where it is asked for, else where the gap is smallest.
@@ -375,7 +380,7 @@ fn closest_pair(
     best.map(|b| b.1)
 }
 
-/// What keeps the contacts of an instant from being contacts: (element, code, sentence, advice) of the first.
+/// The reason why the contacts of an instant are none, of the first that is not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broken {
     /// which contact
@@ -388,7 +393,8 @@ pub struct Broken {
     pub advice: String,
 }
 
-/// The first contact that is none. `until`: when the run was to end, for how far a curve is too short.
+/// The first contact that is none. `until`: when the run was to end, for how far a curve is too
+/// short.
 pub fn broken(scene: Configured<'_>, numbers: &[f64], until: Option<f64>) -> Option<Broken> {
     if scene.cams.is_empty() {
         return None;
@@ -431,7 +437,7 @@ pub fn broken(scene: Configured<'_>, numbers: &[f64], until: Option<f64>) -> Opt
         }
         // what is inclined need not have a common tangent: that is said first
         let tilt = i.rotation.column(2).cross(j.rotation.column(2)).norm();
-        if matches!(cam.contact, Contact::Curves(..)) && tilt > COPLANAR {
+        if matches!(cam.contact, Contact::Curves(..)) && tilt > COPLANAR_SINE {
             return Some(Broken {
                 element,
                 code: "curves_not_coplanar",

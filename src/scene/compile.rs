@@ -11,7 +11,7 @@ use crate::physics::joint::{Motion, Tie, quarter_x};
 use crate::space::{Frame, Mat3, Vec3, rotation};
 use std::collections::BTreeMap;
 
-/// What the passes have found so far. Errors collect; none ends a pass.
+/// Findings of the passes so far. Errors collect; none ends a pass.
 pub(super) struct Compiler<'m> {
     pub model: &'m Model,
     pub errors: Vec<Diagnostic>,
@@ -312,7 +312,8 @@ impl<'m> Compiler<'m> {
             parent = self.push_link(parent, placement, LinkMotion::Rigid, &[]);
             placement = Frame::identity();
         }
-        // what is left of the placement (a trailing quarter turn) belongs to the part's frame on the last link
+        // what is left of the placement (a trailing quarter turn) belongs to the part's frame on
+        // the last link
         (parent, placement.compose(&self.markers[to].frame.inverse()))
     }
 
@@ -339,8 +340,8 @@ impl<'m> Compiler<'m> {
         }
     }
 
-    /// Adds the coordinates of motion `k` of a tie's chain, driven or free, and the positions of the
-    /// free ones: `fitted`, one number or a quaternion. Returns the indices of the coordinates.
+    /// Adds the coordinates of motion `k` of a tie's chain, driven or free, and the positions of
+    /// the free ones: `fitted`, one number or a quaternion. Returns the indices of the coordinates.
     fn add_coordinates(
         &mut self,
         tie: &NamedTie,
@@ -380,7 +381,8 @@ impl<'m> Compiler<'m> {
         (first..self.coordinates.len()).collect()
     }
 
-    /// Links for a part that nothing carries: three slides along ground axes and a ball at its centre of mass.
+    /// Links for a part that nothing carries: three slides along ground axes and a ball at its
+    /// centre of mass.
     fn carry_free(&mut self, part: usize) -> (LinkIx, Frame<f64>) {
         let name = self.parts[part].id;
         let data = self.part_data(part);
@@ -572,7 +574,7 @@ fn steiner(mass: f64, d: Vec3<f64>) -> Mat3<f64> {
     }))
 }
 
-/// What the `k`-th motion of a chain measures.
+/// Returns the name of the variable that the `k`-th motion of a chain is.
 fn variable_name(chain: &[Motion], k: usize, freedom: usize) -> String {
     let several = |turn: bool| {
         chain
@@ -600,10 +602,11 @@ fn variable_name(chain: &[Motion], k: usize, freedom: usize) -> String {
     }
 }
 
-/// Coordinates of a chain that bring it as near as may be to the frame `X_JI`: numbers per motion (a quaternion for a ball).
+/// Coordinates of a chain that bring it as near as may be to the frame `X_JI`: numbers per motion
+/// (a quaternion for a ball).
 ///
-/// Slides take their component of the position; a turn takes the angle that brings the axis of the next turn where it
-/// should be, the last one the angle that is left.
+/// Slides take their component of the position; a turn takes the angle that brings the axis of the
+/// next turn where it should be, the last one the angle that is left.
 fn fit(chain: &[Motion], frame: &Frame<f64>) -> Vec<Vec<f64>> {
     let mut left = *frame;
     let mut found = Vec::with_capacity(chain.len());

@@ -28,7 +28,7 @@ pub struct Configuration {
     pub turns: Vec<f64>,
     /// External inputs before the first step. A session supplies them.   (n_external)
     pub external: Vec<f64>,
-    /// How accelerations and multipliers are found. A system chooses.
+    /// The way in which accelerations and multipliers are found. A system chooses.
     pub elimination: Elimination,
 }
 
@@ -55,12 +55,14 @@ pub struct ContactStart {
 /// The way in which accelerations and multipliers are found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Elimination {
-    /// Freedoms are eliminated link by link (long chains) rather than from the mass matrix (short ones).
+    /// Freedoms are eliminated link by link (long chains) rather than from the mass matrix (short
+    /// ones).
     pub articulated: bool,
     /// The usual diagonal of `G M⁻¹ Gᵀ`, by active rows; empty: not known.   (n_active)
     pub usual_pivots: Vec<f64>,
     /// Inertia lent to freedoms that have none, and taken back by
-    /// [`accelerations`](super::solve::accelerations); empty: none is lent.   (n_v)   [mass, inertia]
+    /// [`accelerations`](super::solve::accelerations); empty: none is lent.
+    /// (n_v)   [mass, inertia]
     pub lent_inertia: Vec<f64>,
 }
 

@@ -16,9 +16,10 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Planes of curves count as one below this sine of the angle between them.
-const COPLANAR: f64 = 1e-6;
-/// Small speed that makes POISSON smooth, as a part of the speed of a fall through the mechanism's own size.
-const SMOOTHING: f64 = 1e-3;
+const COPLANAR_SINE: f64 = 1e-6;
+/// Small speed that makes POISSON smooth, as a part of the speed of a fall through the mechanism's
+/// own size.
+const POISSON_SMOOTHING_SPEED: f64 = 1e-3;
 
 /// The convex hull of the points of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +40,7 @@ struct Placed {
     solid: Solid,
 }
 
-/// What a GRAPHICS of a contact is.
+/// The shape that a GRAPHICS of a contact has.
 enum Body {
     Solid(Placed),
     /// a plane curve in the frame of a marker
@@ -63,7 +64,7 @@ fn ascending(a: f64, b: f64) -> [f64; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// What a GRAPHICS is in a contact.
+/// The part that a GRAPHICS plays in a contact.
 fn solid(shape: &Shape) -> Result<Placed, String> {
     let placed = |marker: u32, solid: Solid| Ok(Placed { marker, solid });
     match *shape {
@@ -176,7 +177,7 @@ impl Body {
 /// Why no distance is known between two bodies that do have one.
 const UNASKED: &str = " in this program: it was built without the feature geometry";
 
-/// How the touches of two bodies are found.
+/// Chooses the way in which the touches of two bodies are found.
 ///
 /// # Errors
 /// Why they are not.
@@ -285,8 +286,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Touches that are found by a question; `None`: a marker is missing, which has been said, or the planes of two curves do
-    /// not lie in each other.
+    /// Touches that are found by a question; `None`: a marker is missing, which has been said, or
+    /// the planes of two curves do not lie in each other.
     fn asked(
         &mut self,
         c: &mut Compiler,
@@ -298,7 +299,7 @@ impl Builder<'_> {
         if let Question::Outlines(_) = question {
             let [i, j] = markers.map(|m| self.scene.drawn(m).rotation.column(2));
             let sine = i.cross(j).norm();
-            if sine > COPLANAR {
+            if sine > COPLANAR_SINE {
                 let what = format!(
                     "the planes of its curves are inclined to each other by {:.4} deg: the x-y planes of MARKER/{} and MARKER/{}",
                     sine.min(1.0).asin().to_degrees(),
@@ -327,7 +328,7 @@ impl Builder<'_> {
         Some(Touching::Query(places[0]..places[0] + n))
     }
 
-    /// What of a shell is not as it is drawn.
+    /// Tells what of a shell is not as it is drawn.
     fn told_of_hull(&mut self, id: u32, shell: &Shell) {
         let Shell {
             file,
@@ -469,7 +470,7 @@ impl Builder<'_> {
                 Normal::Poisson {
                     penalty: fit("PENALTY", contact.penalty)?,
                     restitution: fit("RESTITUTION_COEFFICIENT", contact.restitution)?,
-                    smoothing: SMOOTHING * fall,
+                    smoothing: POISSON_SMOOTHING_SPEED * fall,
                 }
             }
             ContactLaw::Impact | ContactLaw::User => Normal::Impact {

@@ -1,9 +1,12 @@
-//! COUPLER, GEAR, SCREW and RACKPIN as rows between displacements, over coordinates wherever that is the same.
+//! COUPLER, GEAR, SCREW and RACKPIN as rows between displacements, over coordinates wherever that
+//! is the same.
 //!
-//! Most displacements are sums of coordinates in every configuration: the variable of a joint of the forest, the angle
-//! between two links of a planar mechanism, the travel of a pinion's centre. Such a row has a constant gradient and needs no
-//! counted turns. Whether a displacement is one is asked of the scene itself: its gradient along the
-//! freedoms of the forest is the same at several configurations drawn at random only if it is the same everywhere, for an analytic function of the coordinates.
+//! Most displacements are sums of coordinates in every configuration: the variable of a joint of
+//! the forest, the angle between two links of a planar mechanism, the travel of a pinion's centre.
+//! Such a row has a constant gradient and needs no counted turns. Whether a displacement is one is
+//! asked of the scene itself: its gradient along the freedoms of the forest is the same at several
+//! configurations drawn at random only if it is the same everywhere, for an analytic function of
+//! the coordinates.
 
 use super::build::Builder;
 use super::compile::Compiler;
@@ -20,8 +23,8 @@ use crate::scalar::{Dual, Jet};
 use crate::space::{Frame, Mat3, Vec3};
 use std::f64::consts::TAU;
 
-/// Differences below this are rounding.
-const SAME: f64 = 1e-11;
+/// Gradients that differ by less, as parts of their size, are the same but for rounding.
+const SAME_GRADIENT: f64 = 1e-11;
 
 /// One of the two bodies of a GEAR.
 struct GearBody {
@@ -73,7 +76,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What joints measure, for those who ask to see it.
+    /// Adds the variables of joints, for those who ask to see them.
     pub(super) fn joint_variables(&mut self, c: &mut Compiler) {
         let model = self.model;
         for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
@@ -128,7 +131,8 @@ impl Builder<'_> {
         self.relation(name, Some((i, j)), Some(i), Some(i), sum);
     }
 
-    /// The displacement of a joint that something refers to; `turn`: its angle or its distance, where it must be said.
+    /// The displacement of a joint that something refers to; `turn`: its angle or its distance,
+    /// where it must be said.
     fn joint_displacement(
         &self,
         c: &mut Compiler,
@@ -266,7 +270,8 @@ impl Builder<'_> {
         Some(GearBody { i, j, factors })
     }
 
-    /// Frame of a marker in its part, as the dataset has it; the reader has checked that there is one.
+    /// Frame of a marker in its part, as the dataset has it; the reader has checked that there is
+    /// one.
     fn in_part(&self, marker: u32) -> Frame<f64> {
         let Some(m) = self.model.markers.get(&marker) else {
             return Frame::identity();
@@ -339,7 +344,7 @@ fn as_coordinates(
     // a third of a ball has no coordinate whose value could be summed
     if terms
         .iter()
-        .any(|&(k, g)| g.abs() > SAME && scene.freedoms[k].in_ball)
+        .any(|&(k, g)| g.abs() > SAME_GRADIENT && scene.freedoms[k].in_ball)
     {
         return None;
     }
@@ -354,7 +359,7 @@ fn as_coordinates(
                 1.0
             };
             let differs = (g - h).abs();
-            if differs > SAME * scale || differs.is_nan() {
+            if differs > SAME_GRADIENT * scale || differs.is_nan() {
                 return None;
             }
             rest -= g * other.value(scene, k);
@@ -362,7 +367,7 @@ fn as_coordinates(
         if gauge.is_angle() {
             rest -= std::f64::consts::TAU * (rest / std::f64::consts::TAU).round();
         }
-        if rest.is_nan() || rest.abs() > 100.0 * SAME * (1.0 + scene.length) {
+        if rest.is_nan() || rest.abs() > 100.0 * SAME_GRADIENT * (1.0 + scene.length) {
             return None;
         }
     }

@@ -1,8 +1,9 @@
-//! Numbers that come from outside the equations: last values of sensors, values of the past, results of the user's closures,
-//! constants that commands change from one simulation to the next.
+//! Numbers that come from outside the equations: last values of sensors, values of the past,
+//! results of the user's closures, constants that commands change from one simulation to the next.
 //!
-//! They have places of their own at the end of the row that programs read. Whoever fills the row computes them from what stands
-//! before them, so that the programs need not know where they come from.
+//! They have places of their own at the end of the row that programs read. Whoever fills the row
+//! computes them from what stands before them, so that the programs need not know where they come
+//! from.
 
 use crate::model::{Comparison, ElementId, Formula};
 use crate::physics::contact::Question;
@@ -18,7 +19,8 @@ pub enum ExternalInput {
     Delay(usize),
     /// what is added to a VARIABLE that is a plant input: index in the formulas
     Input(usize),
-    /// a discrete state, as it is until the next sample: index in [`Scene::samplers`](super::Scene::samplers), and which
+    /// a discrete state, as it is until the next sample: index in
+    /// [`Scene::samplers`](super::Scene::samplers), and which
     Sample(usize, usize),
     /// the value of a VARIABLE whose function is a number that commands will change: its number
     Constant(u32),
@@ -85,7 +87,8 @@ pub struct SceneDelay {
     pub history: usize,
 }
 
-/// A closure of the user's that the library was given: what it is called for, and which expressions it reads.
+/// A closure of the user's that the library was given: what it is called for, and which expressions
+/// it reads.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HookName {
     /// an element ("SFORCE/3"), the text of ROUTINE, or the first number of USER
@@ -108,7 +111,7 @@ impl HookName {
     }
 }
 
-/// What computes numbers from outside, and what it is given.
+/// A closure that computes external inputs, and the formulas it is given.
 #[derive(Clone, Debug)]
 pub enum HookKind {
     /// a closure of the user's

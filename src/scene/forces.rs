@@ -33,7 +33,7 @@ pub struct ForceElement {
     pub law: ForceLaw,
 }
 
-/// How the touches of two solids are found.
+/// The way in which the touches of two solids are found.
 #[derive(Clone, Debug)]
 pub enum Touching {
     /// by a formula of the two frames
@@ -158,7 +158,8 @@ impl ForceElement {
         }
     }
 
-    /// The joint's reaction on I as far as friction in it depends on it: unknowns, as it depends on the friction in turn.
+    /// The joint's reaction on I as far as friction in it depends on it: unknowns, as it depends on
+    /// the friction in turn.
     fn pressing<S: Scalar>(&self, at: &Equations<'_, S>, law: &Friction, joint: u32) -> Action<S> {
         let name = self.id.to_string();
         let part = |first: u32, needed: bool| {
@@ -177,7 +178,7 @@ impl ForceElement {
         }
     }
 
-    /// What slips in the joint, for FRICTION; `None` for other elements.
+    /// Returns the slip in the joint, for FRICTION; `None` for other elements.
     pub fn slip<S: Scalar>(&self, at: &Equations<'_, S>) -> Option<Slip<S>> {
         let (ForceLaw::Friction { law, joint }, Some(j)) = (&self.law, self.j) else {
             return None;

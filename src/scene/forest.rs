@@ -1,9 +1,10 @@
 //! Which joint carries which part; everything else becomes a row.
 //!
-//! The forest grows from ground: of all joints between a carried and an uncarried part, the one with the fewest
-//! coordinates goes first, and among equals the one whose carrier is nearest to ground. A part that nothing reaches starts
-//! a tree of its own, free in ground. The choice depends on the model alone, not on the order of its statements beyond
-//! ties, which the smaller number wins.
+//! The forest grows from ground: of all joints between a carried and an uncarried part, the one
+//! with the fewest coordinates goes first, and among equals the one whose carrier is nearest to
+//! ground. A part that nothing reaches starts a tree of its own, free in ground. The choice depends
+//! on the model alone, not on the order of its statements beyond ties, which the smaller number
+//! wins.
 
 use crate::physics::joint::Tie;
 use std::collections::BTreeSet;
@@ -25,7 +26,7 @@ pub struct Candidate {
     pub preferred: bool,
 }
 
-/// How a part is carried.
+/// The way in which a part is carried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     /// by a tie, from J to I

@@ -8,7 +8,8 @@ use crate::expr::spline::{Ends, Extrapolation};
 use crate::model::{ElementKind, Model, Text};
 use std::sync::Arc;
 
-/// The splines of a model, for the expressions that name them; what is wrong with those that cannot be used.
+/// The splines of a model, for the expressions that name them; what is wrong with those that cannot
+/// be used.
 pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
     let mut bindings = Bindings::default();
     let mut errors = Vec::new();
@@ -87,14 +88,16 @@ pub(super) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
 pub(super) struct Compiled {
     /// its value
     pub program: Program,
-    /// of each value of the past that it reads: what is remembered, how long ago, what it was before the start
+    /// of each value of the past that it reads: what is remembered, how long ago, what it was
+    /// before the start
     pub delays: Vec<[Program; 3]>,
 }
 
 /// Compiles an expression; its text is parsed only if that has not been done before.
 ///
 /// # Errors
-/// What the language has to say about it; columns count from the beginning of the text.
+/// The first mistake in the text, whose columns count from its beginning; splines or curves that do
+/// not exist.
 pub(super) fn compile(text: &Text, bindings: &Bindings) -> Result<Compiled, Diagnostic> {
     let ast = text.ast()?;
     let mut compiler = compile::Compiler::new(bindings);

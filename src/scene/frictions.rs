@@ -1,7 +1,8 @@
 //! FRICTION statements: a force element in the joint, which reads the joint's own reaction.
 //!
-//! The reaction depends on the friction and the friction on the reaction: an algebraic loop like any other (`loops.rs`), whose
-//! unknowns are the components of `JOINT(id, 0, …)` that the law reads.
+//! The reaction depends on the friction and the friction on the reaction: an algebraic loop like
+//! any other (`loops.rs`), whose unknowns are the components of `JOINT(id, 0, …)` that the law
+//! reads.
 
 use super::build::Builder;
 use super::compile::Compiler;
@@ -12,7 +13,7 @@ use crate::physics::contact::law::Coulomb;
 use crate::physics::friction::{Friction, Kind, Overlap};
 
 /// Beyond this multiple of the stiction velocity friction is dynamic.
-const DYNAMIC: f64 = 1.5;
+const DYNAMIC_SPEED_RATIO: f64 = 1.5;
 
 impl Builder<'_> {
     pub(super) fn frictions(&mut self, c: &mut Compiler) {
@@ -77,7 +78,7 @@ fn friction(f: &model::Friction, kind: Kind) -> Result<Friction, String> {
         mu_static: not_negative("MU_STATIC", f.mu_static)?,
         mu_dynamic: not_negative("MU_DYNAMIC", f.mu_dynamic)?,
         stiction_velocity: vs,
-        friction_velocity: DYNAMIC * vs,
+        friction_velocity: DYNAMIC_SPEED_RATIO * vs,
     };
     match f.effect.as_deref() {
         // only what acts below the stiction velocity, only what acts beyond it

@@ -20,7 +20,8 @@ pub(super) struct Owner {
 }
 
 impl Owner {
-    /// Returns the owner of a function of an element; `part` is its argument, or which of several equations it is.
+    /// Returns the owner of a function of an element; `part` is its argument, or which of several
+    /// equations it is.
     pub fn of(element: ElementId, part: impl fmt::Display) -> Self {
         Self {
             element: Some(element),
@@ -102,8 +103,8 @@ impl Builder<'_> {
         self.scene.external_inputs.len() - 1
     }
 
-    /// `n` numbers that a closure of the user's computes for an element, as formulas; `reads`: what it is given beside its own
-    /// inputs.
+    /// `n` numbers that a closure of the user's computes for an element, as formulas; `reads`: what
+    /// it is given beside its own inputs.
     pub(super) fn user(
         &mut self,
         c: &mut Compiler,

@@ -4,13 +4,15 @@
 //! e(places, t) = 0
 //! ```
 //!
-//! The expression may read displacements and angles of markers, TIME, MODE, numbers of ARRAYs and VARIABLEs of these: it is holonomic. Its
-//! gradient is the chain of ∂e/∂(what it reads) and what each of these does along the twists of its markers; its rates are jets in
-//! time. An expression of velocities (nonholonomic where it is no rate of a holonomic one) is refused: multiply out what it integrates
-//! to, or brake by a force.
+//! The expression may read displacements and angles of markers, TIME, MODE, numbers of ARRAYs and
+//! VARIABLEs of these: it is holonomic. Its gradient is the chain of ∂e/∂(what it reads) and what
+//! each of these does along the twists of its markers; its rates are jets in time. An expression of
+//! velocities (nonholonomic where it is no rate of a holonomic one) is refused: multiply out what
+//! it integrates to, or brake by a force.
 //!
-//! *Reaction*: λ ∂e/∂(twist), in the units of force where e is a length. The reaction of a GCON is what acts on the part of its I marker,
-//! about that marker, and is read as FX(I, J) … with J the other marker that e reads.
+//! *Reaction*: λ ∂e/∂(twist), in the units of force where e is a length. The reaction of a GCON is
+//! what acts on the part of its I marker, about that marker, and is read as FX(I, J) … with J the
+//! other marker that e reads.
 
 use super::build::Builder;
 use super::compile::Compiler;
@@ -87,8 +89,8 @@ impl Builder<'_> {
         }
     }
 
-    /// What counts as one for the expressions of GCON: how much they change as coordinates change by one (angles) or by the size of
-    /// the mechanism (lengths).
+    /// Finds what counts as one for the expressions of GCON: how much they change as coordinates
+    /// change by one (angles) or by the size of the mechanism (lengths).
     pub(super) fn natural_sizes(&mut self) {
         let scene = &self.scene;
         if !scene
@@ -152,7 +154,8 @@ fn formulas_read(scene: &Scene, formula: usize) -> BTreeSet<usize> {
     seen
 }
 
-/// The markers that a formula of places reads, itself or through VARIABLEs; ground as such (identifier 0) is none.
+/// The markers that a formula of places reads, itself or through VARIABLEs; ground as such
+/// (identifier 0) is none.
 fn markers_read(scene: &Scene, formula: usize) -> BTreeSet<usize> {
     let all = formulas_read(scene, formula);
     let inputs = (all.iter()).flat_map(|&f| scene.formulas[f].program.inputs());

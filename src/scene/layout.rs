@@ -1,9 +1,9 @@
 //! Places and sizes: the only file with index arithmetic over what a program of the scene reads.
 //!
-//! A program of the scene reads one flat row of numbers: `t | q | v | x | turns | loops | external`.
-//! The integrator's unknowns y are its middle part `q | v | x`. Both stay plain slices, so that
-//! programs and methods read and write them as they are; [`Layout`] says where a number stands, and
-//! [`State`] is y by its blocks.
+//! A program of the scene reads one flat row of numbers: `t | q | v | x | turns | loops |
+//! external`. The integrator's unknowns y are its middle part `q | v | x`. Both stay plain slices,
+//! so that programs and methods read and write them as they are; [`Layout`] says where a number
+//! stands, and [`State`] is y by its blocks.
 
 use crate::expr::program::Input;
 use std::ops::Range;
@@ -130,8 +130,8 @@ impl Layout {
             x: &mut rest[..self.n_x],
         }
     }
-    /// Splits what a projection changes: positions by a tangent (n_v), velocities (n_v), then states
-    /// of contacts on curves.
+    /// Splits what a projection changes: positions by a tangent (n_v), velocities (n_v), then
+    /// states of contacts on curves.
     pub fn change<'c>(&self, change: &'c [f64]) -> State<&'c [f64]> {
         let (q, rest) = change.split_at(self.n_v);
         let (v, x) = rest.split_at(self.n_v);

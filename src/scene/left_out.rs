@@ -1,8 +1,10 @@
-//! What a model holds that is read and written, but not solved; and what is left out where the user says so, with all that hangs on it.
+//! Elements that are read and written but not solved, and those left out where the user says so,
+//! with all that hangs on them.
 //!
-//! A body that is left out takes with it what is attached to its markers, a joint what drives or couples it, a contact on a curve its
-//! floating markers. What is left out exerts nothing, and functions read zero of it; each such function is named in a warning.
-//! A kind that becomes solved loses its line here.
+//! A body that is left out takes with it what is attached to its markers, a joint what drives or
+//! couples it, a contact on a curve its floating markers. What is left out exerts nothing, and
+//! functions read zero of it; each such function is named in a warning. A kind that becomes solved
+//! loses its line here.
 
 use super::build::Builder;
 use crate::diagnostic::Diagnostic;
@@ -25,7 +27,8 @@ pub struct Unknown {
     pub routine: bool,
 }
 
-/// Returns how many equations a constraint stands for; `None` for what is no constraint, or not solved.
+/// Returns how many equations a constraint stands for; `None` for what is no constraint, or not
+/// solved.
 pub fn equations(model: &Model, id: ElementId) -> Option<usize> {
     use ElementKind as E;
     match id.kind {
@@ -48,7 +51,8 @@ pub fn equations(model: &Model, id: ElementId) -> Option<usize> {
     }
 }
 
-/// Constraints that a routine computes, or whose curve does not stand in the dataset; inactive ones do not count.
+/// Constraints that a routine computes, or whose curve does not stand in the dataset; inactive ones
+/// do not count.
 pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
     let curve = |id: u32| -> Option<(String, bool)> {
         let curve = model.curves.get(&id)?;
@@ -94,7 +98,7 @@ pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
     found
 }
 
-/// What is left out of a model.
+/// Elements of a model that are left out.
 #[derive(Clone, Debug, Default)]
 pub struct LeftOut {
     /// elements
@@ -106,8 +110,8 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Of a model; `skip`: kinds of elements that are left out where they are not solved, `zero_user`: also constraints that
-    /// routines compute.
+    /// Of a model; `skip`: kinds of elements that are left out where they are not solved,
+    /// `zero_user`: also constraints that routines compute.
     pub fn of(model: &Model, skip: &BTreeSet<ElementKind>, zero_user: bool) -> Self {
         let mut this = Self::default();
         for &id in model.others.keys() {
@@ -165,7 +169,7 @@ impl LeftOut {
         }
     }
 
-    /// What cannot be without what is left out.
+    /// Finds the elements that cannot be without those left out.
     fn spread(&mut self, model: &Model) {
         if self.elements.is_empty() {
             return;

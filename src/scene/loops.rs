@@ -1,13 +1,15 @@
-//! Functions that read what depends on them: VARIABLEs that read themselves, forces that read accelerations or reactions, rates
-//! of implicit differential equations. What is read too early becomes an unknown of its own, with one equation.
+//! Functions that read what depends on them: VARIABLEs that read themselves, forces that read
+//! accelerations or reactions, rates of implicit differential equations. What is read too early
+//! becomes an unknown of its own, with one equation.
 //!
 //! ```text
 //! ρ(z) = φ(z) − z = 0        z: what is read,  φ: what it turns out to be;   implicit DIFF: ρ = e, z = ẏ (or y where no ẏ occurs)
 //! ```
 //!
-//! Which these are is found by evaluating once and noting what is asked for while it is being computed. Where ρ is linear in z
-//! the unknowns are eliminated inside each recorded program, `(−∂ρ/∂z) z = ρ(0)`, and are gone; else they have places in the row
-//! of numbers, and whoever fills that row solves ρ = 0 by Newton's iteration.
+//! Which these are is found by evaluating once and noting what is asked for while it is being
+//! computed. Where ρ is linear in z the unknowns are eliminated inside each recorded program,
+//! `(−∂ρ/∂z) z = ρ(0)`, and are gone; else they have places in the row of numbers, and whoever
+//! fills that row solves ρ = 0 by Newton's iteration.
 
 use super::Scene;
 use super::configuration::{Configuration, Configured};
@@ -17,7 +19,7 @@ use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
 use crate::scalar::Scalar;
 use std::cell::RefCell;
 
-/// What an unknown of the loops is.
+/// The quantity that an unknown of the loops stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Key {
     /// value of a formula that reads itself: index in the formulas
@@ -105,7 +107,7 @@ fn unknown(scene: &Scene, key: Key, guesses: &dyn Fn(&Key) -> f64) -> Unknown {
     }
 }
 
-/// What is asked for too early when everything is asked for once.
+/// Finds what is asked for too early when everything is asked for once.
 fn discover(scene: Configured<'_>, numbers: &[f64]) -> Vec<Key> {
     let unknowns = vec![0.0; scene.loops.len()];
     let at = Equations::with_unknowns(scene, numbers, unknowns, true);
@@ -242,7 +244,7 @@ fn solve<S: Scalar>(mut a: Vec<Vec<S>>, mut b: Vec<S>) -> Vec<S> {
 /// ρ of loops that are not linear, as a program of the numbers; `None` when there are none.
 ///
 /// # Errors
-/// What the equations cannot supply.
+/// Functions ask for what the equations cannot supply.
 pub fn program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Unsupported>> {
     if scene.layout.n_loops == 0 {
         return Ok(None);

@@ -1,7 +1,9 @@
-//! The scene: what must be computed, dense and constant; made once from a [`Model`](crate::model::Model).
+//! The scene: what must be computed, dense and constant; made once from a
+//! [`Model`](crate::model::Model).
 //!
-//! Parts hang on a forest of links, one primitive motion each; what closes loops is a row. Numbers are indices here, names
-//! live in one list, and everything a run does not need has been left out before it starts.
+//! Parts hang on a forest of links, one primitive motion each; what closes loops is a row. Numbers
+//! are indices here, names live in one list, and everything a run does not need has been left out
+//! before it starts.
 
 pub mod articulated;
 pub mod build;
@@ -117,8 +119,8 @@ pub struct Coordinate {
 /// Who says what a coordinate does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// the equations of motion: places of its position in q and of its velocity in v; three of a ball share a quaternion,
-    /// and their `q` is that of the quaternion
+    /// the equations of motion: places of its position in q and of its velocity in v; three of a
+    /// ball share a quaternion, and their `q` is that of the quaternion
     Free {
         /// place in q
         q: usize,
@@ -173,7 +175,7 @@ pub struct Row {
     pub kind: RowKind,
 }
 
-/// What a row says.
+/// The equation that a row is.
 #[derive(Clone, Debug)]
 pub enum RowKind {
     /// a law between two markers (indices in [`Scene::markers`]), possibly driven by a motion
@@ -210,16 +212,18 @@ pub enum RowKind {
 pub struct Sum {
     /// factors and displacements
     pub terms: Vec<(f64, Displacement)>,
-    /// what the sum is in the model; what it is in a mechanism says [`Configuration::sums`](configuration::Configuration::sums)
+    /// what the sum is in the model; what it is in a mechanism says
+    /// [`Configuration::sums`](configuration::Configuration::sums)
     pub constant: f64,
     /// assembly adds what the configuration shows
     pub held: bool,
-    /// GEAR: the CV marker, and the I markers of the two geared bodies, on which the force of the row acts there along its z axis
+    /// GEAR: the CV marker, and the I markers of the two geared bodies, on which the force of the
+    /// row acts there along its z axis
     pub contact: Option<(usize, [usize; 2])>,
 }
 
 impl Sum {
-    /// What counts as one, in a mechanism of the given size.
+    /// Returns what counts as one, in a mechanism of the given size.
     pub fn scale(&self, length: f64) -> f64 {
         let one = |d: &Displacement| if d.gauge.is_angle() { 1.0 } else { length };
         self.terms.iter().map(|(f, d)| f.abs() * one(d)).sum()
@@ -235,7 +239,8 @@ pub struct Displacement {
     pub i: usize,
     /// J marker
     pub j: usize,
-    /// the same as a sum over coordinates of the forest plus a constant, where it is one in every configuration
+    /// the same as a sum over coordinates of the forest plus a constant, where it is one in every
+    /// configuration
     pub coordinates: Option<(Vec<(usize, f64)>, f64)>,
 }
 
@@ -303,7 +308,8 @@ pub struct SceneMotion {
     pub level: Level,
     /// index in [`Scene::formulas`]
     pub formula: usize,
-    /// place in x of the displacement (velocity and acceleration level), and of the velocity after it (acceleration level)
+    /// place in x of the displacement (velocity and acceleration level), and of the velocity after
+    /// it (acceleration level)
     pub state: Option<usize>,
     /// the coordinate it drives; `None`: it is a row
     pub coordinate: Option<usize>,
@@ -349,7 +355,8 @@ pub struct ConstraintElement {
     pub coordinate: Option<usize>,
 }
 
-/// What must be computed: dense, flat, constant.
+/// A compiled model, dense and flat. It never changes: decisions about it stand in its
+/// [`Configuration`](configuration::Configuration).
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// rigid bodies and massless steps, carriers first
@@ -466,8 +473,8 @@ impl Scene {
         })
     }
 
-    /// Where the results of a closure of the user's stand among the numbers from outside, when a formula is one of them: for a MOTION
-    /// the value and its two derivatives in time.
+    /// Where the results of a closure of the user's stand among the numbers from outside, when a
+    /// formula is one of them: for a MOTION the value and its two derivatives in time.
     pub fn computed(&self, formula: usize) -> Option<usize> {
         let place = *self.formulas.get(formula)?.delayed.first()?;
         matches!(
@@ -493,7 +500,8 @@ impl Scene {
         }
     }
 
-    /// What a motion's displacement is in the configuration of the dataset, where it drives a coordinate of the forest.
+    /// Returns a motion's displacement in the configuration of the dataset, where it drives a
+    /// coordinate of the forest.
     pub fn initial_displacement(&self, motion: usize) -> Option<f64> {
         self.motions[motion]
             .coordinate

@@ -7,13 +7,11 @@ use super::functions::Owner;
 use super::reads::{Allowed, offence};
 use super::{ConstraintElement, Row, RowKind, SceneMotion, Source};
 use crate::diagnostic::Diagnostic;
-use crate::model::{
-    Driven, ElementId, ElementKind, Formula as ModelFormula, Joint, JointKind, Level,
-};
+use crate::model::{Driven, ElementId, ElementKind, Formula as ModelFormula, Joint, Level};
 use crate::physics::joint::Displacements;
 use crate::physics::row::Law;
 
-/// What a motion drives, resolved.
+/// The joint, or the law between markers, that a motion drives.
 pub(super) struct Drive {
     motion: usize,
     pub(super) joint: Option<u32>,

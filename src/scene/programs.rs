@@ -1,4 +1,5 @@
-//! The equations of a scene as straight-line programs: run once over recording numbers, then as often as needed.
+//! The equations of a scene as straight-line programs: run once over recording numbers, then as
+//! often as needed.
 
 use super::Scene;
 use super::configuration::Configured;
@@ -10,11 +11,11 @@ use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value}
 use crate::scalar::Scalar;
 use std::cell::{Cell, RefCell};
 
-/// Records what `f` computes from the instant it is given. The program reads the row of numbers that
-/// [`Layout`] describes.
+/// Records what `f` computes from the instant it is given. The program reads the row of numbers
+/// that [`Layout`] describes.
 ///
 /// # Errors
-/// What the equations cannot supply.
+/// Functions ask for what the equations cannot supply.
 pub fn record<F>(scene: Configured<'_>, f: F) -> Result<Program, Vec<Unsupported>>
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
@@ -35,7 +36,8 @@ where
     record_more(scene, 0, |at, _| f(at))
 }
 
-/// As [`record_with_complaints`], for programs that read `n_more` further numbers after those of the layout.
+/// As [`record_with_complaints`], for programs that read `n_more` further numbers after those of
+/// the layout.
 pub fn record_more<F>(scene: Configured<'_>, n_more: usize, f: F) -> (Program, Vec<Unsupported>)
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> Vec<Sym<'b>>,
@@ -45,7 +47,8 @@ where
     (programs.remove(0), complaints)
 }
 
-/// As [`record_with_complaints`], with velocities that are read at rest as well: what would change if it moved.
+/// As [`record_with_complaints`], with velocities that are read at rest as well: what would change
+/// if it moved.
 pub fn record_moving<F>(scene: Configured<'_>, f: F) -> Program
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>) -> Vec<Sym<'b>>,
@@ -61,8 +64,9 @@ where
     programs.remove(0)
 }
 
-/// Records what `f` computes, and what `end` makes of the values: a program for each of its lists. The unknowns of linear
-/// loops are eliminated, or, where `known`, read after the numbers of the layout. `moving`: velocities are not taken as zero at rest.
+/// Records what `f` computes, and what `end` makes of the values: a program for each of its lists.
+/// The unknowns of linear loops are eliminated, or, where `known`, read after the numbers of the
+/// layout. `moving`: velocities are not taken as zero at rest.
 fn recorded<F, E>(
     scene: Configured<'_>,
     n_more: usize,
@@ -105,16 +109,18 @@ where
 /// Where loads, differential equations and motions change branch.
 #[derive(Debug)]
 pub struct Switching {
-    /// one value per switch, changing sign there; reads the unknowns of linear loops after the layout's numbers
+    /// one value per switch, changing sign there; reads the unknowns of linear loops after the
+    /// layout's numbers
     pub switches: Program,
     /// these unknowns
     pub unknowns: Option<Program>,
-    /// the rates with every branch as the sign of its switch says: reads one sign per switch (−1, 0, 1) after the layout's
-    /// numbers. `None` where there are loops
+    /// the rates with every branch as the sign of its switch says: reads one sign per switch (−1,
+    /// 0, 1) after the layout's numbers. `None` where there are loops
     pub held: Option<Program>,
 }
 
-/// What loads and differential equations are made of: where these change branch, so do the rates.
+/// Returns the numbers that loads and differential equations are made of: where these change
+/// branch, so do the rates.
 fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S> {
     let mut sources = at.state_rates();
     for force in &scene.forces {
@@ -136,7 +142,8 @@ fn sources<S: Scalar>(at: &Equations<'_, S>, scene: &Scene) -> Vec<S> {
     sources
 }
 
-/// What depends on time alone, and where loads, differential equations and motions may break because of it.
+/// Values that depend on time alone, and the levels at which loads, differential equations and
+/// motions may break because of them.
 #[derive(Debug)]
 pub(crate) struct Timed {
     /// the values, which read nothing but the time among the layout's numbers
@@ -148,7 +155,7 @@ pub(crate) struct Timed {
 /// Where loads, differential equations and motions may break at times that are fixed beforehand.
 ///
 /// # Errors
-/// What the equations cannot supply.
+/// Functions ask for what the equations cannot supply.
 pub(crate) fn timed(scene: Configured<'_>) -> Result<Timed, Vec<Unsupported>> {
     let linear = scene.loops_linear && !scene.loops.is_empty();
     let n_more = if linear { scene.loops.len() } else { 0 };
@@ -177,7 +184,7 @@ pub(crate) fn timed(scene: Configured<'_>) -> Result<Timed, Vec<Unsupported>> {
 /// Where loads, differential equations and motions change branch. `None`: nowhere.
 ///
 /// # Errors
-/// What the equations cannot supply.
+/// Functions ask for what the equations cannot supply.
 pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsupported>> {
     let linear = scene.loops_linear && !scene.loops.is_empty();
     let n_more = if linear { scene.loops.len() } else { 0 };
@@ -236,9 +243,10 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
     }))
 }
 
-/// What `f` computes from the instant and `n_more` further numbers with every branch as the sign of its switch says: reads these numbers, then one sign per
-/// switch, after the layout's; `f` gives two lists, each makes a program. `None`: branches cannot be held. The switches are those of [`switching`], in
-/// their order, because the rates are recorded before anything else.
+/// Records what `f` computes from the instant and `n_more` further numbers with every branch as the
+/// sign of its switch says: reads these numbers, then one sign per switch, after the layout's; `f`
+/// gives two lists, each makes a program. `None`: branches cannot be held. The switches are those
+/// of [`switching`], in their order, because the rates are recorded before anything else.
 pub fn held_with<F>(
     scene: Configured<'_>,
     switching: &Switching,
@@ -291,7 +299,8 @@ pub fn rate<S: Scalar>(at: &Equations<'_, S>) -> Vec<S> {
     out
 }
 
-/// Weight of a coordinate's change in a projection: angles count as such, lengths against the size of the mechanism.
+/// Weight of a coordinate's change in a projection: angles count as such, lengths against the size
+/// of the mechanism.
 pub fn weights(scene: &Scene) -> Vec<f64> {
     let mut w = vec![1.0; scene.layout.n_v];
     for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
@@ -302,16 +311,17 @@ pub fn weights(scene: &Scene) -> Vec<f64> {
     w
 }
 
-/// Least changes that satisfy the active rows to first order: of the positions (as a tangent, n_v), then of the velocities; then
-/// those of the places of contacts on curves.
+/// Least changes that satisfy the active rows to first order: of the positions (as a tangent, n_v),
+/// then of the velocities; then those of the places of contacts on curves.
 ///
 /// ```text
 /// Δq = −A Gᵀ (G A Gᵀ)⁻¹ g        Δv = −A Gᵀ (G A Gᵀ)⁻¹ (G v + ġ₀)
 /// ```
 ///
-/// with `A = M⁻¹`: what is taken away is orthogonal in kinetic energy to all motions that the rows allow, so that noise normal
-/// to the rows, however large where they are nearly dependent, leaves those motions alone. In kinematics, where masses
-/// may be zero, A is a diagonal matrix of [`weights`].
+/// with `A = M⁻¹`: what is taken away is orthogonal in kinetic energy to all motions that the rows
+/// allow, so that noise normal to the rows, however large where they are nearly dependent, leaves
+/// those motions alone. In kinematics, where masses may be zero, A is a diagonal matrix of
+/// [`weights`].
 pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &[S]) -> Vec<S> {
     let rows: Vec<_> = (0..scene.rows.len())
         .filter(|&r| at.is_active(r))

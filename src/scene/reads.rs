@@ -1,15 +1,16 @@
-//! What the functions of constraints may read: a MOTION time alone, a GCON time and places.
+//! Inputs that the functions of constraints may read: a MOTION time alone, a GCON time and places.
 //!
-//! A constraint holds together with its first two rates. Those of a function of time come from the function itself, those of a
-//! function of places from how markers move; a function that reads velocities, forces or states has no such rates
-//! and is refused, with the name of what it reads and through which VARIABLE.
+//! A constraint holds together with its first two rates. Those of a function of time come from the
+//! function itself, those of a function of places from how markers move; a function that reads
+//! velocities, forces or states has no such rates and is refused, with the name of what it reads
+//! and through which VARIABLE.
 
 use super::{Entry, Scene};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
 use std::fmt;
 
-/// What a function may read.
+/// Inputs that a function may read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Allowed {
     /// TIME, MODE, numbers of an ARRAY, VARIABLEs of these

@@ -5,8 +5,9 @@
 //! G v̇ = γ               S λ = γ − G M⁻¹ f,   S = G M⁻¹ Gᵀ = Σ u uᵀ / D,   u = L⁻ᵀ Gᵀ
 //! ```
 //!
-//! Written for known zeros: a term that is known to be zero is not computed. A pivot of S that has lost twelve digits
-//! counts as zero and its multiplier too, so that rows which become dependent in passing do no harm.
+//! Written for known zeros: a term that is known to be zero is not computed. A pivot of S that has
+//! lost twelve digits counts as zero and its multiplier too, so that rows which become dependent in
+//! passing do no harm.
 //!
 //! Source: Featherstone, chapters 6.5 and 8.
 
@@ -70,7 +71,8 @@ impl<S: Scalar> Factor<'_, S> {
 pub const RANK_TOLERANCE: f64 = 1e-12;
 
 impl<S: Scalar> MassFactor<S> {
-    /// Factors the mass matrix given by rows of (carrying freedom, entry), own entry first, nearest carrier next.
+    /// Factors the mass matrix given by rows of (carrying freedom, entry), own entry first, nearest
+    /// carrier next.
     pub fn new(mut rows: Vec<Vec<(usize, S)>>) -> Self {
         let n = rows.len();
         let mut inverse_d = vec![S::zero(); n];
@@ -126,8 +128,8 @@ impl<S: Scalar> MassFactor<S> {
 /// `g[r]` is the sparse row r of G, `gamma[r]` its right side; `f` holds the loads and receives v̇.
 /// Returns λ and how well the rows determine it, measured against the usual pivots of `way`.
 ///
-/// Where freedoms have no inertia although rows determine their motion (a coupler without mass), the
-/// factored matrix has the lent inertia of `way` on its diagonal beyond M. It is taken back by
+/// Where freedoms have no inertia although rows determine their motion (a coupler without mass),
+/// the factored matrix has the lent inertia of `way` on its diagonal beyond M. It is taken back by
 /// iteration, E = diag(lent inertia):
 ///
 /// ```text
@@ -159,12 +161,15 @@ pub fn accelerations<S: Scalar>(
 /// Inertia lent to a freedom that has none, over the least inertia of the others.
 pub const LENT_INERTIA: f64 = 1e-4;
 
-/// Iterations that take lent inertia back: after these only [`LENT_INERTIA`]⁴, which is rounding, is left.
+/// Iterations that take lent inertia back: after these only [`LENT_INERTIA`]⁴, which is rounding,
+/// is left.
 const INERTIA_ITERATIONS: usize = 3;
 
-/// Returns the inertia to lend to each freedom that has none; nothing where all have some   (n_v or 0).
+/// Returns the inertia to lend to each freedom that has none; nothing where all have some   (n_v or
+/// 0).
 ///
-/// `rows` is the mass matrix as for [`MassFactor::new`]; `length` makes turns and slides comparable.
+/// `rows` is the mass matrix as for [`MassFactor::new`]; `length` makes turns and slides
+/// comparable.
 pub fn lent_inertia(mut rows: Vec<Vec<(usize, f64)>>, turns: &[bool], length: f64) -> Vec<f64> {
     let n = rows.len();
     let unit = |k: usize| if turns[k] { length * length } else { 1.0 };
@@ -263,7 +268,8 @@ fn sparse_dot<S: Scalar>(a: &[(usize, S)], b: &[(usize, S)]) -> S {
 pub struct Solution<S> {
     /// x
     pub x: Vec<S>,
-    /// least pivot as a part of what it usually is; 1: none is smaller   (the square of the distance from dependence)
+    /// least pivot as a part of what it usually is; 1: none is smaller   (the square of the
+    /// distance from dependence)
     pub strength: S,
     /// diagonal of A
     pub diagonal: Vec<S>,
@@ -272,9 +278,9 @@ pub struct Solution<S> {
 /// Pivots smaller than this times their usual size count as nearly singular.
 pub const NEAR_SINGULAR_PIVOT: f64 = 0.03;
 
-/// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ` in the given order;
-/// what depends on earlier rows gets the value zero. `reference`: what each pivot is compared with; empty:
-/// its own diagonal.
+/// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ`
+/// in the given order; what depends on earlier rows gets the value zero. `reference`: what each
+/// pivot is compared with; empty: its own diagonal.
 pub fn solve_symmetric<S: Scalar>(
     mut a: Vec<Vec<S>>,
     mut b: Vec<S>,

@@ -1,8 +1,10 @@
-//! Between coordinates and physics: outward, coordinates become poses, twists and accelerations of links; inward,
-//! wrenches and inertia become one equation per coordinate, and composite inertia becomes the mass matrix.
+//! Between coordinates and physics: outward, coordinates become poses, twists and accelerations of
+//! links; inward, wrenches and inertia become one equation per coordinate, and composite inertia
+//! becomes the mass matrix.
 //!
-//! Quantities of a link are expressed in the link's own axes, where its inertia is constant; only poses are in ground.
-//! With `R` the rotation link → parent, `p` the link's origin in the parent, `e` the axis of its motion:
+//! Quantities of a link are expressed in the link's own axes, where its inertia is constant; only
+//! poses are in ground. With `R` the rotation link → parent, `p` the link's origin in the parent,
+//! `e` the axis of its motion:
 //!
 //! ```text
 //! ω  = Rᵀ ω_P + e q̇                                         turn
@@ -11,7 +13,8 @@
 //! a  = Rᵀ (a_P + α_P × p + ω_P × (ω_P × p)) + 2 ω × e q̇ + e q̈   slide
 //! ```
 //!
-//! Source: Featherstone, *Rigid Body Dynamics Algorithms*, chapters 5 and 6, written in three-vectors.
+//! Source: Featherstone, *Rigid Body Dynamics Algorithms*, chapters 5 and 6, written in
+//! three-vectors.
 
 use super::{LinkIx, LinkMotion, MarkerOnLink, Scene, Source};
 use crate::scalar::{Jet, Scalar};
@@ -36,7 +39,7 @@ impl<S: Scalar> Wrench<S> {
     }
 }
 
-/// How a link stands and moves.
+/// Pose, velocity and acceleration of a link.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkState<S> {
     /// pose in the parent
@@ -53,7 +56,7 @@ pub struct LinkState<S> {
     pub a: Vec3<S>,
 }
 
-/// What the coordinates are doing: value, rate and acceleration of each   (per coordinate; a ball's value is unused)
+/// Values, rates and accelerations of the coordinates   (per coordinate; a ball's value is unused)
 pub struct Coordinates<'a, S> {
     /// positions   (n_q)
     pub q: &'a [S],
@@ -202,10 +205,11 @@ pub fn apply<S: Scalar>(
         .apply_transposed(torque + (point - X.position).cross(force));
 }
 
-/// What each link's carrier must exert on it: inertia force − gravity − applied wrench, summed inward.
+/// Returns the wrench that each link's carrier must exert on it: inertia force − gravity − applied
+/// wrench, summed inward.
 ///
-/// `gravity` in ground axes. The component along a free coordinate is the left side of its equation of motion; the rest
-/// is the reaction of the joint, about the link's origin, in the link's axes.
+/// `gravity` in ground axes. The component along a free coordinate is the left side of its equation
+/// of motion; the rest is the reaction of the joint, about the link's origin, in the link's axes.
 pub fn inward<S: Scalar>(
     scene: &Scene,
     states: &[LinkState<S>],
@@ -281,7 +285,8 @@ impl Freedom {
 
 /// Composite inertia of each link with all it carries, and from it the mass matrix.
 ///
-/// Returned by rows of freedoms: `rows[i]` = (j, M_ij) for every freedom j that is i or carries i, nearest first.
+/// Returned by rows of freedoms: `rows[i]` = (j, M_ij) for every freedom j that is i or carries i,
+/// nearest first.
 pub fn mass_matrix<S: Scalar>(scene: &Scene, states: &[LinkState<S>]) -> Vec<Vec<(usize, S)>> {
     let n = scene.links.len();
     let mut mass: Vec<S> = scene.links.iter().map(|l| S::constant(l.mass)).collect();

@@ -1,6 +1,8 @@
-//! Equations of the user's: VARIABLE, DIFF, LSE, TFSISO, GSE, the arrays through which they read each other, plants and sensors.
+//! Equations of the user's: VARIABLE, DIFF, LSE, TFSISO, GSE, the arrays through which they read
+//! each other, plants and sensors.
 //!
-//! Every state is a differential equation with a formula as its rate, whatever statement it comes from; every output is a formula:
+//! Every state is a differential equation with a formula as its rate, whatever statement it comes
+//! from; every output is a formula:
 //!
 //! ```text
 //! LSE      ẋ = A x + B u,  y = C x + D u
@@ -8,7 +10,8 @@
 //!          ẋᵢ = xᵢ₊₁,  ẋₙ = (u − Σ aᵢ xᵢ₊₁)/aₙ,  y = Σ (bᵢ − aᵢ bₙ/aₙ) xᵢ₊₁ + (bₙ/aₙ) u
 //! ```
 //!
-//! So circles through inputs and outputs, derivatives, statics and messages are those of all formulas.
+//! So circles through inputs and outputs, derivatives, statics and messages are those of all
+//! formulas.
 
 use super::build::Builder;
 use super::compile::Compiler;
@@ -23,7 +26,7 @@ use crate::model::{
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-/// What a state is at the beginning and at rest.
+/// Values of a state at the beginning and at rest.
 struct Start {
     value: f64,
     hold: bool,
@@ -40,7 +43,8 @@ struct Numbers {
 type Term = (f64, u32, usize);
 
 impl Builder<'_> {
-    /// All system elements. `changing`: VARIABLEs whose functions, where these are numbers, are not written into the equations.
+    /// All system elements. `changing`: VARIABLEs whose functions, where these are numbers, are not
+    /// written into the equations.
     pub(super) fn systems(&mut self, c: &mut Compiler, changing: &BTreeSet<u32>) {
         let model = self.model;
         for (id, variable) in model.active(ElementKind::Variable, &model.variables) {
@@ -431,7 +435,8 @@ impl Builder<'_> {
         self.filled(s.y, false, vec![y])
     }
 
-    /// States and outputs that a closure of the user's computes, from its own inputs, the states, the entries of U and the discrete states.
+    /// States and outputs that a closure of the user's computes, from its own inputs, the states,
+    /// the entries of U and the discrete states.
     fn general_system(
         &mut self,
         c: &mut Compiler,

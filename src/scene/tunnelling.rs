@@ -1,4 +1,4 @@
-//! How soon bodies of a contact could have passed through each other: an upper bound for the step.
+//! The bound of a step within which bodies of a contact cannot pass through each other.
 
 use super::equations::Equations;
 use crate::physics::contact::extent::Extent;
@@ -25,8 +25,8 @@ impl ThicknessBound {
         }
     }
 
-    /// Gap between the balls about the bodies (negative where they overlap), and bounds of the speed and of the acceleration with which any point of one
-    /// may move against any of the other.
+    /// Gap between the balls about the bodies (negative where they overlap), and bounds of the
+    /// speed and of the acceleration with which any point of one may move against any of the other.
     pub fn motion<S: Scalar>(&self, at: &Equations<S>) -> [S; 3] {
         let of = |k: usize| {
             let (m, e) = (at.accelerated_marker(self.markers[k]), &self.extents[k]);
@@ -61,14 +61,16 @@ impl ThicknessBound {
         middle(0) - middle(1)
     }
 
-    /// How much farther a step between two places goes than it may, lest one body comes through the other: at most 1 is permitted.
+    /// Returns the way between two places over the way after which one body may have come through
+    /// the other: at most 1 is permitted.
     pub fn excess(&self, from: Vec3<f64>, to: Vec3<f64>) -> f64 {
         let radii: f64 = self.extents.iter().map(|e| e.radius).sum();
         let gap = from.norm() - radii;
         (to - from).norm() / (gap.max(0.0) + 0.5 * self.overlap)
     }
 
-    /// How long a step from that motion may be so that neither is through the other unseen, when it is looked for them `looks` times on the way.
+    /// Returns how long a step from that motion may be so that neither is through the other unseen,
+    /// when it is looked for them `looks` times on the way.
     ///
     /// ```text
     /// d = half the way on which they overlap

@@ -1,12 +1,13 @@
-//! The rate of a DIFF that has none of its own: an implicit equation without DIF1 holds at every instant, so it holds with its first rate.
+//! The rate of a DIFF that has none of its own: an implicit equation without DIF1 holds at every
+//! instant, so it holds with its first rate.
 //!
 //! ```text
 //! 0 = e(y, z(t))        y' = −(∂e/∂z · z') / (∂e/∂y)
 //! ```
 //!
-//! Both derivatives come from the program of e over jets: once with z moving and y at rest, once with y alone moving. What e reads
-//! may be time, other equations, VARIABLEs and ARRAYs of these, and places of markers; what has no rate that is known
-//! without accelerations is named.
+//! Both derivatives come from the program of e over jets: once with z moving and y at rest, once
+//! with y alone moving. What e reads may be time, other equations, VARIABLEs and ARRAYs of these,
+//! and places of markers; what has no rate that is known without accelerations is named.
 
 use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure};
@@ -14,7 +15,7 @@ use crate::expr::program::{Input, Work};
 use crate::scalar::{Jet, Scalar};
 use crate::scene::Entry;
 
-/// What moves while a formula is differentiated in time.
+/// The quantities that move while a formula is differentiated in time.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Moving {
     /// all but the unknown of this equation

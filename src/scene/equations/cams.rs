@@ -8,7 +8,7 @@ use crate::scene::ConstraintElement;
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 
 /// Newton's steps that bring a parameter from its state to where it is: from 1e-4 beyond rounding.
-const STEPS: usize = 2;
+const NEWTON_STEPS: usize = 2;
 
 impl<S: Scalar> Equations<'_, S> {
     /// Pose of a marker.
@@ -34,7 +34,8 @@ impl<S: Scalar> Equations<'_, S> {
     pub fn cam_parameters(&self, c: usize) -> [S; 2] {
         let cam = &self.scene.cams[c];
         let (i, j) = (self.frame(cam.i), self.frame(cam.j));
-        cam.contact.refined(&i, &j, self.cam_states(c), STEPS)
+        cam.contact
+            .refined(&i, &j, self.cam_states(c), NEWTON_STEPS)
     }
 
     /// Parameters with their rates; v̇ = 0.
@@ -47,7 +48,8 @@ impl<S: Scalar> Equations<'_, S> {
         cam.contact.refined(&i, &j, s, 2)
     }
 
-    /// The floating marker of a contact on its curve `side`, as it moves along: with accelerations when asked for.
+    /// The floating marker of a contact on its curve `side`, as it moves along: with accelerations
+    /// when asked for.
     pub(super) fn floating_marker(
         &self,
         (c, side): (usize, usize),
@@ -90,7 +92,7 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
-    /// What must vanish for a contact to be where it is asked to begin, with gradients.
+    /// Returns what must vanish for a contact to be where it is asked to begin, with gradients.
     pub fn cam_start(&self, c: usize, given: [Option<f64>; 2]) -> Vec<(S, Vec<(usize, S)>)> {
         let cam = &self.scene.cams[c];
         let (I, J) = (self.marker(cam.i), self.marker(cam.j));
@@ -108,7 +110,7 @@ impl<S: Scalar> Equations<'_, S> {
             .collect()
     }
 
-    /// How fast a contact moves along its curves, by curves.
+    /// Returns how fast a contact moves along its curves, by curves.
     pub fn cam_speeds(&self, c: usize) -> Vec<S> {
         let paths = self.scene.cams[c].contact.paths();
         let speed = |(path, s): (&&Path, Jet<S>)| {
@@ -131,7 +133,8 @@ impl<S: Scalar> Equations<'_, S> {
         cams.position(|c| c.id == element.id)
     }
 
-    /// How far states of contacts are from where the contacts are, in the order of the contacts.
+    /// Returns how far states of contacts are from where the contacts are, in the order of the
+    /// contacts.
     pub(in crate::scene) fn cam_corrections(&self) -> Vec<S> {
         let mut out = Vec::new();
         for (c, cam) in self.scene.cams.iter().enumerate() {

@@ -146,7 +146,8 @@ impl<S: Scalar> Equations<'_, S> {
         })
     }
 
-    /// Accelerations (into `f`) and multipliers where the rows leave no freedom, so that masses may be zero.
+    /// Accelerations (into `f`) and multipliers where the rows leave no freedom, so that masses may
+    /// be zero.
     ///
     /// ```text
     /// v̇ = Gᵀ (G Gᵀ)⁻¹ γ        λ = (G Gᵀ)⁻¹ G (M v̇ − f)
@@ -195,7 +196,8 @@ impl<S: Scalar> Equations<'_, S> {
         solve_symmetric(gram, rhs, &[])
     }
 
-    /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are zero.
+    /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are
+    /// zero.
     ///
     /// ```text
     /// λ = −(G W Gᵀ)⁻¹ G W f
@@ -230,8 +232,8 @@ impl<S: Scalar> Equations<'_, S> {
         solve_symmetric(gram, rhs, &[])
     }
 
-    /// Loads along the free coordinates, gravity included, with the forces of the active rows at the given multipliers: all
-    /// zero in equilibrium   (n_v)
+    /// Loads along the free coordinates, gravity included, with the forces of the active rows at
+    /// the given multipliers: all zero in equilibrium   (n_v)
     pub fn balance(&self, multipliers: &[S]) -> Vec<S> {
         self.solving.set(true);
         let (wrenches, _) = self.loads();
@@ -248,7 +250,8 @@ impl<S: Scalar> Equations<'_, S> {
         f
     }
 
-    /// What is missing for these accelerations and multipliers to be those of the mechanism, along each free coordinate.
+    /// Returns what is missing for these accelerations and multipliers to be those of the
+    /// mechanism, along each free coordinate.
     ///
     /// ```text
     /// M v̇ + h(q, v) − f(t, q, v, x) − Gᵀλ        (n_v)
@@ -278,7 +281,7 @@ impl<S: Scalar> Equations<'_, S> {
         rotation.column(f.axis).times(S::constant(f.sign))
     }
 
-    /// How large the loads are, whatever cancels: Σ |force| + Σ |torque| / length + weight.
+    /// Returns how large the loads are, whatever cancels: Σ |force| + Σ |torque| / length + weight.
     pub fn load_scale(&self) -> S {
         self.solving.set(true);
         let (_, actions) = self.loads();
@@ -389,7 +392,8 @@ pub struct Solved<S> {
     pub vdot: Vec<S>,
     /// multipliers of the rows; 0 for rows that do not take part   (n_rows)
     pub lambda: Vec<S>,
-    /// least pivot of the rows as a part of what it usually is: small near a position where rows become dependent
+    /// least pivot of the rows as a part of what it usually is: small near a position where rows
+    /// become dependent
     pub strength: S,
     /// diagonal of `G M⁻¹ Gᵀ` over the rows that take part
     pub diagonal: Vec<S>,

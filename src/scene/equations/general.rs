@@ -4,8 +4,8 @@
 //! e = e(m₁ … m_k)     δe = Σ ∂e/∂mᵢ δmᵢ      δmᵢ = wrenchᵢ · twists of its markers
 //! ```
 //!
-//! The partial derivatives come from the gradient of the function's program, the wrenches from each measure over duals along the twists of the markers it
-//! reads, the rates from both over jets.
+//! The partial derivatives come from the gradient of the function's program, the wrenches from each
+//! measure over duals along the twists of the markers it reads, the rates from both over jets.
 
 use super::rows::{moving, seed, twist};
 use super::{Equations, RowValue};
@@ -18,7 +18,7 @@ use crate::scene::{Counted, Entry};
 use crate::space::{Frame, MarkerState};
 
 /// Most markers that one measure reads.
-const MARKERS: usize = 3;
+const MAX_MARKERS: usize = 3;
 
 /// A function of places: its value with rates in time, and what a unit multiplier on it exerts.
 struct Traced<S> {
@@ -112,7 +112,8 @@ impl<S: Scalar> Equations<'_, S> {
         sum
     }
 
-    /// A displacement or an angle with its rates; `None`: a marker is missing, or it is no function of places.
+    /// A displacement or an angle with its rates; `None`: a marker is missing, or it is no function
+    /// of places.
     pub(super) fn place_in_time(&self, measure: Measure, ids: [u32; 4]) -> Option<Jet<S>> {
         let index = |id: u32| self.scene.marker_of.get(&id).copied();
         let mut jet = kinematic::kinematic_of(measure, ids, |id| {
@@ -135,7 +136,8 @@ impl<S: Scalar> Equations<'_, S> {
                 read.push(m);
                 read.len() - 1
             });
-            (k < MARKERS).then(|| placed(seed::<{ 6 * MARKERS }, S>(&self.marker(m), 6 * k)))
+            (k < MAX_MARKERS)
+                .then(|| placed(seed::<{ 6 * MAX_MARKERS }, S>(&self.marker(m), 6 * k)))
         })?;
         let actions = read
             .iter()

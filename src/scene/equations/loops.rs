@@ -1,11 +1,11 @@
-//! What functions read too early: found out, and their equations.
+//! Quantities that functions read too early: finding them, and their equations.
 
 use super::{Equations, Lack};
 use crate::scalar::Scalar;
 use crate::scene::loops::Key;
 
 impl<S: Scalar> Equations<'_, S> {
-    /// What was asked for too early.
+    /// Returns what was asked for too early.
     pub(in crate::scene) fn discovered(self) -> Vec<Key> {
         self.discovered.into_inner()
     }

@@ -1,4 +1,5 @@
-//! What the functions of the model read: displacements, velocities, accelerations, angles with their turns, values of system elements.
+//! Measures, which the functions of the model read: displacements, velocities, accelerations,
+//! angles with their turns, values of system elements.
 
 use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure, orientation_components};
@@ -16,7 +17,7 @@ impl<S: Scalar> Equations<'_, S> {
             .unwrap_or_else(|| self.measure_itself(measure, ids, asked_by))
     }
 
-    /// What a measure turns out to be, also where a load reads it.
+    /// Evaluates a measure, also where a load reads it.
     pub(super) fn measure_itself(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
         if self.scene.gone(measure, &ids).is_some() {
             return S::zero();
@@ -61,7 +62,8 @@ impl<S: Scalar> Equations<'_, S> {
         principal + turns.scale(turn)
     }
 
-    /// Value of a variable of a joint: its index in [`Scene::joint_variables`](crate::scene::Scene::joint_variables).
+    /// Value of a variable of a joint: its index in
+    /// [`Scene::joint_variables`](crate::scene::Scene::joint_variables).
     pub fn joint_variable(&self, k: usize) -> S {
         let variable = &self.scene.joint_variables[k];
         self.displacement(&variable.displacement).value
@@ -151,7 +153,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 }
 
-/// What a measure of markers lacks: a marker, or ORIENT a meaning of what it is asked for.
+/// Names what a measure of markers lacks: a marker, or ORIENT a meaning of what it is asked for.
 fn without_value(measure: Measure, ids: [u32; 4]) -> Lack {
     match (measure, ids) {
         (Measure::Orient, [system @ (25 | 26), component, ..]) => {

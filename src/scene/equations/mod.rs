@@ -1,11 +1,13 @@
-//! All that can be computed at one instant, generic over the number, each thing when it is first asked for.
+//! All that can be computed at one instant, generic over the number, each thing when it is first
+//! asked for.
 //!
 //! ```text
 //! t, q, v, x → links, markers → formulas → loads ┐
 //!                              mass matrix, rows ┴→ v̇, λ → accelerations, reactions → measures
 //! ```
 //!
-//! Run over `f64` this is the reference; run over a recording number it becomes the program that the solver runs.
+//! Run over `f64` this is the reference; run over a recording number it becomes the program that
+//! the solver runs.
 
 mod algebraic;
 mod cams;
@@ -84,7 +86,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
         Self::with_unknowns(scene, numbers, loops, false)
     }
 
-    /// As [`Equations::new`], with values for the unknowns of algebraic loops; or to find out which these are.
+    /// As [`Equations::new`], with values for the unknowns of algebraic loops; or to find out which
+    /// these are.
     pub(in crate::scene) fn with_unknowns(
         scene: Configured<'s>,
         numbers: &[S],
@@ -124,7 +127,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         this
     }
 
-    /// What could not be supplied; empty when all is well.
+    /// Returns what could not be supplied; empty when all is well.
     pub fn complaints(&self) -> Vec<Unsupported> {
         self.complaints.borrow().clone()
     }
@@ -207,7 +210,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
         self.in_time(formula, 0, &mut Vec::new()).value
     }
 
-    /// A formula of time and of differential equations that depend on nothing else, with its rates up to `order`.
+    /// A formula of time and of differential equations that depend on nothing else, with its rates
+    /// up to `order`.
     fn in_time(&self, formula: usize, order: usize, open: &mut Vec<usize>) -> Jet<S> {
         let f = &self.scene.formulas[formula];
         if open.contains(&formula) {
@@ -247,7 +251,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
         out[0] + Jet::new(self.added(formula), S::zero(), S::zero())
     }
 
-    /// A state of a differential equation with its rates up to `order`: each order needs its formula one order lower.
+    /// A state of a differential equation with its rates up to `order`: each order needs its
+    /// formula one order lower.
     fn state_in_time(&self, d: usize, order: usize) -> Jet<S> {
         let equation = &self.scene.differentials[d];
         let Some(value) = equation.state.map(|s| self.x[s]) else {
@@ -312,7 +317,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
         sweep::marker_state(&self.scene.markers[m], &self.solved().links)
     }
 
-    /// A marker by the user's number, also a floating one of a contact; with accelerations when asked for.
+    /// A marker by the user's number, also a floating one of a contact; with accelerations when
+    /// asked for.
     fn marker_by_id(&self, id: u32, accelerated: bool) -> Option<MarkerState<S>> {
         if let Some(&m) = self.scene.marker_of.get(&id) {
             return Some(if accelerated {
@@ -342,7 +348,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         value
     }
 
-    /// What a formula turns out to be, also where it closes a loop.
+    /// Evaluates a formula, also where it closes a loop.
     fn evaluate(&self, f: usize) -> S {
         let formula = &self.scene.formulas[f];
         self.open.borrow_mut().push(f);
@@ -363,7 +369,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         out[0] + self.added(f)
     }
 
-    /// What is added to a formula from outside, where it is a plant input.
+    /// Returns what is added to a formula from outside, where it is a plant input.
     fn added(&self, f: usize) -> S {
         let mut inputs = self.scene.external_inputs.iter();
         match inputs.position(|s| *s == ExternalInput::Input(f)) {
@@ -390,7 +396,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         }
     }
 
-    /// What a formula asks for: the one door between the language and the scene.
+    /// Supplies what a formula asks for: the one door between the language and the scene.
     pub fn input(&self, input: Input, asked_by: &str) -> S {
         match input {
             Input::Time => self.t,

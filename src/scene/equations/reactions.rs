@@ -1,4 +1,5 @@
-//! What elements exert, as measures: reactions of constraints, actions of forces, sums between two markers.
+//! Forces and torques that elements exert, as measures: reactions of constraints, actions of
+//! forces, sums between two markers.
 
 use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure};
@@ -23,7 +24,8 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
-    /// Action of an element on its I marker, with the points of I and J; `None` when there is no such element.
+    /// Action of an element on its I marker, with the points of I and J; `None` when there is no
+    /// such element.
     pub(super) fn element(&self, id: ElementId) -> Option<(Action<S>, Vec3<S>, Vec3<S>)> {
         let scene = self.scene;
         let mut total: Option<(Action<S>, Vec3<S>, Vec3<S>)> = None;
@@ -58,8 +60,8 @@ impl<S: Scalar> Equations<'_, S> {
         Some((action, point(about), point(j)))
     }
 
-    /// The reaction of a constraint on its I marker (of a contact of curves about where it touches): where rows depend on each
-    /// other, its part of the smallest set.
+    /// The reaction of a constraint on its I marker (of a contact of curves about where it
+    /// touches): where rows depend on each other, its part of the smallest set.
     pub fn reaction(&self, c: usize) -> Action<S> {
         let solved = self.solved();
         let own = self.reaction_to(c, &solved.lambda, &solved.carried);
@@ -69,7 +71,8 @@ impl<S: Scalar> Equations<'_, S> {
         })
     }
 
-    /// What a constraint exerts on its I marker when rows have these multipliers and links are carried by these wrenches.
+    /// Returns what a constraint exerts on its I marker when rows have these multipliers and links
+    /// are carried by these wrenches.
     pub(super) fn reaction_to(&self, c: usize, lambda: &[S], carried: &[Wrench<S>]) -> Action<S> {
         let scene = self.scene;
         let element = &scene.constraints[c];
@@ -275,7 +278,8 @@ impl<S: Scalar> Equations<'_, S> {
         all.any(|c| (self.named(c)).is_some_and(|m| m == (i, j) || m == (j, i)))
     }
 
-    /// Numbers of the markers between which a constraint acts: floating ones where contacts of curves have them.
+    /// Numbers of the markers between which a constraint acts: floating ones where contacts of
+    /// curves have them.
     fn named(&self, element: &ConstraintElement) -> Option<(u32, u32)> {
         let id = |m: usize| self.scene.markers[m].id;
         match self.cam_of(element) {
@@ -284,7 +288,8 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
-    /// Sum of what acts on marker `i` from elements between `i` and `j`; `j` = 0: from action-only forces.
+    /// Sum of what acts on marker `i` from elements between `i` and `j`; `j` = 0: from action-only
+    /// forces.
     pub(super) fn between(&self, i: u32, j: u32) -> Action<S> {
         let scene = self.scene;
         let mut sum = Action::zero();

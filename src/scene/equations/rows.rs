@@ -69,7 +69,8 @@ impl<S: Scalar> Equations<'_, S> {
             .fold(S::zero(), |s, &(v, g)| s + g * self.v[v])
     }
 
-    /// A sum of displacements: each a sum of coordinates where it can be, else by duals along twists and jets in time.
+    /// A sum of displacements: each a sum of coordinates where it can be, else by duals along
+    /// twists and jets in time.
     pub(super) fn sum_row(&self, sum: &Sum, constant: f64) -> RowValue<S> {
         let mut value = S::constant(-constant);
         let (mut drift, mut second) = (S::zero(), S::zero());
@@ -106,7 +107,8 @@ impl<S: Scalar> Equations<'_, S> {
         if let Some(contact) = sum.contact {
             actions = self.contact(contact);
             if !linear {
-                // the same rate on all motions that the joints permit, by forces that act where the bodies touch
+                // the same rate on all motions that the joints permit, by forces that act where the
+                // bodies touch
                 let rate = self.contact_rate(contact);
                 gradient = self.gradient_of(&actions);
                 drift = rate.value - self.along(&gradient);
@@ -169,7 +171,8 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
-    /// A unit force along z of CV on the first body at the origin of CV, and its opposite on the second.
+    /// A unit force along z of CV on the first body at the origin of CV, and its opposite on the
+    /// second.
     pub(super) fn contact(&self, (cv, bodies): (usize, [usize; 2])) -> Vec<(usize, Action<S>)> {
         let cv = self.marker(cv);
         let line = cv.R_GM.column(2);
@@ -183,7 +186,8 @@ impl<S: Scalar> Equations<'_, S> {
             .collect()
     }
 
-    /// How fast the second body recedes from the first at CV along its z axis, and the rate of that with v̇ = 0.
+    /// Returns how fast the second body recedes from the first at CV along its z axis, and the rate
+    /// of that with v̇ = 0.
     pub(super) fn contact_rate(&self, (cv, bodies): (usize, [usize; 2])) -> Jet<S> {
         let rate = |x: S, first: S| Jet::new(x, first, S::zero());
         let pair =
@@ -240,7 +244,8 @@ pub struct RowValue<S> {
     pub actions: Vec<(usize, Action<S>)>,
 }
 
-/// What a dual along twists says about the one whose directions begin at `k`: the action of a unit multiplier.
+/// Returns the action of a unit multiplier: what a dual along twists says of the twist whose
+/// directions begin at `k`.
 pub(super) fn twist<const N: usize, S: Scalar>(x: &Dual<N, S>, k: usize) -> Action<S> {
     Action {
         torque: Vec3([x.eps[k], x.eps[k + 1], x.eps[k + 2]]),
@@ -248,7 +253,8 @@ pub(super) fn twist<const N: usize, S: Scalar>(x: &Dual<N, S>, k: usize) -> Acti
     }
 }
 
-/// A marker's frame as it turns and moves along six directions, the first of which is direction `first`.
+/// A marker's frame as it turns and moves along six directions, the first of which is direction
+/// `first`.
 pub(super) fn seed<const N: usize, S: Scalar>(
     m: &MarkerState<S>,
     first: usize,

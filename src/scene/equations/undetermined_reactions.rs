@@ -1,14 +1,18 @@
-//! States of stress without load: what rows that depend on each other may exert while nothing moves and nothing pulls.
+//! States of stress without load: what rows that depend on each other may exert while nothing moves
+//! and nothing pulls.
 //!
-//! A row r that depends on others, `g_r = Σ c_k g_k`, permits the multipliers `λ_r = 1, λ_k = −c_k` with no effect on any coordinate. Joints of the
-//! forest that lie in the loop carry what these rows exert, so the elements that share a direction show as those that are stressed, whether they are
-//! rows or carry parts. Reactions are determined up to such states; what is reported is the set with
+//! A row r that depends on others, `g_r = Σ c_k g_k`, permits the multipliers `λ_r = 1, λ_k = −c_k`
+//! with no effect on any coordinate. Joints of the forest that lie in the loop carry what these
+//! rows exert, so the elements that share a direction show as those that are stressed, whether they
+//! are rows or carry parts. Reactions are determined up to such states; what is reported is the set
+//! with
 //!
 //! ```text
 //! Σ |F_e|² + |T_e|²/L²  least over all constraint elements e,   T_e about the middle of the two markers, L the distance over which constraints are spread
 //! ```
 //!
-//! which does not depend on the order of elements, on ground, on which marker is called I, nor on what carries what.
+//! which does not depend on the order of elements, on ground, on which marker is called I, nor on
+//! what carries what.
 
 use super::Equations;
 use crate::physics::action::Action;
@@ -29,7 +33,8 @@ pub struct Share<S> {
 }
 
 impl<S: Scalar> Equations<'_, S> {
-    /// What each constraint element exerts on its I marker when rows have these multipliers and nothing else acts   (n_constraints)
+    /// Returns what each constraint element exerts on its I marker when rows have these multipliers
+    /// and nothing else acts   (n_constraints)
     pub fn stress(&self, lambda: &[S]) -> Vec<Action<S>> {
         let scene = self.scene;
         let mut wrenches = vec![Wrench::zero(); scene.links.len()];
@@ -51,7 +56,8 @@ impl<S: Scalar> Equations<'_, S> {
             .collect()
     }
 
-    /// States of stress of all rows that do not take part, with their shares in the smallest set of reactions.
+    /// States of stress of all rows that do not take part, with their shares in the smallest set of
+    /// reactions.
     pub(super) fn shares(&self) -> &[Share<S>] {
         self.shares.get_or_init(|| self.smallest())
     }

@@ -1,4 +1,5 @@
-//! What functions ask for that the equations of a scene cannot supply: as data, and as the sentence that the user reads.
+//! Inputs that functions ask for and the equations of a scene cannot supply: as data, and as the
+//! sentence that the user reads.
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::{Measure, orientation_components};
@@ -14,7 +15,7 @@ pub struct Unsupported {
     pub lack: Lack,
 }
 
-/// What is lacking where a number cannot be supplied.
+/// The thing that is lacking where a number cannot be supplied.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Lack {
     /// a solution: the value depends on itself where nothing solves for it
