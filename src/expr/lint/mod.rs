@@ -216,7 +216,9 @@ mod tests {
         };
         for (text, columns) in [
             ("360*TIME", vec![1]),
-            ("-TIME*360", vec![7]),
+            ("-360*TIME", vec![1]),
+            ("-(360*TIME)", vec![3]),
+            ("TIME*360", vec![6]),
             ("0.1 + STEP(TIME, 0, 0, 1, 90)", vec![27]),
             ("90 - 45*TIME", vec![1, 6]),
             ("-90", vec![2]),
