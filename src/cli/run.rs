@@ -61,6 +61,9 @@ pub struct Args {
     /// Run motions whose displacement or velocity jumps, piece by piece
     #[arg(long)]
     piecewise: bool,
+    /// Steps that a simulation may try before it ends with exit code 7
+    #[arg(long, value_name = "N")]
+    max_steps: Option<usize>,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -187,6 +190,7 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
         piecewise: args.piecewise,
         skip: args.skip.iter().copied().collect(),
         zero_user: args.zero_user,
+        max_steps: args.max_steps,
     };
     let mut session = Session::new(model, base, options);
     session.run.record.model = args.model.display().to_string();

@@ -68,6 +68,8 @@ pub struct Options {
     pub skip: std::collections::BTreeSet<ElementKind>,
     /// take what `USER(…)` would compute as zero
     pub zero_user: bool,
+    /// steps that one integration may try, accepted or not, before it ends with [`Status::Limit`]; `None`: any number
+    pub max_steps: Option<usize>,
 }
 
 /// A model and its clock.

@@ -99,6 +99,7 @@ impl Session {
             h_min: i.hmin.unwrap_or(0.0),
             max_order: i.kmax.map(|k| k as usize),
             max_newton: i.maxit.map(|k| k as usize),
+            max_steps: self.options.max_steps.unwrap_or(usize::MAX),
             ..Options::default()
         }
     }

@@ -119,7 +119,7 @@ impl Cause {
             Cause::Stalled => {
                 "thousands of steps got hardly any further; something is too stiff or changes too fast for this method"
             }
-            Cause::TooManySteps => "as many steps as permitted",
+            Cause::TooManySteps => "as many steps were tried as are permitted",
         }
     }
 }

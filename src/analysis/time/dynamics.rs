@@ -44,7 +44,9 @@ pub fn integrate(
     let mut restarts = 0;
     loop {
         // the method, and its state: that of an implicit one has multipliers, found anew
-        let Some(mut method) = options.new_method(&name, system) else {
+        let attempted = out.stats.steps + out.stats.rejected;
+        let max_steps = options.max_steps.saturating_sub(attempted);
+        let Some(mut method) = options.new_method(&name, system, max_steps) else {
             out.ended = Some(gave_up(t));
             return out;
         };
@@ -57,7 +59,7 @@ pub fn integrate(
             start: t,
             end,
             landings: &landings,
-            max_steps: options.max_steps,
+            max_steps,
             may_change: options.is_auto() && name == "DOP853",
             may_slide: !implicit,
         };

@@ -23,7 +23,7 @@ pub struct Options {
     pub max_order: Option<usize>,
     /// Newton iterations
     pub max_newton: Option<usize>,
-    /// attempted steps
+    /// attempted steps, by all methods together
     pub max_steps: usize,
 }
 
@@ -58,11 +58,12 @@ impl Options {
         }
     }
 
-    /// Returns the method of that name for a system, or `None` if there is none.
+    /// Returns the method of that name for a system, which may attempt `max_steps` steps, or `None` if there is none.
     pub(super) fn new_method(
         &self,
         name: &str,
         system: &System,
+        max_steps: usize,
     ) -> Option<Box<dyn Method<System>>> {
         let settings = numeric::Options {
             tolerance: self.error,
@@ -71,7 +72,7 @@ impl Options {
             h_min: self.h_min,
             max_order: self.max_order.unwrap_or(5),
             max_newton: self.max_newton.unwrap_or(10),
-            max_steps: self.max_steps,
+            max_steps,
             ..numeric::Options::default()
         };
         numeric::ode_method::<System>(name, Ode::size(system), &settings)
