@@ -8,7 +8,6 @@
 mod contacts;
 
 use contacts::*;
-use rapier3d_f64::prelude::*;
 use std::time::Instant;
 
 /// One experiment: a name, our difference at a stiffness, rapier's.
@@ -57,132 +56,62 @@ fn main() {
 const R: f64 = 0.1;
 const H: f64 = 0.2;
 
-/// Speed with which a ball left the plane, from its energy now.
-fn left_with(v: f64, z: f64) -> f64 {
-    (v * v + 2.0 * G * (z - R)).max(0.0).sqrt()
-}
-
 fn bounce(k: f64) -> f64 {
     let speed = (2.0 * G * H).sqrt();
-    let text = ball(2, 1.0, R, [0.0, 0.0, R + H], "")
-        + &contact(1, 2, 1, k, damper(0.5, k, 1.0), "")
-        + &format!("ACCGRAV/KGRAV=-{G}\n");
     // until the softest has let go
     let end = speed / G + 0.02 + 4.0 / k.sqrt();
-    let s = run(&text, &["VZ(2)", "DZ(2)"], end, 1, 1e-8);
-    (left_with(last(&s, "VZ(2)"), last(&s, "DZ(2)")) - 0.5 * speed).abs() / speed
+    let s = run(
+        &falling_ball(R, H, k, 0.5),
+        &["VZ(2)", "DZ(2)"],
+        end,
+        1,
+        1e-8,
+    );
+    let left = left_with([last(&s, "VZ(2)"), last(&s, "DZ(2)") - R]);
+    (left - 0.5 * speed).abs() / speed
 }
 
 fn rigid_bounce() -> f64 {
     let speed = (2.0 * G * H).sqrt();
-    let mut world = world([0.0, 0.0, -G]);
-    ground(&mut world, 0.5, 0.0);
-    let body = rigid_ball(&mut world, 1.0, R, [0.0, 0.0, R + H], [0.0; 3], 0.5, 0.0);
-    steps(&mut world, speed / G + 0.02);
-    let body = &world.bodies[body];
-    (left_with(body.linvel().z, body.translation().z) - 0.5 * speed).abs() / speed
+    let left = left_with(rigid_falling_ball(R, H, 0.5, speed / G + 0.02));
+    (left - 0.5 * speed).abs() / speed
 }
 
 fn rest(k: f64) -> f64 {
-    let text = ball(2, 1.0, R, [0.0, 0.0, R + 0.001], "")
-        + &contact(1, 2, 1, k, damper(0.2, k, 1.0), "")
-        + &format!("ACCGRAV/KGRAV=-{G}\n");
+    let text = falling_ball(R, 0.001, k, 0.2);
     (last(&run(&text, &["DZ(2)"], 0.6, 1, 1e-8), "DZ(2)") - R).abs() / R
 }
 
 fn rigid_rest() -> f64 {
-    let mut world = world([0.0, 0.0, -G]);
-    ground(&mut world, 0.0, 0.0);
-    let body = rigid_ball(
-        &mut world,
-        1.0,
-        R,
-        [0.0, 0.0, R + 0.001],
-        [0.0; 3],
-        0.0,
-        0.0,
-    );
-    steps(&mut world, 0.6);
-    (world.bodies[body].translation().z - R).abs() / R
+    rigid_falling_ball(R, 0.001, 0.0, 0.6)[1].abs() / R
+}
+
+const HEAD_ON: Meeting = Meeting {
+    r: R,
+    from: -0.2,
+    to: [0.2, 0.0],
+    masses: [1.0; 2],
+    speeds: [1.0, -1.0],
+    e: 0.5,
+};
+
+fn worst(found: [f64; 4], exact: [f64; 4]) -> f64 {
+    let off = found.iter().zip(exact).map(|(a, b)| (a - b).abs());
+    off.fold(0.0, f64::max)
 }
 
 fn head_on(k: f64) -> f64 {
-    let text = ball(2, 1.0, R, [-0.2, 0.0, 0.0], ", VX=1")
-        + &ball(3, 1.0, R, [0.2, 0.0, 0.0], ", VX=-1")
-        + &contact(1, 2, 3, k, damper(0.5, k, 0.5), "");
-    let s = run(&text, &["VX(2)", "VX(3)"], 0.5, 1, 1e-8);
-    (last(&s, "VX(2)") + 0.5)
-        .abs()
-        .max((last(&s, "VX(3)") - 0.5).abs())
+    worst(HEAD_ON.ours(k, 1e-8), [-0.5, 0.0, 0.5, 0.0])
 }
 
 fn rigid_head_on() -> f64 {
-    let mut world = world([0.0; 3]);
-    let a = rigid_ball(
-        &mut world,
-        1.0,
-        R,
-        [-0.2, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        0.5,
-        0.0,
-    );
-    let b = rigid_ball(
-        &mut world,
-        1.0,
-        R,
-        [0.2, 0.0, 0.0],
-        [-1.0, 0.0, 0.0],
-        0.5,
-        0.0,
-    );
-    steps(&mut world, 0.5);
-    let v = |h: RigidBodyHandle| world.bodies[h].linvel().x;
-    (v(a) + 0.5).abs().max((v(b) - 0.5).abs())
-}
-
-const OFFSET: f64 = 0.12;
-
-/// Velocities after an oblique impact of a moving ball on one at rest, restitution 0.6.
-fn oblique_exact() -> [f64; 4] {
-    let n = [
-        (4.0 * R * R - OFFSET * OFFSET).sqrt() / (2.0 * R),
-        OFFSET / (2.0 * R),
-    ];
-    let lost = 0.8 * n[0];
-    [1.0 - lost * n[0], -lost * n[1], lost * n[0], lost * n[1]]
-}
-
-fn worst(found: [f64; 4]) -> f64 {
-    found
-        .iter()
-        .zip(oblique_exact())
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max)
+    worst(HEAD_ON.rigid(), [-0.5, 0.0, 0.5, 0.0])
 }
 
 fn oblique(k: f64) -> f64 {
-    let text = ball(2, 1.0, R, [-0.3, 0.0, 0.0], ", VX=1")
-        + &ball(3, 1.0, R, [0.0, OFFSET, 0.0], "")
-        + &contact(1, 2, 3, k, damper(0.6, k, 0.5), "");
-    let columns = ["VX(2)", "VY(2)", "VX(3)", "VY(3)"];
-    let s = run(&text, &columns, 0.5, 1, 1e-8);
-    worst(columns.map(|c| last(&s, c)))
+    worst(contacts::oblique().ours(k, 1e-8), oblique_exact())
 }
 
 fn rigid_oblique() -> f64 {
-    let mut world = world([0.0; 3]);
-    let a = rigid_ball(
-        &mut world,
-        1.0,
-        R,
-        [-0.3, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        0.6,
-        0.0,
-    );
-    let b = rigid_ball(&mut world, 1.0, R, [0.0, OFFSET, 0.0], [0.0; 3], 0.6, 0.0);
-    steps(&mut world, 0.5);
-    let (a, b) = (world.bodies[a].linvel(), world.bodies[b].linvel());
-    worst([a.x, a.y, b.x, b.y])
+    worst(contacts::oblique().rigid(), oblique_exact())
 }

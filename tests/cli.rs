@@ -573,6 +573,45 @@ fn a_lock_up_ends_with_its_code_its_joint_and_its_last_configuration() {
 }
 
 #[test]
+fn a_limit_of_steps_ends_with_its_code_and_keeps_what_there_is() {
+    let adm = scratch(
+        "limit",
+        "swing.adm",
+        "a pendulum\nPART/1, GROUND\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/1, PART=1\nMARKER/2, PART=2, QP=1,0,0\nMARKER/3, PART=2\n\
+         JOINT/1, REVOLUTE, I=3, J=1\nACCGRAV/JGRAV=-9.81\nEND\n",
+    );
+    for method in ["DOP853", "RADAU5", "BDF", "HHT", "AUTO"] {
+        let ran = |limit: &str| {
+            let args = [
+                "run",
+                path(&adm),
+                "--end",
+                "100",
+                "--steps",
+                "100",
+                "--json",
+            ];
+            let more = ["--method", method, "--max-steps", limit];
+            let done = cognate(&[&args[..], &more[..]].concat());
+            let record: serde_json::Value = serde_json::from_str(&done.out).unwrap_or_default();
+            (done, record)
+        };
+        let (done, record) = ran("20");
+        assert_eq!(done.code, 7, "{method}: {}", done.err);
+        let count = |name: &str| record[name].as_u64().unwrap();
+        let tried = count("steps") + count("rejected_steps");
+        assert_eq!(tried, 20, "{method}: {record}");
+        assert_eq!(record["status"], "limit");
+        let reason = record["stop_reason"].as_str().unwrap();
+        assert!(
+            reason.contains("as many steps were tried as are permitted"),
+            "{reason}"
+        );
+        assert_eq!(ran("1000000").0.code, 0, "{method}");
+    }
+}
+
+#[test]
 fn a_motion_that_jumps_is_refused_and_runs_piecewise_on_demand() {
     let adm = scratch(
         "piecewise",

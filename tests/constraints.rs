@@ -92,6 +92,14 @@ fn carrying() -> Vec<(&'static str, Mat3<f64>)> {
     all
 }
 
+/// The same with I on either part: kind, orientation of I against J, and the numbers of I and J.
+fn carrying_both_ways() -> Vec<(&'static str, Mat3<f64>, u32, u32)> {
+    let both = |(kind, relative): (&'static str, Mat3<f64>)| {
+        [(kind, relative, 5, 4), (kind, relative.transpose(), 4, 5)]
+    };
+    carrying().into_iter().flat_map(both).collect()
+}
+
 fn keyword(kind: &str) -> &'static str {
     match kind {
         "ATPOINT" | "INLINE" | "INPLANE" | "ORIENTATION" | "PARALLEL_AXES" | "PERPENDICULAR" => {
@@ -193,43 +201,36 @@ fn after(scene: &Scene, q: &[f64], v: &[f64], h: f64) -> Vec<f64> {
 #[test]
 fn motions_and_rows_of_every_tie_agree() {
     let mut draw = Draw(1);
-    for (kind, relative) in carrying() {
-        for (i, j) in [(5, 4), (4, 5)] {
-            let relative = if i == 5 {
-                relative
-            } else {
-                relative.transpose()
-            };
-            let k = keyword(kind);
-            let ties = format!("{k}/1, {kind}, I={i}, J={j}\n{k}/2, {kind}, I={i}, J={j}\n");
-            // FIXED and ORIENTATION relate J to I; markers of a universal joint are square to each other either way
-            let (_, scene, configuration) = compiled(&pair(&mut draw, &relative, &ties), false);
-            let rows = scene.rows.len();
-            assert!(
-                scene
-                    .rows
-                    .iter()
-                    .all(|r| r.element.to_string() == format!("{k}/2")),
-                "{kind}: the first carries, the second closes"
-            );
-            assert_eq!(
-                scene.layout.n_v,
-                12 - rows,
-                "{kind}: motions and rows add up to six"
-            );
-            for _ in 0..10 {
-                let (q, v) = anywhere(&scene, &mut draw);
-                let n = all_numbers(&scene, 0.0, &q, &v);
-                let at = Equations::<f64>::new(scene.within(&configuration), &n);
-                for r in 0..rows {
-                    let row = at.row(r);
-                    let name = format!("{kind} {}", scene.rows[r].equation);
-                    assert!(row.value.abs() < 1e-13, "{name}: {}", row.value);
-                    assert!(row.drift.abs() < 1e-12, "{name} drifts");
-                    assert!(row.gamma.abs() < 1e-11, "{name}: γ {}", row.gamma);
-                    for (_, g) in row.gradient {
-                        assert!(g.abs() < 1e-12, "{name}: works on its own motion, {g}");
-                    }
+    for (kind, relative, i, j) in carrying_both_ways() {
+        let k = keyword(kind);
+        let ties = format!("{k}/1, {kind}, I={i}, J={j}\n{k}/2, {kind}, I={i}, J={j}\n");
+        // FIXED and ORIENTATION relate J to I; markers of a universal joint are square to each other either way
+        let (_, scene, configuration) = compiled(&pair(&mut draw, &relative, &ties), false);
+        let rows = scene.rows.len();
+        assert!(
+            scene
+                .rows
+                .iter()
+                .all(|r| r.element.to_string() == format!("{k}/2")),
+            "{kind}: the first carries, the second closes"
+        );
+        assert_eq!(
+            scene.layout.n_v,
+            12 - rows,
+            "{kind}: motions and rows add up to six"
+        );
+        for _ in 0..10 {
+            let (q, v) = anywhere(&scene, &mut draw);
+            let n = all_numbers(&scene, 0.0, &q, &v);
+            let at = Equations::<f64>::new(scene.within(&configuration), &n);
+            for r in 0..rows {
+                let row = at.row(r);
+                let name = format!("{kind} {}", scene.rows[r].equation);
+                assert!(row.value.abs() < 1e-13, "{name}: {}", row.value);
+                assert!(row.drift.abs() < 1e-12, "{name} drifts");
+                assert!(row.gamma.abs() < 1e-11, "{name}: γ {}", row.gamma);
+                for (_, g) in row.gradient {
+                    assert!(g.abs() < 1e-12, "{name}: works on its own motion, {g}");
                 }
             }
         }
@@ -399,25 +400,18 @@ fn spinning(text: &str) -> String {
 #[test]
 fn a_forest_and_the_same_joints_cut_give_the_same_motion_and_reactions() {
     let mut draw = Draw(3);
-    for (kind, relative) in carrying() {
-        for (i, j) in [(5, 4), (4, 5)] {
-            let relative = if i == 5 {
-                relative
-            } else {
-                relative.transpose()
-            };
-            let k = keyword(kind);
-            let text = spinning(&pair(
-                &mut draw,
-                &relative,
-                &format!("{k}/1, {kind}, I={i}, J={j}\n"),
-            ));
-            close(
-                &answers(&text, false, k.parse::<ElementKind>().unwrap().id(1)),
-                &answers(&text, true, k.parse::<ElementKind>().unwrap().id(1)),
-                &format!("{kind} {i}-{j}"),
-            );
-        }
+    for (kind, relative, i, j) in carrying_both_ways() {
+        let k = keyword(kind);
+        let text = spinning(&pair(
+            &mut draw,
+            &relative,
+            &format!("{k}/1, {kind}, I={i}, J={j}\n"),
+        ));
+        close(
+            &answers(&text, false, k.parse::<ElementKind>().unwrap().id(1)),
+            &answers(&text, true, k.parse::<ElementKind>().unwrap().id(1)),
+            &format!("{kind} {i}-{j}"),
+        );
     }
 }
 

@@ -1,38 +1,13 @@
 //! CONTACT statements: which solids touch where, with which force; balance of what acts on both; what cannot be solved.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::{ElementKind, Model};
-use cognate::results::Status;
-
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
-
-fn session(text: &str, columns: &[&str], error: f64) -> Session {
-    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(error),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
-}
+#[path = "common/running.rs"]
+mod running;
+use cognate::model::ElementKind;
+use running::{Analysis, Session, go, last, mistakes, run, session, values};
 
 fn solve(text: &str, columns: &[&str], analysis: Analysis, end: f64) -> Session {
-    let mut s = session(text, columns, 1e-9);
-    let status = s
-        .simulate(analysis, end, 20, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    s
-}
-
-fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
-    s.run.column(column).unwrap()
-}
-
-fn last(s: &Session, column: &str) -> f64 {
-    *values(s, column).last().unwrap()
+    run(text, columns, analysis, (end, 20), 1e-9)
 }
 
 /// What a contact does, force and torque about the marker of its I solid, where the bodies stand.
@@ -248,13 +223,11 @@ fn a_deactivated_contact_does_nothing_and_an_activated_one_does() {
     ) + "ACCGRAV/KGRAV=-10\n";
     let mut s = session(&text, &["DZ(2,1)"], 1e-9);
     s.model.inactive.insert(ElementKind::Contact.id(1));
-    s.simulate(Analysis::Dynamic, 0.1, 4, &mut Unwatched)
-        .unwrap();
+    go(&mut s, Analysis::Dynamic, 0.1, 4);
     // free fall through where the contact would be
     assert!((last(&s, "DZ(2,1)") - 0.55).abs() < 1e-9);
     s.model.inactive.clear();
-    s.simulate(Analysis::Dynamic, 0.4, 50, &mut Unwatched)
-        .unwrap();
+    go(&mut s, Analysis::Dynamic, 0.4, 50);
     assert!(last(&s, "DZ(2,1)") > 0.4);
 }
 
@@ -318,9 +291,7 @@ fn what_cannot_be_solved_is_named_with_its_reason() {
         "EXTERNAL, RM=2, FILE=gear.xmt_txt, ELEMENT=SOLID1",
     );
     let mut s = session(&text, &[], 1e-6);
-    let errors = s
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("no kernel");
+    let errors = mistakes(&mut s, Analysis::Dynamic);
     let told = format!("{:?}", errors[0]);
     assert!(
         errors[0].code == "unsupported"
@@ -329,9 +300,7 @@ fn what_cannot_be_solved_is_named_with_its_reason() {
         "{told}"
     );
     let text = over_plane(0.6, "0,0,0", "", "BOX, CORNER=2, X=1, Y=0, Z=1");
-    let errors = session(&text, &[], 1e-6)
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("flat");
+    let errors = mistakes(&mut session(&text, &[], 1e-6), Analysis::Dynamic);
     assert!(
         errors[0].message.contains("GRAPHICS/2 has no size"),
         "{errors:?}"
@@ -358,8 +327,6 @@ fn corners_in_the_air_cost_no_steps() {
 fn boxes_on_boxes_name_the_feature_they_need() {
     let text = over_plane(0.6, "0,0,0", "", "BOX, CORNER=2, X=1, Y=1, Z=1")
         .replace("PLANE, RM=1", "BOX, CORNER=1, X=1, Y=1, Z=1");
-    let errors = session(&text, &[], 1e-6)
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("it was built without");
+    let errors = mistakes(&mut session(&text, &[], 1e-6), Analysis::Dynamic);
     assert!(errors[0].message.contains("feature geometry"), "{errors:?}");
 }

@@ -2,41 +2,17 @@
 //! contact, which is PTCV and CVCV.
 #![cfg(feature = "solver")]
 
+#[path = "common/running.rs"]
+mod running;
+
 #[path = "common/curves.rs"]
 mod curves;
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
-use cognate::results::Status;
 use curves::{circle, curve, line};
-
-fn session(text: &str, columns: &[&str], error: f64) -> Session {
-    let text = format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{text}END\n");
-    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(error),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
-}
+use running::{Analysis, Session, last, mistakes, session, values};
 
 fn run(text: &str, columns: &[&str], analysis: Analysis, end: f64, error: f64) -> Session {
-    let mut s = session(text, columns, error);
-    let status = s
-        .simulate(analysis, end, 40, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    s
-}
-
-fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
-    s.run.column(column).unwrap()
-}
-
-fn last(s: &Session, column: &str) -> f64 {
-    *values(s, column).last().unwrap()
+    running::run(text, columns, analysis, (end, 40), error)
 }
 
 /// Nothing leaves the x–y plane: part 2 with three freedoms.
@@ -362,9 +338,10 @@ fn a_disc_rolls_off_the_end_of_a_ramp_and_keeps_its_energy() {
 #[test]
 fn what_curves_cannot_touch_is_named() {
     let refused = |i: &str, j: &str, more: &str| {
-        let errors = session(&pair("0,0.3,0", i, j, more), &[], 1e-6)
-            .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-            .expect_err("it is no contact");
+        let errors = mistakes(
+            &mut session(&pair("0,0.3,0", i, j, more), &[], 1e-6),
+            Analysis::Dynamic,
+        );
         errors[0].to_string()
     };
     let circle = "GRAPHICS/2, CIRCLE, CM=2, RADIUS=0.2\n";
@@ -383,8 +360,6 @@ fn what_curves_cannot_touch_is_named() {
         "GRAPHICS/1, CIRCLE, CM=5, RADIUS=1\nMARKER/5, PART=1, REULER=0,3D,0\n",
         "",
     );
-    let errors = session(&tilted, &[], 1e-6)
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("not in one plane");
+    let errors = mistakes(&mut session(&tilted, &[], 1e-6), Analysis::Dynamic);
     assert!(errors[0].code == "curves_not_coplanar" && errors[0].message.contains("3.0000 deg"));
 }

@@ -1,35 +1,15 @@
 //! CONTACT of boxes, cylinders, frustums and ellipsoids with each other: closed forms, the same solids on planes, and laws.
 #![cfg(feature = "geometry")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::physics::contact::query::Query;
 use cognate::physics::contact::{Solid, TOUCH_NUMBERS, TOUCHES};
-use cognate::results::Status;
+use running::{Analysis, Session, first, last, run, values};
 
 fn solve(text: &str, columns: &[&str], analysis: Analysis, end: f64, error: f64) -> Session {
-    let text = format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{text}END\n");
-    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(error),
-        ..Options::default()
-    };
-    let mut s = Session::new(model, "test", options);
-    let status = s
-        .simulate(analysis, end, 20, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    s
-}
-
-fn first(s: &Session, column: &str) -> f64 {
-    s.run.column(column).unwrap()[0]
-}
-
-fn last(s: &Session, column: &str) -> f64 {
-    *s.run.column(column).unwrap().last().unwrap()
+    run(text, columns, analysis, (end, 20), error)
 }
 
 const ELASTIC: &str = "IMPACT, STIFFNESS=1E4, EXPONENT=1.5, DAMPING=0, DMAX=1E-3";
@@ -464,19 +444,8 @@ fn a_torus_that_begins_within_a_cylinder_is_pushed_out_of_it() {
          GRAPHICS/1, CYLINDER, CM=1, LENGTH=1, RADIUS=0.5\nGRAPHICS/2, TORUS, CM=2, MAJOR_RADIUS=1, MINOR_RADIUS=0.5\n\
          CONTACT/1, IGEOM=2, JGEOM=1, IMPACT, STIFFNESS=1E5, EXPONENT=1.5, DAMPING=100, DMAX=1E-3, COULOMB_FRICTION=ON, MU_STATIC=0.3,\
          MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=0.01, FRICTION_TRANSITION_VELOCITY=0.1\n";
-    let text = format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{text}END\n");
-    let model = cognate::model::Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
-    let options = cognate::analysis::session::Options {
-        columns: vec!["DM(2)".into()],
-        error: Some(1e-6),
-        ..Default::default()
-    };
-    let mut s = cognate::analysis::session::Session::new(model, "ring", options);
-    let watch = &mut cognate::analysis::watch::Unwatched;
-    let analysis = cognate::analysis::session::Analysis::Dynamic;
-    let status = s.simulate(analysis, 1.0, 10, watch).unwrap();
-    assert_eq!(status, cognate::results::Status::Completed);
-    let far = s.run.column("DM(2)").unwrap();
+    let s = run(text, &["DM(2)"], Analysis::Dynamic, (1.0, 10), 1e-6);
+    let far = values(&s, "DM(2)");
     // the ring passes the rim at √((1 − 0.2236 − 0.5)² + 0.3²) = 0.408, an overlap of 0.092: k δ^2.5/2.5 is 100 J, for a mass of 1 kg; nothing else
     // than the ground of gravity holds it, so that it is out, and off by more than tube and ring together
     let farthest = far.iter().copied().fold(0.0, f64::max);

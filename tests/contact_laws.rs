@@ -6,11 +6,9 @@ mod curves;
 #[path = "common/running.rs"]
 mod running;
 
-use cognate::analysis::session::script::obey;
-use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use curves::{circle, curve, line};
-use running::{Analysis, Options, Session, go, last, model, options, session, values};
+use running::{Analysis, Session, go, last, obeys, session, session_by, values};
 
 fn run(text: &str, columns: &[&str], end: f64, steps: usize, error: f64) -> Session {
     let mut s = session(text, columns, error);
@@ -380,7 +378,7 @@ fn contact_reads_zero_while_it_is_switched_off() {
          ACTIVATE/CONTACT, ID=1\nSIMULATE/DYNAMIC, END=0.6, STEPS=40\nSTOP\n",
     )
     .unwrap();
-    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched).unwrap_or_else(|e| panic!("{e:?}"));
+    obeys(&mut s, &script);
     let time = values(&s, "time").to_vec();
     let all = columns.map(|c| values(&s, c).to_vec());
     let mut off = Vec::new();
@@ -425,11 +423,7 @@ fn every_method_solves_contacts_that_are_asked_for() {
     for text in models {
         let columns = ["DX(2)", "DY(2)", "WZ(2)"];
         let solve = |method: &str, error: f64| {
-            let options = running::Options {
-                method: Some(method.into()),
-                ..running::options(&columns, error)
-            };
-            let mut s = Session::new(running::model(&text), "test", options);
+            let mut s = session_by(&text, &columns, method, error);
             go(&mut s, Analysis::Dynamic, 0.4, 10);
             columns.map(|c| last(&s, c))
         };
@@ -567,11 +561,7 @@ fn nothing_passes_through_a_thin_body_within_a_step() {
                      CONTACT/1, IGEOM=1, JGEOM=2, IMPACT, STIFFNESS=1E7, EXPONENT=1.5, DAMPING=10, DMAX=0.1\n\
                      ACCGRAV/KGRAV=-9806.65\n"
                 );
-                let options = Options {
-                    method: Some(method.into()),
-                    ..options(&["DZ(2,1)"], 1e-3)
-                };
-                let mut s = Session::new(model(&text), "test", options);
+                let mut s = session_by(&text, &["DZ(2,1)"], method, 1e-3);
                 go(&mut s, Analysis::Dynamic, 0.3, 60);
                 let lowest = values(&s, "DZ(2,1)")
                     .iter()
@@ -592,11 +582,7 @@ fn a_short_collision_in_a_long_step_is_solved() {
                  PART/3, MASS=1, CM=3, IP=2,2,2\nMARKER/3, PART=3\n\
                  SFORCE/1, I=2, J=3, TRANSLATIONAL, FUNCTION=IMPACT(DM(2,3),VR(2,3),{radius:?},1E8,{exponent:?},0,0.1)\n"
             );
-            let options = Options {
-                method: Some(method.into()),
-                ..options(&["VX(2)", "VX(3)"], 1e-3)
-            };
-            let mut s = Session::new(model(&text), "test", options);
+            let mut s = session_by(&text, &["VX(2)", "VX(3)"], method, 1e-3);
             go(&mut s, Analysis::Dynamic, 2.0, 4);
             let after = [last(&s, "VX(2)"), last(&s, "VX(3)")];
             // the error asked for, against 1000, over a contact that is a few steps long

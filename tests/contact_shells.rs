@@ -4,7 +4,7 @@
 #[path = "common/running.rs"]
 mod running;
 
-use running::{Analysis, Session, go, last, model, options};
+use running::{Analysis, Session, go, last, mistakes, session};
 use std::path::PathBuf;
 
 /// A folder of this test's own, with files.
@@ -86,7 +86,7 @@ fn falling(shape: &str) -> String {
 }
 
 fn run(text: &str, folder: PathBuf, columns: &[&str], end: f64) -> Session {
-    let mut s = Session::new(model(text), "test", options(columns, 1e-8));
+    let mut s = session(text, columns, 1e-8);
     s.folders = vec![folder];
     go(&mut s, Analysis::Dynamic, end, 20);
     s
@@ -141,10 +141,9 @@ fn a_shell_that_cannot_be_used_says_why_and_what_to_do() {
         ("gear.xmt_txt", "CAD kernel"),
     ] {
         let text = falling(&format!("EXTERNAL, FILE={file}"));
-        let mut s = Session::new(model(&text), "test", options(&[], 1e-6));
+        let mut s = session(&text, &[], 1e-6);
         s.folders = vec![folder.clone()];
-        let watch = &mut cognate::analysis::watch::Unwatched;
-        let errors = s.simulate(Analysis::Dynamic, 0.1, 1, watch).unwrap_err();
+        let errors = mistakes(&mut s, Analysis::Dynamic);
         let d = &errors[0];
         assert_eq!(
             (d.code, d.element.as_deref()),

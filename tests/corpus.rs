@@ -5,6 +5,8 @@
 mod chrono;
 #[path = "common/meaning.rs"]
 mod meaning;
+#[path = "common/running.rs"]
+mod running;
 #[path = "corpus/runs.rs"]
 mod runs;
 #[path = "corpus/skipped.rs"]

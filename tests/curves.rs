@@ -1,15 +1,19 @@
 //! Where contacts of curves begin, and the floating markers that go with them.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
-use cognate::results::Status;
+#[path = "common/running.rs"]
+mod running;
+
 use curves::{circle, curve, line};
+use running::{Analysis, Session, refused, values};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 #[path = "common/curves.rs"]
 mod curves;
+
+fn run(text: &str, columns: &[&str], analysis: Analysis, end: f64) -> Session {
+    running::run(text, columns, analysis, (end, 20), 1e-10)
+}
 
 const R: f64 = 0.5;
 /// The spline through 200 points of a circle is off by R (2π/200)⁴/384 in places,
@@ -17,30 +21,10 @@ const PLACE: f64 = 1e-8;
 /// and its curvature by (2π/200)²/12 = 8.2e-5 of itself: speeds of contacts, and how far a disc rolls.
 const ROLLING: f64 = 5e-4;
 
-fn run(text: &str, columns: &[&str], analysis: Analysis, end: f64) -> Session {
-    let text = format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{text}END\n");
-    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(1e-10),
-        ..Options::default()
-    };
-    let mut s = Session::new(model, "test", options);
-    let status = s
-        .simulate(analysis, end, 20, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}\n{text}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    s
-}
-
-fn column<'s>(s: &'s Session, name: &str) -> &'s [f64] {
-    s.run.column(name).expect("the column")
-}
-
 /// What columns begin with.
 fn first(text: &str, columns: &[&str], analysis: Analysis) -> (Vec<f64>, Vec<String>) {
     let s = run(text, columns, analysis, 0.01);
-    let values = columns.iter().map(|c| column(&s, c)[0]).collect();
+    let values = columns.iter().map(|c| values(&s, c)[0]).collect();
     (values, s.run.record.warned())
 }
 
@@ -222,7 +206,7 @@ fn the_floating_marker_goes_with_the_bead() {
     let text = format!("{}ACCGRAV/JGRAV=-9.81\n", bead([R, 0.0], ""));
     let s = run(&text, &columns, Analysis::Dynamic, 1.0);
     for k in 0..21 {
-        let at = |c: &str| column(&s, c)[k];
+        let at = |c: &str| values(&s, c)[k];
         let (x, y) = (at("DX(30,1)"), at("DY(30,1)"));
         let phi = y.atan2(x);
         // tangent counterclockwise: φ + 90°; y outwards is then to the right of it, so that z is against ground z
@@ -264,8 +248,8 @@ fn floating_markers_of_two_curves_touch() {
         "CVCV(1,0,3,0)",
     ];
     let s = run(&cam("", &ties), &columns, Analysis::Kinematic, 2.0);
-    for (k, &t) in column(&s, "time").iter().enumerate() {
-        let at = |c: &str| column(&s, c)[k];
+    for (k, &t) in values(&s, "time").iter().enumerate() {
+        let at = |c: &str| values(&s, c)[k];
         // under the centre of the disc, which runs on a circle of 0.2; tangents of the spline are off by some 1e-7
         near(&[at("DM(23,22)")], &[0.0], 1e-9);
         near(
@@ -297,8 +281,8 @@ fn a_floating_marker_has_axes_on_a_straight_curve() {
         "AX(12,1)",
     ];
     let s = run(&text, &columns[..3], Analysis::Dynamic, 1.0);
-    for (k, &t) in column(&s, "time").iter().enumerate() {
-        let at = |c: &str| column(&s, c)[k];
+    for (k, &t) in values(&s, "time").iter().enumerate() {
+        let at = |c: &str| values(&s, c)[k];
         near(
             &[at("DX(12,1)"), at("VX(12,1)"), at("WM(12,1)")],
             &[0.2 * t, 0.2, 0.0],
@@ -307,24 +291,17 @@ fn a_floating_marker_has_axes_on_a_straight_curve() {
     }
     let s = run(&text, &columns[4..], Analysis::Dynamic, 0.1);
     // y to the right of the tangent, so that z points against ground z
-    near(&[column(&s, "AZ(12,1)")[0]], &[0.0], 1e-12);
-    near(&[column(&s, "AX(12,1)")[0].abs()], &[PI], 1e-12);
+    near(&[values(&s, "AZ(12,1)")[0]], &[0.0], 1e-12);
+    near(&[values(&s, "AX(12,1)")[0].abs()], &[PI], 1e-12);
 }
 
 /// What a floating marker is depends on constraints: a GCON may not read it.
 #[test]
 fn a_gcon_may_not_read_a_floating_marker() {
-    let text = format!(
-        "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{}GCON/1, I=30, FUNCTION=DX(12,1)\nEND\n",
-        bead([R, 0.0], "")
-    );
-    let model = Model::from_text(&text).unwrap();
-    let mut s = Session::new(model, "test", Options::default());
-    let errors = s
-        .simulate(Analysis::Dynamic, 1.0, 2, &mut Unwatched)
-        .expect_err("a mistake");
-    assert_eq!(errors[0].code, "gcon_reads");
-    assert!(errors[0].message.contains("DX(12,1)") && errors[0].message.contains("floating"));
+    let text = format!("{}GCON/1, I=30, FUNCTION=DX(12,1)\n", bead([R, 0.0], ""));
+    let told = refused(&text, Analysis::Dynamic);
+    assert_eq!(told.code, "gcon_reads");
+    assert!(told.message.contains("DX(12,1)") && told.message.contains("floating"));
 }
 
 /// A bead on a ring, a disc on a line, a rod that is a GCON: where they stand and in which unit of length.
@@ -398,7 +375,7 @@ fn contacts_and_general_constraints_depend_neither_on_place_nor_on_units() {
             0.5,
         );
         for (name, power) in columns {
-            let (a, b) = (column(&here, name), column(&there, name));
+            let (a, b) = (values(&here, name), values(&there, name));
             let size = a.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
             for (a, b) in a.iter().zip(b) {
                 // curvature of the spline wavers by 8e-5 from piece to piece: its jumps cost steps their last digits
@@ -433,16 +410,16 @@ fn exchanging_the_curves_reverses_the_reaction() {
     );
     for name in columns {
         let sign = if name.starts_with("CVCV") { -1.0 } else { 1.0 };
-        for (a, b) in column(&one, name).iter().zip(column(&other, name)) {
+        for (a, b) in values(&one, name).iter().zip(values(&other, name)) {
             assert!(
                 (a - sign * b).abs() < 1e-6 * (1.0 + a.abs()),
                 "{name}: {a} {b}"
             );
         }
     }
-    for (a, b) in column(&one, "CVCV(1,0,3,0)")
+    for (a, b) in values(&one, "CVCV(1,0,3,0)")
         .iter()
-        .zip(column(&one, "CVCV(1,1,3,0)"))
+        .zip(values(&one, "CVCV(1,1,3,0)"))
     {
         assert!(
             (a + b).abs() < 1e-12 * (1.0 + a.abs()) && *a > 0.0,
@@ -480,7 +457,7 @@ fn reactions_of_contacts_and_general_constraints_do_no_work() {
         0.5,
     );
     for name in columns {
-        for p in column(&s, name) {
+        for p in values(&s, name) {
             assert!(p.abs() < 1e-7, "{name}: {p}");
         }
     }

@@ -6,6 +6,7 @@ use cognate::dataset::statement::STATEMENTS;
 use cognate::dataset::{self, Reading};
 use cognate::diagnostic::Severity;
 use cognate::model::*;
+use std::collections::BTreeSet;
 
 /// A dataset with a title, a ground, a part with markers, and these statements.
 fn reading(statements: &str) -> Reading {
@@ -116,6 +117,30 @@ fn bytes_outside_utf8_are_latin_1_and_come_back_the_same() {
         reading.dataset.source.encode(&formatted),
         b"t\xe9\nPART/1\n, GROUND\n! gr\xfc\xdfe\nEND\n"
     );
+}
+
+#[test]
+fn columns_count_characters_of_however_many_bytes() {
+    for (line, wrong) in [
+        ("REQUEST/1, DISPLACEMENT, I=2, CNAMES=\"é\",\"ü\", J=x", "x"),
+        ("REQUEST/1, F2=1+*2, CNAMES=\"é\"", "*2"),
+        ("REQUEST/1, CNAMES=\"né\", F2=TIME\\F3=1+*2", "*2"),
+        ("PART/2, MASS=1 !é\n, VX=é, VY=x", "é, VY"),
+    ] {
+        let text = format!("t\nPART/1, GROUND\nMARKER/2, PART=1\n{line}\nEND\n");
+        let before = &text[..text.rfind(wrong).unwrap()];
+        let place = (
+            before.matches('\n').count() + 1,
+            before.rsplit('\n').next().unwrap().chars().count() + 1,
+        );
+        let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
+        for bytes in [text.as_bytes(), &latin] {
+            let reading = dataset::read_source(dataset::syntax::Source::from_bytes(None, bytes));
+            let d = reading.diagnostics.iter().find(|d| d.line == place.0);
+            let d = d.unwrap_or_else(|| panic!("{line}: {:?}", reading.diagnostics));
+            assert_eq!((d.line, d.column), place, "{line}: {d}");
+        }
+    }
 }
 
 // ----------------------------------------------------------------------------------------------------------- comments
@@ -865,23 +890,48 @@ fn simulations_of_a_log_that_nobody_commanded_become_commands() {
 
 #[test]
 fn deep_nesting_and_long_lines_are_read_in_reasonable_time() {
-    for text in [
-        format!(
-            "t\nVARIABLE/1, FUNCTION={}1{}\nEND",
-            "(".repeat(20_000),
-            ")".repeat(20_000)
+    let begun = std::time::Instant::now();
+    for (text, codes) in [
+        (
+            format!(
+                "t\nVARIABLE/1, FUNCTION={}1{}\nEND",
+                "(".repeat(20_000),
+                ")".repeat(20_000)
+            ),
+            &["limit_nesting"][..],
         ),
-        format!("t\n{}\nEND", ",".repeat(200_000)),
-        format!("t\nPART/1{}\nEND", "\n,".repeat(100_000)),
-        format!("t\nPART/1\n{}", "!\n".repeat(100_000)),
-        format!("t\nPART/1 {}", "&\n".repeat(100_000)),
-        format!("t\n{}", "PART/1;".repeat(20_000)),
-        "t\nMATRIX/1, FULL=RORDER, ROWS=2000000000, COLUMNS=2000000000, VALUES=1\nEND".to_string(),
+        (
+            format!("t\n{}\nEND", ",".repeat(200_000)),
+            &["unknown_statement"],
+        ),
+        (format!("t\nPART/1{}\nEND", "\n,".repeat(100_000)), &[]),
+        (
+            format!("t\nPART/1\n{}", "!\n".repeat(100_000)),
+            &["missing_end"],
+        ),
+        (
+            format!("t\nPART/1 {}", "&\n".repeat(100_000)),
+            &["missing_end"],
+        ),
+        (
+            format!("t\n{}", "PART/1;".repeat(20_000)),
+            &["defined_twice", "missing_end"],
+        ),
+        (
+            "t\nMATRIX/1, FULL=RORDER, ROWS=2000000000, COLUMNS=2000000000, VALUES=1\nEND"
+                .to_string(),
+            &["wrong_count"],
+        ),
     ] {
-        let r = dataset::read_text(&text);
-        assert!(!r.diagnostics.is_empty());
+        let diagnostics = dataset::read_text(&text).diagnostics;
+        let mut found: BTreeSet<&str> = diagnostics.iter().map(|d| d.code).collect();
+        assert!(found.remove("no_ground"), "{found:?}");
+        assert!(found.into_iter().eq(codes.iter().copied()), "{codes:?}");
+        // as commands it is read or refused, and neither takes long
         let _ = Script::from_text(&text);
     }
+    // some seconds, nothing optimized; what grows with the square of the length takes minutes
+    assert!(begun.elapsed().as_secs() < 120, "{:?}", begun.elapsed());
 }
 
 #[test]

@@ -1,57 +1,25 @@
 //! Constraints as elements: general constraints, motions between markers, joints against closed forms, cams.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::results::Status;
 use curves::{circle, curve};
+use running::{Analysis, Session, last, off, rest, session, try_to, values};
 
 #[path = "common/curves.rs"]
 mod curves;
 
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
-
-fn session(text: &str, columns: &[&str], error: f64) -> Session {
-    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(error),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
-}
-
 fn run(text: &str, columns: &[&str], end: f64, steps: usize) -> Session {
-    let mut s = session(text, columns, 1e-10);
-    let status = s
-        .simulate(Analysis::Transient, end, steps, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    s
+    running::run(text, columns, Analysis::Transient, (end, steps), 1e-10)
 }
 
-/// The first thing that is said about a model that cannot be run.
+/// Code and words of the refusal of a model.
 fn refused(text: &str) -> (String, String) {
-    let mut s = session(text, &[], 1e-6);
-    let errors = s
-        .simulate(Analysis::Transient, 1.0, 4, &mut Unwatched)
-        .expect_err("a mistake");
-    let e = &errors[0];
-    let element = e.element.clone().unwrap_or_default();
+    let e = running::refused(text, Analysis::Transient);
+    let element = e.element.unwrap_or_default();
     (e.code.to_string(), format!("{element}: {}", e.message))
-}
-
-fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
-    s.run.column(column).unwrap()
-}
-
-/// Largest difference of two columns, or of a column and a function of time.
-fn off(s: &Session, column: &str, expected: impl Fn(f64) -> f64) -> f64 {
-    let t = values(s, "time");
-    (values(s, column).iter().zip(t))
-        .map(|(x, &t)| (x - expected(t)).abs())
-        .fold(0.0, f64::max)
 }
 
 /// A point mass body that swings about ground, held at a distance by different means.
@@ -420,12 +388,9 @@ fn a_bead_rests_at_the_bottom_of_its_wire() {
         curve(1, "OPEN", &points)
     );
     let mut s = session(&text, &["DX(30,1)", "DY(30,1)"], 1e-8);
-    let status = s
-        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    rest(&mut s);
     let x = 5.0 / (5.0 + 2.0 * 9.81);
-    let last = |c: &str| *values(&s, c).last().unwrap();
+    let last = |c: &str| last(&s, c);
     assert!(
         (last("DX(30,1)") - x).abs() < 1e-6,
         "{} {x}",
@@ -503,6 +468,7 @@ fn a_geneva_wheel_turns_while_the_pin_is_in_its_slot() {
     let columns = [
         "AZ(30,10)",
         "WZ(30,10)",
+        "JOINT(2,0,1,0)",
         "JOINT(2,0,8,0)",
         "MOTION(1,0,8,0)",
     ];
@@ -523,11 +489,16 @@ fn a_geneva_wheel_turns_while_the_pin_is_in_its_slot() {
         "{}",
         off(&s, "MOTION(1,0,8,0)", torque)
     );
+    // the wheel's hinge holds what the pin exerts across the slot, and takes no torque about its axis
+    let across = |t: f64| {
+        let reach = (1.0 + centres * centres - 2.0 * centres * (t - 0.7).cos()).sqrt();
+        (3.0 * wheel(t).second / reach).abs()
+    };
+    assert!(off(&s, "JOINT(2,0,1,0)", across) < 1e-7);
+    assert!(off(&s, "JOINT(2,0,8,0)", |_| 0.0) < 1e-9);
     // on and on: the pin leaves the slot where its distance from the wheel's centre is 1.01
     let mut s = session(&text, &columns, 1e-8);
-    let status = s
-        .simulate(Analysis::Transient, 3.0, 300, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
+    let status = try_to(&mut s, Analysis::Transient, 3.0, 300);
     assert_eq!(status, Status::Stopped);
     let angle = ((1.0 + 2.0 - 1.01_f64.powi(2)) / (2.0 * centres)).acos();
     let when = 0.7 + angle;
@@ -545,6 +516,87 @@ fn a_geneva_wheel_turns_while_the_pin_is_in_its_slot() {
     );
     assert_eq!(s.run.record.simulations[0].worst, ["PTCV/1"]);
     assert!(values(&s, "time").last().unwrap() <= &when);
+}
+
+/// A body of mass 3 whose centre is beside the axis of its joint, driven along that axis while gravity pulls askew. The
+/// MOTION exerts what the body needs along the drive and the JOINT all the rest, both on I, whichever part I stands on.
+#[test]
+fn a_motion_exerts_what_its_drive_needs_and_the_joint_the_rest() {
+    let slide = "0.4*SIN(2*TIME)";
+    let turn = "0.5*TIME+TIME**3";
+    for (joint, motions) in [
+        ("REVOLUTE", vec![("ROTATION", "B3", turn)]),
+        ("TRANSLATIONAL", vec![("TRANSLATION", "Z", slide)]),
+        (
+            "CYLINDRICAL",
+            vec![("TRANSLATION", "Z", slide), ("ROTATION", "B3", turn)],
+        ),
+    ] {
+        for (i, j) in [(20, 10), (10, 20)] {
+            for by_markers in [false, true] {
+                let mut text = format!(
+                    "PART/2, MASS=3, CM=21, IP=1,1,2\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=0.5,0.2,0\nMARKER/10, PART=1\n\
+                     JOINT/1, {joint}, I={i}, J={j}\nACCGRAV/IGRAV=3, JGRAV=-4, KGRAV=-12\n"
+                );
+                for (k, (kind, component, function)) in motions.iter().enumerate() {
+                    text += &if by_markers {
+                        format!(
+                            "MOTION/{}, I={i}, J={j}, {component}, FUNCTION={function}\n",
+                            k + 1
+                        )
+                    } else {
+                        format!("MOTION/{}, JOINT=1, {kind}, FUNCTION={function}\n", k + 1)
+                    };
+                }
+                // on the part by Newton and Euler, about the part's marker of the joint
+                let a = ["3*(ACCX(21,1)-3)", "3*(ACCY(21,1)+4)", "3*(ACCZ(21,1)+12)"];
+                let about_z = format!("(2*WDTZ(21,1)+DX(21,20)*{}-DY(21,20)*{})", a[1], a[0]);
+                let sign = if i == 20 { "" } else { "-" };
+                let drives: Vec<String> = (1..=motions.len())
+                    .map(|k| format!("MOTION({k},0,"))
+                    .collect();
+                let sum = |c: usize| {
+                    let parts = drives.iter().map(|m| format!("+{m}{c},0)"));
+                    parts.collect::<String>()
+                };
+                let slides = joint != "REVOLUTE";
+                let turns = joint != "TRANSLATIONAL";
+                let mut zero = vec![
+                    format!("JOINT(1,0,2,0)-({sign}{})", a[0]),
+                    format!("JOINT(1,0,3,0)-({sign}{})", a[1]),
+                    // all of it is on I, and its opposite on J
+                    format!("FZ({i},{j})-JOINT(1,0,4,0){}", sum(4).replace('+', "-")),
+                    format!("TZ({i},{j})-JOINT(1,0,8,0){}", sum(8).replace('+', "-")),
+                    format!("FZ({i},{j})-({sign}{})", a[2]),
+                    format!("TZ({i},{j})-({sign}{about_z})"),
+                    format!("{}4,0)+{}4,0)", drives[0], drives[0].replace(",0,", ",1,")),
+                    format!("{}8,0)+{}8,0)", drives[0], drives[0].replace(",0,", ",1,")),
+                ];
+                let mut some = Vec::new();
+                for (drives, component) in [(slides, 4), (turns, 8)] {
+                    let (joint, motion) = (format!("JOINT(1,0,{component},0)"), sum(component));
+                    zero.push(if drives {
+                        joint.clone()
+                    } else {
+                        motion.clone()
+                    });
+                    some.push(if drives { motion } else { joint });
+                }
+                let columns: Vec<&str> = zero.iter().chain(&some).map(String::as_str).collect();
+                let s = running::run(&text, &columns, Analysis::Kinematic, (1.0, 10), 1e-8);
+                for c in &zero {
+                    let off = off(&s, c, |_| 0.0);
+                    assert!(
+                        off < 1e-9,
+                        "{joint} I={i}, by markers: {by_markers}: {c} = {off:e}"
+                    );
+                }
+                for c in &some {
+                    assert!(off(&s, c, |_| 0.0) > 1.0, "nothing to exert: {joint} {c}");
+                }
+            }
+        }
+    }
 }
 
 #[test]

@@ -1,40 +1,17 @@
 //! FRICTION in joints: Coulomb's closed forms for each joint, what is read of the reaction, and where it is approximate.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::model::Model;
-use cognate::results::Status;
-
-const G: f64 = 9.81;
-
-fn session(text: &str, columns: &[&str]) -> Session {
-    let text = format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\n{text}END\n");
-    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(1e-9),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
-}
+use running::{Analysis, Session, first, go, last, session_by, values};
 
 fn run(text: &str, columns: &[&str], end: f64) -> Session {
-    let mut s = session(text, columns);
-    let status = s
-        .simulate(Analysis::Dynamic, end, 10, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    s
+    running::run(text, columns, Analysis::Dynamic, (end, 10), 1e-9)
 }
 
-fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
-    s.run.column(column).unwrap()
-}
-
-fn last(s: &Session, column: &str) -> f64 {
-    *values(s, column).last().unwrap()
-}
+const G: f64 = 9.81;
 
 /// All values of a column are one number.
 fn constant(s: &Session, column: &str, expected: f64) {
@@ -209,6 +186,98 @@ fn a_universal_joint_rubs_about_its_pins() {
         assert!(
             (found + 0.2 * 0.02 * 5.0 * G / 0.3).abs() < 1e-8,
             "{joint} {found}"
+        );
+    }
+}
+
+/// A body whose centre a cross holds, spinning about one pin or both: each rubs under the force across and along it.
+#[test]
+fn each_pin_of_a_cross_rubs_under_the_force_across_and_along_it() {
+    let pulls = [
+        [3.0, -4.0, 12.0],
+        // along one of the pins: nothing lies across it
+        [5.0, 0.0, 0.0],
+        [0.0, 5.0, 0.0],
+        [0.0, 0.0, 5.0],
+        [0.0; 3],
+    ];
+    for (joint, turned, pins) in [
+        ("HOOKE", "", [0, 1]),
+        ("UNIVERSAL", ", REULER=0,-90D,0", [1, 2]),
+    ] {
+        for rates in [[30.0, 0.0], [0.0, -40.0], [30.0, -40.0]] {
+            for pull in pulls {
+                let mut spin = [0.0; 3];
+                for (pin, rate) in pins.into_iter().zip(rates) {
+                    spin[pin] = rate;
+                }
+                let text = format!(
+                    "PART/2, MASS=5, CM=3, IP=0.3,0.3,0.3, WX={:?}, WY={:?}, WZ={:?}\nMARKER/3, PART=2\nMARKER/2, PART=2{turned}\nMARKER/4, PART=1\n\
+                     JOINT/1, {joint}, I=2, J=4\nACCGRAV/IGRAV={:?}, JGRAV={:?}, KGRAV={:?}\n\
+                     FRICTION/1, JOINT=1, MU_STATIC=0.3, MU_DYNAMIC=0.2, PIN_RADIUS=0.02, FRICTION_ARM=0.05, FRICTION_TORQUE_PRELOAD=0.1\n",
+                    spin[0], spin[1], spin[2], pull[0], pull[1], pull[2]
+                );
+                let force: f64 = pull.map(|g| (5.0 * g) * (5.0 * g)).iter().sum();
+                for method in ["DOP853", "RADAU5"] {
+                    let mut s = session_by(
+                        &text,
+                        &[
+                            "FRICTION(1,4)",
+                            "FRICTION(1,5)",
+                            "FRICTION(1,6)",
+                            "WDTX(2,1)",
+                            "WDTY(2,1)",
+                            "WDTZ(2,1)",
+                        ],
+                        method,
+                        1e-8,
+                    );
+                    go(&mut s, Analysis::Dynamic, 0.01, 2);
+                    for (pin, rate) in pins.into_iter().zip(rates) {
+                        let along = 5.0 * pull[pin];
+                        let across = (force - along * along).sqrt();
+                        let resists = 0.2 * (0.05 * along.abs() + 0.02 * across) + 0.1;
+                        let expected = if rate == 0.0 {
+                            0.0
+                        } else {
+                            -resists * f64::signum(rate)
+                        };
+                        let axis = ["X", "Y", "Z"][pin];
+                        let torque = first(&s, &format!("FRICTION(1,{})", 4 + pin));
+                        let rate = first(&s, &format!("WDT{axis}(2,1)"));
+                        assert!(
+                            (torque - expected).abs() < 1e-9
+                                && (rate - expected / 0.3).abs() < 1e-8,
+                            "{joint} {rates:?} {pull:?} {method}, about {axis}: {torque} and {rate}, not {expected}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Out of its guide, or all but out of it, a slide is held by a thousandth of the overlap that it had.
+#[test]
+fn an_overlap_that_is_used_up_presses_like_a_thousandth_of_it() {
+    for (joint, change, place) in [
+        ("TRANSLATIONAL", "DECREASE", 0.6),
+        ("TRANSLATIONAL", "INCREASE", -0.6),
+        ("CYLINDRICAL", "DECREASE", 0.4999),
+    ] {
+        let law = format!(
+            "MU_STATIC=0.2, MU_DYNAMIC=0.2, INPUTS=BENDING_MOMENT, INITIAL_OVERLAP=0.5, OVERLAP_DELTA={change}"
+        );
+        let text = block(0.0, &law)
+            .replace("QP=0,0.0,0", "QP=0.4,0,0")
+            .replace("VX=3", &format!("VX=3, QG={place},0,0"))
+            .replace("TRANSLATIONAL", joint);
+        let s = run(&text, &["FRICTION(1,3)"], 1e-6);
+        let expected = -0.2 * 2.0 * G * 0.4 / (1e-3 * 0.5);
+        let found = first(&s, "FRICTION(1,3)");
+        assert!(
+            (found - expected).abs() < 1e-6 * expected.abs(),
+            "{joint} {change}: {found}, not {expected}"
         );
     }
 }

@@ -1,26 +1,15 @@
 //! Initial conditions of joints and parts: where and how fast a dynamic simulation begins; kinematics and statics do not ask for them.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
-use cognate::results::Status;
-
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+#[path = "common/running.rs"]
+mod running;
+use running::{Analysis, first, go, last, session};
 
 /// The values of columns at the beginning, and the warnings.
 fn start(text: &str, columns: &[&str], analysis: Analysis) -> (Vec<f64>, Vec<String>) {
-    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        ..Options::default()
-    };
-    let mut s = Session::new(model, "test", options);
-    let status = s
-        .simulate(analysis, 0.001, 1, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    let values = columns.iter().map(|c| s.run.column(c).unwrap()[0]);
+    let mut s = session(text, columns, 1e-6);
+    go(&mut s, analysis, 0.001, 1);
+    let values = columns.iter().map(|c| first(&s, c));
     (values.collect(), s.run.record.warned())
 }
 
@@ -196,20 +185,14 @@ fn parts_begin_with_their_velocities_along_the_axes_of_their_markers() {
 #[test]
 fn velocities_of_the_dataset_are_zero_in_statics_and_come_back_afterwards() {
     let text = format!(
-        "{GROUND}PART/2, MASS=1, CM=2, VX=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
-         JOINT/1, TRANSLATIONAL, I=2, J=3\nSPRINGDAMPER/1, TRANSLATION, I=2, J=4, K=10, LENGTH=1\nMARKER/4, PART=1, QP=-3,0,0\nEND\n"
+        "PART/2, MASS=1, CM=2, VX=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
+         JOINT/1, TRANSLATIONAL, I=2, J=3\nSPRINGDAMPER/1, TRANSLATION, I=2, J=4, K=10, LENGTH=1\nMARKER/4, PART=1, QP=-3,0,0\n"
     );
-    let options = Options {
-        columns: vec!["VX(2,1)".into(), "DX(2,1)".into()],
-        ..Options::default()
-    };
-    let mut s = Session::new(Model::from_text(&text).unwrap(), "test", options);
-    s.simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
-        .unwrap();
-    assert_eq!(*s.run.column("VX(2,1)").unwrap().last().unwrap(), 0.0);
-    s.simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .unwrap();
-    let x = *s.run.column("DX(2,1)").unwrap().last().unwrap();
+    let mut s = session(&text, &["VX(2,1)", "DX(2,1)"], 1e-6);
+    go(&mut s, Analysis::Static, 0.0, 1);
+    assert_eq!(last(&s, "VX(2,1)"), 0.0);
+    go(&mut s, Analysis::Dynamic, 1.0, 1);
+    let x = last(&s, "DX(2,1)");
     let omega = 10f64.sqrt();
     assert!((x - (-2.0 + 2.0 / omega * omega.sin())).abs() < 1e-5, "{x}");
 }

@@ -69,49 +69,57 @@ fn methods_show_their_order_and_that_of_their_interpolant() {
 /// (true error, evaluations) of a run.
 type Trial = fn(&str, f64) -> (f64, usize);
 
-fn pendulum(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(Pendulum), Judge::new(4));
-    let mut method = ode_method(name, 2, &options(tolerance)).expect("the table has it");
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, 10.0),
-        &Pendulum::START,
-        1,
-        |_, y| judge.see(&Pendulum::point(y), &Pendulum::AFTER_10),
-    )
+/// A run of an ODE method to an end where the solution is known; `seen` picks what is compared.
+fn ode_trial<F: Field>(
+    (name, tolerance): (&str, f64),
+    field: F,
+    (end, start): (f64, &[f64]),
+    judge: &mut Judge,
+    exact: &[f64],
+    seen: impl Fn(&[f64]) -> Vec<f64>,
+) -> (f64, usize) {
+    let mut problem = System::new(field);
+    let mut method = ode_method(name, start.len(), &options(tolerance)).expect("the table has it");
+    run(&mut *method, &mut problem, (0.0, end), start, 1, |_, y| {
+        judge.see(&seen(y), exact)
+    })
     .expect("it arrives");
     (judge.verdict(), method.stats().evaluations)
+}
+
+/// The same where all unknowns are compared.
+fn plain_trial<F: Field>(
+    trial: (&str, f64),
+    field: F,
+    from: (f64, &[f64]),
+    exact: &[f64],
+) -> (f64, usize) {
+    let judge = &mut Judge::new(exact.len());
+    ode_trial(trial, field, from, judge, exact, <[f64]>::to_vec)
+}
+
+fn pendulum(name: &str, tolerance: f64) -> (f64, usize) {
+    let (judge, exact) = (&mut Judge::new(4), &Pendulum::AFTER_10);
+    let seen = |y: &[f64]| Pendulum::point(y).to_vec();
+    let from = (10.0, &Pendulum::START[..]);
+    ode_trial((name, tolerance), Pendulum, from, judge, exact, seen)
 }
 
 fn cartesian_pendulum(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(CartesianPendulum), Judge::new(4));
-    let mut method = ode_method(name, 4, &options(tolerance)).expect("the table has it");
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, 10.0),
-        &[-1.0, 0.0, 0.0, 0.0],
-        1,
-        |_, y| judge.see(y, &Pendulum::AFTER_10),
+    let from = (10.0, &[-1.0, 0.0, 0.0, 0.0][..]);
+    plain_trial(
+        (name, tolerance),
+        CartesianPendulum,
+        from,
+        &Pendulum::AFTER_10,
     )
-    .expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
 }
 
 fn double_pendulum(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(DoublePendulum), Judge::new(6));
-    let mut method = ode_method(name, 4, &options(tolerance)).expect("the table has it");
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, 5.0),
-        &DoublePendulum::START,
-        1,
-        |_, y| judge.see(&DoublePendulum::points(y), &DoublePendulum::AFTER_5),
-    )
-    .expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
+    let (judge, exact) = (&mut Judge::new(6), &DoublePendulum::AFTER_5);
+    let seen = |y: &[f64]| DoublePendulum::points(y).to_vec();
+    let from = (5.0, &DoublePendulum::START[..]);
+    ode_trial((name, tolerance), DoublePendulum, from, judge, exact, seen)
 }
 
 fn kepler(name: &str, tolerance: f64) -> (f64, usize) {
@@ -130,80 +138,32 @@ fn kepler(name: &str, tolerance: f64) -> (f64, usize) {
 }
 
 fn euler_top(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(EulerTop), Judge::new(3));
-    let mut method = ode_method(name, 3, &options(tolerance)).expect("the table has it");
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, 10.0),
-        &EulerTop::START,
-        1,
-        |_, w| judge.see(w, &EulerTop::AFTER_10),
-    )
-    .expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
+    let from = (10.0, &EulerTop::START[..]);
+    plain_trial((name, tolerance), EulerTop, from, &EulerTop::AFTER_10)
 }
 
 fn van_der_pol(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(VanDerPol), Judge::new(2));
-    let mut method = ode_method(name, 2, &options(tolerance)).expect("the table has it");
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, 2.0),
-        &VanDerPol::START,
-        1,
-        |_, y| judge.see(y, &VanDerPol::AFTER_2),
-    )
-    .expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
+    let from = (2.0, &VanDerPol::START[..]);
+    plain_trial((name, tolerance), VanDerPol, from, &VanDerPol::AFTER_2)
 }
 
 fn robertson(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(Robertson), Judge::new(3));
-    let mut method = ode_method(name, 3, &options(tolerance)).expect("the table has it");
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, 40.0),
-        &Robertson::START,
-        1,
-        |_, y| judge.see(y, &Robertson::AFTER_40),
-    )
-    .expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
+    let from = (40.0, &Robertson::START[..]);
+    plain_trial((name, tolerance), Robertson, from, &Robertson::AFTER_40)
 }
 
 fn hires(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(Hires), Judge::new(8));
-    let mut method = ode_method(name, 8, &options(tolerance)).expect("the table has it");
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, Hires::END),
-        &Hires::START,
-        1,
-        |_, y| judge.see(y, &Hires::AT_END),
-    )
-    .expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
+    let from = (Hires::END, &Hires::START[..]);
+    plain_trial((name, tolerance), Hires, from, &Hires::AT_END)
 }
 
 fn stiff_bushing(name: &str, tolerance: f64) -> (f64, usize) {
-    let (mut problem, mut judge) = (System::new(StiffBushing), Judge::new(4));
-    let mut method = ode_method(name, 6, &options(tolerance)).expect("the table has it");
+    let (judge, exact) = (&mut Judge::new(4), &StiffBushing::AFTER_2);
     // the scale of each column is that of the motion after the first transient
     judge.see(&StiffBushing::AFTER_20_MS, &StiffBushing::AFTER_20_MS);
-    run(
-        &mut *method,
-        &mut problem,
-        (0.0, 2.0),
-        &StiffBushing::START,
-        1,
-        |_, y| judge.see(&[y[0], y[1], y[2], y[5]], &StiffBushing::AFTER_2),
-    )
-    .expect("it arrives");
-    (judge.verdict(), method.stats().evaluations)
+    let seen = |y: &[f64]| vec![y[0], y[1], y[2], y[5]];
+    let from = (2.0, &StiffBushing::START[..]);
+    ode_trial((name, tolerance), StiffBushing, from, judge, exact, seen)
 }
 
 /// Final error of a DAE method on equations with a known end.
@@ -243,56 +203,47 @@ fn dae_pendulum(name: &str, tolerance: f64) -> (f64, usize) {
     )
 }
 
+/// The same where the first unknowns are compared.
+fn plain_dae_trial<E: Equations>(
+    (name, tolerance): (&str, f64),
+    equations: E,
+    (end, start): (f64, &[f64]),
+    exact: &[f64],
+) -> (f64, usize) {
+    let judge = &mut Judge::new(exact.len());
+    let see = |judge: &mut Judge, y: &[f64]| judge.see(&y[..exact.len()], exact);
+    dae_trial(name, tolerance, equations, end, start, judge, see)
+}
+
 fn dae_hires(name: &str, tolerance: f64) -> (f64, usize) {
-    let mut judge = Judge::new(8);
-    dae_trial(
-        name,
-        tolerance,
-        Written(Hires),
-        Hires::END,
-        &Hires::START,
-        &mut judge,
-        |j, y| j.see(y, &Hires::AT_END),
-    )
+    let from = (Hires::END, &Hires::START[..]);
+    plain_dae_trial((name, tolerance), Written(Hires), from, &Hires::AT_END)
 }
 
 fn dae_robertson(name: &str, tolerance: f64) -> (f64, usize) {
-    let mut judge = Judge::new(3);
-    dae_trial(
-        name,
-        tolerance,
+    let from = (40.0, &Robertson::START[..]);
+    plain_dae_trial(
+        (name, tolerance),
         Written(Robertson),
-        40.0,
-        &Robertson::START,
-        &mut judge,
-        |j, y| j.see(y, &Robertson::AFTER_40),
+        from,
+        &Robertson::AFTER_40,
     )
 }
 
 fn dae_van_der_pol(name: &str, tolerance: f64) -> (f64, usize) {
-    let mut judge = Judge::new(2);
-    dae_trial(
-        name,
-        tolerance,
+    let from = (2.0, &VanDerPol::START[..]);
+    plain_dae_trial(
+        (name, tolerance),
         Written(VanDerPol),
-        2.0,
-        &VanDerPol::START,
-        &mut judge,
-        |j, y| j.see(y, &VanDerPol::AFTER_2),
+        from,
+        &VanDerPol::AFTER_2,
     )
 }
 
 fn constrained(index: usize, name: &str, tolerance: f64) -> (f64, usize) {
-    let mut judge = Judge::new(4);
-    dae_trial(
-        name,
-        tolerance,
-        ConstrainedPendulum { index },
-        10.0,
-        &[-1.0, 0.0, 0.0, 0.0],
-        &mut judge,
-        |j, y| j.see(&y[..4], &Pendulum::AFTER_10),
-    )
+    let from = (10.0, &[-1.0, 0.0, 0.0, 0.0][..]);
+    let equations = ConstrainedPendulum { index };
+    plain_dae_trial((name, tolerance), equations, from, &Pendulum::AFTER_10)
 }
 
 fn index_1(name: &str, tolerance: f64) -> (f64, usize) {

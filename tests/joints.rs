@@ -1,46 +1,29 @@
 //! Joints, couplers and gears against closed forms; what does not depend on place, orientation and units; motions that are not smooth.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
-use cognate::results::{Quantity, Status};
-
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+#[path = "common/running.rs"]
+mod running;
+use cognate::results::Quantity;
+use running::{
+    Analysis, Options, Session, begin, go, mistakes, model, off, options, values, whole,
+};
 
 fn session(text: &str, columns: &[&str], piecewise: bool) -> Session {
-    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
     let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(1e-10),
         piecewise,
-        ..Options::default()
+        ..options(columns, 1e-10)
     };
-    Session::new(model, "test", options)
+    begin(model(text), "test", options)
 }
 
 fn run_as(text: &str, columns: &[&str], end: f64, piecewise: bool) -> Session {
     let mut s = session(text, columns, piecewise);
-    let status = s
-        .simulate(Analysis::Transient, end, 50, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    go(&mut s, Analysis::Transient, end, 50);
     s
 }
 
 fn run(text: &str, columns: &[&str], end: f64) -> Session {
     run_as(text, columns, end, false)
-}
-
-fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
-    s.run.column(column).unwrap()
-}
-
-fn off(s: &Session, column: &str, expected: impl Fn(f64) -> f64) -> f64 {
-    let t = values(s, "time");
-    (values(s, column).iter().zip(t))
-        .map(|(x, &t)| (x - expected(t)).abs())
-        .fold(0.0, f64::max)
 }
 
 /// A part at a place with a centre of mass marker `10 id`.
@@ -131,17 +114,21 @@ fn a_screw_advances_by_its_pitch_per_turn_and_a_rack_by_its_circumference() {
         assert!(off(&s, "DZ(20,1)", |t| pitch * t) < 1e-10);
     }
     // the pinion rolls on a rack of ground: z of J along x, x of J along z
-    let text = format!(
-        "{}{}MARKER/2, PART=1, REULER=90D,90D,90D\nMARKER/22, PART=2, REULER=90D,90D,0\nMARKER/12, PART=1, QP=0,0.3,0, REULER=90D,90D,0\n\
-         JOINT/1, TRANSLATIONAL, I=22, J=12\nJOINT/2, REVOLUTE, I=30, J=20\n\
-         JOINT/3, RACKPIN, I=30, J=2, PD=0.6\nMOTION/1, JOINT=2, FUNCTION=-90D*TIME\n",
-        part(2, "0,0.3,0"),
-        part(3, "0,0.3,0")
-    );
-    let s = run(&text, &["DX(30,1)", "AZ(30,1)"], 8.0);
-    // clockwise it rolls along +x when its centre is above the rack
+    let rack = |diameter: f64| {
+        format!(
+            "{}{}MARKER/2, PART=1, REULER=90D,90D,90D\nMARKER/22, PART=2, REULER=90D,90D,0\nMARKER/12, PART=1, QP=0,0.3,0, REULER=90D,90D,0\n\
+             JOINT/1, TRANSLATIONAL, I=22, J=12\nJOINT/2, REVOLUTE, I=30, J=20\n\
+             JOINT/3, RACKPIN, I=30, J=2, PD={diameter}\nMOTION/1, JOINT=2, FUNCTION=-90D*TIME\n",
+            part(2, "0,0.3,0"),
+            part(3, "0,0.3,0")
+        )
+    };
+    // y of J points down: a pinion above the rack has a negative diameter, and clockwise it rolls along +x
     let travel = 0.3 * std::f64::consts::FRAC_PI_2;
-    assert!(off(&s, "DX(30,1)", |t| travel * t).min(off(&s, "DX(30,1)", |t| -travel * t)) < 1e-9);
+    for (diameter, speed) in [(-0.6, travel), (0.6, -travel)] {
+        let s = run(&rack(diameter), &["DX(30,1)"], 8.0);
+        assert!(off(&s, "DX(30,1)", |t| speed * t) < 1e-9, "{diameter}");
+    }
 }
 
 /// Sun 20 teeth, planet 20, ring 60 (fixed): the carrier turns by a quarter of the sun; with a fixed carrier a planet turns oppositely.
@@ -297,9 +284,7 @@ fn motions_that_jump_are_refused_with_their_times() {
         ),
     ] {
         let mut s = session(&driven(function), &["DZ(20,1)"], false);
-        let errors = s
-            .simulate(Analysis::Transient, 2.0, 50, &mut Unwatched)
-            .expect_err("a jump");
+        let errors = mistakes(&mut s, Analysis::Transient);
         assert_eq!(errors[0].code, "motion_jumps");
         assert_eq!(errors[0].element.as_deref(), Some("MOTION/1"));
         let message = &errors[0].message;
@@ -309,10 +294,7 @@ fn motions_that_jump_are_refused_with_their_times() {
         );
         // not within a run that ends before
         let mut s = session(&driven(function), &["DZ(20,1)"], false);
-        assert!(
-            s.simulate(Analysis::Transient, at - 0.1, 5, &mut Unwatched)
-                .is_ok()
-        );
+        go(&mut s, Analysis::Transient, at - 0.1, 5);
     }
 }
 
@@ -380,17 +362,13 @@ fn variables(joint: &str, place: &str, more: &str, end: f64) -> Session {
         "TEST\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1\n\
          PART/2, MASS=1, CM=20, IP=1,1,1{place}\nMARKER/20, PART=2\nJOINT/1, {joint}, I=20, J=1\n{more}END\n"
     );
-    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let options = Options {
         full: true,
         error: Some(1e-9),
         ..Options::default()
     };
-    let mut s = Session::new(model, "test", options);
-    let status = s
-        .simulate(Analysis::Transient, end, 40, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}\n{text}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let mut s = begin(whole(&text), "test", options);
+    go(&mut s, Analysis::Transient, end, 40);
     s
 }
 

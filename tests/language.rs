@@ -8,7 +8,9 @@ use cognate::expr::program::Work;
 use cognate::expr::walk::Host;
 use cognate::expr::{Expr, Profile, parse};
 use cognate::scalar::{Dual, Lanes, Scalar};
-use expressions::{Anything, bindings, laws_of_texts, laws_of_trees, run};
+use expressions::{
+    Anything, bindings, laws_of_texts, laws_of_trees, prepared_call, program_is_the_walker, run,
+};
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -31,6 +33,14 @@ proptest! {
         for dialect in [Dialect::Function, Dialect::Expression] {
             laws_of_trees(&bytes, dialect, time);
         }
+    }
+
+    #[test]
+    fn calls_with_constant_parameters_give_the_walkers_bits(
+        bytes in prop::collection::vec(any::<u8>(), 0..60),
+        time in -3.0..3.0,
+    ) {
+        program_is_the_walker(&prepared_call(&bytes), time);
     }
 
     #[test]

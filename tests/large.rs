@@ -2,11 +2,12 @@
 
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::analysis::verify::outline::outline;
-use cognate::analysis::watch::Unwatched;
 use cognate::model::Model;
-use cognate::results::Status;
+use running::{Analysis, Options, Session, begin, go, values, whole};
 use std::fmt::Write;
 
 /// A cantilever of `n` free parts in a row along x, each tied to the one before by a BEAM, under its weight and a spin about its axis.
@@ -26,7 +27,7 @@ fn cantilever(n: usize) -> Model {
         )
         .unwrap();
     }
-    Model::from_text(&format!("{text}END\n")).unwrap_or_else(|e| panic!("{e}"))
+    whole(&format!("{text}END\n"))
 }
 
 fn run(model: &Model, method: &str, error: f64, columns: &[String]) -> Session {
@@ -36,11 +37,8 @@ fn run(model: &Model, method: &str, error: f64, columns: &[String]) -> Session {
         method: Some(method.into()),
         ..Options::default()
     };
-    let mut s = Session::new(model.clone(), "large", options);
-    let status = s
-        .simulate(Analysis::Dynamic, 0.1, 10, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let mut s = begin(model.clone(), "large", options);
+    go(&mut s, Analysis::Dynamic, 0.1, 10);
     s
 }
 
@@ -56,10 +54,7 @@ fn a_cantilever_of_twelve_parts_swings_alike_by_every_method() {
     for (method, error, bound) in [("RADAU5", 1e-7, 1e-5), ("BDF", 1e-5, 1e-2)] {
         let implicit = run(&model, method, error, &columns);
         for column in &columns {
-            let (a, b) = (
-                explicit.run.column(column).unwrap(),
-                implicit.run.column(column).unwrap(),
-            );
+            let (a, b) = (values(&explicit, column), values(&implicit, column));
             let size = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
             let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
             let off = off.fold(0.0, f64::max) / size;

@@ -3,17 +3,20 @@
 #![cfg(feature = "solver")]
 #![allow(non_snake_case)]
 
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::analysis::session::columns;
-use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::start::{assemble, velocities};
 use cognate::analysis::system::System;
 use cognate::analysis::time::{dynamics, options};
 use cognate::analysis::watch::Unwatched;
 use cognate::model::{Driven, MarkerOwner, Model, Orientation, Units};
-use cognate::results::{Run, Status};
+use cognate::results::Run;
 use cognate::scene::configuration::Configuration;
 use cognate::scene::{Scene, build};
 use cognate::space::{Mat3, Vec3, rotation};
+use running::{Analysis, Options, begin, go, whole};
 
 /// Mechanisms of `tests/scenes`, moved by gravity instead of motions; chains open and closed, in the plane and in space.
 const SCENES: [&str; 11] = [
@@ -77,16 +80,8 @@ fn solved(model: &Model, columns: &[String]) -> Run {
         error: Some(ERROR),
         ..Options::default()
     };
-    let mut session = Session::new(model.clone(), "law", options);
-    let status = session
-        .simulate(Analysis::Dynamic, END, 5, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(
-        status,
-        Status::Completed,
-        "{}",
-        session.run.record.stop_reason
-    );
+    let mut session = begin(model.clone(), "law", options);
+    go(&mut session, Analysis::Dynamic, END, 5);
     session.run
 }
 
@@ -379,7 +374,7 @@ fn momentum_is_kept_by_what_nothing_holds() {
         PART/4, MASS=3, CM=40, IP=0.5,0.5,0.5, WY=-2\nMARKER/20, PART=2\nMARKER/30, PART=3, QP=1,0.2,0\nMARKER/40, PART=4, QP=-1,0.3,0.4\n\
         MARKER/21, PART=2, QP=0.5,0,0\nMARKER/31, PART=3, QP=0.5,0,0\nMARKER/22, PART=2, QP=-0.5,0,0\nMARKER/42, PART=4, QP=-0.5,0,0\n\
         JOINT/1, REVOLUTE, I=31, J=21\nJOINT/2, SPHERICAL, I=42, J=22\nEND\n";
-    let model = Model::from_text(text).unwrap_or_else(|e| panic!("{e}"));
+    let model = whole(text);
     let bodies = [(20, 2.0, 0.4), (30, 1.0, 0.2), (40, 3.0, 0.5)];
     let sum =
         |f: &dyn Fn(u32, f64, f64) -> String| bodies.map(|(m, mass, i)| f(m, mass, i)).join("+");

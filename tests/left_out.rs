@@ -3,12 +3,11 @@
 //! markers.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::dataset::command::Script;
-use cognate::model::Model;
-use cognate::results::Status;
+use running::{Analysis, Options, Session, begin, last, mistakes, obeys, options, whole};
 
 /// A unit mass that may move along x; MARKER/2 on it, MARKER/3 on ground.
 const BODY: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2\n\
@@ -16,26 +15,16 @@ const BODY: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2
                     JOINT/1, TRANSLATIONAL, I=2, J=3\n";
 
 fn session(text: &str, columns: &[&str], skip: &[&str], zero_user: bool) -> Session {
-    let model = Model::from_text(&format!("{BODY}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
     let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(1e-10),
         skip: skip.iter().map(|k| k.parse().unwrap()).collect(),
         zero_user,
-        ..Options::default()
+        ..options(columns, 1e-10)
     };
-    Session::new(model, "test", options)
+    begin(whole(&format!("{BODY}{text}END\n")), "test", options)
 }
 
 fn go(s: &mut Session, end: f64) {
-    let status = s
-        .simulate(Analysis::Dynamic, end, 10, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-}
-
-fn last(s: &Session, column: &str) -> f64 {
-    *s.run.column(column).unwrap().last().unwrap()
+    running::go(s, Analysis::Dynamic, end, 10);
 }
 
 fn warns(s: &Session, parts: &[&str]) -> bool {
@@ -65,9 +54,7 @@ fn of_a_contact_that_is_left_out_everything_reads_zero() {
         assert!(warns(&s, &[reader, "CONTACT/5", "zero"]), "{reader}");
     }
     // it is not left out by itself
-    let error = session(CONTACT, &[], &[], false)
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("nobody said so");
+    let error = mistakes(&mut session(CONTACT, &[], &[], false), Analysis::Dynamic);
     assert_eq!(error[0].code, "unsupported");
 }
 
@@ -96,9 +83,7 @@ fn a_curve_that_a_routine_computes_holds_nothing_when_routines_are_zero() {
     assert!((last(&s, "VX(2,1)").abs() - 2.0).abs() < 1e-12);
     assert!(warns(&s, &["PTCV/1", "left out", "CURVE/1"]));
     assert!(warns(&s, &["SFORCE/8", "MARKER/31", "zero"]));
-    let error = session(text, &[], &[], false)
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("nobody said so");
+    let error = mistakes(&mut session(text, &[], &[], false), Analysis::Dynamic);
     assert!(error.iter().any(|d| d.code == "curve_data"), "{error:?}");
 }
 
@@ -111,7 +96,7 @@ fn a_sensor_that_is_switched_off_keeps_what_it_has_seen() {
     let script = "\nsim/dyn, end=0.5, steps=2\ndeactivate/sensor, id=1\nsim/dyn, end=1, steps=2\nactivate/sensor, id=1\n\
         sim/dyn, end=1.5, steps=2\n";
     let script = Script::from_text(script).unwrap();
-    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+    obeys(&mut s, &script);
     let seen = s.run.column("VARVAL(1)").unwrap();
     let time = s.run.column("TIME").unwrap();
     let at = |t: f64| seen[time.iter().rposition(|x| (x - t).abs() < 1e-12).unwrap()];
@@ -128,7 +113,7 @@ fn a_simulation_up_to_now_is_passed_over() {
     let script =
         "\nsim/dyn, end=0.5, steps=2\nsim/dyn, end=0.5, steps=2\nsim/dyn, end=1, steps=2\n";
     let script = Script::from_text(script).unwrap();
-    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+    obeys(&mut s, &script);
     assert_eq!(s.time(), 1.0);
     assert_eq!(s.run.record.simulations.len(), 2);
     assert!(warns(

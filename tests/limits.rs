@@ -39,6 +39,17 @@ fn ten_levels_of_groups_functions_and_ifs_pass_and_the_eleventh_does_not() {
 }
 
 #[test]
+fn columns_count_characters_of_however_many_bytes() {
+    let column = |text: &str| {
+        let said = parse(text, Dialect::Function, Profile::Adams).expect_err("a mistake");
+        said.column
+    };
+    assert_eq!(column("1 ! é\n+ *2"), 9);
+    assert_eq!(column("1 ! e\n+ *2"), 9);
+    assert_eq!(column("1 + é + ü"), 5);
+}
+
+#[test]
 fn levels_are_counted_in_depth_and_not_in_number() {
     let ten = "(".repeat(10) + "1" + &")".repeat(10);
     accepted(&[ten.as_str(); 20].join("+"));

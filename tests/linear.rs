@@ -2,21 +2,17 @@
 //! matrices between plant inputs and outputs.
 #![cfg(feature = "solver")]
 
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::analysis::linear::{Linearization, Wanted};
-use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
-use cognate::model::Model;
-use cognate::results::Status;
+use running::{Options, Session, begin, model, obeys, rest};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
-
 fn session(text: &str) -> Session {
-    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
-    Session::new(model, "test", Options::default())
+    begin(model(text), "test", Options::default())
 }
 
 fn linear(s: &mut Session, wanted: &Wanted) -> Linearization {
@@ -128,10 +124,7 @@ fn a_pendulum_swings_about_its_equilibrium_whatever_its_joint_is_made_of() {
         "JPRIM/1, ATPOINT, I=3, J=1\nJPRIM/2, PARALLEL_AXES, I=3, J=1\n",
     ] {
         let mut s = session(&pendulum(joint));
-        let status = s
-            .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
-            .unwrap();
-        assert_eq!(status, Status::Completed);
+        rest(&mut s);
         let found = linear(&mut s, &Wanted::default());
         assert_eq!(found.modes.len(), 1, "{}", found.table());
         close(found.modes[0].im, omega, 1e-10);
@@ -207,7 +200,7 @@ fn a_command_file_settles_then_linearizes() {
     )
     .unwrap_or_else(|e| panic!("{e}"));
     let mut s = session(&text);
-    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched).unwrap_or_else(|e| panic!("{e:?}"));
+    obeys(&mut s, &script);
     assert_eq!(s.linear.len(), 2);
     assert!(!s.linear[0].1 && s.linear[1].1);
     assert_eq!(s.linear[1].0.as_deref(), Some("plant"));

@@ -2,47 +2,26 @@
 //! implicit differential equations; and what is said when there is no solution.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::results::Status;
-
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
-
-fn session(text: &str, columns: &[&str], method: &str, error: f64) -> Session {
-    let model = Model::from_text(&format!("{GROUND}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        method: Some(method.to_string()),
-        error: Some(error),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
-}
+use running::{Analysis, Session, go, mistakes, session_by, try_to, values};
 
 fn run(text: &str, columns: &[&str], method: &str, end: f64) -> Session {
-    let mut s = session(text, columns, method, 1e-10);
-    let status = s
-        .simulate(Analysis::Dynamic, end, 4, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let mut s = session_by(text, columns, method, 1e-10);
+    go(&mut s, Analysis::Dynamic, end, 4);
     s
 }
 
 fn fails(text: &str) -> String {
-    let mut s = session(text, &["VARVAL(1)"], "AUTO", 1e-6);
-    let errors = s
-        .simulate(Analysis::Dynamic, 1.0, 4, &mut Unwatched)
-        .expect_err("no solution");
+    let mut s = session_by(text, &["VARVAL(1)"], "AUTO", 1e-6);
+    let errors = mistakes(&mut s, Analysis::Dynamic);
     format!(
         "{} {}",
         errors[0].element.clone().unwrap_or_default(),
         errors[0].message
     )
-}
-
-fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
-    s.run.column(column).unwrap()
 }
 
 /// A mass that may move along x.
@@ -224,10 +203,8 @@ fn a_loop_that_ends_stops_the_run_and_is_named() {
     // v = v² + t has a solution until t = 1/4
     let text =
         format!("{BODY}VARIABLE/1, FUNCTION=VARVAL(1)**2+TIME\nDIFF/1, IC=0, FUNCTION=VARVAL(1)\n");
-    let mut s = session(&text, &["DIF(1)", "VARVAL(1)"], "AUTO", 1e-6);
-    let status = s
-        .simulate(Analysis::Dynamic, 1.0, 100, &mut Unwatched)
-        .unwrap();
+    let mut s = session_by(&text, &["DIF(1)", "VARVAL(1)"], "AUTO", 1e-6);
+    let status = try_to(&mut s, Analysis::Dynamic, 1.0, 100);
     assert_eq!(status, Status::Stopped);
     let why = &s.run.record.stop_reason;
     assert!(why.contains("VARIABLE/1"), "{why}");
@@ -243,11 +220,8 @@ fn statics_solves_loops_too() {
          VARIABLE/1, IC=0, FUNCTION=0.1*VARVAL(1)**2+1-DX(2,1)\n\
          SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=VARVAL(1)\n"
     );
-    let mut s = session(&text, &["DX(2,1)", "VARVAL(1)"], "AUTO", 1e-6);
-    let status = s
-        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
-        .unwrap();
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    let mut s = session_by(&text, &["DX(2,1)", "VARVAL(1)"], "AUTO", 1e-6);
+    go(&mut s, Analysis::Static, 0.0, 1);
     let (x, v) = (
         *values(&s, "DX(2,1)").last().unwrap(),
         *values(&s, "VARVAL(1)").last().unwrap(),

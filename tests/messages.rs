@@ -4,12 +4,10 @@
 #[path = "common/running.rs"]
 mod running;
 
-use cognate::analysis::session::script::obey;
-use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::diagnostic::Diagnostic;
 use cognate::results::Status;
-use running::{Analysis, go, refused, session};
+use running::{Analysis, go, mistakes, mistakes_of, refused, session, try_to};
 
 const HINGE: &str = "PART/2, MASS=2, CM=2, IP=0.3,0.3,0.5\nMARKER/2, PART=2\nMARKER/3, PART=1\nJOINT/1, REVOLUTE, I=2, J=3\n";
 
@@ -26,9 +24,7 @@ fn a_function_that_loses_its_value_is_named_with_its_operation() {
         for method in ["DOP853", "RADAU5"] {
             let mut s = session(&text, &[], 1e-6);
             s.model.integrator.method = Some(method.into());
-            let status = s
-                .simulate(Analysis::Dynamic, 3.0, 3, &mut Unwatched)
-                .unwrap();
+            let status = try_to(&mut s, Analysis::Dynamic, 3.0, 3);
             let record = &s.run.record;
             assert_ne!(status, Status::Completed);
             assert!(
@@ -83,9 +79,7 @@ fn settings_that_no_integration_can_keep_are_refused() {
     }
     for error in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let mut s = session(HINGE, &[], error);
-        let d = s
-            .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-            .unwrap_err();
+        let d = mistakes(&mut s, Analysis::Dynamic);
         assert_eq!(d[0].element.as_deref(), Some("--error"), "{error}");
     }
 }
@@ -112,9 +106,7 @@ fn a_contact_without_stiffness_is_refused() {
 fn command(wrong: &str) -> Diagnostic {
     let mut s = session(HINGE, &[], 1e-6);
     let script = Script::from_text(&format!("\nSIM/DYN, END=1, STEPS=2\n{wrong}\n")).unwrap();
-    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched)
-        .unwrap_err()
-        .remove(0)
+    mistakes_of(&mut s, &script).remove(0)
 }
 
 #[test]

@@ -4,22 +4,10 @@
 #[path = "common/running.rs"]
 mod running;
 
-use running::{Analysis, Session, go, model, options, values};
+use running::{Analysis, go, off, session_by};
 
 const METHODS: [&str; 5] = ["DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
 const REQUESTS: [f64; 2] = [1e-3, 1e-5];
-
-fn session(text: &str, columns: &[&str], method: &str, error: f64) -> Session {
-    let mut options = options(columns, error);
-    options.method = Some(method.into());
-    Session::new(model(text), "test", options)
-}
-
-/// The largest difference of a column from a function of time.
-fn off(s: &Session, column: &str, exact: impl Fn(f64) -> f64) -> f64 {
-    let rows = values(s, "time").iter().zip(values(s, column));
-    rows.map(|(&t, x)| (x - exact(t)).abs()).fold(0.0, f64::max)
-}
 
 const SLIDER: &str = "PART/2, MASS=1, CM=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
                       JOINT/1, TRANSLATIONAL, I=2, J=3\n";
@@ -30,7 +18,7 @@ fn a_closure_that_pulls_like_a_spring_gives_its_oscillation() {
         format!("{SLIDER}SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=USER(1, 4)\n");
     for method in METHODS {
         for error in REQUESTS {
-            let mut s = session(&text, &["DZ(2,3,3)"], method, error);
+            let mut s = session_by(&text, &["DZ(2,3,3)"], method, error);
             s.register("1", &["DZ(2,3,3)", "VZ(2,3,3)"], |call, out| {
                 let k = call.constants[1];
                 out[0] = k * (1.0 - call.values[0]) - 0.4 * call.values[1];
@@ -54,7 +42,7 @@ fn a_closure_in_a_differential_equation_decays() {
     for method in METHODS {
         for error in REQUESTS {
             let text = "VARIABLE/1, FUNCTION=USER(7)\nDIFF/1, IC=2, FUNCTION=VARVAL(1)\n";
-            let mut s = session(text, &["DIF(1)"], method, error);
+            let mut s = session_by(text, &["DIF(1)"], method, error);
             s.register("7", &["DIF(1)"], |call, out| out[0] = -3.0 * call.values[0]);
             go(&mut s, Analysis::Dynamic, 2.0, 20);
             let off = off(&s, "DIF(1)", |t| 2.0 * (-3.0 * t).exp());
@@ -68,7 +56,7 @@ fn an_equation_with_delay_follows_its_polynomials() {
     for method in METHODS {
         for error in REQUESTS {
             let text = "DIFF/1, IC=1, FUNCTION=-DELAY(DIF(1),1,1)\n";
-            let mut s = session(text, &["DIF(1)"], method, error);
+            let mut s = session_by(text, &["DIF(1)"], method, error);
             go(&mut s, Analysis::Dynamic, 3.0, 30);
             let piece = |t: f64, from: f64, n: i32, by: f64| (t - from).max(0.0).powi(n) / by;
             let exact = |t: f64| 1.0 - t + piece(t, 1.0, 2, 2.0) - piece(t, 2.0, 3, 6.0);
@@ -90,7 +78,7 @@ fn a_force_that_reads_the_past_of_a_body_pushes_it_later() {
     );
     for method in METHODS {
         for error in REQUESTS {
-            let mut s = session(&text, &["DZ(2,3,3)"], method, error);
+            let mut s = session_by(&text, &["DZ(2,3,3)"], method, error);
             go(&mut s, Analysis::Dynamic, 1.5, 15);
             // pieces: t²/2, then 2 (t − ½)⁴/4!, then 4 (t − 1)⁶/6! more
             let exact = |t: f64| {

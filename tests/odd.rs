@@ -2,15 +2,15 @@
 //! reads without a mistake, is written as it was read, keeps its meaning when it is formatted, and moves as the plain one does.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Options, Session};
-use cognate::analysis::watch::Unwatched;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::dataset::command::Script;
 use cognate::dataset::syntax::Source;
 use cognate::dataset::{Reading, read_source, read_text};
 use cognate::diagnostic::Severity;
-use cognate::results::Status;
 use meaning::{difference, meaning};
+use running::{Options, begin, last, obeys, options};
 
 #[path = "common/meaning.rs"]
 mod meaning;
@@ -302,17 +302,13 @@ fn read(what: &str, bytes: &[u8]) -> Reading {
 fn moved(what: &str, reading: Reading) -> [f64; 2] {
     let columns = ["DX(20,1)", "DY(20,1)"];
     let options = Options {
-        columns: columns.map(str::to_string).to_vec(),
-        error: Some(1e-10),
         zero_user: true,
-        ..Options::default()
+        ..options(&columns, 1e-10)
     };
-    let mut session = Session::new(reading.model, "odd", options);
+    let mut session = begin(reading.model, what, options);
     let script = Script::from_text("\nsim/dyn, end=0.4, steps=2\n").unwrap();
-    let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{what}: {}", e[0]));
-    assert_eq!(status, Status::Completed, "{what}");
-    columns.map(|c| *session.run.column(c).unwrap().last().unwrap())
+    obeys(&mut session, &script);
+    columns.map(|c| last(&session, c))
 }
 
 fn same(what: &str, bytes: &[u8], expected: [f64; 2]) {
@@ -478,18 +474,12 @@ fn odd_command_files_do_what_plain_ones_do() {
         let model = script.model.as_deref().unwrap_or_default();
         assert!(model == "p" || model == "p.adm", "{what}: {model:?}");
         let columns = ["DX(20,1)", "DY(20,1)"];
-        let options = Options {
-            columns: columns.map(str::to_string).to_vec(),
-            error: Some(1e-10),
-            ..Options::default()
-        };
+        let options = options(&columns, 1e-10);
         let reading = read(what, plain().as_bytes());
-        let mut session = Session::new(reading.model, "odd", options);
-        let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched)
-            .unwrap_or_else(|e| panic!("{what}: {}", e[0]));
-        assert_eq!(status, Status::Completed, "{what}");
+        let mut session = begin(reading.model, what, options);
+        obeys(&mut session, &script);
         assert!((session.time() - 0.4).abs() < 1e-12, "{what}");
-        let found = columns.map(|c| *session.run.column(c).unwrap().last().unwrap());
+        let found = columns.map(|c| last(&session, c));
         for (x, y) in found.iter().zip(expected) {
             assert!((x - y).abs() < 1e-8, "{what}: {found:?}, not {expected:?}");
         }

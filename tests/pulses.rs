@@ -4,9 +4,8 @@
 #[path = "common/running.rs"]
 mod running;
 
-use cognate::analysis::watch::Unwatched;
 use cognate::results::Status;
-use running::{Analysis, Options, Session, go, last, model, options};
+use running::{Analysis, Session, go, last, session_by, try_to};
 
 /// A unit mass that slides along z, pushed by a function of time.
 fn pushed(function: &str, method: &str, error: f64, end: f64) -> Session {
@@ -14,9 +13,7 @@ fn pushed(function: &str, method: &str, error: f64, end: f64) -> Session {
         "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=1\nJOINT/1, TRANSLATIONAL, I=2, J=3\n\
          VARIABLE/7, FUNCTION={function}\nSFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=VARVAL(7)\n"
     );
-    let mut options = options(&["VZ(2)"], error);
-    options.method = Some(method.into());
-    let mut s = Session::new(model(&text), "test", options);
+    let mut s = session_by(&text, &["VZ(2)"], method, error);
     go(&mut s, Analysis::Dynamic, end, 5);
     s
 }
@@ -82,11 +79,7 @@ fn velocity(force: &str, method: &str) -> f64 {
          SPLINE/1, X=0,4,4.001,4.002,4.003,10, Y=0,0,1000,1000,0,0\n\
          SFORCE/1, I=2, J=1, TRANSLATIONAL, ACTIONONLY, FUNCTION={force}\n"
     );
-    let options = Options {
-        method: Some(method.into()),
-        ..options(&["VZ(2,1)"], 1e-6)
-    };
-    let mut s = Session::new(model(&text), "test", options);
+    let mut s = session_by(&text, &["VZ(2,1)"], method, 1e-6);
     go(&mut s, Analysis::Dynamic, 10.0, 2);
     last(&s, "VZ(2,1)")
 }
@@ -147,11 +140,7 @@ fn a_branch_that_comes_and_goes_in_every_turn_of_a_free_wheel_is_seen_in_each() 
                 "{wheel}MARKER/2, PART=2\nPART/3, MASS=1, CM=3, IP=1,1,1\nMARKER/3, PART=3\nJOINT/1, TRANSLATIONAL, I=3, J=1\n\
                  SFORCE/1, I=3, J=1, TRANSLATIONAL, ACTIONONLY, FUNCTION=IF(SIN(AZ(2,1))-0.99: 0,0,100)\n"
             );
-            let options = Options {
-                method: Some(method.into()),
-                ..options(&["VZ(3,1)"], 1e-6)
-            };
-            let mut s = Session::new(model(&text), "test", options);
+            let mut s = session_by(&text, &["VZ(3,1)"], method, 1e-6);
             go(&mut s, Analysis::Dynamic, 10.0, 2);
             let v = last(&s, "VZ(3,1)");
             assert!((v - 1000.0 * part).abs() < 1e-3, "{method} {wheel}: {v}");
@@ -171,15 +160,9 @@ fn a_pole_that_stops_a_run_is_named_with_its_place() {
                 "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=1\nJOINT/1, TRANSLATIONAL, I=2, J=3\n\
                  SFORCE/3, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION={function}\n"
             );
-            let mut options = options(&["VZ(2)"], 1e-4);
-            options.method = Some(method.into());
-            let mut s = Session::new(model(&text), "test", options);
-            let status = s.simulate(Analysis::Dynamic, 1.0, 5, &mut Unwatched);
-            assert_eq!(
-                status.expect("a run"),
-                Status::Stopped,
-                "{function} {method}"
-            );
+            let mut s = session_by(&text, &["VZ(2)"], method, 1e-4);
+            let status = try_to(&mut s, Analysis::Dynamic, 1.0, 5);
+            assert_eq!(status, Status::Stopped, "{function} {method}");
             let reason = &s.run.record.stop_reason;
             let said = format!("SFORCE/3 FUNCTION: {pole} grows without bound");
             assert!(reason.contains(&said), "{function} {method}: {reason}");

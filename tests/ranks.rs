@@ -1,20 +1,17 @@
 //! Rank that changes while a mechanism moves, and mechanisms that can be driven no further.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
+#[path = "common/running.rs"]
+mod running;
+
+use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::results::{RowChange, Status};
+use running::{Analysis, Session, begin, go, obeys, options, try_to, whole};
 use std::f64::consts::PI;
 
 fn session(text: &str, columns: &[&str], error: f64) -> Session {
-    let model = Model::from_text(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    let options = Options {
-        columns: columns.iter().map(|c| (*c).to_string()).collect(),
-        error: Some(error),
-        ..Options::default()
-    };
-    Session::new(model, "ranks", options)
+    begin(whole(text), "ranks", options(columns, error))
 }
 
 /// A parallelogram with cranks of 1, base 3, upright at the start; `third`: with a third crank in the middle.
@@ -48,10 +45,7 @@ fn passes(session: &Session) -> Vec<f64> {
 fn a_parallelogram_passes_its_folded_positions_and_tells_when() {
     for third in [false, true] {
         let mut s = session(&parallelogram(third, ""), &["AZ(30,11)", "DY(22,11)"], 1e-9);
-        let status = s
-            .simulate(Analysis::Dynamic, 2.0, 40, &mut Unwatched)
-            .unwrap();
-        assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+        go(&mut s, Analysis::Dynamic, 2.0, 40);
         let turned = s.run.column("AZ(30,11)").unwrap();
         assert!(
             turned.iter().all(|a| a.abs() < 1e-6),
@@ -90,10 +84,7 @@ fn a_driven_parallelogram_stays_on_its_branch() {
             &["AZ(30,11)", "DX(22,11)"],
             1e-6,
         );
-        let status = s
-            .simulate(Analysis::Kinematic, 1.0, steps, &mut Unwatched)
-            .unwrap();
-        assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+        go(&mut s, Analysis::Kinematic, 1.0, steps);
         let turned = s.run.column("AZ(30,11)").unwrap();
         assert!(turned.iter().all(|a| a.abs() < 1e-8), "{turned:?}");
         let told = passes(&s);
@@ -124,10 +115,7 @@ fn the_rows_that_are_kept_change_as_a_pin_turns() {
     );
     let mut welded = session(&model("FIXED, I=32, J=22"), &columns, 1e-10);
     for s in [&mut pinned, &mut welded] {
-        let status = s
-            .simulate(Analysis::Dynamic, 3.0, 60, &mut Unwatched)
-            .unwrap();
-        assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+        go(s, Analysis::Dynamic, 3.0, 60);
     }
     for c in columns {
         let (a, b) = (pinned.run.column(c).unwrap(), welded.run.column(c).unwrap());
@@ -152,9 +140,7 @@ fn a_mechanism_driven_past_its_reach_stops_there_and_says_why() {
         JOINT/1, REVOLUTE, I=20, J=11\nJOINT/2, REVOLUTE, I=32, J=22\nJOINT/3, REVOLUTE, I=43, J=33\nJOINT/4, TRANSLATIONAL, I=40, J=14\n\
         MOTION/1, JOINT=4, TRANSLATION, FUNCTION=2+TIME\nEND\n";
     let mut s = session(text, &["DX(43,11)", "DY(22,11)"], 1e-6);
-    let status = s
-        .simulate(Analysis::Kinematic, 2.0, 20, &mut Unwatched)
-        .unwrap();
+    let status = try_to(&mut s, Analysis::Kinematic, 2.0, 20);
     assert_eq!(status, Status::Stopped);
     let reason = &s.run.record.stop_reason;
     assert!(
@@ -203,10 +189,7 @@ fn an_unequal_four_bar_is_driven_through_its_dead_point() {
     let motion = "MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME\n";
     for steps in [43, 50] {
         let mut s = session(&change_point(motion), &["DX(33,11)", "DY(33,11)"], 1e-8);
-        let status = s
-            .simulate(Analysis::Kinematic, 6.0, steps, &mut Unwatched)
-            .unwrap();
-        assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+        go(&mut s, Analysis::Kinematic, 6.0, steps);
         // the crank begins at 90° and points along the base after three quarters of a turn
         let told = passes(&s);
         assert_eq!(told.len(), 1, "{told:?}");
@@ -226,23 +209,11 @@ fn an_unequal_four_bar_is_driven_through_its_dead_point() {
 
 /// A problem of the references as its command file runs it.
 fn reference(problem: &str) -> Session {
-    use cognate::analysis::session::script::obey;
-    use cognate::dataset::command::Script;
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
     let script = Script::read(folder.join(format!("{problem}.acf"))).unwrap();
-    let options = Options {
-        error: Some(1e-8),
-        ..Options::default()
-    };
     let model = Model::read(script.model_file().unwrap()).unwrap();
-    let mut session = Session::new(model, problem, options);
-    let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched).unwrap();
-    assert_eq!(
-        status,
-        Status::Completed,
-        "{}",
-        session.run.record.stop_reason
-    );
+    let mut session = begin(model, problem, options(&[], 1e-8));
+    obeys(&mut session, &script);
     session
 }
 

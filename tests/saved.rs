@@ -1,13 +1,13 @@
 //! SAVE and RELOAD: a run goes on from a saved state as if nothing had happened, to the last bit; what is no such state is refused.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::script::obey;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::analysis::session::state::{Saved, file_name};
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::{ElementKind, Model};
-use cognate::results::Status;
+use running::{Analysis, Session, begin, mistakes_of, obeys, options, whole};
 
 /// A pendulum with everything that is carried from one simulation to the next: turns, states, sensors, samples and a past.
 const MODEL: &str = "everything that is carried
@@ -34,12 +34,7 @@ END
 const COLUMNS: [&str; 5] = ["AZ(21,1)", "WZ(21,1)", "DIF(1)", "ARYVAL(2,1)", "VARVAL(2)"];
 
 fn session(model: Model) -> Session {
-    let options = Options {
-        columns: COLUMNS.map(str::to_string).to_vec(),
-        error: Some(1e-7),
-        ..Options::default()
-    };
-    let mut s = Session::new(model, "saved", options);
+    let mut s = begin(model, "saved", options(&COLUMNS, 1e-7));
     s.register("1", &[], |call, out| {
         let [u, d] = call.values else { return };
         out[0] = 0.5 * d + u;
@@ -48,10 +43,7 @@ fn session(model: Model) -> Session {
 }
 
 fn go(s: &mut Session, end: f64) {
-    let status = s
-        .simulate(Analysis::Dynamic, end, 5, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    running::go(s, Analysis::Dynamic, end, 5);
 }
 
 fn last(s: &Session) -> [u64; 5] {
@@ -60,19 +52,18 @@ fn last(s: &Session) -> [u64; 5] {
 
 #[test]
 fn a_run_goes_on_from_a_saved_state_to_the_last_bit() {
-    let mut whole = session(Model::from_text(MODEL).unwrap());
-    go(&mut whole, 0.5);
-    whole.model.inactive.insert(ElementKind::Joint.id(2));
-    let text = whole.save();
-    go(&mut whole, 1.5);
+    let mut all = session(whole(MODEL));
+    go(&mut all, 0.5);
+    all.model.inactive.insert(ElementKind::Joint.id(2));
+    let text = all.save();
+    go(&mut all, 1.5);
     let saved = Saved::read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
-    let mut other =
-        session(Model::from_text("nothing\nPART/1, GROUND\nMARKER/1, PART=1\nEND\n").unwrap());
+    let mut other = session(whole("nothing\nPART/1, GROUND\nMARKER/1, PART=1\nEND\n"));
     other.reload(saved).unwrap();
     assert_eq!(other.time(), 0.5);
     assert_eq!(other.save(), text, "a state is saved as it was read");
     go(&mut other, 1.5);
-    assert_eq!(last(&other), last(&whole));
+    assert_eq!(last(&other), last(&all));
     assert!(
         other.run.column("REQUEST_1.MAG").is_some(),
         "its requests come with it"
@@ -81,11 +72,11 @@ fn a_run_goes_on_from_a_saved_state_to_the_last_bit() {
 
 #[test]
 fn commands_save_and_go_back() {
-    let mut s = session(Model::from_text(MODEL).unwrap());
+    let mut s = session(whole(MODEL));
     let script = "\nsim/dyn, end=0.4, steps=4\nsave/system=here\nsim/dyn, end=0.8, steps=4\nreload/system=here\n\
         sim/dyn, end=0.8, steps=4\nstop\n";
     let script = Script::from_text(script).unwrap();
-    obey(&mut s, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+    obeys(&mut s, &script);
     let time = s.run.column("TIME").unwrap();
     let ends: Vec<usize> = (0..time.len()).filter(|&k| time[k] == 0.8).collect();
     assert_eq!(ends.len(), 2);
@@ -100,33 +91,30 @@ fn commands_save_and_go_back() {
 fn a_state_is_found_in_the_folders_of_the_run() {
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("saved");
     std::fs::create_dir_all(&folder).unwrap();
-    let mut s = session(Model::from_text(MODEL).unwrap());
+    let mut s = session(whole(MODEL));
     go(&mut s, 0.2);
     std::fs::write(folder.join(file_name("a")), s.save()).unwrap();
     std::fs::write(folder.join("adams.sav"), [0u8, 159, 3, 255, 10]).unwrap();
-    let mut other = session(Model::from_text(MODEL).unwrap());
+    let mut other = session(whole(MODEL));
     other.folders = vec![folder];
-    let run = |s: &mut Session, text: &str| {
-        let script = Script::from_text(text).unwrap();
-        obey(s, &script.steps, |_, _| (), &mut Unwatched)
-    };
-    run(&mut other, "\nreload/system=a\n").unwrap();
+    let script = |text: &str| Script::from_text(text).unwrap();
+    obeys(&mut other, &script("\nreload/system=a\n"));
     assert_eq!(other.time(), 0.2);
-    let errors = run(&mut other, "\nreload/system=adams.sav\n").expect_err("a binary");
+    let errors = mistakes_of(&mut other, &script("\nreload/system=adams.sav\n"));
     assert_eq!(errors[0].code, "not_a_state");
     assert!(
         errors[0].help.iter().any(|h| h.contains("Adams")),
         "{errors:?}"
     );
-    let errors = run(&mut other, "\nreload/system=nowhere\n").expect_err("no file");
+    let errors = mistakes_of(&mut other, &script("\nreload/system=nowhere\n"));
     assert_eq!(errors[0].code, "cannot_open");
-    let errors = run(&mut other, "\nsave\n").expect_err("no name");
+    let errors = mistakes_of(&mut other, &script("\nsave\n"));
     assert_eq!(errors[0].code, "missing_argument");
 }
 
 #[test]
 fn damaged_states_are_refused() {
-    let mut s = session(Model::from_text(MODEL).unwrap());
+    let mut s = session(whole(MODEL));
     go(&mut s, 0.2);
     let text = s.save();
     for (from, to) in [

@@ -5,7 +5,7 @@
 #[path = "common/running.rs"]
 mod running;
 
-use running::{Analysis, Session, go, last, model, options};
+use running::{Analysis, Session, go, last, session_by};
 
 const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
 
@@ -17,12 +17,12 @@ fn blocks(masses: &[f64], speeds: &[f64], forces: &str, method: &str) -> Session
             "PART/{k}, MASS={m}, CM={k}, IP=1,1,1, VZ={v}\nMARKER/{k}, PART={k}\nJOINT/{k}, TRANSLATIONAL, I={k}, J=1\n"
         );
     }
-    let mut options = options(
+    session_by(
+        &(text + forces),
         &["DZ(2,1)", "VZ(2,1)", "DZ(3,1)", "VZ(3,1)"][..2 * masses.len()],
+        method,
         1e-7,
-    );
-    options.method = Some(method.into());
-    Session::new(model(&(text + forces)), "test", options)
+    )
 }
 
 /// The error per step is 1e-7, of BDF and its like one of several hundred.
@@ -108,9 +108,7 @@ fn a_wheel_has_turned_as_far_as_it_did_before_it_came_to_rest_within_a_step() {
     ] {
         for method in METHODS {
             let text = format!("{wheel}SFORCE/1, ROTATION, I=2, J=1, FUNCTION={function}\n");
-            let mut options = options(&["AZ(2,1)"], 1e-7);
-            options.method = Some(method.into());
-            let mut s = Session::new(model(&text), "test", options);
+            let mut s = session_by(&text, &["AZ(2,1)"], method, 1e-7);
             go(&mut s, Analysis::Dynamic, 20.0, 2);
             let got = last(&s, "AZ(2,1)");
             assert!(

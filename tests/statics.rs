@@ -1,10 +1,11 @@
 //! Equilibria against closed forms: rest by contact, chains, arches, springs; what is said when there is none.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
+#[path = "common/running.rs"]
+mod running;
+
 use cognate::results::Status;
+use running::{Analysis, GROUND, Session, begin, go, last, options, rest, try_to, whole};
 
 fn data(name: &str) -> String {
     let path = format!(
@@ -15,22 +16,7 @@ fn data(name: &str) -> String {
 }
 
 fn session(text: &str, columns: &[&str]) -> Session {
-    let model = Model::from_text(text).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
-}
-
-fn rest(session: &mut Session) -> Status {
-    session
-        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"))
-}
-
-fn last(session: &Session, column: &str) -> f64 {
-    *session.run.column(column).unwrap().last().unwrap()
+    begin(whole(text), "test", options(columns, 1e-6))
 }
 
 fn reference(name: &str) -> Vec<Vec<f64>> {
@@ -40,7 +26,18 @@ fn reference(name: &str) -> Vec<Vec<f64>> {
         .collect()
 }
 
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+fn stable(s: &Session) {
+    let found = &s.run.record.method;
+    assert!(found.ends_with("EQUILIBRIUM, stable"), "{found}");
+}
+
+/// Why a model finds no equilibrium.
+fn cannot_rest(text: &str) -> String {
+    let mut s = session(text, &[]);
+    let status = try_to(&mut s, Analysis::Static, 0.0, 1);
+    assert_eq!(status, Status::NoEquilibrium);
+    s.run.record.stop_reason
+}
 
 #[test]
 fn a_sphere_rests_as_deep_as_its_weight_presses_it() {
@@ -48,20 +45,11 @@ fn a_sphere_rests_as_deep_as_its_weight_presses_it() {
     for row in reference("static_sphere.csv") {
         let k = format!("{:E}", row[0]);
         let mut s = session(&text.replace("1.0E8,", &format!("{k},")), &["DZ(2,1)"]);
-        assert_eq!(
-            rest(&mut s),
-            Status::Completed,
-            "{}",
-            s.run.record.stop_reason
-        );
+        rest(&mut s);
         let z = last(&s, "DZ(2,1)");
         println!("k {k}: {z} in {:?}", s.run.record.counts);
         assert!((z - row[1]).abs() < 1e-12, "{z} against {}", row[1]);
-        assert!(
-            s.run.record.method.contains("stable"),
-            "{}",
-            s.run.record.method
-        );
+        stable(&s);
     }
 }
 
@@ -78,12 +66,7 @@ fn a_sphere_falls_onto_the_plane_it_did_not_touch() {
     );
     let text = text.replace("PART/2,", "PART/2, QG=0,0,3,");
     let mut s = session(&text, &["DZ(2,1)"]);
-    assert_eq!(
-        rest(&mut s),
-        Status::Completed,
-        "{}",
-        s.run.record.stop_reason
-    );
+    rest(&mut s);
     println!("{:?}", s.run.record.counts);
     assert!((last(&s, "DZ(2,1)") - 4.997_872_941_970_745e-2).abs() < 1e-12);
 }
@@ -98,12 +81,7 @@ fn a_chain_hangs_as_it_should_from_a_start_like_a_v() {
         .collect();
     let names: Vec<&str> = columns.iter().map(String::as_str).collect();
     let mut s = session(&data("static_hanging_chain.adm"), &names);
-    assert_eq!(
-        rest(&mut s),
-        Status::Completed,
-        "{}",
-        s.run.record.stop_reason
-    );
+    rest(&mut s);
     println!("{:?} {}", s.run.record.counts, s.run.record.method);
     for row in &reference("static_hanging_chain.csv")[1..20] {
         let m = 22 + 2 * row[0] as usize;
@@ -142,12 +120,7 @@ fn an_arch_holds_a_light_load_and_snaps_through_under_a_heavy_one() {
     };
     for load in [0.5, 20.0] {
         let mut s = session(&arch(load), &["DY(2,1)", "DX(2,1)"]);
-        assert_eq!(
-            rest(&mut s),
-            Status::Completed,
-            "{}",
-            s.run.record.stop_reason
-        );
+        rest(&mut s);
         let y = last(&s, "DY(2,1)");
         println!(
             "{load}: y = {y} {} {:?}",
@@ -156,7 +129,7 @@ fn an_arch_holds_a_light_load_and_snaps_through_under_a_heavy_one() {
         assert!((balance(y) - load).abs() < 1e-9, "{} at {y}", balance(y));
         assert!(last(&s, "DX(2,1)").abs() < 1e-9);
         assert_eq!(y > 0.0, load < 1.0);
-        assert!(s.run.record.method.contains("EQUILIBRIUM, stable"));
+        stable(&s);
     }
 }
 
@@ -174,22 +147,17 @@ fn a_pendulum_comes_to_hang_and_its_joint_carries_its_weight() {
             &pendulum(angle),
             &["DX(2,1)", "JOINT(1,0,3,0)", "JOINT(1,0,8,0)"],
         );
-        assert_eq!(
-            rest(&mut s),
-            Status::Completed,
-            "{}",
-            s.run.record.stop_reason
-        );
+        rest(&mut s);
         assert!(last(&s, "DX(2,1)").abs() < 1e-12);
         assert!((last(&s, "JOINT(1,0,3,0)") - 2.0 * 9.81).abs() < 1e-12);
-        assert!(s.run.record.method.ends_with("stable"));
+        stable(&s);
     }
 }
 
 #[test]
 fn a_pendulum_that_stands_on_its_head_stays_and_is_said_to_be_unstable() {
     let mut s = session(&pendulum("180D"), &["DY(2,1)"]);
-    assert_eq!(rest(&mut s), Status::Completed);
+    rest(&mut s);
     assert!((last(&s, "DY(2,1)") - 1.5).abs() < 1e-12);
     assert!(
         s.run.record.method.contains("unstable in 1 direction"),
@@ -205,10 +173,7 @@ fn what_falls_forever_is_named_with_its_direction() {
         "{GROUND}PART/2, MASS=2, CM=2, IP=1,1,1\nMARKER/2, PART=2\nACCGRAV/ZGRAV=-9.81\nEND\n"
     )
     .replace("ZGRAV", "KGRAV");
-    let mut s = session(&text, &[]);
-    assert_eq!(rest(&mut s), Status::NoEquilibrium);
-    let why = &s.run.record.stop_reason;
-    println!("{why}");
+    let why = cannot_rest(&text);
     assert!(
         why.contains("force of 1.962")
             && why.contains("PART/2")
@@ -220,11 +185,8 @@ fn what_falls_forever_is_named_with_its_direction() {
 #[test]
 fn after_rest_a_simulation_begins_there() {
     let mut s = session(&pendulum("20D"), &["DX(2,1)", "VX(2,1)"]);
-    assert_eq!(rest(&mut s), Status::Completed);
-    let status = s
-        .simulate(Analysis::Dynamic, 1.0, 10, &mut Unwatched)
-        .unwrap();
-    assert_eq!(status, Status::Completed);
+    rest(&mut s);
+    go(&mut s, Analysis::Dynamic, 1.0, 10);
     let x = s.run.column("DX(2,1)").unwrap();
     assert!(x[1..].iter().all(|x| x.abs() < 1e-12), "{x:?}");
     let kinds: Vec<&str> = s.run.sequences.iter().map(|q| q.name.as_str()).collect();
@@ -245,17 +207,12 @@ fn differential_equations_come_to_rest_or_are_held() {
         )
     };
     let mut s = session(&with(""), &["DX(2,1)", "DIF(1)"]);
-    assert_eq!(
-        rest(&mut s),
-        Status::Completed,
-        "{}",
-        s.run.record.stop_reason
-    );
+    rest(&mut s);
     // x = 2 y, 1 = 4 x − y
     assert!((last(&s, "DX(2,1)") - 2.0 / 7.0).abs() < 1e-12);
     assert!((last(&s, "DIF(1)") - 1.0 / 7.0).abs() < 1e-12);
     let mut s = session(&with(", STATIC_HOLD"), &["DX(2,1)", "DIF(1)"]);
-    assert_eq!(rest(&mut s), Status::Completed);
+    rest(&mut s);
     assert_eq!(last(&s, "DIF(1)"), 0.5);
     assert!((last(&s, "DX(2,1)") - 1.5 / 4.0).abs() < 1e-12);
 }
@@ -273,10 +230,7 @@ fn a_sequence_of_equilibria_follows_a_motion() {
         "MOTION/1, JOINT=2, TRANSLATION, FUNCTION=TIME\nACCGRAV",
     );
     let mut s = session(&text, &["DX(2,1)", "DY(2,1)", "VX(2,1)"]);
-    let status = s
-        .simulate(Analysis::Static, 2.0, 4, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    go(&mut s, Analysis::Static, 2.0, 4);
     let x = s.run.column("DX(2,1)").unwrap();
     for (a, b) in x[1..].iter().zip([0.5, 1.0, 1.5, 2.0]) {
         assert!((a - b).abs() < 1e-12, "{x:?}");
@@ -298,12 +252,7 @@ fn a_force_made_by_a_state_holds_a_load() {
                 DIFF/1, IC=0, FUNCTION=IF(MODE-5: 0, -DIF(1)-1E7*(DZ(2,1)-0.2), 0)\n\
                 SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=DIF(1)\nEND\n";
     let mut s = session(text, &["DZ(2,1)", "DIF(1)"]);
-    assert_eq!(
-        rest(&mut s),
-        Status::Completed,
-        "{}",
-        s.run.record.stop_reason
-    );
+    rest(&mut s);
     println!("{:?}", s.run.record.counts);
     // a weight of 9810 N on 1e7 N/m; forces are balanced to 1e-13 of those there were
     assert!((last(&s, "DZ(2,1)") - (0.2 - 9.81e-4)).abs() < 1e-10);
@@ -340,12 +289,7 @@ fn a_rotor_of_stiff_arms_swings_down() {
             .unwrap();
         }
         let mut s = session(&(text + "END\n"), &["DZ(50)", "DY(50)"]);
-        assert_eq!(
-            rest(&mut s),
-            Status::Completed,
-            "{}",
-            s.run.record.stop_reason
-        );
+        rest(&mut s);
         let record = &s.run.record;
         println!("{} {:?}", record.method, record.counts);
         assert!(record.method.contains("stable"), "{}", record.method);
@@ -363,22 +307,13 @@ fn what_integrates_a_velocity_winds_up_until_it_holds_the_load() {
          DIFF/1, IC=0.25, FUNCTION=VZ(2,1)\nSFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=-1E4*DIF(1)\nEND\n"
     );
     let mut s = session(&text, &["DZ(2,1)", "DIF(1)"]);
-    assert_eq!(
-        rest(&mut s),
-        Status::Completed,
-        "{}",
-        s.run.record.stop_reason
-    );
+    rest(&mut s);
     println!("{} {:?}", s.run.record.method, s.run.record.counts);
     let wound = -2.0 * 9.81 / 1e4;
     assert!((last(&s, "DIF(1)") - wound).abs() < 1e-12);
     // it sinks by as much as it winds up
     assert!((last(&s, "DZ(2,1)") - (3.0 + wound - 0.25)).abs() < 1e-9);
-    assert!(
-        s.run.record.method.ends_with("stable"),
-        "{}",
-        s.run.record.method
-    );
+    stable(&s);
 }
 
 #[test]
@@ -390,10 +325,7 @@ fn of_what_moves_the_load_that_nothing_carries_is_named() {
          PART/3, MASS=10, CM=3, IP=1,1,1, QG=5,0,0\nMARKER/3, PART=3\nPART/4, MASS=1, CM=4, IP=1,1,1, QG=5,1,0\nMARKER/4, PART=4\n\
          MARKER/5, PART=4, QP=0,-1,0\nBUSHING/1, I=5, J=3, K=1E5,1E5,1E5, KT=1E3,1E3,1E3\nACCGRAV/KGRAV=-9.81\nEND\n"
     );
-    let mut s = session(&text, &[]);
-    assert_eq!(rest(&mut s), Status::NoEquilibrium);
-    let why = &s.run.record.stop_reason;
-    println!("{why}");
+    let why = cannot_rest(&text);
     assert!(
         why.contains("force of 9.81")
             && why.contains("on PART/3")

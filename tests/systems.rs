@@ -2,58 +2,32 @@
 //! act where and when they should; values of the past; closures of the user's.
 #![cfg(feature = "solver")]
 
-use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::dataset::command::Script;
-use cognate::model::Model;
-use cognate::results::Status;
+#[path = "common/running.rs"]
+mod running;
 
-const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
+use cognate::dataset::command::Script;
+use cognate::results::Status;
+use running::{
+    Analysis, GROUND, Options, Session, begin, last, mistakes, obeys, options_by, rest, session_by,
+    try_to, values, whole,
+};
+
 /// A unit mass that may move along x; MARKER/2 on it, MARKER/3 on ground.
 const BODY: &str = "PART/2, MASS=1, CM=2\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=1, REULER=90D,90D,0\n\
                     JOINT/1, TRANSLATIONAL, I=2, J=3\n";
 
 fn session(text: &str, columns: &[&str], method: &str) -> Session {
-    let model =
-        Model::from_text(&format!("{GROUND}{BODY}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        method: Some(method.to_string()),
-        error: Some(1e-10),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
+    session_by(&format!("{BODY}{text}"), columns, method, 1e-10)
 }
 
 fn go(s: &mut Session, end: f64, steps: usize) {
-    let status = s
-        .simulate(Analysis::Dynamic, end, steps, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-}
-
-fn rest(s: &mut Session) {
-    let status = s
-        .simulate(Analysis::Static, 0.0, 1, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-}
-
-fn values<'s>(s: &'s Session, column: &str) -> &'s [f64] {
-    s.run.column(column).unwrap()
-}
-
-fn last(s: &Session, column: &str) -> f64 {
-    *values(s, column).last().unwrap()
+    running::go(s, Analysis::Dynamic, end, steps);
 }
 
 /// The refusal of a model.
 fn refused(text: &str) -> String {
     let mut s = session(text, &[], "AUTO");
-    let errors = s
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("a mistake");
+    let errors = mistakes(&mut s, Analysis::Dynamic);
     errors.iter().map(|e| format!("{e}\n")).collect()
 }
 
@@ -268,16 +242,13 @@ fn commands_go_on_after_a_return_and_end_after_a_halt() {
     for (action, rows) in [("RETURN", 3), ("HALT", 2)] {
         let text =
             format!("{GROUND}{BODY}SENSOR/1, FUNCTION=TIME\\, VALUE=0.5, GE, {action}\nEND\n");
-        let model = Model::from_text(&text).unwrap();
+        let model = whole(&text);
         let script = Script::from_text(
             "\nFILE/MODEL=x\nSIMULATE/DYNAMIC, END=1, STEPS=1\nDEACTIVATE/SENSOR, ID=1\nSIMULATE/DYNAMIC, END=3, STEPS=1\nSTOP\n",
         )
         .unwrap_or_else(|e| panic!("{e}"));
-        let mut s = Session::new(model, "test", Options::default());
-        let steps = script.steps;
-        let status =
-            obey(&mut s, &steps, |_, _| (), &mut Unwatched).unwrap_or_else(|e| panic!("{e:?}"));
-        assert_eq!(status, Status::Completed);
+        let mut s = begin(model, "test", Options::default());
+        obeys(&mut s, &script);
         assert_eq!(
             values(&s, "time").len(),
             rows,
@@ -415,9 +386,7 @@ fn without_its_closure_user_is_refused_or_zero_as_asked() {
     );
     let mut s = session(text, &["DZ(2,3,3)", "ARYVAL(12,1)"], "AUTO");
     s.register("100", &["ACCZ(2,3,3)"], |_, _| ());
-    let said = s
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("GSE/1 is missing");
+    let said = mistakes(&mut s, Analysis::Dynamic);
     assert!(said.len() == 1, "{said:?}");
     let model = s.model.clone();
     let options = Options {
@@ -425,7 +394,7 @@ fn without_its_closure_user_is_refused_or_zero_as_asked() {
         columns: vec!["DZ(2,3,3)".into(), "ARYVAL(12,1)".into()],
         ..Options::default()
     };
-    let mut s = Session::new(model, "test", options);
+    let mut s = begin(model, "test", options);
     go(&mut s, 1.0, 1);
     assert_eq!(
         (last(&s, "DZ(2,3,3)"), last(&s, "ARYVAL(12,1)")),
@@ -438,9 +407,7 @@ fn a_closure_that_reads_its_own_result_is_refused() {
     let text = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=3, FUNCTION=USER(100)\n";
     let mut s = session(text, &[], "AUTO");
     s.register("100", &["ACCZ(2,3,3)"], |_, out| out[0] = 1.0);
-    let said = s
-        .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-        .expect_err("a circle");
+    let said = mistakes(&mut s, Analysis::Dynamic);
     assert!(said[0].to_string().contains("SFORCE/1"), "{said:?}");
 }
 
@@ -466,14 +433,11 @@ const FREE: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2
                     MARKER/5, PART=1, FLOATING\nMARKER/7, PART=1, FLOATING\nMARKER/6, PART=1, REULER=90D,90D,0\n";
 
 fn free(text: &str, columns: &[&str], method: &str) -> Session {
-    let model = Model::from_text(&format!("{FREE}{text}END\n")).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        method: Some(method.to_string()),
-        error: Some(1e-10),
-        ..Options::default()
-    };
-    Session::new(model, "test", options)
+    let model = whole(&format!(
+        "{FREE}{text}END
+"
+    ));
+    begin(model, "test", options_by(columns, method, 1e-10))
 }
 
 #[test]
@@ -575,9 +539,7 @@ fn a_closure_that_yields_no_number_is_named() {
     s.register("9", &[], |call, out| {
         out[0] = if call.time < 0.5 { 1.0 } else { f64::NAN };
     });
-    let status = s
-        .simulate(Analysis::Dynamic, 1.0, 2, &mut Unwatched)
-        .expect("it begins");
+    let status = try_to(&mut s, Analysis::Dynamic, 1.0, 2);
     assert_ne!(status, Status::Completed);
     assert!((s.time() - 0.5).abs() < 1e-6, "{}", s.time());
     assert!(
@@ -738,12 +700,12 @@ fn a_sampled_controller_holds_a_body_and_a_model_without_unknowns_samples_too() 
         d = next;
     }
     assert!((last(&s, "VZ(2,3,3)") - v).abs() < 1e-9, "{v}");
-    let model = Model::from_text(&format!("{GROUND}{SAMPLED}END\n")).unwrap();
+    let model = whole(&format!("{GROUND}{SAMPLED}END\n"));
     let options = Options {
         columns: vec!["ARYVAL(14,1)".into()],
         ..Options::default()
     };
-    let mut s = Session::new(model, "test", options);
+    let mut s = begin(model, "test", options);
     s.register("1", &[], |call, out| {
         let [u, d] = call.values else { return };
         out.copy_from_slice(&[2.0 * d + 0.5 * u, 0.8 * d + u]);
@@ -758,9 +720,7 @@ fn sampling_without_a_period_is_refused() {
     let with_law = |text: &str| {
         let mut s = session(text, &[], "AUTO");
         s.register("1", &[], |_, _| ());
-        let errors = s
-            .simulate(Analysis::Dynamic, 1.0, 1, &mut Unwatched)
-            .expect_err("a mistake");
+        let errors = mistakes(&mut s, Analysis::Dynamic);
         errors.iter().map(|e| format!("{e}\n")).collect::<String>()
     };
     assert!(with_law(&text).contains("SAMPLE_PERIOD"));
@@ -781,7 +741,7 @@ fn numbers_that_commands_change_do_what_new_models_would() {
         let columns = ["DX(2,1,1)", "VX(2,1,1)", "DIF(1)", "VARVAL(2)"];
         let mut known = session(model, &columns, method);
         let script = Script::from_text(commands).unwrap();
-        obey(&mut known, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+        obeys(&mut known, &script);
         let mut new = session(model, &columns, method);
         for step in &script.steps {
             match &step.command {
@@ -806,8 +766,9 @@ fn a_motion_may_read_a_number_that_commands_change() {
     let mut s = session(model, &["DZ(2,3,3)"], "AUTO");
     let script = Script::from_text(
         "\nSIM/TRANSIENT, END=1, STEPS=2\nVAR/1, FUN=3\nSIM/TRANSIENT, END=2, STEPS=2\n",
-    );
-    obey(&mut s, &script.unwrap().steps, |_, _| (), &mut Unwatched).unwrap();
+    )
+    .unwrap();
+    obeys(&mut s, &script);
     let z = values(&s, "DZ(2,3,3)");
     assert!((z.last().unwrap() - 24.0).abs() < 1e-9, "{z:?}");
 }

@@ -1,11 +1,11 @@
 //! Models of spheres and boxes in contact, for us and for rapier, with their closed forms.
 #![allow(dead_code)] // each program uses its own part
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
-use cognate::model::Model;
-use cognate::results::Status;
+#[path = "running.rs"]
+mod running;
+
 use rapier3d_f64::prelude::*;
+pub use running::{Analysis, Session, last};
 
 pub const G: f64 = 9.81;
 /// rapier's step
@@ -25,24 +25,8 @@ pub fn solve(
     steps: u32,
     error: f64,
 ) -> Session {
-    let text =
-        format!("TEST\nPART/1, GROUND\nMARKER/1, PART=1\nGRAPHICS/1, PLANE, RM=1\n{text}END\n");
-    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
-    let options = Options {
-        columns: columns.iter().map(ToString::to_string).collect(),
-        error: Some(error),
-        ..Options::default()
-    };
-    let mut s = Session::new(model, "test", options);
-    let status = s
-        .simulate(analysis, end, steps as usize, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
-    s
-}
-
-pub fn last(s: &Session, column: &str) -> f64 {
-    *s.run.column(column).unwrap().last().unwrap()
+    let text = format!("GRAPHICS/1, PLANE, RM=1\n{text}");
+    running::run(&text, columns, analysis, (end, steps as usize), error)
 }
 
 /// A ball of dataset number `n` (part, marker, graphics), mass `m`, radius `r`.
@@ -179,4 +163,106 @@ pub fn cuboid(half: [f64; 3], at: [f64; 3], angle: f64) -> String {
         2.0 * b,
         2.0 * c
     )
+}
+
+/// A ball of mass 1 at height `h` above the plane, and a contact of stiffness `k` and restitution `e`.
+pub fn falling_ball(r: f64, h: f64, k: f64, e: f64) -> String {
+    ball(2, 1.0, r, [0.0, 0.0, r + h], "")
+        + &contact(1, 2, 1, k, damper(e, k, 1.0), "")
+        + &format!("ACCGRAV/KGRAV=-{G}\n")
+}
+
+/// Speed and height above the plane of the same ball as rapier has it at a time.
+pub fn rigid_falling_ball(r: f64, h: f64, e: f64, end: f64) -> [f64; 2] {
+    let mut world = world([0.0, 0.0, -G]);
+    ground(&mut world, e, 0.0);
+    let body = rigid_ball(&mut world, 1.0, r, [0.0, 0.0, r + h], [0.0; 3], e, 0.0);
+    steps(&mut world, end);
+    let body = &world.bodies[body];
+    [body.linvel().z, body.translation().z - r]
+}
+
+/// Speed with which a ball left the plane, from its speed and height now.
+pub fn left_with([v, z]: [f64; 2]) -> f64 {
+    (v * v + 2.0 * G * z).max(0.0).sqrt()
+}
+
+/// Columns of two balls that meet.
+pub const MEETING: [&str; 4] = ["VX(2)", "VY(2)", "VX(3)", "VY(3)"];
+
+/// Two balls on the x axis, `offset` apart across it, with masses, speeds along x, stiffness and restitution.
+pub struct Meeting {
+    pub r: f64,
+    pub from: f64,
+    pub to: [f64; 2],
+    pub masses: [f64; 2],
+    pub speeds: [f64; 2],
+    pub e: f64,
+}
+
+impl Meeting {
+    /// Velocities of both at time 0.5.
+    pub fn ours(&self, k: f64, error: f64) -> [f64; 4] {
+        let ([m1, m2], [u1, u2]) = (self.masses, self.speeds);
+        let text = ball(
+            2,
+            m1,
+            self.r,
+            [self.from, 0.0, 0.0],
+            &format!(", VX={u1:?}"),
+        ) + &ball(
+            3,
+            m2,
+            self.r,
+            [self.to[0], self.to[1], 0.0],
+            &format!(", VX={u2:?}"),
+        ) + &contact(1, 2, 3, k, damper(self.e, k, m1 * m2 / (m1 + m2)), "");
+        let s = run(&text, &MEETING, 0.5, 1, error);
+        MEETING.map(|c| last(&s, c))
+    }
+
+    /// The same by rapier.
+    pub fn rigid(&self) -> [f64; 4] {
+        let mut world = world([0.0; 3]);
+        let places = [[self.from, 0.0, 0.0], [self.to[0], self.to[1], 0.0]];
+        let [a, b] = [0, 1].map(|n| {
+            let v = [self.speeds[n], 0.0, 0.0];
+            rigid_ball(
+                &mut world,
+                self.masses[n],
+                self.r,
+                places[n],
+                v,
+                self.e,
+                0.0,
+            )
+        });
+        steps(&mut world, 0.5);
+        let (a, b) = (world.bodies[a].linvel(), world.bodies[b].linvel());
+        [a.x, a.y, b.x, b.y]
+    }
+}
+
+/// Two balls of which one is passed 0.12 aside of its centre, restitution 0.6.
+pub fn oblique() -> Meeting {
+    Meeting {
+        r: 0.1,
+        from: -0.3,
+        to: [0.0, 0.12],
+        masses: [1.0; 2],
+        speeds: [1.0, 0.0],
+        e: 0.6,
+    }
+}
+
+/// Their velocities afterwards: the moving one loses half of (1 + e) of its speed along the line of centres, whose slope where
+/// they touch is 0.12 / √(4r² − 0.12²).
+pub fn oblique_exact() -> [f64; 4] {
+    let (r, offset): (f64, f64) = (0.1, 0.12);
+    let n = [
+        (4.0 * r * r - offset * offset).sqrt() / (2.0 * r),
+        offset / (2.0 * r),
+    ];
+    let lost = 0.5 * (1.0 + 0.6) * n[0];
+    [1.0 - lost * n[0], -lost * n[1], lost * n[0], lost * n[1]]
 }

@@ -57,6 +57,39 @@ pub fn tree(bytes: &[u8], contents: Contents) -> Ast {
     }
 }
 
+/// A call with constant parameters, which is prepared for them, of a variable argument.
+pub fn prepared_call(bytes: &[u8]) -> Ast {
+    let mut maker = Maker {
+        bytes,
+        contents: Contents::all(Dialect::Function),
+        nodes: Vec::new(),
+    };
+    let (function, variables) = PREPARED[maker.pick(PREPARED.len())];
+    let root = maker.prepared(function, variables, |maker, _| {
+        let (time, offset) = (maker.push(Node::Constant(Constant::Time)), maker.number());
+        maker.push(Node::Binary(BinaryOp::Add, time, offset))
+    });
+    Ast {
+        dialect: Dialect::Function,
+        spans: vec![Span::default(); maker.nodes.len()],
+        nodes: maker.nodes,
+        root,
+    }
+}
+
+/// Functions that are prepared where all arguments after the first ones are constant, and how many come first.
+pub const PREPARED: [(Function, usize); 9] = [
+    (Function::Step, 1),
+    (Function::Step5, 1),
+    (Function::Havsin, 1),
+    (Function::Poly, 1),
+    (Function::Cheby, 1),
+    (Function::Forcos, 1),
+    (Function::Forsin, 1),
+    (Function::Impact, 2),
+    (Function::Bistop, 2),
+];
+
 /// Deepest tree; the reader takes 256 levels of parentheses, and a level here needs one or two of them.
 const DEEPEST: usize = 40;
 
@@ -215,6 +248,12 @@ impl Maker<'_> {
             })
             .collect();
         let function = known[self.pick(known.len())];
+        let prepared = PREPARED.iter().find(|p| p.0 == function);
+        if let Some(&(_, variables)) = prepared.filter(|_| self.pick(4) > 0) {
+            return self.prepared(function, variables, |maker, k| {
+                maker.argument(function, k, depth + 1)
+            });
+        }
         let (least, most) = Callee::Function(function).arity();
         let count = least + self.pick((most - least).min(4) + 1);
         let args = (0..count)
@@ -226,19 +265,47 @@ impl Maker<'_> {
         })
     }
 
+    /// A call whose arguments after the first ones are constant.
+    fn prepared(
+        &mut self,
+        function: Function,
+        variables: usize,
+        mut variable: impl FnMut(&mut Self, usize) -> NodeIx,
+    ) -> NodeIx {
+        let (least, most) = Callee::Function(function).arity();
+        let count = least + self.pick((most - least).min(4) + 1);
+        let args = (0..count)
+            .map(|k| match k < variables {
+                true => variable(self, k),
+                false => self.parameter(function, k),
+            })
+            .collect();
+        self.push(Node::Call {
+            callee: Callee::Function(function),
+            args,
+        })
+    }
+
+    /// A constant parameter, mostly one that the function has a value for.
+    fn parameter(&mut self, function: Function, k: usize) -> NodeIx {
+        let literal = match fitting(Callee::Function(function).argument_name(k)) {
+            [] => (self.pick(256) as f64 - 128.0) / 16.0,
+            some => some[self.pick(some.len())],
+        };
+        if literal >= 0.0 {
+            return self.literal(literal);
+        }
+        let size = self.literal(-literal);
+        self.push(Node::Negate(size))
+    }
+
     /// An argument that the function has a value for, mostly.
     fn argument(&mut self, function: Function, k: usize, depth: usize) -> NodeIx {
         let callee = Callee::Function(function);
         if callee.argument(k) != Kind::Number {
             return self.identifier(callee.argument(k));
         }
-        let fitting: &[f64] = match callee.argument_name(k) {
-            "x0" => &[0.0, 0.5, 1.0],
-            "x1" => &[1.5, 2.0, 3.25],
-            "x2" => &[4.0, 5.5],
-            "k" | "e" | "cmax" | "d" | "dx" => &[1.0, 1.5, 2.0, 0.25, 100.0],
-            _ => &[],
-        };
+        let fitting = fitting(callee.argument_name(k));
         match fitting.len() {
             0 => self.expression(depth),
             n if self.pick(8) > 0 => {
@@ -247,6 +314,17 @@ impl Maker<'_> {
             }
             _ => self.expression(depth),
         }
+    }
+}
+
+/// Values that suit an argument of this name, if it is one that not every number suits.
+fn fitting(name: &str) -> &'static [f64] {
+    match name {
+        "x0" => &[0.0, 0.5, 1.0],
+        "x1" => &[1.5, 2.0, 3.25],
+        "x2" => &[4.0, 5.5],
+        "k" | "e" | "cmax" | "d" | "dx" => &[1.0, 1.5, 2.0, 0.25, 100.0],
+        _ => &[],
     }
 }
 
@@ -362,20 +440,25 @@ pub fn laws_of_trees(bytes: &[u8], dialect: Dialect, time: f64) {
         "{printable}"
     );
 
-    let ast = tree(bytes, Contents::all(dialect));
+    program_is_the_walker(&tree(bytes, Contents::all(dialect)), time);
+}
+
+/// Where the walker finds a value of a tree, the program gives it to the bit, over numbers and in every lane; what is a mistake
+/// whatever the inputs are is one for these.
+pub fn program_is_the_walker(ast: &Ast, time: f64) {
     let host = |time| Anything {
         time,
         bindings: bindings(),
     };
     let times = [time, 0.0, -time, 1.0 + time];
-    let walked = walk::value(&ast, &host(time));
-    if walk::check_constants(&ast).is_err() {
+    let walked = walk::value(ast, &host(time));
+    if walk::check_constants(ast).is_err() {
         assert!(
             walked.is_err(),
             "{ast}: a constant mistake, and yet {walked:?}"
         );
     }
-    let program = match compile(&[&ast], &bindings()) {
+    let program = match compile(&[ast], &bindings()) {
         Ok(program) => program,
         Err(e) => return assert!(walked.is_err(), "{ast}: {walked:?}, and yet {e}"),
     };

@@ -3,10 +3,8 @@
 //! A table says 6 or 7 digits at 501 times. The bound of a quantity is relative to the largest magnitude in its table: 5e-6 where the
 //! table is that good; the Adams runs with looser control have what an independent integration found between it and them.
 
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
+use super::running::{Analysis, Options, begin, go};
 use cognate::model::{Formula, Model};
-use cognate::results::Status;
 use std::path::{Path, PathBuf};
 
 /// Ending of a table's file name, and the expressions of its columns; F and T are components of the reaction.
@@ -83,16 +81,8 @@ fn compare(model: Model, tables: &Path, reaction: Reaction, bounds: Bounds) {
         ..Options::default()
     };
     let case = tables.file_name().unwrap().to_string_lossy().into_owned();
-    let mut session = Session::new(model, &case, options);
-    let status = session
-        .simulate(Analysis::Dynamic, 5.0, 500, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{case}: {e:?}"));
-    assert_eq!(
-        status,
-        Status::Completed,
-        "{case}: {}",
-        session.run.record.stop_reason
-    );
+    let mut session = begin(model, &case, options);
+    go(&mut session, Analysis::Dynamic, 5.0, 500);
     let mut line = format!("{case:24}");
     let mut wrong = Vec::new();
     for (quantity, names) in TABLES {

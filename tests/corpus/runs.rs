@@ -1,12 +1,10 @@
 //! Whole models of other people, run and compared with what Adams computed for them: rest and motion, free runs, replays of recorded inputs;
 //! and models that need programs which are not there, with what these would compute taken as zero.
 
-use cognate::analysis::session::script::obey;
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
+use super::running::{Analysis, Options, Session, begin, go, obeys};
 use cognate::dataset::command::{Command, Script, SimulationKind};
 use cognate::model::{Model, Orientation};
-use cognate::results::{self, Run, Status};
+use cognate::results::{self, Run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -30,15 +28,8 @@ fn options(error: f64) -> Options {
 pub fn obeyed(model: &Path, script: &Script, options: Options) -> Session {
     let name = model.file_stem().unwrap().to_string_lossy().into_owned();
     let model = Model::read(model).unwrap_or_else(|e| panic!("{e}"));
-    let mut session = Session::new(model, &name, options);
-    let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{name}: {}", e[0]));
-    assert_eq!(
-        status,
-        Status::Completed,
-        "{name}: {}",
-        session.run.record.stop_reason
-    );
+    let mut session = begin(model, &name, options);
+    obeys(&mut session, &script);
     session
 }
 
@@ -152,11 +143,8 @@ fn a_pendulum_comes_to_rest_and_stays_there_as_in_adams() {
 fn a_cart_with_a_pendulum_moves_by_itself_as_in_adams() {
     let Some(root) = corpus() else { return };
     let file = root.join("yriyazi__Adams_Simulink-Reverse_Pendulum/validation/Matlab.adm");
-    let mut session = Session::new(Model::read(&file).unwrap(), "cart", options(1e-9));
-    let status = session
-        .simulate(Analysis::Dynamic, 10.0, 2000, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(status, Status::Completed);
+    let mut session = begin(Model::read(&file).unwrap(), "cart", options(1e-9));
+    go(&mut session, Analysis::Dynamic, 10.0, 2000);
     let theirs = results::read(&file.with_extension("res")).unwrap();
     let (place, turn, rows) = apart(&session.run, &theirs);
     println!("cart and pendulum: {place:.2e} mm, {turn:.2e} over {rows} rows");
@@ -227,10 +215,8 @@ fn at_the_start(model: Model, columns: &[&str], full: bool) -> (Session, Vec<f64
         columns: columns.iter().map(ToString::to_string).collect(),
         ..Options::default()
     };
-    let mut session = Session::new(model, "start", options);
-    session
-        .simulate(Analysis::InitialConditions, 0.0, 1, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{}", e[0]));
+    let mut session = begin(model, "start", options);
+    go(&mut session, Analysis::InitialConditions, 0.0, 1);
     let last = |c: &&str| *session.run.column(c).unwrap().last().unwrap();
     let values = columns.iter().map(last).collect();
     (session, values)
@@ -581,16 +567,13 @@ fn models_of_many_people_run() {
             zero_user: true,
             ..options(1e-6)
         };
-        let mut session = Session::new(model, "run", options);
-        let status = session
-            .simulate(Analysis::Transient, end, 5, &mut Unwatched)
-            .unwrap_or_else(|e| panic!("{file}: {}", e[0]));
+        let mut session = begin(model, file, options);
+        go(&mut session, Analysis::Transient, end, 5);
         let record = &session.run.record;
         println!(
             "{file}: freedom {}, {} steps",
             record.freedom, record.counts.steps
         );
-        assert_eq!(status, Status::Completed, "{file}: {}", record.stop_reason);
         assert!(
             freedom.is_none_or(|f| f == record.freedom),
             "{file}: {}",
@@ -624,11 +607,8 @@ fn models_that_lack_something_stand_without_it() {
             skip: [cognate::model::ElementKind::Contact].into(),
             ..Options::default()
         };
-        let mut session = Session::new(model, "run", options);
-        let status = session
-            .simulate(Analysis::InitialConditions, 0.0, 1, &mut Unwatched)
-            .unwrap_or_else(|e| panic!("{file}: {}", e[0]));
-        assert_eq!(status, Status::Completed, "{file}");
+        let mut session = begin(model, file, options);
+        go(&mut session, Analysis::InitialConditions, 0.0, 1);
         let warnings = &session.run.record.warned();
         for said in [gone, reader] {
             assert!(warnings.iter().any(|w| w.contains(said)), "{file}: {said}");

@@ -1,11 +1,10 @@
 //! Models whose contacts are between solids of a CAD kernel: without these contacts they run, and do what mechanics says of the first instants.
 
+use super::running::{Analysis, Options, Session, begin, go};
 use super::runs::{apart, corpus, obeyed};
-use cognate::analysis::session::{Analysis, Options, Session};
-use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::{Command, Script};
 use cognate::model::Model;
-use cognate::results::{self, Status};
+use cognate::results;
 use std::path::PathBuf;
 
 fn options(error: f64, columns: Vec<String>) -> Options {
@@ -21,12 +20,9 @@ fn options(error: f64, columns: Vec<String>) -> Options {
 /// A model that runs for a while, with the time that took in bounds.
 fn run(path: &PathBuf, columns: Vec<String>, end: f64) -> Session {
     let model = Model::read(path).unwrap_or_else(|e| panic!("{e}"));
-    let mut s = Session::new(model, "skipped", options(1e-9, columns));
+    let mut s = begin(model, "skipped", options(1e-9, columns));
     let clock = std::time::Instant::now();
-    let status = s
-        .simulate(Analysis::Dynamic, end, 10, &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{}: {}", path.display(), e[0]));
-    assert_eq!(status, Status::Completed, "{}", s.run.record.stop_reason);
+    go(&mut s, Analysis::Dynamic, end, 10);
     // unoptimized, beside other tests; it takes a second
     assert!(clock.elapsed().as_secs() < 60, "{:?}", clock.elapsed());
     let said = |w: &&String| {
