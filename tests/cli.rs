@@ -580,6 +580,7 @@ fn a_limit_of_steps_ends_with_its_code_and_keeps_what_there_is() {
         "a pendulum\nPART/1, GROUND\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/1, PART=1\nMARKER/2, PART=2, QP=1,0,0\nMARKER/3, PART=2\n\
          JOINT/1, REVOLUTE, I=3, J=1\nACCGRAV/JGRAV=-9.81\nEND\n",
     );
+    let dir = adm.with_file_name("out");
     for method in ["DOP853", "RADAU5", "BDF", "HHT", "AUTO"] {
         let ran = |limit: &str| {
             let args = [
@@ -591,7 +592,14 @@ fn a_limit_of_steps_ends_with_its_code_and_keeps_what_there_is() {
                 "100",
                 "--json",
             ];
-            let more = ["--method", method, "--max-steps", limit];
+            let more = [
+                "--method",
+                method,
+                "--max-steps",
+                limit,
+                "--out",
+                path(&dir),
+            ];
             let done = cognate(&[&args[..], &more[..]].concat());
             let record: serde_json::Value = serde_json::from_str(&done.out).unwrap_or_default();
             (done, record)

@@ -426,6 +426,10 @@ impl Germ {
         if !self.is_defined() || self.lead() < -SAME_EXPONENT {
             return Self::undefined();
         }
+        // rounding so large leaves the integer unknown
+        if SIGNIFICANT_RATIO * self.constant_term().1 >= 0.5 {
+            return Self::undefined();
+        }
         let value = match self.whole() {
             (c, None) => of(c),
             (n, Some(sign)) => beside(n, sign),

@@ -15,7 +15,7 @@ use cognate::results::Status;
 /// The beginning of every model that is given as a few statements.
 pub const GROUND: &str = "TEST\nPART/1, GROUND\nMARKER/1, PART=1\n";
 
-/// Steps that one integration of a test may try. The longest run of all tests tries a third of it.
+/// Steps that one integration of a test may try. The longest of all tests tries 70 000.
 pub const MAX_STEPS: usize = 100_000;
 
 /// Begins a session as [`Session::new`] does, with a limit of steps.
