@@ -134,3 +134,65 @@ fn damaged_states_are_refused() {
         assert!(Saved::read(bytes).is_err());
     }
 }
+
+/// Two joints turned by MOTIONs that give accelerations, each with a velocity of its own at the start.
+const ACCELERATED: &str = "two accelerations
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, MASS=1, CM=20, IP=1,1,1
+MARKER/20, PART=2
+JOINT/1, REVOLUTE, I=20, J=1
+MOTION/1, JOINT=1, ROTATION, ACCELERATION, ICDISP=0.1, ICVEL=1, FUNCTION=2
+PART/3, MASS=1, CM=30, IP=1,1,1
+MARKER/30, PART=3
+JOINT/2, REVOLUTE, I=30, J=1
+MOTION/2, JOINT=2, ROTATION, ACCELERATION, ICDISP=0.2, ICVEL=-3, FUNCTION=0.5
+VARIABLE/1, FUNCTION=0
+END
+";
+
+#[test]
+fn each_acceleration_motion_goes_on_with_its_own_velocity() {
+    let columns = ["AZ(20,1)", "WZ(20,1)", "AZ(30,1)", "WZ(30,1)"];
+    let new = || {
+        begin(
+            whole(ACCELERATED),
+            "two accelerations",
+            options(&columns, 1e-9),
+        )
+    };
+    let arrived = |mut s: Session| {
+        go(&mut s, 1.0);
+        columns.map(|c| *s.run.column(c).unwrap().last().unwrap())
+    };
+    let at_once = arrived(new());
+    for (found, exact) in at_once.iter().zip([2.1, 3.0, -2.55, -2.5]) {
+        assert!((found - exact).abs() < 1e-6, "{at_once:?}");
+    }
+    // a change of the model between two simulations, then a state that is saved and read
+    let mut changed = new();
+    go(&mut changed, 0.5);
+    let text = changed.save();
+    changed.model.inactive.insert(ElementKind::Variable.id(1));
+    // the form of before, which did not name the velocities
+    let unnamed = text
+        .replace("\"MOTION/1 velocity\"", "\"\"")
+        .replace("\"MOTION/2 velocity\"", "\"\"");
+    assert_ne!(unnamed, text);
+    let reloaded = |text: &str| {
+        let mut other = new();
+        let saved = Saved::read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+        other.reload(saved).unwrap();
+        other
+    };
+    for (way, s) in [
+        ("changed", changed),
+        ("saved", reloaded(&text)),
+        ("saved before", reloaded(&unnamed)),
+    ] {
+        let in_two = arrived(s);
+        for (one, two) in at_once.iter().zip(in_two) {
+            assert!((one - two).abs() < 1e-6, "{way}: {at_once:?} {in_two:?}");
+        }
+    }
+}

@@ -6,7 +6,9 @@ use cognate::analysis::system::System;
 use cognate::model::Model;
 use cognate::numeric::{self, Method, Ode};
 use cognate::scene::configuration::Configuration;
-use cognate::scene::{Scene, build::Options};
+use cognate::scene::unknown::UnknownId;
+use cognate::scene::{Scene, Source, build::Options};
+use std::collections::BTreeSet;
 
 fn pendulum() -> Model {
     let text = "a pendulum\nPART/1, GROUND\nPART/2, MASS=1, CM=2, IP=1E-3,1E-3,1E-3\nMARKER/2, PART=2, QP=-1,0,0\n\
@@ -76,4 +78,47 @@ fn swing(end: f64) -> [f64; 2] {
         v += h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4);
     }
     [p, v]
+}
+
+#[test]
+fn every_unknown_has_an_identity_of_its_own_that_reads_back() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes");
+    let mut balls = 0;
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.extension().is_none_or(|e| e != "adm") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
+        for cut_all in [false, true] {
+            let options = Options {
+                cut_all,
+                mode: 4,
+                ..Options::default()
+            };
+            let scene = Scene::compile(&model, &options).unwrap();
+            let names = scene.unknown_names();
+            let file = path.display();
+            assert_eq!(names.len(), scene.layout.n_y(), "{file}");
+            let read: BTreeSet<UnknownId> = names.iter().map(|n| n.parse().unwrap()).collect();
+            assert_eq!(read.len(), names.len(), "{file}: {names:?}");
+            // each where its coordinate says
+            for c in &scene.coordinates {
+                let Source::Free { q, v } = c.source else {
+                    continue;
+                };
+                assert_eq!(scene.unknowns.v[v], UnknownId::Velocity(c.id), "{file}");
+                match scene.unknowns.q[q] {
+                    UnknownId::Position(id) => assert_eq!(id, c.id, "{file}"),
+                    UnknownId::EulerParameter { ball, number } => {
+                        assert_eq!((ball.element, number), (c.id.element, 0), "{file}");
+                        balls += 1;
+                    }
+                    other => panic!("{file}: {other} is no position"),
+                }
+            }
+        }
+    }
+    assert!(balls > 0);
 }

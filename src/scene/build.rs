@@ -8,6 +8,7 @@ use super::functions::Owner;
 use super::left_out::LeftOut;
 use super::loops::{self, Key};
 use super::sweep::Freedom;
+use super::unknown::UnknownId;
 use super::{ConstraintElement, Counted, Entry, LinkMotion, RowKind, Scene, Source};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::interpolation::Bindings;
@@ -183,6 +184,14 @@ pub(super) struct Builder<'m> {
 }
 
 impl<'m> Builder<'m> {
+    /// Adds a state; returns its place in x.
+    pub(super) fn add_state(&mut self, id: UnknownId) -> usize {
+        let place = self.scene.unknowns.x.len();
+        self.scene.unknowns.x.push(id);
+        self.scene.layout.n_x = place + 1;
+        place
+    }
+
     /// Gravity and arrays of numbers.
     fn data(&mut self) {
         self.scene.gravity = Vec3(self.model.gravity);
@@ -209,7 +218,9 @@ impl<'m> Builder<'m> {
         s.marker_of = c.marker_of.clone();
         s.span = span(s);
         s.initial_q = std::mem::take(&mut c.q);
-        (s.layout.n_q, s.layout.n_v) = (c.n_q, c.n_v);
+        s.unknowns.q = std::mem::take(&mut c.positions);
+        s.unknowns.v = std::mem::take(&mut c.velocities);
+        (s.layout.n_q, s.layout.n_v) = (s.unknowns.q.len(), s.unknowns.v.len());
         for (k, coordinate) in s.coordinates.iter().enumerate() {
             let (axis, sign, turn, in_ball) = match s.links[coordinate.link].motion {
                 LinkMotion::Slide { axis, sign, .. } => (axis, sign, false, false),
@@ -308,50 +319,4 @@ impl<'m> Builder<'m> {
         self.scene.counted = found.into_iter().collect();
         self.scene.layout.n_turns = self.scene.counted.len();
     }
-}
-
-/// The sides of a contact of curves; where there is one curve, it is called by the first.
-const SIDES: [&str; 2] = ["I", "J"];
-
-/// Places of the unknowns by name, for messages: the names of q, v and x.
-pub fn unknown_names(scene: &Scene) -> Vec<String> {
-    let mut all = vec![String::new(); scene.layout.n_y()];
-    let names = scene.layout.state_mut(&mut all);
-    for c in &scene.coordinates {
-        if let Source::Free { q, v } = c.source {
-            names.q[q] = c.name.clone();
-            names.v[v] = format!("rate of {}", c.name);
-        }
-    }
-    for link in &scene.links {
-        if let LinkMotion::Ball {
-            coordinate,
-            quaternion,
-        } = link.motion
-        {
-            for k in 0..4 {
-                names.q[quaternion + k] = format!(
-                    "{} (Euler parameter {k})",
-                    scene.coordinates[coordinate].name
-                );
-            }
-        }
-    }
-    for d in &scene.differentials {
-        if let Some(state) = d.state {
-            names.x[state].clone_from(&d.name);
-        }
-    }
-    for m in &scene.motions {
-        if let Some(s) = m.state {
-            names.x[s] = format!("{} displacement", ElementKind::Motion.id(m.id));
-        }
-    }
-    for cam in &scene.cams {
-        for (k, curve) in cam.curves.iter().enumerate() {
-            let name = format!("{} place on CURVE/{curve} of {}", cam.id, SIDES[k]);
-            names.x[cam.state + k] = name;
-        }
-    }
-    all
 }

@@ -11,6 +11,7 @@ use super::compile::Compiler;
 use super::configuration::{Configuration, Configured, ContactStart};
 use super::equations::Equations;
 use super::layout::Layout;
+use super::unknown::{Side, UnknownId};
 use super::{ConstraintElement, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
 use crate::model::{CurveSide, ElementId, ElementKind};
@@ -122,10 +123,15 @@ impl Builder<'_> {
             let marker = c.marker(side.start_marker.unwrap_or(side.rm), id);
             start.push(side.start.zip(marker).map(|(p, m)| (Vec3(p), m)));
         }
-        let n = contact.n_parameters();
-        let equations = ROWS[n - 1];
+        let equations = ROWS[contact.n_parameters() - 1];
         let state = self.scene.layout.n_x;
-        self.scene.layout.n_x += n;
+        for (side, data) in [Side::I, Side::J].into_iter().zip(sides) {
+            self.add_state(UnknownId::ContactPlace {
+                contact: id,
+                curve: data.curve,
+                side,
+            });
+        }
         let (cam, first) = (self.scene.cams.len(), self.scene.rows.len());
         for (k, side) in sides.iter().enumerate() {
             let floating = |m: &u32| self.model.markers.get(m).is_some_and(|m| m.floating);

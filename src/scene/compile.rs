@@ -1,6 +1,7 @@
 //! Model → Scene, in named passes: frames, ties, forest, links, rows, forces.
 
 use super::forest::{self, Candidate, Carried};
+use super::unknown::{CoordinateId, UnknownId, Variable};
 use super::{
     ConstraintElement, Coordinate, Link, LinkIx, LinkMotion, MarkerOnLink, PartOnLink, Row,
     RowKind, Source,
@@ -23,8 +24,10 @@ pub(super) struct Compiler<'m> {
     pub coordinates: Vec<Coordinate>,
     pub rows: Vec<Row>,
     pub constraints: Vec<ConstraintElement>,
-    pub n_q: usize,
-    pub n_v: usize,
+    /// identities of the positions of the forest   (n_q)
+    pub positions: Vec<UnknownId>,
+    /// identities of its velocities   (n_v)
+    pub velocities: Vec<UnknownId>,
     /// initial positions of the forest from the dataset's part frames   (n_q)
     pub q: Vec<f64>,
     /// driven joint freedoms: (joint, rotational) → index of the motion
@@ -89,8 +92,8 @@ impl<'m> Compiler<'m> {
             coordinates: Vec::new(),
             rows: Vec::new(),
             constraints: Vec::new(),
-            n_q: 0,
-            n_v: 0,
+            positions: Vec::new(),
+            velocities: Vec::new(),
             q: Vec::new(),
             driven: BTreeMap::new(),
             joint_coordinates: BTreeMap::new(),
@@ -335,7 +338,7 @@ impl<'m> Compiler<'m> {
             },
             Motion::Ball => LinkMotion::Ball {
                 coordinate,
-                quaternion: self.n_q,
+                quaternion: self.positions.len(),
             },
         }
     }
@@ -354,20 +357,18 @@ impl<'m> Compiler<'m> {
         let drive = (tie.joint.filter(|_| fixed_axis))
             .and_then(|id| self.driven.get(&(id, angular)).copied());
         let first = self.coordinates.len();
-        for f in 0..chain[k].freedoms() {
+        for variable in variables(chain, k) {
+            let id = CoordinateId {
+                element: tie.id,
+                variable,
+            };
             let source = match drive {
                 Some(motion) => Source::Driven(motion),
-                None => {
-                    self.n_v += 1;
-                    Source::Free {
-                        q: self.n_q,
-                        v: self.n_v - 1,
-                    }
-                }
+                None => self.add_velocity(id),
             };
             self.coordinates.push(Coordinate {
                 initial: (fitted.len() == 1).then(|| fitted[0]),
-                name: format!("{} {}", tie.id, variable_name(chain, k, f)),
+                id,
                 joint: tie.joint,
                 angular,
                 source,
@@ -375,10 +376,32 @@ impl<'m> Compiler<'m> {
             });
         }
         if drive.is_none() {
-            self.q.extend_from_slice(fitted);
-            self.n_q += fitted.len();
+            self.add_positions(first, fitted);
         }
         (first..self.coordinates.len()).collect()
+    }
+
+    /// Adds the velocity of a coordinate, whose position comes next; returns their places.
+    fn add_velocity(&mut self, id: CoordinateId) -> Source {
+        self.velocities.push(UnknownId::Velocity(id));
+        Source::Free {
+            q: self.positions.len(),
+            v: self.velocities.len() - 1,
+        }
+    }
+
+    /// Adds positions that begin with these values: that of a coordinate, the quaternion of a ball
+    /// whose first coordinate it is, or none.
+    fn add_positions(&mut self, coordinate: usize, values: &[f64]) {
+        self.q.extend_from_slice(values);
+        let Some(id) = self.coordinates.get(coordinate).map(|c| c.id) else {
+            return;
+        };
+        match values.len() {
+            1 => self.positions.push(UnknownId::Position(id)),
+            n => (self.positions)
+                .extend((0..n).map(|number| UnknownId::EulerParameter { ball: id, number })),
+        }
     }
 
     /// Links for a part that nothing carries: three slides along ground axes and a ball at its
@@ -394,22 +417,21 @@ impl<'m> Compiler<'m> {
         let start = self.parts[part].initial.compose(&centre);
         let mut parent = None;
         for axis in 0..3 {
-            let source = Source::Free {
-                q: self.n_q,
-                v: self.n_v,
+            let id = CoordinateId {
+                element: name,
+                variable: Variable::Place(axis),
             };
-            let name = format!("{name} {}", ["x", "y", "z"][axis]);
+            let source = self.add_velocity(id);
+            let coordinate = self.coordinates.len();
             self.coordinates.push(Coordinate {
                 initial: None,
-                name,
+                id,
                 joint: None,
                 angular: false,
                 source,
                 link: 0,
             });
-            self.q.push(start.position.0[axis]);
-            (self.n_q, self.n_v) = (self.n_q + 1, self.n_v + 1);
-            let coordinate = self.coordinates.len() - 1;
+            self.add_positions(coordinate, &[start.position.0[axis]]);
             let motion = LinkMotion::Slide {
                 axis,
                 sign: 1.0,
@@ -427,27 +449,25 @@ impl<'m> Compiler<'m> {
         }
         let first = self.coordinates.len();
         for axis in 0..3 {
-            let source = Source::Free {
-                q: self.n_q,
-                v: self.n_v,
+            let id = CoordinateId {
+                element: name,
+                variable: Variable::Rotation(axis),
             };
-            let name = format!("{name} rotation {}", ["x", "y", "z"][axis]);
+            let source = self.add_velocity(id);
             self.coordinates.push(Coordinate {
                 initial: None,
-                name,
+                id,
                 joint: None,
                 angular: true,
                 source,
                 link: 0,
             });
-            self.n_v += 1;
         }
         let motion = LinkMotion::Ball {
             coordinate: first,
-            quaternion: self.n_q,
+            quaternion: self.positions.len(),
         };
-        self.q.extend(rotation::to_quaternion(&start.rotation));
-        self.n_q += 4;
+        self.add_positions(first, &rotation::to_quaternion(&start.rotation));
         parent = self.push_link(
             parent,
             Frame::identity(),
@@ -574,31 +594,21 @@ fn steiner(mass: f64, d: Vec3<f64>) -> Mat3<f64> {
     }))
 }
 
-/// Returns the name of the variable that the `k`-th motion of a chain is.
-fn variable_name(chain: &[Motion], k: usize, freedom: usize) -> String {
-    let several = |turn: bool| {
-        chain
-            .iter()
-            .filter(|m| matches!(m, Motion::Turn(_)) == turn && m.freedoms() == 1)
-            .count()
-            > 1
+/// Returns what the coordinates of motion `k` of a chain measure.
+fn variables(chain: &[Motion], k: usize) -> Vec<Variable> {
+    let count = |motions: &[Motion], turn: bool| {
+        let alike = |m: &&Motion| matches!(m, Motion::Turn(_)) == turn && m.freedoms() == 1;
+        motions.iter().filter(alike).count()
     };
-    let axis = |k: usize| ["x", "y", "z"][k];
     match chain[k] {
-        Motion::Slide(a) if several(false) => format!("{} distance", axis(a)),
-        Motion::Slide(_) => "distance".into(),
-        Motion::Turn(_) if several(true) => {
-            format!(
-                "angle {}",
-                1 + chain[..k]
-                    .iter()
-                    .filter(|m| matches!(m, Motion::Turn(_)))
-                    .count()
-            )
+        Motion::Slide(axis) if count(chain, false) > 1 => vec![Variable::DistanceAlong(axis)],
+        Motion::Slide(_) => vec![Variable::Distance],
+        Motion::Turn(_) if count(chain, true) > 1 => {
+            vec![Variable::AngleNumber(1 + count(&chain[..k], true))]
         }
-        Motion::Turn(_) => "angle".into(),
-        Motion::Ball => format!("rotation {}", axis(freedom)),
-        Motion::QuarterX => String::new(),
+        Motion::Turn(_) => vec![Variable::Angle],
+        Motion::Ball => (0..3).map(Variable::Rotation).collect(),
+        Motion::QuarterX => Vec::new(),
     }
 }
 

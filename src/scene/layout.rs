@@ -26,8 +26,8 @@ pub struct Layout {
 }
 
 /// Blocks of the integrator's unknowns y, of their rates, or of anything else that stands in their
-/// order; `B` is a slice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// order; `B` is a slice or a list.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct State<B> {
     /// positions of the forest   (n_q)
     pub q: B,

@@ -98,7 +98,7 @@ fn unknown(scene: &Scene, key: Key, guesses: &dyn Fn(&Key) -> f64) -> Unknown {
     let name = match key {
         Key::Formula(f) => scene.formulas[f].name.clone(),
         Key::Measure(m, ids) => super::reads::input_name(Input::Measure(m, ids)),
-        Key::Rate(d) | Key::Value(d) => scene.differentials[d].name.clone(),
+        Key::Rate(d) | Key::Value(d) => scene.differentials[d].id.to_string(),
     };
     Unknown {
         key,

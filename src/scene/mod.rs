@@ -35,6 +35,7 @@ pub mod solve;
 pub mod sweep;
 mod systems;
 pub mod tunnelling;
+pub mod unknown;
 
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;
@@ -43,9 +44,10 @@ use crate::physics::coupler::Gauge;
 use crate::physics::row::Law;
 use crate::space::{Frame, Mat3, Vec3};
 use forces::ForceElement;
-use layout::Layout;
+use layout::{Layout, State};
 use std::collections::{BTreeMap, BTreeSet};
 use sweep::Freedom;
+use unknown::{CoordinateId, DifferentialId, UnknownId};
 
 /// Index of a link in [`Scene::links`]; `None` is ground.
 pub type LinkIx = Option<usize>;
@@ -102,8 +104,8 @@ pub enum LinkMotion {
 /// A velocity coordinate of the forest.
 #[derive(Clone, Debug)]
 pub struct Coordinate {
-    /// the element it belongs to, with what it measures: "JOINT/3 angle"
-    pub name: String,
+    /// the element it belongs to, with what it measures
+    pub id: CoordinateId,
     /// the joint it is a variable of; `None` for free parts
     pub joint: Option<u32>,
     /// whether it is an angle (else a length)
@@ -320,10 +322,8 @@ pub struct SceneMotion {
 /// A differential equation `ẋ = function`: of a DIFF, or a state of another element.
 #[derive(Clone, Debug)]
 pub struct SceneDifferential {
-    /// user's number of a DIFF, else 0
-    pub id: u32,
-    /// "DIFF/3", "LSE/1 state 2"
-    pub name: String,
+    /// whose equation it is
+    pub id: DifferentialId,
     /// place in x; `None`: implicit without DIF1, an algebraic equation
     pub state: Option<usize>,
     /// index in [`Scene::formulas`]: the rate, or what is zero
@@ -431,6 +431,8 @@ pub struct Scene {
     pub mode: f64,
     /// places of unknowns
     pub layout: Layout,
+    /// identities of the unknowns
+    pub unknowns: State<Vec<UnknownId>>,
     /// positions from the dataset, before assembly   (n_q)
     pub initial_q: Vec<f64>,
     /// what was left out
@@ -460,6 +462,19 @@ impl Scene {
             let p = &self.parts[p];
             p.initial.compose(&p.frame.inverse().compose(&m.frame))
         })
+    }
+
+    /// Returns the differential equation of a DIFF by the user's number: its index.
+    pub fn differential(&self, diff: u32) -> Option<usize> {
+        let id = DifferentialId::diff(diff);
+        self.differentials.iter().position(|d| d.id == id)
+    }
+
+    /// Returns the names of the integrator's unknowns in their order, for messages and results.
+    pub fn unknown_names(&self) -> Vec<String> {
+        let State { q, v, x } = &self.unknowns;
+        let all = q.iter().chain(v).chain(x);
+        all.map(ToString::to_string).collect()
     }
 
     /// Whether a motion drives an angle rather than a length.

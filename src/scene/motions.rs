@@ -5,6 +5,7 @@ use super::build::Builder;
 use super::compile::Compiler;
 use super::functions::Owner;
 use super::reads::{Allowed, offence};
+use super::unknown::{MotionState, UnknownId};
 use super::{ConstraintElement, Row, RowKind, SceneMotion, Source};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Driven, ElementId, ElementKind, Formula as ModelFormula, Joint, Level};
@@ -34,18 +35,23 @@ impl Builder<'_> {
                 text @ ModelFormula::Expression { .. } => self.formula(c, &owner, text),
             };
             let m = self.scene.motions.len();
-            let places = match motion.level {
-                Level::Displacement => 0,
-                Level::Velocity => 1,
-                Level::Acceleration => 2,
+            let states: &[MotionState] = match motion.level {
+                Level::Displacement => &[],
+                Level::Velocity => &[MotionState::Displacement],
+                Level::Acceleration => &[MotionState::Displacement, MotionState::Velocity],
             };
-            let state = (places > 0).then_some(self.scene.layout.n_x);
-            self.scene.layout.n_x += places;
+            let add = |&state| {
+                self.add_state(UnknownId::Motion {
+                    motion: element,
+                    state,
+                })
+            };
+            let places: Vec<usize> = states.iter().map(add).collect();
             self.scene.motions.push(SceneMotion {
                 id,
                 level: motion.level,
                 formula,
-                state,
+                state: places.first().copied(),
                 coordinate: None,
                 held: false,
             });

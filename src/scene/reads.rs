@@ -157,9 +157,7 @@ fn entry(scene: &Scene, input: Input) -> Option<Entry> {
 fn state(scene: &Scene, input: Input) -> Option<usize> {
     match (entry(scene, input), input) {
         (Some(Entry::State(d)), _) => Some(d),
-        (_, Input::Measure(Measure::Dif, [id, ..])) => {
-            scene.differentials.iter().position(|d| d.id == id)
-        }
+        (_, Input::Measure(Measure::Dif, [id, ..])) => scene.differential(id),
         _ => None,
     }
 }

@@ -17,6 +17,7 @@ use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, SceneSampler, SceneSensor};
 use super::functions::Owner;
+use super::unknown::{DifferentialId, UnknownId};
 use super::{Entry, Formula, SceneDifferential};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program, Sym};
@@ -37,6 +38,14 @@ struct Numbers {
     rows: usize,
     columns: usize,
     values: Vec<f64>,
+}
+
+/// Returns the identity of the `i`-th state of an element, counted from 0.
+fn state_of(element: ElementId, i: usize) -> DifferentialId {
+    DifferentialId {
+        element,
+        number: Some(i + 1),
+    }
 }
 
 /// A term of a sum: factor, array, entry.
@@ -63,8 +72,7 @@ impl Builder<'_> {
             let name = ElementKind::Diff.id(id);
             let formula = self.formula(c, &Owner::of(name, "FUNCTION"), &d.function);
             self.scene.differentials.push(SceneDifferential {
-                id,
-                name: name.to_string(),
+                id: DifferentialId::diff(id),
                 state: None,
                 formula,
                 initial: d.ic.map(|x| x.unwrap_or(0.0)),
@@ -76,8 +84,8 @@ impl Builder<'_> {
             let equation = &self.scene.differentials[d];
             let (id, formula) = (equation.id, equation.formula);
             if !equation.implicit || self.reads_rate(formula, id) {
-                self.scene.differentials[d].state = Some(self.scene.layout.n_x);
-                self.scene.layout.n_x += 1;
+                let state = self.add_state(UnknownId::Differential(id));
+                self.scene.differentials[d].state = Some(state);
             }
         }
         for (id, s) in model.active(ElementKind::Lse, &model.linear_systems) {
@@ -193,7 +201,7 @@ impl Builder<'_> {
     }
 
     /// Whether a formula reads DIF1 of an equation, itself or through VARIABLEs and other rates.
-    fn reads_rate(&self, formula: usize, id: u32) -> bool {
+    fn reads_rate(&self, formula: usize, id: DifferentialId) -> bool {
         let mut seen = BTreeSet::new();
         let mut next = vec![formula];
         while let Some(f) = next.pop() {
@@ -202,10 +210,12 @@ impl Builder<'_> {
             };
             for input in formula.program.inputs() {
                 match input {
-                    Input::Measure(Measure::Dif1, [d, ..]) if *d == id => return true,
+                    Input::Measure(Measure::Dif1, [d, ..]) if DifferentialId::diff(*d) == id => {
+                        return true;
+                    }
                     Input::Measure(Measure::Dif1, [d, ..]) => {
-                        let other = self.scene.differentials.iter().find(|x| x.id == *d);
-                        next.extend(other.map(|x| x.formula));
+                        let other = self.scene.differential(*d);
+                        next.extend(other.map(|d| self.scene.differentials[d].formula));
                     }
                     Input::Measure(Measure::Varval, [v, ..]) => {
                         next.extend(self.scene.variables.get(v));
@@ -217,18 +227,17 @@ impl Builder<'_> {
         false
     }
 
-    /// A state with its rate; its index among the differential equations.
-    fn state(&mut self, name: String, formula: usize, start: &Start) -> usize {
+    /// Adds a state with its rate; returns its index among the differential equations.
+    fn state(&mut self, id: DifferentialId, formula: usize, start: &Start) -> usize {
+        let state = self.add_state(UnknownId::Differential(id));
         self.scene.differentials.push(SceneDifferential {
-            id: 0,
-            name,
-            state: Some(self.scene.layout.n_x),
+            id,
+            state: Some(state),
             formula,
             initial: [start.value, 0.0],
             static_hold: start.hold,
             implicit: false,
         });
-        self.scene.layout.n_x += 1;
         self.scene.differentials.len() - 1
     }
 
@@ -363,13 +372,12 @@ impl Builder<'_> {
             let mut terms = row(&a, i, s.x);
             terms.extend(row(&b, i, u));
             let owner = Owner::of(id, format_args!("state {}", i + 1));
-            let name = owner.name.clone();
             let rate = self.sum(owner, &terms);
             let start = Start {
                 value,
                 hold: s.static_hold,
             };
-            states.push(Entry::State(self.state(name, rate, &start)));
+            states.push(Entry::State(self.state(state_of(id, i), rate, &start)));
         }
         self.filled(s.x, true, states)?;
         let mut values = Vec::with_capacity(outputs);
@@ -414,13 +422,12 @@ impl Builder<'_> {
                 terms
             };
             let owner = Owner::of(id, format_args!("state {}", i + 1));
-            let name = owner.name.clone();
             let rate = self.sum(owner, &terms);
             let start = Start {
                 value: 0.0,
                 hold: s.static_hold,
             };
-            states.push(Entry::State(self.state(name, rate, &start)));
+            states.push(Entry::State(self.state(state_of(id, i), rate, &start)));
         }
         self.filled(s.x, true, states)?;
         let through = at(n) / an;
@@ -482,7 +489,7 @@ impl Builder<'_> {
                 hold: s.static_hold,
             };
             states.push(Entry::State(self.state(
-                format!("{id} state {}", i + 1),
+                state_of(id, i),
                 results[i],
                 &start,
             )));

@@ -20,12 +20,12 @@ use crate::analysis::system::{System, complaints};
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::model::{ElementKind, Model};
+use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 use crate::scene::slopes::{self, Direction};
-use crate::scene::{Scene, build};
 use nalgebra::{DMatrix, DVector};
 
 /// The options of LINEAR.
@@ -258,7 +258,7 @@ pub fn linearize(
     let state = state_rows(system, &small, &slopes, wanted.no_damping);
     let outputs = slopes.rows(system.scene.layout.n_y(), watched.len());
     let a = state.columns(0, n_z).into_owned();
-    let names = build::unknown_names(&system.scene);
+    let names = system.scene.unknown_names();
     let modes = modes::modes(system, model, &small, &a, wanted)?;
     let named = |ids: &[u32]| {
         let name = |&id: &u32| ElementKind::Variable.id(id).to_string();
@@ -373,7 +373,7 @@ fn state_names(scene: &Scene, small: &Small, names: &[String]) -> Vec<String> {
     let mut own = vec![String::new(); l.n_v];
     for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
         if let Some(v) = f.v {
-            own[v].clone_from(&c.name);
+            own[v] = c.id.to_string();
         }
     }
     let position = |k: usize| {

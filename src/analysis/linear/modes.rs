@@ -8,7 +8,6 @@ use super::{Mode, PartShape, Small, Wanted};
 use crate::analysis::system::System;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
-use crate::scene::build;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use nalgebra::linalg::Schur;
@@ -50,7 +49,7 @@ pub(super) fn modes(
     values.sort_by(|x, y| x.norm().total_cmp(&y.norm()).then(x.re.total_cmp(&y.re)));
     let [first, last] = wanted.shapes.unwrap_or([1, usize::MAX]);
     let motion = PartMotion::of(system, model, small);
-    let names = build::unknown_names(&system.scene);
+    let names = system.scene.unknown_names();
     let mut found: Vec<Mode> = Vec::with_capacity(values.len());
     let mut vectors: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
     for (k, &value) in values.iter().enumerate() {

@@ -6,22 +6,22 @@ use crate::expr::measures::Measure;
 use crate::model::{ElementId, ElementKind, Model, Orientation};
 use crate::physics::kinematic::kinematic;
 use crate::scene::Scene;
-use crate::scene::build::unknown_names;
 use crate::scene::compile::orientation;
 use crate::scene::equations::Equations;
-use crate::scene::layout::Layout;
+use crate::scene::layout::{Layout, State};
+use crate::scene::unknown::UnknownId;
 use crate::space::{MarkerState, Vec3};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-/// State carried from one simulation to the next, by the names of the unknowns.
+/// State carried from one simulation to the next, by the identities of the unknowns.
 #[derive(Clone, Debug)]
 pub(super) struct Carried {
     /// time
     pub(super) t: f64,
     /// numbers of the last row
     pub(super) numbers: Vec<f64>,
-    /// names of the unknowns among them
-    pub(super) names: Vec<String>,
+    /// identities of the unknowns among them, in their order
+    pub(super) unknowns: Vec<UnknownId>,
     /// whether it came to rest: velocities are those of the dataset again, not zero
     pub(super) at_rest: bool,
     /// place and motion of every part (point masses: true), for when the unknowns are others
@@ -37,10 +37,10 @@ pub(super) struct Carried {
 }
 
 impl Carried {
-    /// Returns the values of the unknowns by their names.
-    pub(super) fn values(&self) -> BTreeMap<&str, f64> {
+    /// Returns the values of the unknowns.
+    pub(super) fn values(&self) -> BTreeMap<UnknownId, f64> {
         let numbers = self.numbers.iter().skip(Layout::STATE).copied();
-        self.names.iter().map(String::as_str).zip(numbers).collect()
+        self.unknowns.iter().copied().zip(numbers).collect()
     }
 }
 
@@ -50,13 +50,14 @@ impl Session {
         let at = Equations::new(system.configured(), &numbers);
         let parts = system.scene.parts.iter().enumerate();
         let parts = parts.map(|(k, p)| (p.id, at.part(k, false))).collect();
+        let unknowns = &system.scene.unknowns;
         self.carried = Some(Carried {
             t: numbers[Layout::TIME],
             turns: numbers[system.scene.layout.turns()].to_vec(),
             sensors: sensed(&system.scene, &numbers),
             samples: system.samples.held(&numbers),
             past: system.external.past(),
-            names: unknown_names(&system.scene),
+            unknowns: [&unknowns.q[..], &unknowns.v, &unknowns.x].concat(),
             at_rest: false,
             parts,
             numbers,
@@ -73,13 +74,13 @@ fn sensed(scene: &Scene, numbers: &[f64]) -> BTreeMap<u32, f64> {
 }
 
 /// Returns whether a scene has positions or velocities among its unknowns that the last state does
-/// not tell by name.
+/// not tell.
 pub(super) fn has_new_unknowns(scene: &Scene, carried: &Carried) -> bool {
-    let known: BTreeSet<&str> = carried.names.iter().map(String::as_str).collect();
-    let l = scene.layout;
-    let names = unknown_names(scene);
-    let state = l.state(&names);
-    (state.q.iter().chain(state.v)).any(|name| !known.contains(name.as_str()))
+    let known = carried.values();
+    let State { q, v, .. } = &scene.unknowns;
+    q.iter()
+        .chain(v)
+        .any(|unknown| !known.contains_key(unknown))
 }
 
 /// Returns the model with its parts where they are, and moving as they do.

@@ -12,7 +12,6 @@ use crate::analysis::warning::{RunWarning, Warning};
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};
 use crate::results::{self, Counts, Event, Kind, RowChange, Status};
-use crate::scene::build::unknown_names;
 use crate::scene::equations::row_name;
 
 impl Session {
@@ -275,7 +274,7 @@ fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
 /// What a method met, and the name of the worst unknown or row.
 fn cause(system: &System, reason: Reason) -> (Cause, String) {
     let scene = &system.scene;
-    let mut names = unknown_names(scene);
+    let mut names = scene.unknown_names();
     // what a method for implicit equations sees after the unknowns
     let multipliers = system.implicit_size().saturating_sub(names.len());
     let rows = system.configuration.active_rows();

@@ -11,6 +11,7 @@ use crate::analysis::system::samples::Held;
 use crate::dataset;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::{ElementId, ElementKind, Model};
+use crate::scene::unknown::{MotionState, UnknownId};
 use crate::space::{MarkerState, Mat3, Vec3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -187,7 +188,7 @@ fn state(c: &Carried) -> Value {
         .collect();
     json!({
         "time": number(c.t),
-        "names": c.names,
+        "names": c.unknowns.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "numbers": numbers(&c.numbers),
         "at_rest": c.at_rest,
         "parts": parts,
@@ -199,14 +200,10 @@ fn state(c: &Carried) -> Value {
 }
 
 fn carried(v: &Value) -> Option<Carried> {
-    let names = v["names"]
-        .as_array()?
-        .iter()
-        .map(|n| n.as_str().map(str::to_string));
-    let names: Vec<String> = names.collect::<Option<_>>()?;
+    let unknowns = unknowns(&v["names"])?;
     let all = as_numbers(&v["numbers"])?;
-    // the row begins with time and the unknowns, which have the names
-    if all.len() <= names.len() {
+    // the row begins with time and the unknowns
+    if all.len() <= unknowns.len() {
         return None;
     }
     let parts = v["parts"]
@@ -238,7 +235,7 @@ fn carried(v: &Value) -> Option<Carried> {
     Some(Carried {
         t: as_number(&v["time"])?,
         numbers: all,
-        names,
+        unknowns,
         at_rest: v["at_rest"].as_bool()?,
         parts,
         turns: as_numbers(&v["turns"])?,
@@ -246,6 +243,29 @@ fn carried(v: &Value) -> Option<Carried> {
         samples: samples?,
         past: past.collect::<Option<_>>()?,
     })
+}
+
+/// Reads the names of the unknowns. A velocity of a MOTION once had none: it stands after the
+/// displacement.
+fn unknowns(v: &Value) -> Option<Vec<UnknownId>> {
+    let mut all: Vec<UnknownId> = Vec::new();
+    for name in v.as_array()? {
+        let unknown = match (name.as_str()?, all.last()) {
+            (
+                "",
+                Some(&UnknownId::Motion {
+                    motion,
+                    state: MotionState::Displacement,
+                }),
+            ) => UnknownId::Motion {
+                motion,
+                state: MotionState::Velocity,
+            },
+            (name, _) => name.parse().ok()?,
+        };
+        all.push(unknown);
+    }
+    Some(all)
 }
 
 fn part(v: &Value) -> Option<(ElementId, MarkerState<f64>)> {

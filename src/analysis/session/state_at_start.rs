@@ -8,9 +8,9 @@ use crate::analysis::start::placement;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scene::Scene;
-use crate::scene::build::unknown_names;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
+use crate::scene::unknown::UnknownId;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -53,19 +53,17 @@ impl Start {
         self.scene.within(&self.configuration)
     }
 
-    /// Takes over the state of the last simulation, by the names of the unknowns.
+    /// Takes over the state of the last simulation, by the identities of the unknowns.
     pub fn take_over(&mut self, carried: &Carried) {
         let l = self.scene.layout;
-        let (values, names) = (carried.values(), unknown_names(&self.scene));
-        let names = l.state(&names);
+        let (values, unknowns) = (carried.values(), &self.scene.unknowns);
         let mut v = vec![0.0; l.n_v];
         // every position and velocity is told; states may be new
-        let mut complete = take_over(&values, names.q, &mut self.q);
-        complete &= take_over(&values, names.v, &mut v);
-        take_over(&values, names.x, &mut self.x);
+        let mut complete = take_over(&values, &unknowns.q, &mut self.q);
+        complete &= take_over(&values, &unknowns.v, &mut v);
+        take_over(&values, &unknowns.x, &mut self.x);
         for (cam, contact) in self.scene.cams.iter().zip(&mut self.configuration.contacts) {
-            let name = &names.x[cam.state];
-            contact.begun = values.contains_key(name.as_str());
+            contact.begun = values.contains_key(&unknowns.x[cam.state]);
         }
         if complete && !carried.at_rest {
             self.v = Some(v);
@@ -99,11 +97,11 @@ impl Start {
     }
 }
 
-/// Takes over the values that are known by these names; returns whether all are.
-fn take_over(known: &BTreeMap<&str, f64>, names: &[String], values: &mut [f64]) -> bool {
+/// Takes over the values of the unknowns that are known; returns whether all are.
+fn take_over(known: &BTreeMap<UnknownId, f64>, unknowns: &[UnknownId], values: &mut [f64]) -> bool {
     let mut complete = true;
-    for (name, value) in names.iter().zip(values) {
-        match known.get(name.as_str()) {
+    for (unknown, value) in unknowns.iter().zip(values) {
+        match known.get(unknown) {
             Some(&found) => *value = found,
             None => complete = false,
         }

@@ -143,10 +143,8 @@ impl Settler<'_> {
         });
         if let (Some(k), true) = (state, worst.as_ref().is_none_or(|w| w.0 < 1e-9)) {
             let place = self.states[k];
-            let found = scene.differentials.iter().find(|d| d.state == Some(place));
-            let name = found.map_or_else(String::new, |d| d.name.clone());
             return NoEquilibrium::Unbalanced(Imbalance::Rate {
-                name,
+                name: scene.unknowns.x[place].to_string(),
                 rate: p.state[k],
             });
         }
@@ -164,7 +162,7 @@ impl Settler<'_> {
             size: force.abs(),
             part,
             way,
-            coordinate: c.name.clone(),
+            coordinate: c.id.to_string(),
             uncarried: uncarried.is_some(),
         })
     }

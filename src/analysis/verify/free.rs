@@ -86,11 +86,11 @@ pub(super) fn motions(
             let coordinate = &scene.coordinates[owner[own]];
             let parts = moving_parts(&scene, coordinate.link, moving(&v), &still);
             let words = match parts.split_first() {
-                None => format!("{} changes and moves no part", coordinate.name),
+                None => format!("{} changes and moves no part", coordinate.id),
                 Some((first, rest)) => sentence(first, rest),
             };
             Free {
-                unknown: coordinate.name.clone(),
+                unknown: coordinate.id.to_string(),
                 parts,
                 words,
                 rates: v,

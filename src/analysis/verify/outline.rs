@@ -7,7 +7,7 @@ use crate::analysis::verify::start;
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Family, Model};
-use crate::scene::build::{Options, unknown_names};
+use crate::scene::build::Options;
 use crate::scene::configuration::Configuration;
 use crate::scene::equations::row_name;
 use crate::scene::{Scene, Source};
@@ -108,14 +108,14 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         .collect();
     forest(&scene, &mut out);
     let v = velocities::velocities(here, model, 0.0, &q, &x)?;
-    let names = unknown_names(&scene);
+    let names = scene.unknown_names();
     out.unknowns = names
         .into_iter()
         .zip(q.into_iter().chain(v).chain(x))
         .collect();
     out.prescribed = (scene.coordinates.iter())
         .filter_map(|c| match c.source {
-            Source::Driven(m) => Some(format!("{} by MOTION/{}", c.name, scene.motions[m].id)),
+            Source::Driven(m) => Some(format!("{} by MOTION/{}", c.id, scene.motions[m].id)),
             Source::Free { .. } => None,
         })
         .collect();
@@ -155,7 +155,7 @@ fn forest(scene: &Scene, out: &mut Outline) {
         while at != end {
             let Some(l) = at else { break };
             let own = scene.coordinates.iter().filter(|c| c.link == l);
-            coordinates.splice(0..0, own.map(|c| c.name.clone()));
+            coordinates.splice(0..0, own.map(|c| c.id.to_string()));
             at = scene.links[l].parent;
         }
         let carrier =

@@ -29,7 +29,10 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn algebraic_rate(&self, d: usize) -> S {
         let equation = &self.scene.differentials[d];
         if self.rates_open.borrow().contains(&d) {
-            return self.complain(&format!("DIF1({})", equation.id), Lack::OwnValue);
+            return self.complain(
+                &format!("DIF1({})", equation.id.element.number),
+                Lack::OwnValue,
+            );
         }
         self.rates_open.borrow_mut().push(d);
         let along = self.moved(equation.formula, Moving::Others(d), &mut Vec::new());
@@ -59,12 +62,10 @@ impl<S: Scalar> Equations<'_, S> {
                     Some(Entry::Formula(f)) => self.moved(f, moving, open),
                     None => Jet::constant(f64::NAN),
                 },
-                Input::Measure(Measure::Dif, [id, ..]) => {
-                    match self.scene.differentials.iter().position(|d| d.id == id) {
-                        Some(d) => self.moved_state(d, moving),
-                        None => Jet::constant(f64::NAN),
-                    }
-                }
+                Input::Measure(Measure::Dif, [id, ..]) => match self.scene.differential(id) {
+                    Some(d) => self.moved_state(d, moving),
+                    None => Jet::constant(f64::NAN),
+                },
                 Input::Measure(measure, ids) => self.moved_measure(&f.name, measure, ids, moving),
                 Input::Delayed(_) | Input::Slot(_) => Jet::constant(f64::NAN),
             })

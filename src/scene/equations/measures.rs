@@ -122,13 +122,11 @@ impl<S: Scalar> Equations<'_, S> {
                 Some(place) => self.external[place],
                 None => self.complain(asked_by, Lack::Element(ElementKind::Sensor.id(id))),
             },
-            Measure::Dif | Measure::Dif1 => {
-                match scene.differentials.iter().position(|d| d.id == id) {
-                    Some(d) if measure == Measure::Dif => self.state_of(d),
-                    Some(d) => self.rate_of(d),
-                    None => self.complain(asked_by, Lack::Element(ElementKind::Diff.id(id))),
-                }
-            }
+            Measure::Dif | Measure::Dif1 => match scene.differential(id) {
+                Some(d) if measure == Measure::Dif => self.state_of(d),
+                Some(d) => self.rate_of(d),
+                None => self.complain(asked_by, Lack::Element(ElementKind::Diff.id(id))),
+            },
             _ => self.complain(asked_by, Lack::Measure(measure)),
         }
     }

@@ -236,12 +236,10 @@ impl<'s, S: Scalar> Equations<'s, S> {
                     Some(Entry::Formula(f)) => self.in_time(f, order, open),
                     None => Jet::constant(f64::NAN),
                 },
-                Input::Measure(Measure::Dif, [id, ..]) => {
-                    match self.scene.differentials.iter().position(|d| d.id == *id) {
-                        Some(d) => self.state_in_time(d, order),
-                        None => Jet::constant(f64::NAN),
-                    }
-                }
+                Input::Measure(Measure::Dif, [id, ..]) => match self.scene.differential(*id) {
+                    Some(d) => self.state_in_time(d, order),
+                    None => Jet::constant(f64::NAN),
+                },
                 _ => Jet::constant(f64::NAN),
             })
             .collect();

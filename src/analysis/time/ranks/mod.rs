@@ -240,7 +240,7 @@ fn place(scene: &Scene, numbers: &[f64], touched: &[bool]) -> Vec<(String, f64)>
     let mut all: Vec<(bool, String, f64)> = (scene.coordinates.iter().zip(&scene.freedoms))
         .filter(|(_, f)| !f.in_ball)
         .filter_map(|(c, _)| match c.source {
-            Source::Free { q: place, v } => Some((!touched[v], c.name.clone(), q[place])),
+            Source::Free { q: place, v } => Some((!touched[v], c.id.to_string(), q[place])),
             Source::Driven(_) => None,
         })
         .collect();
