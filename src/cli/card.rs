@@ -205,7 +205,7 @@ fn of_callee(callee: Callee, empty: Card) -> Card {
                 group: group(row.family),
                 doc: paragraphs(row.doc),
                 equation: row.formula.to_owned(),
-                unit: row.unit.to_owned(),
+                unit: row.dimension.to_string(),
                 examples: vec![example::of_measure(m)],
                 ..card
             }

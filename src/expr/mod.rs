@@ -33,6 +33,7 @@ mod advice;
 pub mod ast;
 mod check;
 pub mod compile;
+pub mod dimension;
 mod expression;
 mod finite;
 mod foreign;

@@ -1,5 +1,6 @@
 //! What a run reports: one formula of an instant per column.
 
+use crate::expr::dimension::Dimension;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Program, Work};
 use crate::model::{ElementId, ElementKind, Formula, Model, Part, Place, RequestKind, Text};
@@ -44,22 +45,30 @@ fn unit_of(text: &Text, units: &Units) -> String {
         return String::new();
     };
     let (l, t, f, a) = (&units.length, &units.time, &units.force, &units.angle);
-    match measure.row().unit {
-        "length" => l.clone(),
-        "angle" => a.clone(),
-        "length/time" => format!("{l}/{t}"),
-        "angle/time" => format!("{a}/{t}"),
-        "length/time²" => format!("{l}/{t}**2"),
-        "angle/time²" => format!("{a}/{t}**2"),
-        "force" => f.clone(),
-        "torque" => format!("{f}-{l}"),
+    match measure.row().dimension {
+        Dimension::Length => l.clone(),
+        Dimension::Angle => a.clone(),
+        Dimension::Velocity => format!("{l}/{t}"),
+        Dimension::AngularVelocity => format!("{a}/{t}"),
+        Dimension::Acceleration => format!("{l}/{t}**2"),
+        Dimension::AngularAcceleration => format!("{a}/{t}**2"),
+        Dimension::Force => f.clone(),
+        Dimension::Torque => format!("{f}-{l}"),
         // NAME(id, jflag, comp, rm): components 1 to 4 are of the force, 5 to 8 of the torque
-        "force or torque" => match component {
+        Dimension::ForceOrTorque => match component {
             1..=4 => f.clone(),
             5..=8 => format!("{f}-{l}"),
             _ => String::new(),
         },
-        _ => String::new(),
+        Dimension::AngleOrNone
+        | Dimension::ByIndex
+        | Dimension::Variable
+        | Dimension::Array
+        | Dimension::Equation
+        | Dimension::EquationRate
+        | Dimension::PlantInput
+        | Dimension::PlantOutput
+        | Dimension::Sensor => String::new(),
     }
 }
 
