@@ -1,21 +1,279 @@
-//! The house rules that the compiler cannot see, checked on the text of the sources.
+//! The house is as its map says: what `ARCHITECTURE.md` claims about files, floors, rooms and sizes is checked here.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+#[path = "house/source.rs"]
+mod source;
 
-/// Returns all Rust files below a folder, sorted by path.
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).expect("a readable folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            found.extend(sources(&path));
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            found.push(path);
+use source::{File, circles, edges, files, root};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Tables: files whose length is a row per thing they list.
+const TABLES: [&str; 1] = ["src/dataset/statement.rs"];
+const MOST_LINES_OF_A_FILE: usize = 800;
+const MOST_LINES_OF_A_FUNCTION: usize = 80;
+const MOST_COLUMNS_OF_A_COMMENT: usize = 100;
+
+fn map() -> String {
+    std::fs::read_to_string(root().join("ARCHITECTURE.md")).expect("the map")
+}
+
+/// Fails with everything that is wrong, a line each.
+fn none(what: &str, wrong: Vec<String>) {
+    assert!(
+        wrong.is_empty(),
+        "{} {what}:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
+}
+
+/// Names in backticks that look like files or folders of the repository.
+fn places_named() -> Vec<String> {
+    let map = map();
+    let inside = map
+        .split("```")
+        .step_by(2)
+        .flat_map(|text| text.split('`').skip(1).step_by(2));
+    let is_place = |name: &&str| {
+        !name.contains([' ', '(', '*', '<'])
+            && (name.ends_with('/')
+                || [".rs", ".pest", ".md", ".toml", ".acf"]
+                    .iter()
+                    .any(|e| name.ends_with(e)))
+    };
+    inside.filter(is_place).map(str::to_owned).collect()
+}
+
+#[test]
+fn every_place_that_the_map_names_exists() {
+    let exists = |name: &str| {
+        let direct = [root().join(name), root().join("src").join(name)];
+        direct.iter().any(|p| p.exists())
+    };
+    let missing = places_named().into_iter().filter(|n| !exists(n)).collect();
+    none("places of ARCHITECTURE.md that do not exist", missing);
+}
+
+#[test]
+fn every_folder_of_the_sources_is_on_the_map() {
+    let map = map();
+    let mut folders = BTreeSet::new();
+    for file in files("src") {
+        let mut parts: Vec<&str> = file.path.split('/').collect();
+        parts.pop();
+        folders.insert(parts[1..].join("/"));
+    }
+    let named = |folder: &String| map.contains(&format!("{folder}/"));
+    let missing = folders
+        .into_iter()
+        .filter(|f| !f.is_empty() && !named(f))
+        .collect();
+    none("folders that ARCHITECTURE.md does not name", missing);
+}
+
+/// The floors of the map: module → floor.
+fn floors() -> BTreeMap<String, usize> {
+    let map = map();
+    let block = map
+        .split("```")
+        .find(|b| b.starts_with("floors"))
+        .expect("a block of floors in the map");
+    let mut found = BTreeMap::new();
+    for line in block.lines().skip(1) {
+        let mut words = line.split("  ").map(str::trim).filter(|w| !w.is_empty());
+        let Some(floor) = words.next().and_then(|w| w.parse().ok()) else {
+            continue;
+        };
+        for module in words.next().unwrap_or_default().split_whitespace() {
+            found.insert(module.to_owned(), floor);
         }
     }
-    found.sort();
     found
+}
+
+#[test]
+fn a_module_uses_lower_floors_only() {
+    let (floors, files) = (floors(), files("src"));
+    let mut wrong = Vec::new();
+    for (from, to) in edges(&files) {
+        let Some(mine) = files[from].module.first() else {
+            continue;
+        };
+        let Some(floor) = floors.get(mine) else {
+            wrong.push(format!("{mine} stands on no floor"));
+            continue;
+        };
+        for other in to.iter().filter_map(|&t| files[t].module.first()) {
+            if other != mine && floors.get(other).is_none_or(|f| f >= floor) {
+                wrong.push(format!("{} uses {other}", files[from].path));
+            }
+        }
+    }
+    none("uses of a neighbour or a higher floor", wrong);
+}
+
+#[test]
+fn rooms_of_analysis_form_no_circle() {
+    let files = files("src");
+    let room = |f: &File| (f.module.first()? == "analysis").then(|| f.module.get(1).cloned())?;
+    let mut between: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    let rooms: Vec<Option<String>> = files.iter().map(room).collect();
+    for (from, to) in edges(&files) {
+        let Some(mine) = &rooms[from] else { continue };
+        let others = to.iter().filter_map(|&t| rooms[t].as_deref());
+        between
+            .entry(mine)
+            .or_default()
+            .extend(others.filter(|o| o != mine));
+    }
+    let found = circles(&between);
+    none(
+        "circles between rooms of analysis",
+        found.iter().map(|c| format!("{c:?}")).collect(),
+    );
+}
+
+/// A module and the files below it count as a data type and its implementation: what a child takes from the files above it is left out.
+#[test]
+fn files_of_programs_form_no_circle() {
+    let files = files("src/expr");
+    let mut between = edges(&files);
+    for (&from, to) in &mut between {
+        to.retain(|&t| !files[t].is_above(&files[from]) && files[t].path.contains("expr/program"));
+    }
+    between.retain(|&from, _| files[from].path.contains("expr/program"));
+    let names = |c: &BTreeSet<usize>| {
+        c.iter()
+            .map(|&k| files[k].path.as_str())
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    none(
+        "circles between files of expr/program",
+        circles(&between).iter().map(names).collect(),
+    );
+}
+
+#[test]
+fn no_file_is_longer_than_800_lines_but_tables() {
+    let long =
+        |f: &File| f.lines.len() > MOST_LINES_OF_A_FILE && !TABLES.contains(&f.path.as_str());
+    let wrong = files("src")
+        .iter()
+        .filter(|f| long(f))
+        .map(|f| format!("{}: {}", f.path, f.lines.len()))
+        .collect();
+    none("files that are too long", wrong);
+}
+
+/// The functions of a file: name, first line, number of lines.
+fn functions(file: &File) -> Vec<(String, usize, usize)> {
+    let lines = &file.lines[..file.n_lines_before_tests];
+    let mut found = Vec::new();
+    for (k, line) in lines.iter().enumerate() {
+        let text = line.trim_start();
+        let indent = &line[..line.len() - text.len()];
+        let after = ["fn ", "pub fn ", "const fn ", "pub const fn ", "unsafe fn "]
+            .iter()
+            .find_map(|p| text.strip_prefix(p));
+        let after = after.or_else(|| {
+            text.strip_prefix("pub(")?
+                .split_once(") fn ")
+                .map(|(_, a)| a)
+        });
+        let Some(name) = after.map(|a| a.split(['(', '<']).next().unwrap_or_default()) else {
+            continue;
+        };
+        if text.ends_with(';') || text.ends_with('}') {
+            continue;
+        }
+        let end = lines[k..].iter().position(|l| {
+            *l == format!("{indent}}}")
+                || (l.starts_with(indent) && l.ends_with(';') && l[indent.len()..].starts_with(')'))
+        });
+        found.push((name.to_owned(), k + 1, end.unwrap_or(0) + 1));
+    }
+    found
+}
+
+#[test]
+fn no_function_is_longer_than_80_lines() {
+    let mut wrong = Vec::new();
+    for file in files("src") {
+        for (name, line, n) in functions(&file) {
+            if n > MOST_LINES_OF_A_FUNCTION {
+                wrong.push(format!("{}:{line} {name}: {n}", file.path));
+            }
+        }
+    }
+    none("functions that are too long", wrong);
+}
+
+#[test]
+fn comments_fit_100_columns() {
+    let mut wrong = Vec::new();
+    for file in files("src") {
+        for (k, line) in file.lines.iter().enumerate() {
+            let comment = line.trim_start().starts_with("//");
+            // a table in a comment is as wide as its rows
+            if comment
+                && !line.contains("//! |")
+                && !line.contains("/// |")
+                && line.chars().count() > MOST_COLUMNS_OF_A_COMMENT
+            {
+                wrong.push(format!("{}:{}", file.path, k + 1));
+            }
+        }
+    }
+    none("comments that are too wide", wrong);
+}
+
+#[test]
+fn every_file_opens_by_saying_which_idea_it_is() {
+    let silent = |f: &File| !f.lines.first().is_some_and(|l| l.starts_with("//!"));
+    none(
+        "files without an opening",
+        files("src")
+            .iter()
+            .filter(|f| silent(f))
+            .map(|f| f.path.clone())
+            .collect(),
+    );
+}
+
+#[test]
+fn nothing_public_is_left_without_a_word() {
+    let mut wrong = Vec::new();
+    for file in files("src") {
+        let allowed = file
+            .lines
+            .iter()
+            .enumerate()
+            .filter(|(_, l)| l.contains("allow(missing_docs"));
+        wrong.extend(allowed.map(|(k, _)| format!("{}:{}", file.path, k + 1)));
+    }
+    none("places that allow missing documentation", wrong);
+}
+
+#[test]
+fn nothing_outside_tests_panics_by_choice() {
+    let mut wrong = Vec::new();
+    for file in files("src") {
+        for (k, line) in file.code().lines().enumerate() {
+            if [
+                ".unwrap()",
+                ".expect(",
+                "panic!(",
+                "todo!(",
+                "unimplemented!(",
+            ]
+            .iter()
+            .any(|w| line.contains(w))
+            {
+                wrong.push(format!("{}:{}", file.path, k + 1));
+            }
+        }
+    }
+    none("places that could panic", wrong);
 }
 
 /// Returns whether a line assigns to a field of something named `scene`.
@@ -47,14 +305,12 @@ fn a_scene_is_changed_nowhere_but_where_it_is_compiled() {
     assert!(assigns_to_scene("        self.scene.rows[r].scale = 1.0;"));
     assert!(assigns_to_scene("scene.layout.n_x += 2;"));
     assert!(!assigns_to_scene("if scene.mode == STATIC {"));
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut offences = Vec::new();
-    for path in sources(&src) {
-        if path.starts_with(src.join("scene")) {
+    for file in files("src") {
+        if file.path.starts_with("src/scene/") {
             continue;
         }
-        let text = fs::read_to_string(&path).expect("a readable source");
-        for (k, line) in text.lines().enumerate() {
+        for (k, line) in file.lines.iter().enumerate() {
             let way = CHANGEABLE.iter().any(|way| {
                 let after = line.split(way).nth(1).and_then(|rest| rest.chars().next());
                 // `&mut SceneSensor` is another type
@@ -62,11 +318,11 @@ fn a_scene_is_changed_nowhere_but_where_it_is_compiled() {
                     && !after.is_some_and(|c| way.ends_with("Scene") && c.is_alphanumeric())
             });
             if way || assigns_to_scene(line) {
-                offences.push(format!("{}:{}: {}", path.display(), k + 1, line.trim()));
+                offences.push(format!("{}:{}: {}", file.path, k + 1, line.trim()));
             }
         }
     }
-    assert!(offences.is_empty(), "{}", offences.join("\n"));
+    none("places that could change a scene", offences);
 }
 
 /// Index arithmetic over the row of numbers that programs read, or over the integrator's unknowns.
