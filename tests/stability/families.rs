@@ -64,7 +64,7 @@ fn stiffness() -> Vec<Scene> {
         for method in [None, Some("RADAU5"), Some("BDF")] {
             let one = scene(f, format!("decay {l:e} towards a cosine"), text.clone())
                 .end(3.0)
-                .follows("DIF(1)", exact, 1e-5);
+                .follows("DIF(1)", exact, 1e-6);
             all.push(match method {
                 Some(m) => one.method(m),
                 None => one,

@@ -1,7 +1,7 @@
 //! A scene of known answer: a model of a few lines, how it is run, and what must come out.
 
 use crate::running::{self, Analysis, Options, Session};
-use cognate::analysis::time::dynamics::Watch;
+use cognate::analysis::watch::Watch;
 use cognate::results::Status;
 
 /// What must come out of a scene.

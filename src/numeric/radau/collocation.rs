@@ -54,6 +54,28 @@ pub(super) const KEEP_JACOBIAN_RATE: f64 = 0.02;
 /// Θ from which the iteration counts as divergent.
 const DIVERGENT_RATE: f64 = 0.99;
 
+/// Values and slopes at `theta` of the cubics that are one at a node, and zero at the others and at
+/// the beginning of the step.
+pub(super) const fn cubic_weights(theta: f64) -> [[f64; 2]; 3] {
+    let nodes = [0.0, C[0], C[1], C[2]];
+    let mut weights = [[0.0; 2]; 3];
+    let mut i = 1;
+    while i < 4 {
+        let (mut value, mut slope, mut j) = (1.0, 0.0, 0);
+        while j < 4 {
+            if j != i {
+                let width = nodes[i] - nodes[j];
+                slope = (slope * (theta - nodes[j]) + value) / width;
+                value *= (theta - nodes[j]) / width;
+            }
+            j += 1;
+        }
+        weights[i - 1] = [value, slope];
+        i += 1;
+    }
+    weights
+}
+
 /// The unknowns of (1), as they are and transformed, and room for the residual.
 #[derive(Clone, Debug)]
 pub(super) struct Stages {
