@@ -53,21 +53,37 @@ fn every_place_that_the_map_names_exists() {
     none("places of ARCHITECTURE.md that do not exist", missing);
 }
 
-#[test]
-fn every_folder_of_the_sources_is_on_the_map() {
+/// The folders of the tree of rooms, by the indentation of their lines.
+fn folders_drawn() -> BTreeSet<String> {
     let map = map();
-    let mut folders = BTreeSet::new();
-    for file in files("src") {
-        let mut parts: Vec<&str> = file.path.split('/').collect();
-        parts.pop();
-        folders.insert(parts[1..].join("/"));
+    let tree = map.split("```").find(|b| b.contains("\nsrc/\n"));
+    let mut way: Vec<&str> = Vec::new();
+    let mut found = BTreeSet::new();
+    for line in tree.expect("a tree of rooms in the map").lines() {
+        let name = line.split_whitespace().next().unwrap_or_default();
+        if let Some(name) = name.strip_suffix('/') {
+            way.truncate((line.len() - line.trim_start().len()) / 2);
+            way.push(name);
+            found.insert(way.join("/"));
+        }
     }
-    let named = |folder: &String| map.contains(&format!("{folder}/"));
-    let missing = folders
-        .into_iter()
-        .filter(|f| !f.is_empty() && !named(f))
-        .collect();
-    none("folders that ARCHITECTURE.md does not name", missing);
+    found
+}
+
+#[test]
+fn the_map_draws_the_folders_of_the_sources() {
+    let mut there = BTreeSet::new();
+    for file in files("src") {
+        let folder = file.path.rsplit_once('/').map_or("", |(folder, _)| folder);
+        there.insert(folder.to_owned());
+    }
+    let drawn = folders_drawn();
+    none(
+        "folders that are not drawn",
+        there.difference(&drawn).cloned().collect(),
+    );
+    let gone = drawn.into_iter().filter(|f| !root().join(f).is_dir());
+    none("folders that are drawn and do not exist", gone.collect());
 }
 
 /// The floors of the map: module → floor.
