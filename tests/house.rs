@@ -365,22 +365,20 @@ const INDEX_ARITHMETIC: [&str; 13] = [
 
 #[test]
 fn places_of_numbers_are_known_to_the_layout_alone() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut offences = Vec::new();
     for folder in ["scene", "analysis", "results", "cli"] {
-        for path in sources(&src.join(folder)) {
-            if path == src.join("scene").join("layout.rs") {
+        for file in files(&format!("src/{folder}")) {
+            if file.path == "src/scene/layout.rs" {
                 continue;
             }
-            let text = fs::read_to_string(&path).expect("a readable source");
-            for (k, line) in text.lines().enumerate() {
+            for (k, line) in file.lines.iter().enumerate() {
                 if INDEX_ARITHMETIC.iter().any(|way| line.contains(way)) {
-                    offences.push(format!("{}:{}: {}", path.display(), k + 1, line.trim()));
+                    offences.push(format!("{}:{}: {}", file.path, k + 1, line.trim()));
                 }
             }
         }
     }
-    assert!(offences.is_empty(), "{}", offences.join("\n"));
+    none("places of numbers outside the layout", offences);
 }
 
 /// Keywords of elements stand in the tables; everywhere else an element is an `ElementId`, which
@@ -404,19 +402,20 @@ fn keywords_of_elements_are_compared_nowhere() {
         "names(ElementKind::Joint, [(\"JOINT\", n)])",
         "JOINT"
     ));
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let tables = ["model/element.rs", "dataset/statement.rs"].map(|table| src.join(table));
+    let tables = ["src/model/element.rs", "src/dataset/statement.rs"];
     let mut offences = Vec::new();
-    for path in sources(&src).iter().filter(|path| !tables.contains(path)) {
-        let text = fs::read_to_string(path).expect("a readable source");
-        for (k, line) in text.lines().enumerate() {
+    for file in files("src") {
+        if tables.contains(&file.path.as_str()) {
+            continue;
+        }
+        for (k, line) in file.lines.iter().enumerate() {
             let compares = ElementKind::ALL
                 .iter()
                 .any(|kind| compared(line, kind.keyword()));
             if compares || line.contains("(String, u32)") {
-                offences.push(format!("{}:{}: {}", path.display(), k + 1, line.trim()));
+                offences.push(format!("{}:{}: {}", file.path, k + 1, line.trim()));
             }
         }
     }
-    assert!(offences.is_empty(), "{}", offences.join("\n"));
+    none("comparisons of keywords", offences);
 }
