@@ -44,8 +44,8 @@
 //!
 //! Without any, the crate is an evaluator of expressions and has no linear algebra in its
 //! dependency tree. `native` makes code of the processor at hand for programs that run often;
-//! without it there is no unsafe Rust here. `solver` adds models and their simulation, `geometry` the
-//! contacts of convex solids that need parry, `cli` the command line.
+//! without it there is no unsafe Rust here. `solver` adds models and their simulation, `geometry`
+//! the contacts of convex solids that need parry, `cli` the command line.
 //!
 //! # Floors
 //!
@@ -63,7 +63,8 @@
 //! ```
 
 #![warn(missing_docs)]
-// without generated code there is no unsafe Rust; with it, where it is allowed by name (see fuzz/README.md)
+// without generated code there is no unsafe Rust; with it, where it is allowed by name (see
+// fuzz/README.md)
 #![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
 #![deny(unsafe_code)]
 // names follow the monogram notation: capitals are frames and only frames (`p_JI_K`, `R_GP`)

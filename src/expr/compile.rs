@@ -195,7 +195,8 @@ impl<'a> Compiler<'a> {
         })
     }
 
-    /// Returns the value where `x` is a number, and NaN where it is not; to the bit, for `x - x` is +0.
+    /// Returns the value where `x` is a number, and NaN where it is not; to the bit, for `x - x`
+    /// is +0.
     fn lost_with(&mut self, value: Value, x: Value) -> Value {
         let builder = self.builder.get_mut();
         let nothing = builder.binary(BinaryOp::Sub, x, x);

@@ -1,17 +1,17 @@
-//! Operands without a finite value that an operation can lose: `1/(1/TIME)` at 0 is 0 to a processor,
-//! and has no value in the language.
+//! Operands without a finite value that an operation can lose: `1/(1/TIME)` at 0 is 0 to a
+//! processor, and has no value in the language.
 //!
 //! The walker stops at the first operation that has no finite value. A program has no such test at
-//! each step: infinities and NaN run on, and the result tells. That fails where an operation makes a
-//! number of them, as a division by infinity or MIN do. Here stands, from the tree alone, which
-//! operands can be without value and which operations can lose them; the compiler subtracts `x - x`
-//! of such an operand from the result. That is 0 wherever x is a number, so no bit changes, and the
-//! result has no value where x has none. Expressions without such an operand cost nothing.
+//! each step: infinities and NaN run on, and the result tells. That fails where an operation makes
+//! a number of them, as a division by infinity or MIN do. Here stands, from the tree alone, which
+//! operands can be without value and which operations can lose them; the compiler subtracts `x -
+//! x` of such an operand from the result. That is 0 wherever x is a number, so no bit changes, and
+//! the result has no value where x has none. Expressions without such an operand cost nothing.
 //!
-//! Recorded equations take zeros as structure and fold `x - x` away: in `run` an operand can still be
-//! lost. There an operation of its own is needed, `kept(value, x)`: the value where `x` is finite, else
-//! NaN; the derivatives are those of the value alone; it folds to the value where `x` is constant,
-//! and it has no break.
+//! Recorded equations take zeros as structure and fold `x - x` away: in `run` an operand can still
+//! be lost. There an operation of its own is needed, `kept(value, x)`: the value where `x` is
+//! finite, else NaN; the derivatives are those of the value alone; it folds to the value where `x`
+//! is constant, and it has no break.
 //!
 //! Inputs are finite: the host sees to that. A sum or a product that is too large for a number
 //! counts as finite unless an operand is at risk.

@@ -231,7 +231,7 @@ pub struct NodalForce {
     pub stiffness: u32,
     /// CMATRIX: MATRIX of the same size
     pub damping: Option<u32>,
-    /// CRATIO: damping = ratio · stiffness   [time]
+    /// CRATIO: damping = ratio · stiffness   in units of time
     pub damping_ratio: Option<f64>,
     /// LENGTH: MATRIX of the displacements at which the forces are the preload
     pub free: Option<u32>,
@@ -316,7 +316,7 @@ pub struct Contact {
     pub friction_transition_velocity: f64,
     /// STICTION=ON
     pub stiction: bool,
-    /// MAX_STICTION_DEFORMATION   [length]
+    /// MAX_STICTION_DEFORMATION   a length
     pub max_stiction_deformation: Option<f64>,
     /// IFLIP, JFLIP: the outside of the geometry is its inside
     pub flip: [bool; 2],

@@ -24,7 +24,7 @@ pub struct Configuration {
     pub motions: Vec<MotionStart>,
     /// Where contacts on curves begin. Assembly follows them.   (n_cams)
     pub contacts: Vec<ContactStart>,
-    /// Counted angles before the first step. A session carries them on.   (n_turns)   [rad]
+    /// Counted angles before the first step. A session carries them on.   (n_turns)   in rad
     pub turns: Vec<f64>,
     /// External inputs before the first step. A session supplies them.   (n_external)
     pub external: Vec<f64>,

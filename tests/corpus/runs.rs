@@ -29,7 +29,7 @@ pub fn obeyed(model: &Path, script: &Script, options: Options) -> Session {
     let name = model.file_stem().unwrap().to_string_lossy().into_owned();
     let model = Model::read(model).unwrap_or_else(|e| panic!("{e}"));
     let mut session = begin(model, &name, options);
-    obeys(&mut session, &script);
+    obeys(&mut session, script);
     session
 }
 

@@ -272,7 +272,7 @@ fn gravity() -> Vec<Scene> {
             ),
         );
     }
-    for amplitude in [1e-6, 0.5, 2.0, 3.0, 3.14] {
+    for amplitude in [1e-6, 0.5, 2.0, 3.0, 3.1] {
         let (x, y) = (f64::sin(amplitude), -f64::cos(amplitude));
         let text = format!(
             "PART/2, MASS=1, CM=20, QG={x:e},{y:e},0\nMARKER/20, PART=2\nMARKER/21, PART=2, QP={:e},{:e},0\n\

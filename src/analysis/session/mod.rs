@@ -1,8 +1,8 @@
 //! A model and its clock: one simulation after another, each from where the last one ended.
 //!
-//! A simulation compiles the model as it is now, takes over the state (or assembles the first one),
-//! computes, and appends its rows to the run. What goes wrong in numbers is an outcome in the
-//! record, with the results so far; what is wrong in the model is an error.
+//! A simulation compiles the model as it is now, takes over the state (or assembles the first
+//! one), computes, and appends its rows to the run. What goes wrong in numbers is an outcome in
+//! the record, with the results so far; what is wrong in the model is an error.
 
 mod at_rest;
 mod carried;
@@ -68,7 +68,8 @@ pub struct Options {
     pub skip: std::collections::BTreeSet<ElementKind>,
     /// take what `USER(…)` would compute as zero
     pub zero_user: bool,
-    /// steps that one integration may try, accepted or not, before it ends with [`Status::Limit`]; `None`: any number
+    /// steps that one integration may try, accepted or not, before it ends with [`Status::Limit`];
+    /// `None`: any number
     pub max_steps: Option<usize>,
 }
 

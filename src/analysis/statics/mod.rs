@@ -1,7 +1,7 @@
 //! Equilibrium: where loads and reactions balance at rest.
 //!
-//! A damped descent from the present configuration, taken in ever longer implicit steps until it is
-//! Newton's iteration:
+//! A damped descent from the present configuration, taken in ever longer implicit steps until it
+//! is Newton's iteration:
 //!
 //! ```text
 //! D q̇ = f(q, x) + Gᵀλ,   ẋ = e(q, x),   g(q) = 0      D: mass matrix, a little added everywhere
@@ -16,8 +16,12 @@
 //! touches nothing yet, needs no special treatment.
 //!
 //! A state may be the integral of a velocity (a spring that knows how far it was wound): at rest
-//! its rate is zero wherever it stands, and no equation of
-//! the end finds it. Where no equilibrium is found otherwise, such states follow the velocities of the descent, Δ/h:   Δx/h = e + … + ∂e/∂v Δ/h.
+//! its rate is zero wherever it stands, and no equation of the end finds it. Where no equilibrium
+//! is found otherwise, such states follow the velocities of the descent, Δ/h:
+//!
+//! ```text
+//! Δx/h = e + … + ∂e/∂v Δ/h
+//! ```
 //!
 //! An equilibrium that turns out to be a saddle is left along its steepest descent, unless the
 //! model stood there from the start.
@@ -133,8 +137,8 @@ struct Settler<'a> {
     factorizations: usize,
 }
 
-/// Brings a system to rest from its present state; its numbers end at the equilibrium, or where the
-/// search ended.
+/// Brings a system to rest from its present state; its numbers end at the equilibrium, or where
+/// the search ended.
 ///
 /// # Errors
 /// When there is none to be found: what is not balanced.

@@ -1,7 +1,7 @@
 //! Branches: functions that change branch, held on one side of their switches while a step is
 //! taken.
 //!
-//! While branches are held the rates are smooth, wherever a step leads. [`Slides`] are the switches
+//! While branches are held the rates are smooth, wherever a step leads. `Slides` are the switches
 //! at which the motion stays meanwhile.
 
 use super::complaints;

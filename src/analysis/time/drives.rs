@@ -50,8 +50,8 @@ fn quantity(order: usize) -> Quantity {
     }
 }
 
-/// Finds the jumps of displacements, velocities or accelerations that motions prescribe between two
-/// times.
+/// Finds the jumps of displacements, velocities or accelerations that motions prescribe between
+/// two times.
 ///
 /// # Errors
 /// Functions that cannot be evaluated.
@@ -88,7 +88,7 @@ pub fn breaks(scene: Configured<'_>, start: f64, end: f64) -> Result<Vec<Break>,
 /// or its rate, jumps.
 pub fn refused(breaks: &[Break]) -> Vec<Diagnostic> {
     let all = by_motion(breaks, |b| b.order < 2).into_iter();
-    let error = |(motion, quantity, times): (u32, Quantity, Vec<(f64, f64)>)| {
+    let error = |(motion, quantity, times): Jumps| {
         Diagnostic::error("motion_jumps", warning::jumps(quantity, &times))
             .element(ElementKind::Motion.id(motion))
             .help("join its pieces by STEP5, or insist on it with --piecewise")
@@ -108,12 +108,12 @@ pub fn warnings(breaks: &[Break], piecewise: bool) -> Vec<RunWarning> {
     insisted.chain(mild).map(warning).collect()
 }
 
-/// Sorts some breaks by their motions: the lowest derivative that jumps, and when and by how much any
-/// does.
-fn by_motion(
-    breaks: &[Break],
-    which: impl Fn(&Break) -> bool,
-) -> Vec<(u32, Quantity, Vec<(f64, f64)>)> {
+/// User's number of a MOTION, what of it jumps, and when and by how much.
+type Jumps = (u32, Quantity, Vec<(f64, f64)>);
+
+/// Sorts some breaks by their motions: the lowest derivative that jumps, and when and by how much
+/// any does.
+fn by_motion(breaks: &[Break], which: impl Fn(&Break) -> bool) -> Vec<Jumps> {
     let mut motions: Vec<u32> = breaks.iter().map(|b| b.motion).collect();
     motions.dedup();
     let of = |m: u32| {

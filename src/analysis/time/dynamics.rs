@@ -1,6 +1,6 @@
 //! Integration over time: one method after another, each as far as it is the right one.
 //!
-//! [`Leg`] is the loop over the steps of one method. Here it is decided with which method, and
+//! `Leg` is the loop over the steps of one method. Here it is decided with which method, and
 //! with which rows, the next leg begins.
 
 use crate::analysis::system::System;

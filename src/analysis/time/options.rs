@@ -58,7 +58,8 @@ impl Options {
         }
     }
 
-    /// Returns the method of that name for a system, which may attempt `max_steps` steps, or `None` if there is none.
+    /// Returns the method of that name for a system, which may attempt `max_steps` steps, or
+    /// `None` if there is none.
     pub(super) fn new_method(
         &self,
         name: &str,
@@ -80,12 +81,12 @@ impl Options {
     }
 }
 
-/// Returns the name of the method that does what an INTEGRATOR name of Adams asks for; names of our
-/// own stay as they are.
+/// Returns the name of the method that does what an INTEGRATOR name of Adams asks for; names of
+/// our own stay as they are.
 ///
-/// GSTIFF, WSTIFF and their kin are backward differentiation of low order. They are taken for stiff
-/// systems with modest requests, which RADAU5 solves with fewer steps and without their damping
-/// (BDF is there by its own name). ABAM and RKF45 are explicit.
+/// GSTIFF, WSTIFF and their kin are backward differentiation of low order. They are taken for
+/// stiff systems with modest requests, which RADAU5 solves with fewer steps and without their
+/// damping (BDF is there by its own name). ABAM and RKF45 are explicit.
 pub fn method_named(name: &str) -> String {
     match name.to_ascii_uppercase().as_str() {
         "GSTIFF" | "WSTIFF" | "HASTIFF" | "CONSTANT_BDF" => "RADAU5".into(),

@@ -16,14 +16,14 @@ pub enum AssemblyWarning {
         offset: Option<(f64, Axis)>,
         /// unit of the distance
         unit: String,
-        /// angle [rad] and its axis, where that is worth telling
+        /// angle in rad and its axis, where that is worth telling
         turn: Option<(f64, Axis)>,
     },
     /// a part is assembled on another branch than it is drawn
     OtherBranch {
         /// the part
         element: ElementId,
-        /// angle between the two [rad]
+        /// angle between the two in rad
         angle: f64,
     },
     /// a joint is assembled the other way round

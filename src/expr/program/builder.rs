@@ -1,4 +1,5 @@
-//! Recording a program: equal parts become one node, constants fold, and nothing is recorded twice.
+//! Recording a program: equal parts become one node, constants fold, and nothing is recorded
+//! twice.
 //!
 //! Nodes stand in one vector, operands before their users, and a table of hashes finds equal ones:
 //! recording is linear in time. Nothing here depends on the order of a hash map; the same calls
@@ -18,8 +19,8 @@ pub enum Folding {
     /// Only what keeps every bit of every result, NaN and signed zeros included: the compiled
     /// expression is the walked one.
     Strict,
-    /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `(x + y) − y → x`, `0/x →
-    /// 0`. For recorded physics, where a zero is a part that is not there.
+    /// Zeros and ones are structure: `0·x → 0`, `x + 0 → x`, `x − x → 0`, `(x + y) − y → x`, `0/x
+    /// → 0`. For recorded physics, where a zero is a part that is not there.
     Structural,
 }
 
@@ -198,8 +199,8 @@ impl Builder {
         self.without_minus_signs(op, a, b, ca, cb)
     }
 
-    /// Records the same value with minus signs moved outward or into constants: a + (−b) is a − b to the bit,
-    /// and so on.
+    /// Records the same value with minus signs moved outward or into constants: a + (−b) is a − b
+    /// to the bit, and so on.
     fn without_minus_signs(
         &mut self,
         op: BinaryOp,
@@ -318,8 +319,8 @@ impl Builder {
         })
     }
 
-    /// Records a power with a constant exponent, by the same multiplications and roots that `f64`'s
-    /// `powf` uses.
+    /// Records a power with a constant exponent, by the same multiplications and roots that
+    /// `f64`'s `powf` uses.
     fn simpler_power(&mut self, a: Value, exponent: f64) -> Option<Value> {
         use crate::scalar::Exponent;
         match Exponent::of(exponent) {

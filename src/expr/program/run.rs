@@ -54,9 +54,9 @@ impl Program {
         self.machine.core()
     }
 
-    /// Returns the same program, run over plain numbers by one engine from the first run on; `None`
-    /// where that engine is not to be had. For comparing the two: by itself a program changes to
-    /// the faster when that pays.
+    /// Returns the same program, run over plain numbers by one engine from the first run on;
+    /// `None` where that engine is not to be had. For comparing the two: by itself a program
+    /// changes to the faster when that pays.
     pub fn with_engine(&self, engine: Engine) -> Option<Self> {
         Some(Self {
             machine: Arc::new(self.machine.with_engine(engine)?),
@@ -124,8 +124,8 @@ impl Program {
         }
     }
 
-    /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a single
-    /// number.
+    /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a
+    /// single number.
     ///
     /// # Panics
     ///
@@ -138,8 +138,8 @@ impl Program {
         }
     }
 
-    /// Runs as code of the processor, and returns the first output; `None` where anything has to be
-    /// done or said before that.
+    /// Runs as code of the processor, and returns the first output; `None` where anything has to
+    /// be done or said before that.
     #[inline(always)]
     fn run_at_once(&self, inputs: &[f64], work: &mut Work) -> Option<f64> {
         if work.owner != self.id + FOR_THE_MACHINE {
@@ -148,7 +148,8 @@ impl Program {
         self.machine.run_native(&mut work.registers, inputs)
     }
 
-    /// Checks the inputs, lays out the frame of the machine unless it is that of this program, and runs.
+    /// Checks the inputs, lays out the frame of the machine unless it is that of this program, and
+    /// runs.
     #[inline(never)]
     fn enter_and_run(&self, inputs: &[f64], work: &mut Work) {
         self.check_inputs(inputs.len());

@@ -1,11 +1,11 @@
 //! The machine of plain numbers: two engines that go through one list of steps.
 //!
 //! Straight code is lowered to [`steps`] when a program first runs over plain numbers: sides of
-//! selections are jumped over where that pays, functions with constant parameters are prepared. The
-//! interpreter goes through the steps in safe Rust. With the feature `native`, on processors that
-//! we know, a program that runs often is translated into code of the processor; what is won is the
-//! dispatch, and stores of what nobody reads. Both engines do the same operations in the same
-//! order: every bit of every result is the same.
+//! selections are jumped over where that pays, functions with constant parameters are prepared.
+//! The interpreter goes through the steps in safe Rust. With the feature `native`, on processors
+//! that we know, a program that runs often is translated into code of the processor; what is won
+//! is the dispatch, and stores of what nobody reads. Both engines do the same operations in the
+//! same order: every bit of every result is the same.
 //!
 //! A program is interpreted until that has taken about as long as its translation, measured: see
 //! [`RUNS_PER_TRANSLATION`].
@@ -85,8 +85,8 @@ impl Machine {
         &self.core
     }
 
-    /// Returns the same machine with one engine from the first run on; `None` where that is not to be
-    /// had.
+    /// Returns the same machine with one engine from the first run on; `None` where that is not to
+    /// be had.
     pub(super) fn with_engine(&self, engine: Engine) -> Option<Self> {
         let machine = Self::new(self.core.clone());
         match engine {

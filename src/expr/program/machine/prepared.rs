@@ -26,8 +26,8 @@ impl PreparedCall {
         self.perform_as(self.function, self.has_slopes(), frame);
     }
 
-    /// Does as [`PreparedCall::perform`], told what the call says itself: where these are constants,
-    /// there is nothing left to decide.
+    /// Does as [`PreparedCall::perform`], told what the call says itself: where these are
+    /// constants, there is nothing left to decide.
     #[inline(always)]
     pub(super) fn perform_as(&self, function: Prepared, has_slopes: bool, frame: &mut [f64]) {
         let p = &self.parameters[..];

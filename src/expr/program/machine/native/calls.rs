@@ -54,7 +54,8 @@ impl CalledStep {
         })
     }
 
-    /// Returns the address of the function that performs it, given its own address and that of the frame.
+    /// Returns the address of the function that performs it, given its own address and that of the
+    /// frame.
     pub(super) fn function(&self) -> usize {
         /// A function made for one prepared function, with slopes or without.
         macro_rules! made_for {
@@ -112,7 +113,8 @@ impl CalledStep {
 ///
 /// # Safety
 ///
-/// `called` is valid, and `frame` has the slots that it says, which nobody else reads or writes meanwhile.
+/// `called` is valid, and `frame` has the slots that it says, which nobody else reads or writes
+/// meanwhile.
 #[allow(unsafe_code)]
 unsafe extern "sysv64" fn perform(called: *const CalledStep, frame: *mut f64) {
     // SAFETY: as the caller says

@@ -1,8 +1,8 @@
 //! Steps translated into code of the processor (x86-64 under Linux).
 //!
 //! The code does the operations of the steps in their order, with the same roundings: the results
-//! are the same bits. What the processor has no instruction for is called; what reaches into tables
-//! or has many arguments is given to the interpreter step by step.
+//! are the same bits. What the processor has no instruction for is called; what reaches into
+//! tables or has many arguments is given to the interpreter step by step.
 //!
 //! # Safety
 //!
@@ -82,8 +82,8 @@ impl Native {
         })
     }
 
-    /// Runs over a frame whose constants are in place, and returns the first output; `None` where frame
-    /// or inputs are too short.
+    /// Runs over a frame whose constants are in place, and returns the first output; `None` where
+    /// frame or inputs are too short.
     #[inline(always)]
     #[allow(unsafe_code)]
     pub(super) fn run(&self, frame: &mut [f64], inputs: &[f64]) -> Option<f64> {
