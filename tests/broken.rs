@@ -2,6 +2,7 @@
 //!
 //! `check`, then `verify`, then `run` are asked as a user would ask them, until one of them speaks.
 //! `cargo test --test broken -- --nocapture` prints the score, a line a fault.
+#![cfg(feature = "cli")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

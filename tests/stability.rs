@@ -1,6 +1,7 @@
 //! Scenes of known answer, in families from stiff to circular: each comes out right, or stops with its reason.
 //!
 //! `cargo test --test stability -- --nocapture` prints the table; `STABILITY=word` runs only scenes whose family or name has the word.
+#![cfg(feature = "solver")]
 
 #[path = "stability/families.rs"]
 mod families;
