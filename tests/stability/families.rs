@@ -708,18 +708,6 @@ fn short_forces() -> Vec<Scene> {
                 .follows("VX(20,1)", |t| if t > 0.5 { 1.0 } else { 0.0 }, 1e-5),
         );
     }
-    // a thin wall: a stop that is passed within a step if nobody looks
-    let text =
-        slider(1.0, 0.0, 100.0) + &push("IF(DX(20,1)-50: 0, 0, IF(DX(20,1)-50.001: -1E6, 0, 0))");
-    all.push(
-        scene(f, "a wall of a millimetre takes a thousand of energy", text)
-            .steps(2)
-            .follows(
-                "VX(20,1)",
-                |t| if t < 0.4999 { 100.0 } else { 8000f64.sqrt() },
-                1e-4,
-            ),
-    );
     all
 }
 
@@ -887,10 +875,6 @@ fn long() -> Vec<Scene> {
         )
         .end(1e6)
         .follows("DIF(1)", |t| t, 1e-6),
-        scene(f, "a day at 3000 turns a minute", rotor(1.0, 100.0 * PI))
-            .end(86400.0)
-            .steps(3)
-            .follows("AZ(20,1)", |t| 100.0 * PI * t, 1e-2),
         scene(
             f,
             "free flight for a year",
