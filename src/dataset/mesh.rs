@@ -7,9 +7,9 @@
 //! .obj   v x y z …
 //! ```
 //!
-//! What touches is the convex hull of the points (`physics/contact/query/hull.rs`), so that
-//! polygons are of no use. Lengths are in the units of the model. A file is taken as what it is,
-//! whatever its name ends with. Nothing is reserved on the word of a file: there are never more
+//! The solid that touches is the convex hull of the points (`physics/contact/query/hull.rs`), so
+//! that polygons are of no use. Lengths are in the units of the model. A file is taken as what it
+//! is, whatever its name ends with. Nothing is reserved on the word of a file: there are never more
 //! points than bytes.
 
 use std::str::FromStr;
@@ -20,7 +20,7 @@ pub const MOST_BYTES: u64 = 1 << 28;
 /// The points of a shell.
 ///
 /// # Errors
-/// What is wrong with the file, with the line where there is one.
+/// Mistakes in the file, with the line where there is one.
 pub fn points(name: &str, bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     let ends = |ending: &str| name.to_ascii_lowercase().ends_with(ending);
     if let Some(n) = binary_facets(bytes)
@@ -53,7 +53,7 @@ fn is_text(bytes: &[u8]) -> bool {
     bytes.starts_with(b"solid") && !bytes.iter().take(1000).any(|&b| b == 0)
 }
 
-/// How many facets a binary STL says that it has.
+/// Returns the number of facets that a binary STL announces.
 fn binary_facets(bytes: &[u8]) -> Option<usize> {
     let n = bytes.get(80..84)?.try_into().ok()?;
     Some(u32::from_le_bytes(n) as usize)

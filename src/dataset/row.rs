@@ -479,7 +479,7 @@ fn apply<T: Element>(
     problems
 }
 
-/// What a new element misses.
+/// Returns the required arguments that a new element misses.
 fn incomplete<T>(bindings: &'static [Binding<T>], record: &Record, name: &str) -> Vec<Problem> {
     let mut problems = Vec::new();
     let has = |k: usize| record.given.iter().any(|g| g.argument == k);

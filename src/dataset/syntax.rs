@@ -20,7 +20,7 @@ pub struct Source {
     line_starts: Vec<usize>,
 }
 
-/// How the characters of a file are written as bytes.
+/// The encoding of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Encoding {
     /// UTF-8, with or without a byte order mark, which is then the first character
@@ -36,7 +36,7 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// What these bytes look like.
+    /// Guesses the encoding of these bytes.
     ///
     /// UTF-16 is known by its byte order mark, or, without one, by zero bytes beside the first
     /// characters, which are plain letters in any dataset. Bytes that would not come back as they
@@ -162,7 +162,7 @@ impl Source {
     }
 }
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenKind {
     /// a word, a number, a sign: anything between marks
@@ -202,7 +202,7 @@ pub struct Token {
     pub span: Span,
 }
 
-/// What stands in a file, in order.
+/// The items of a file, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
     /// a comment on its own, `!` included

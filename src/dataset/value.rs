@@ -142,7 +142,7 @@ impl std::fmt::Display for Value {
     }
 }
 
-/// What an argument accepts.
+/// The kind of value that an argument accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// nothing: the keyword stands alone
@@ -185,7 +185,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What it is called in messages.
+    /// Returns its name in messages.
     pub fn describe(&self) -> String {
         let count = |min: usize, max: usize, what: &str| match (min, max) {
             (a, b) if a == b => format!("{a} {what}"),

@@ -97,7 +97,7 @@ fn of_call(ast: &Ast, callee: Callee, args: &[NodeIx], worst: Risk) -> Risk {
     }
 }
 
-/// What a function makes of arguments without value.
+/// The effect of a function on arguments without value.
 enum Handling {
     /// no number; of a number always one
     Passes,

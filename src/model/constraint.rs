@@ -1,4 +1,4 @@
-//! What ties parts together: JOINT, JPRIM, MOTION, COUPLER, GEAR, GCON, CURVE, PTCV, CVCV.
+//! Constraints: JOINT, JPRIM, MOTION, COUPLER, GEAR, GCON, CURVE, PTCV, CVCV.
 
 use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};

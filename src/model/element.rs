@@ -123,7 +123,7 @@ macro_rules! elements {
 }
 pub(super) use elements;
 
-/// What an element does to the mechanism.
+/// The part that an element plays in the mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Family {
     /// it is a body or a frame in one

@@ -1,4 +1,4 @@
-//! What pushes: SFORCE, VFORCE, VTORQUE, GFORCE, SPRINGDAMPER, BUSHING, FIELD, BEAM, NFORCE,
+//! Forces: SFORCE, VFORCE, VTORQUE, GFORCE, SPRINGDAMPER, BUSHING, FIELD, BEAM, NFORCE,
 //! CONTACT, FRICTION.
 
 use super::element::{Element, ElementKind, Named, names, names_each, placed};

@@ -1,4 +1,4 @@
-//! What is asked for and what is shown: REQUEST, MREQUEST, GRAPHICS.
+//! Output statements: REQUEST, MREQUEST, GRAPHICS.
 
 use super::element::{Element, ElementKind, Named, names, placed};
 use super::{Formula, Place};

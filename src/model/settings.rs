@@ -1,4 +1,4 @@
-//! What holds for the whole model: UNITS, INTEGRATOR, EQUILIBRIUM and the like.
+//! Settings of the whole model: UNITS, INTEGRATOR, EQUILIBRIUM and the like.
 
 use std::collections::BTreeMap;
 

@@ -118,7 +118,7 @@ impl Element for StringData {
     placed!();
 }
 
-/// How the numbers of a MATRIX are laid out.
+/// The order of the numbers of a MATRIX.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum MatrixLayout {
     /// FULL=RORDER: row after row

@@ -229,7 +229,8 @@ fn undetermined(system: &System, k: usize) -> Vec<Diagnostic> {
 /// Linearizes a system about the state in its numbers.
 ///
 /// # Errors
-/// What the equations complained about, plants that do not exist, eigenvalues that do not converge.
+/// Functions that the equations cannot supply, plants that do not exist, eigenvalues that do not
+/// converge.
 pub fn linearize(
     system: &mut System,
     model: &Model,

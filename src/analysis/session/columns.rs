@@ -1,4 +1,4 @@
-//! What a run reports: one formula of an instant per column.
+//! Columns of results: one formula of an instant per column.
 
 use crate::expr::dimension::Dimension;
 use crate::expr::measures::Measure;
@@ -14,7 +14,7 @@ use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
 use crate::space::MarkerState;
 
-/// What a column shows.
+/// The quantity that a column shows.
 #[derive(Clone, Debug, PartialEq)]
 enum What {
     /// an expression: index among the extra formulas of the scene

@@ -34,7 +34,7 @@ use start::Kept;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What SIMULATE asks for.
+/// The kind of a simulation, as SIMULATE asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Analysis {
     /// motions alone move it: position, velocity and acceleration at each output time
@@ -49,7 +49,7 @@ pub enum Analysis {
     InitialConditions,
 }
 
-/// How to solve, beyond what the model says. `None`: as the model says, else our default.
+/// Options of solving, beyond what the model says. `None`: as the model says, else our default.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// permitted local error
@@ -197,7 +197,7 @@ impl Session {
     /// conditions.
     ///
     /// # Errors
-    /// What is wrong in the model, and what has no derivatives.
+    /// Mistakes in the model, and functions without derivatives.
     pub fn linearize(&mut self, wanted: &linear::Wanted) -> Result<Linearization, Vec<Diagnostic>> {
         let inputs = linear::inputs(&self.model, wanted).map_err(|d| vec![d])?;
         let (mut system, assembly) = self.prepare(LINEAR, &inputs)?;
@@ -212,7 +212,7 @@ impl Session {
     /// Runs one simulation up to `end` with `steps` output steps.
     ///
     /// # Errors
-    /// What is wrong in the model. A numerical failure is no error: see the record.
+    /// Mistakes in the model. A numerical failure is no error: see the record.
     pub fn simulate(
         &mut self,
         analysis: Analysis,

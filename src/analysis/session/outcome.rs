@@ -271,7 +271,7 @@ fn explained(system: &System, stop: &Stop, stands: &[f64]) -> StopReason {
     }
 }
 
-/// What a method met, and the name of the worst unknown or row.
+/// Returns the obstacle that a method met, and the name of the worst unknown or row.
 fn cause(system: &System, reason: Reason) -> (Cause, String) {
     let scene = &system.scene;
     let mut names = scene.unknown_names();

@@ -82,7 +82,7 @@ fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
 /// `before` is called before each simulation with its start and its end.
 ///
 /// # Errors
-/// What is wrong in a command or in the model as the commands have left it.
+/// Mistakes in a command, or in the model as the commands have left it.
 pub fn obey(
     session: &mut Session,
     steps: &[Step],

@@ -31,7 +31,7 @@ impl Session {
     /// Runs one simulation up to `end` with output steps as they are asked for.
     ///
     /// # Errors
-    /// What is wrong in the model. A numerical failure is no error: see the record.
+    /// Mistakes in the model. A numerical failure is no error: see the record.
     pub fn simulate_with(
         &mut self,
         analysis: Analysis,

@@ -62,7 +62,7 @@ pub(super) enum StopReason {
     },
 }
 
-/// What a method met where it could not go on.
+/// The obstacle at which a method could not go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cause {
     /// no solution of an algebraic loop
@@ -103,7 +103,7 @@ impl Cause {
         }
     }
 
-    /// What is wrong, without where and when.
+    /// Returns the reason alone, without time and place.
     fn sentence(self) -> &'static str {
         match self {
             Cause::Loop => "a function that depends on itself has no solution near",
@@ -138,7 +138,7 @@ impl StopReason {
         }
     }
 
-    /// What it means for the run.
+    /// Returns the status of the run.
     pub(super) fn status(&self) -> Status {
         match self {
             StopReason::Interrupted => Status::Interrupted,

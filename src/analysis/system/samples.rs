@@ -69,7 +69,7 @@ impl Samples {
     /// Records the sampled systems of a scene.
     ///
     /// # Errors
-    /// What the equations cannot supply.
+    /// Functions that the equations cannot supply.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
         let l = scene.layout;
         let mut all = Vec::new();

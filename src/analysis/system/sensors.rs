@@ -47,7 +47,7 @@ impl Sensors {
     /// Records the expressions of the sensors of a scene.
     ///
     /// # Errors
-    /// What the equations cannot supply.
+    /// Functions that the equations cannot supply.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
         let n = scene.sensors.len();
         if n == 0 {

@@ -65,7 +65,7 @@ impl TimeEvents {
     /// Records the functions of time alone of a scene.
     ///
     /// # Errors
-    /// What the equations cannot supply.
+    /// Functions that the equations cannot supply.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
         let programs::Timed { values, levels } = programs::timed(scene)?;
         if levels.is_empty() {

@@ -13,7 +13,7 @@ use crate::scene::equations::row_name;
 use crate::scene::{Scene, Source};
 use std::collections::BTreeSet;
 
-/// How a part is carried.
+/// The link that carries a part, and its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Carried {
     /// "PART/3"
@@ -61,7 +61,7 @@ pub(in crate::analysis) fn pushing() -> BTreeSet<ElementKind> {
 /// Compiles and assembles a model, and tells what came out.
 ///
 /// # Errors
-/// What keeps it from being solved.
+/// Mistakes that keep the model from being solved.
 pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     let options = Options {
         mode: 4,
@@ -133,7 +133,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     Ok(out)
 }
 
-/// What carries each part, in the order of the links.
+/// Returns the carrier of each part, in the order of the links.
 fn forest(scene: &Scene, out: &mut Outline) {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by_key(|&k| scene.parts[k].link);

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// What a line of a log begins or shows.
+/// The meaning of a line of a log.
 enum Note {
     Begin,
     /// the table of steps shows this time

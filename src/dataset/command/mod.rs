@@ -23,7 +23,7 @@ use message_log::of_message_log;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-/// What SIMULATE runs.
+/// The kind of simulation that SIMULATE runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SimulationKind {
     /// motions alone move the mechanism

@@ -1,4 +1,4 @@
-//! What is named exists, and functions can be read.
+//! Rules of references: elements that are named exist, and functions can be read.
 
 use super::{Out, about, advise, error, near};
 use crate::diagnostic::Diagnostic;

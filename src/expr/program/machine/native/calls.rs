@@ -1,5 +1,5 @@
-//! What generated code calls: operations that the processor has no instruction for, and whole
-//! steps.
+//! Functions that generated code calls: operations that the processor has no instruction for, and
+//! whole steps.
 
 use super::super::super::code::Core;
 use super::super::super::operation::{BinaryOp, UnaryOp, unary_operations};
