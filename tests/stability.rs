@@ -3,7 +3,7 @@
 //! `cargo test --test stability -- --nocapture` prints the table; `STABILITY=word` runs only scenes whose family or name has the word.
 #![cfg(feature = "solver")]
 
-#[path = "stability/families.rs"]
+#[path = "stability/families/mod.rs"]
 mod families;
 #[path = "stability/laws.rs"]
 mod laws;

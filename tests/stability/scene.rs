@@ -10,6 +10,8 @@ pub enum Claim {
     Follows(String, Box<dyn Fn(f64) -> f64>, f64),
     /// the run stops, or is refused, and one of the sentences that say so has these words
     Ends(&'static str),
+    /// the run goes to its end, and one of its warnings has these words
+    Tells(&'static str),
 }
 
 /// How a scene came out.
@@ -94,11 +96,16 @@ impl Scene {
         self
     }
 
+    pub fn tells(mut self, words: &'static str) -> Self {
+        self.claims.push(Claim::Tells(words));
+        self
+    }
+
     /// Runs the scene: how it came out, and a sentence about the worst of it.
     pub fn run(&self) -> (Outcome, String) {
         let follows = self.claims.iter().filter_map(|c| match c {
             Claim::Follows(column, ..) => Some(column.clone()),
-            Claim::Ends(_) => None,
+            Claim::Ends(_) | Claim::Tells(_) => None,
         });
         let options = Options {
             columns: follows.collect(),
@@ -131,6 +138,12 @@ impl Scene {
             match claim {
                 Claim::Ends(words) => {
                     return (Outcome::Wrong, format!("went on; expected {words:?}"));
+                }
+                Claim::Tells(words) => {
+                    let said = session.run.record.warned();
+                    if !said.iter().any(|s| s.contains(words)) {
+                        return (Outcome::Wrong, format!("said {said:?}; expected {words:?}"));
+                    }
                 }
                 Claim::Follows(column, expected, tolerance) => {
                     let times = session.run.column("TIME").unwrap_or_default();
