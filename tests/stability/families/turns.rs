@@ -68,9 +68,9 @@ pub fn turns() -> Vec<Scene> {
         scene(
             f,
             "a driven rotor without freedom",
-            rotor(1.0, 0.0) + "MOTION/1, JOINT=1, ROTATION, FUNCTION=40*TIME\n",
+            rotor(1.0, 0.0) + "MOTION/1, JOINT=1, ROTATION, FUNCTION=4*TIME\n",
         )
-        .follows("AZ(20,1)", |t| 40.0 * t, 1e-9)
+        .follows("AZ(20,1)", |t| 4.0 * t, 1e-9)
         .tells("moved by its motions alone"),
     );
     all
