@@ -4,6 +4,7 @@
 #[path = "common/running.rs"]
 mod running;
 
+use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::diagnostic::Diagnostic;
 use cognate::results::Status;
@@ -35,6 +36,43 @@ fn a_function_that_loses_its_value_is_named_with_its_operation() {
             assert!(record.stop_reason.contains("stopped at time"));
         }
     }
+}
+
+#[test]
+fn an_operand_without_value_stops_a_run_although_its_operation_would_lose_it() {
+    for function in [
+        "MIN(5,1/TIME)",
+        "ATAN2(1/TIME,1/TIME)",
+        "1/(1/TIME)",
+        "SQRT(TIME-5)**0",
+        "POLY(LOG(TIME-5),0,7)",
+        "0/TIME",
+        "TIME/TIME",
+        "0*(1/TIME)",
+        "1/TIME-1/TIME",
+        "0/AZ(2,3)",
+        "MIN(5,1/AZ(2,3))",
+    ] {
+        let text = format!("{HINGE}SFORCE/7, ROTATION, I=2, J=3, FUNCTION={function}\n");
+        for method in ["AUTO", "DOP853", "RADAU5", "BDF"] {
+            let mut s = session(&text, &[], 1e-6);
+            s.model.integrator.method = Some(method.into());
+            let outcome = s.simulate(Analysis::Dynamic, 1.0, 3, &mut Unwatched);
+            let said = match &outcome {
+                Ok(_) => s.run.record.stop_reason.clone(),
+                Err(errors) => errors.iter().map(ToString::to_string).collect(),
+            };
+            assert!(
+                !matches!(outcome, Ok(Status::Completed)) && said.contains("SFORCE/7"),
+                "{function}, {method}: {said}"
+            );
+        }
+    }
+    // a side that is not taken may be without value
+    let function = "IF(TIME+1: 1/(1/(TIME-TIME)), 0, MIN(5,2+TIME))";
+    let text = format!("{HINGE}SFORCE/7, ROTATION, I=2, J=3, FUNCTION={function}\n");
+    let mut s = session(&text, &[], 1e-6);
+    go(&mut s, Analysis::Dynamic, 1.0, 3);
 }
 
 #[test]

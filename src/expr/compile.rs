@@ -119,9 +119,10 @@ impl<'a> Compiler<'a> {
                     let mut value = self
                         .node(node, &values, always)
                         .map_err(|d| place(d, span))?;
-                    finite::watched(ast, node, &risks, |operand| {
+                    let is_same = |a: NodeIx, b: NodeIx| values[a as usize] == values[b as usize];
+                    finite::watched(ast, node, &risks, is_same, |operand| {
                         if let Some(&Some(x)) = values.get(operand as usize) {
-                            value = self.lost_with(value, x);
+                            value = self.builder.get_mut().binary(BinaryOp::Kept, value, x);
                         }
                     });
                     match self.builder.get_mut().constant_of(value) {
@@ -174,7 +175,16 @@ impl<'a> Compiler<'a> {
                 if always && op == Written::Div && builder.constant_of(b) == Some(0.0) {
                     return Err(domain("division by zero"));
                 }
-                builder.binary(operation(op), a, b)
+                let value = builder.binary(operation(op), a, b);
+                match op {
+                    // recorded equations take 0/x for 0 and x/x for 1, at x = 0 too
+                    Written::Div if a == b || builder.constant_of(a) == Some(0.0) => {
+                        let one = builder.constant(1.0);
+                        let reciprocal = builder.binary(BinaryOp::Div, one, b);
+                        builder.binary(BinaryOp::Kept, value, reciprocal)
+                    }
+                    _ => value,
+                }
             }
             Node::If {
                 selector,
@@ -193,14 +203,6 @@ impl<'a> Compiler<'a> {
                 self.call(callee, &args, always)?
             }
         })
-    }
-
-    /// Returns the value where `x` is a number, and NaN where it is not; to the bit, for `x - x`
-    /// is +0.
-    fn lost_with(&mut self, value: Value, x: Value) -> Value {
-        let builder = self.builder.get_mut();
-        let nothing = builder.binary(BinaryOp::Sub, x, x);
-        builder.binary(BinaryOp::Sub, value, nothing)
     }
 
     /// Records a call.

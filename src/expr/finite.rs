@@ -4,14 +4,10 @@
 //! The walker stops at the first operation that has no finite value. A program has no such test at
 //! each step: infinities and NaN run on, and the result tells. That fails where an operation makes
 //! a number of them, as a division by infinity or MIN do. Here stands, from the tree alone, which
-//! operands can be without value and which operations can lose them; the compiler subtracts `x -
-//! x` of such an operand from the result. That is 0 wherever x is a number, so no bit changes, and
-//! the result has no value where x has none. Expressions without such an operand cost nothing.
-//!
-//! Recorded equations take zeros as structure and fold `x - x` away: in `run` an operand can still
-//! be lost. There an operation of its own is needed, `kept(value, x)`: the value where `x` is
-//! finite, else NaN; the derivatives are those of the value alone; it folds to the value where `x`
-//! is constant, and it has no break.
+//! operands can be without value and which operations can lose them; the compiler keeps the result
+//! with such an operand (`BinaryOp::Kept`): it has no value where the operand has none, no bit of it
+//! changes elsewhere, and its derivatives are its own. Expressions without such an operand cost
+//! nothing.
 //!
 //! Inputs are finite: the host sees to that. A sum or a product that is too large for a number
 //! counts as finite unless an operand is at risk.
@@ -128,8 +124,15 @@ fn handling(function: Function) -> Handling {
     }
 }
 
-/// Calls `watch` for every operand of a node that is at risk and that the node can lose.
-pub(super) fn watched(ast: &Ast, node: &Node, risks: &[Risk], mut watch: impl FnMut(NodeIx)) {
+/// Calls `watch` for every operand of a node that is at risk and that the node can lose;
+/// `is_same` tells of two operands if they are one value.
+pub(super) fn watched(
+    ast: &Ast,
+    node: &Node,
+    risks: &[Risk],
+    is_same: impl Fn(NodeIx, NodeIx) -> bool,
+    mut watch: impl FnMut(NodeIx),
+) {
     let mut from = |least: Risk, ix: NodeIx| {
         if risks.get(ix as usize).is_some_and(|&risk| risk >= least) {
             watch(ix);
@@ -137,6 +140,16 @@ pub(super) fn watched(ast: &Ast, node: &Node, risks: &[Risk], mut watch: impl Fn
     };
     match *node {
         Node::Binary(BinaryOp::Div, _, divisor) => from(Risk::Infinite, divisor),
+        // recorded equations take 0·x for 0, and x − x
+        Node::Binary(BinaryOp::Mul, a, b) => {
+            if literal(ast, a) == Some(0.0) {
+                from(Risk::NotANumber, b);
+            }
+            if literal(ast, b) == Some(0.0) {
+                from(Risk::NotANumber, a);
+            }
+        }
+        Node::Binary(BinaryOp::Sub, a, b) if is_same(a, b) => from(Risk::NotANumber, a),
         Node::Binary(BinaryOp::Pow, base, exponent) => match literal(ast, exponent) {
             Some(e) if e > 0.0 => {}
             Some(e) if e < 0.0 => from(Risk::Infinite, base),

@@ -102,5 +102,12 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
     fn scale(self, factor: f64) -> Self {
         self.map(self.re.scale(factor), |x| x.scale(factor))
     }
+    #[inline(always)]
+    fn kept_with(self, x: Self) -> Self {
+        Self {
+            re: self.re.kept_with(x.re),
+            eps: self.eps,
+        }
+    }
     elementary_functions!(S);
 }

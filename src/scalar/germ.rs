@@ -641,6 +641,9 @@ impl Scalar for Germ {
     fn rem(self, other: Self) -> Self {
         self - (self / other).trunc() * other
     }
+    fn kept_with(self, x: Self) -> Self {
+        if x.is_defined() { self } else { x }
+    }
     fn lookup(self, table: &Arc<dyn Table>, order: u32) -> Self {
         if !self.is_defined() || self.lead() < -SAME_EXPONENT {
             return Self::undefined();

@@ -339,6 +339,9 @@ impl Scalar for Interval {
         let most = b.lo.abs().max(b.hi.abs());
         Self::between(self.lo.min(0.0).max(-most), self.hi.max(0.0).min(most))
     }
+    fn kept_with(self, x: Self) -> Self {
+        if x.is_none() { x } else { self }
+    }
     fn lookup(self, table: &Arc<dyn Table>, order: u32) -> Self {
         match self.known() {
             Some(x) => Self::constant(table.at(x, order)),

@@ -136,5 +136,9 @@ impl<S: Scalar> Scalar for Jet<S> {
             self.second.scale(factor),
         )
     }
+    #[inline(always)]
+    fn kept_with(self, x: Self) -> Self {
+        Self::new(self.value.kept_with(x.value), self.first, self.second)
+    }
     elementary_functions!(S);
 }

@@ -197,6 +197,14 @@ pub trait Scalar:
     /// Returns the `order`-th derivative of a table at this number.
     fn lookup(self, table: &std::sync::Arc<dyn Table>, order: u32) -> Self;
 
+    /// Returns this number, to the bit, where `x` is finite, and NaN elsewhere; derivatives are
+    /// those of this number. So a result goes with an operand that its operation would lose.
+    #[inline(always)]
+    fn kept_with(self, x: Self) -> Self {
+        // x − x is +0
+        self - (x - x)
+    }
+
     /// Returns the larger; the first on a tie.
     #[inline(always)]
     fn max(self, other: Self) -> Self {

@@ -101,6 +101,7 @@ impl Builder {
                 BinaryOp::Rem => at(self.binary(BinaryOp::Div, a, b), Levels::Whole),
                 BinaryOp::Div | BinaryOp::Along => at(b, Levels::Zero),
                 BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::And | BinaryOp::Or => {}
+                BinaryOp::Kept => {}
             },
             Node::Whole(x, n) => {
                 if n < 0 {

@@ -164,7 +164,7 @@ impl Builder {
         ca: Option<f64>,
         cb: Option<f64>,
     ) -> Option<Value> {
-        use BinaryOp::{Add, Along, Div, Mul, Pow, Sub};
+        use BinaryOp::{Add, Along, Div, Kept, Mul, Pow, Sub};
         let structural = self.folding == Folding::Structural;
         let minus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_negative);
         let plus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_positive);
@@ -184,6 +184,7 @@ impl Builder {
                 return Some(self.constant(0.0));
             }
             Div | Along if structural && ca == Some(0.0) => return Some(self.constant(0.0)),
+            Kept if cb.is_some_and(f64::is_finite) => return Some(a),
             Div if structural && a == b => return Some(self.constant(1.0)),
             // a power of two divides as its reciprocal multiplies, to the bit
             Div if cb.is_some_and(is_power_of_two) => {

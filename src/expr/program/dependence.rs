@@ -68,7 +68,7 @@ impl Core {
             Code::Unary(_)
             | Code::Whole(_)
             | Code::Lookup { .. }
-            | Code::Binary(BinaryOp::Along) => each(a),
+            | Code::Binary(BinaryOp::Along | BinaryOp::Kept) => each(a),
             Code::Binary(_) => [a, b].into_iter().for_each(each),
             Code::HalfPower(_) => each(c),
             Code::Select => [b, c].into_iter().for_each(each),

@@ -237,6 +237,7 @@ impl<'b> Adjoint<'b> {
                 let part = self.op(Along, bar, b);
                 self.add(a, here, part);
             }
+            BinaryOp::Kept => self.add(a, here, bar),
             BinaryOp::And | BinaryOp::Or => {}
         }
     }

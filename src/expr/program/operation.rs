@@ -223,6 +223,8 @@ define_binary! {
     Or |a, b| from_mask(truth(a).or(truth(b))), 1;
     /// −a, 0 or a by the sign of b; NaN where b is
     Along |a, b| arithmetic_if(b, -a, S::zero(), a), 1;
+    /// a where b is finite, else NaN
+    Kept |a, b| a.kept_with(b), 2;
 }
 
 /// A comparison of two numbers; it yields a condition, 1 or 0.

@@ -280,6 +280,9 @@ impl<'b> Scalar for Sym<'b> {
     fn rem(self, other: Self) -> Self {
         self.binary(BinaryOp::Rem, other)
     }
+    fn kept_with(self, x: Self) -> Self {
+        self.binary(BinaryOp::Kept, x)
+    }
     fn lookup(self, table: &Arc<dyn Table>, order: u32) -> Self {
         match self {
             Sym::Constant(c) => Sym::Constant(table.at(c, order)),

@@ -85,6 +85,7 @@ fn formula() -> impl Strategy<Value = Formula> {
             BinaryOp::Pow,
             BinaryOp::Atan2,
             BinaryOp::Rem,
+            BinaryOp::Kept,
         ]);
         let comparison = prop::sample::select(vec![Comparison::Lt, Comparison::Le, Comparison::Eq]);
         let function = prop::sample::select(Function::ALL.to_vec());

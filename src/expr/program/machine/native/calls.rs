@@ -214,6 +214,7 @@ pub(super) fn of_two_numbers(op: BinaryOp) -> usize {
         BinaryOp::And => called!(And),
         BinaryOp::Or => called!(Or),
         BinaryOp::Along => called!(Along),
+        BinaryOp::Kept => called!(Kept),
     };
     function as usize
 }

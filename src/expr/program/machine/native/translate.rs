@@ -57,7 +57,9 @@ pub(super) struct Call {
 fn is_call(step: &Step) -> bool {
     match step {
         Step::Unary { op, .. } => !matches!(op, UnaryOp::Sqrt | UnaryOp::Abs),
-        Step::Binary { op, .. } => instruction(*op).is_none() && *op != BinaryOp::Along,
+        Step::Binary { op, .. } => {
+            instruction(*op).is_none() && !matches!(op, BinaryOp::Along | BinaryOp::Kept)
+        }
         Step::SineCosine { .. } | Step::Instruction { .. } | Step::Prepared { .. } => true,
         Step::Input { .. }
         | Step::Copy { .. }
@@ -80,7 +82,8 @@ fn instruction(op: BinaryOp) -> Option<Instruction> {
         | BinaryOp::Rem
         | BinaryOp::And
         | BinaryOp::Or
-        | BinaryOp::Along => None,
+        | BinaryOp::Along
+        | BinaryOp::Kept => None,
     }
 }
 
@@ -148,6 +151,7 @@ impl Translation<'_> {
             Step::Binary { op, a, b, to } => match instruction(op) {
                 Some(instruction) => self.arithmetic(op, instruction, [a, b], to, next),
                 None if op == BinaryOp::Along => self.along(a, b, to, next),
+                None if op == BinaryOp::Kept => self.kept(a, b, to, next),
                 None => {
                     self.call(calls::of_two_numbers(op), [a, b], next);
                     self.hold(0, to, result);
@@ -297,6 +301,18 @@ impl Translation<'_> {
         self.assembler
             .mask(ONE, Relation::Unordered, Place::Xmm(ONE));
         self.bits(assembler::OR, x, ONE);
+        self.used_once(b, next.operands[1]);
+        self.hold(x, to, next.results[0]);
+    }
+
+    /// Emits a − (b − b): a where b is finite.
+    fn kept(&mut self, a: u32, b: u32, to: u32, next: &Next) {
+        let watched = self.place(b);
+        let x = self.own(a, next.operands[0]);
+        self.assembler.load(ONE, watched);
+        let itself = Place::Xmm(ONE);
+        self.assembler.operate(assembler::SUBTRACT, ONE, itself);
+        self.assembler.operate(assembler::SUBTRACT, x, itself);
         self.used_once(b, next.operands[1]);
         self.hold(x, to, next.results[0]);
     }
