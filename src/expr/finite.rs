@@ -5,8 +5,8 @@
 //! each step: infinities and NaN run on, and the result tells. That fails where an operation makes
 //! a number of them, as a division by infinity or MIN do. Here stands, from the tree alone, which
 //! operands can be without value and which operations can lose them; the compiler keeps the result
-//! with such an operand (`BinaryOp::Kept`): it has no value where the operand has none, no bit of it
-//! changes elsewhere, and its derivatives are its own. Expressions without such an operand cost
+//! with such an operand (`BinaryOp::Kept`): it has no value where the operand has none, no bit of
+//! it changes elsewhere, and its derivatives are its own. Expressions without such an operand cost
 //! nothing.
 //!
 //! Inputs are finite: the host sees to that. A sum or a product that is too large for a number
