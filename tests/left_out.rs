@@ -175,3 +175,69 @@ fn a_contact_that_is_left_out_is_not_said_to_be_approximate() {
     assert!(warns(&s, &["CONTACT/5", "left out"]));
     assert!(!warns(&s, &["POISSON"]), "{:?}", s.run.record.warned());
 }
+
+#[test]
+fn what_takes_part_in_motion_and_is_not_solved_is_refused_or_left_out_in_words() {
+    let moving = [
+        "FLEX_BODY",
+        "FE_PART",
+        "UCON",
+        "PTSF",
+        "CVSF",
+        "SFSF",
+        "FE_LOAD",
+        "MFORCE",
+        "TIRE",
+        "WHEEL",
+    ];
+    for &kind in cognate::model::ElementKind::ALL
+        .iter()
+        .filter(|k| !k.is_solved())
+    {
+        let (keyword, text) = (kind.keyword(), format!("{kind}/7, IRM=3, JRM=2\n"));
+        let plain = &mut session(&text, &["TIME"], &[], false);
+        if !moving.contains(&keyword) {
+            go(plain, 0.1);
+            continue;
+        }
+        let errors = mistakes(plain, Analysis::Dynamic);
+        let told = |d: &&cognate::diagnostic::Diagnostic| {
+            d.code == "unsupported" && d.element.as_deref() == Some(&format!("{keyword}/7"))
+        };
+        assert_eq!(
+            errors.iter().filter(told).count(),
+            1,
+            "{keyword}: {errors:?}"
+        );
+        let mut s = session(&text, &["TIME"], &[keyword], false);
+        go(&mut s, 0.1);
+        assert!(
+            warns(&s, &[&format!("{keyword}/7"), "left out"]),
+            "{keyword}"
+        );
+    }
+}
+
+#[test]
+fn friction_that_a_joint_states_itself_is_refused_unless_it_is_off() {
+    let joint = |friction: &str| {
+        format!(
+            "PART/4, MASS=1, CM=4, IP=1,1,1\nMARKER/4, PART=4\nMARKER/5, PART=1\n\
+                 JOINT/2, REVOLUTE, I=4, J=5{friction}, MU_DYN_ROT=0.3\n"
+        )
+    };
+    for quiet in ["", ", FRICTION=OFF"] {
+        go(&mut session(&joint(quiet), &["TIME"], &[], false), 0.1);
+    }
+    for friction in ["ON", "PRELOAD_ONLY"] {
+        let text = joint(&format!(", FRICTION={friction}"));
+        let errors = mistakes(&mut session(&text, &[], &[], false), Analysis::Dynamic);
+        assert_eq!(
+            (errors[0].code, errors[0].element.as_deref()),
+            ("unsupported", Some("JOINT/2"))
+        );
+        let mut s = session(&text, &["TIME"], &["FRICTION"], false);
+        go(&mut s, 0.1);
+        assert!(warns(&s, &["JOINT/2", "without the friction"]));
+    }
+}

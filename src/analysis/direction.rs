@@ -1,6 +1,7 @@
 //! Directions and axes: what a row fixes, as data, and as a sentence writes it.
 
 use super::quantity::point;
+use crate::model::ElementKind;
 use crate::scene::equations::Equations;
 use crate::scene::{RowKind, Scene};
 use crate::space::{Mat3, Vec3};
@@ -45,7 +46,10 @@ impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Axis::Ground(k) => write!(f, "ground {}", AXIS_LETTERS[k]),
-            Axis::Marker(id, k) => write!(f, "{} of MARKER/{id}", AXIS_LETTERS[k]),
+            Axis::Marker(id, k) => {
+                let marker = ElementKind::Marker.id(id);
+                write!(f, "{} of {marker}", AXIS_LETTERS[k])
+            }
             Axis::Vector(unit) => f.write_str(&point(unit)),
         }
     }

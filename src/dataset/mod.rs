@@ -248,7 +248,10 @@ fn adopt_marker(
             marker.owner = MarkerOwner::Part(part);
             Diagnostic::warning(
                 "marker_without_part",
-                format!("no PART is named; PART/{part}, the last before it, is taken"),
+                format!(
+                    "no PART is named; {}, the last before it, is taken",
+                    ElementKind::Part.id(part)
+                ),
             )
         }
         None => Diagnostic::error(

@@ -481,7 +481,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
             |j| if j.kind.displacements() == Displacements::Rotation { None } else { <Angle as Lens<_>>::get(&j.ic_rotation) });
         field "PITCH" (pitch);
         field "PD" (pd);
-        keep "FRICTION" (WORD);
+        lens "FRICTION" (Word, friction);
         keep "DELTA_V" (REAL);
         keep "MAXIMUM_DEFORMATION" (REAL);
         keep "MU_DYN_ROT" (REAL);

@@ -2,6 +2,7 @@
 
 use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
+use crate::physics::joint::Tie;
 pub use crate::physics::joint::{JointKind, PrimitiveKind};
 
 /// JOINT: a joint between two markers.
@@ -23,10 +24,15 @@ pub struct Joint {
     pub pitch: Option<f64>,
     /// RACKPIN: pitch diameter, signed
     pub pd: Option<f64>,
+    /// FRICTION of datasets older than the statement FRICTION: ON, OFF, PRELOAD_ONLY; not solved
+    pub friction: Option<String>,
 }
 
 impl Element for Joint {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(Tie::Joint(self.kind).removes())
+    }
     fn references(&self) -> Vec<Named> {
         names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
     }
@@ -50,6 +56,9 @@ pub struct Primitive {
 
 impl Element for Primitive {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(Tie::Primitive(self.kind).removes())
+    }
     fn references(&self) -> Vec<Named> {
         names(ElementKind::Marker, [("I", self.i), ("J", self.j)])
     }
@@ -116,6 +125,9 @@ pub struct Motion {
 
 impl Element for Motion {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(1)
+    }
     fn references(&self) -> Vec<Named> {
         match self.driven {
             Driven::Joint(n) | Driven::JointRotation(n) | Driven::JointTranslation(n) => {
@@ -152,6 +164,9 @@ pub struct Coupler {
 
 impl Element for Coupler {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(1)
+    }
     fn references(&self) -> Vec<Named> {
         names_each(ElementKind::Joint, "JOINTS", &self.joints)
     }
@@ -173,6 +188,9 @@ pub struct Gear {
 
 impl Element for Gear {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(1)
+    }
     fn references(&self) -> Vec<Named> {
         let mut all = names_each(ElementKind::Joint, "JOINTS", &self.joints);
         all.extend(names(ElementKind::Marker, [("CV", self.cv)]));
@@ -193,6 +211,9 @@ pub struct GeneralConstraint {
 
 impl Element for GeneralConstraint {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(1)
+    }
     fn references(&self) -> Vec<Named> {
         names(ElementKind::Marker, [("I", self.i)])
     }
@@ -255,6 +276,9 @@ pub struct PointOnCurve {
 
 impl Element for PointOnCurve {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(2)
+    }
     fn references(&self) -> Vec<Named> {
         let mut all = names(ElementKind::Curve, [("CURVE", self.curve)]);
         all.extend(names(ElementKind::Marker, [("I", self.i), ("RM", self.rm)]));
@@ -297,6 +321,9 @@ pub struct CurveOnCurve {
 
 impl Element for CurveOnCurve {
     placed!();
+    fn equations(&self) -> Option<usize> {
+        Some(2)
+    }
     fn references(&self) -> Vec<Named> {
         let mut all = Vec::new();
         let words = [

@@ -107,7 +107,7 @@ macro_rules! elements {
                 Ucon "UCON" Constraint;
                 Ptsf "PTSF" Constraint;
                 Cvsf "CVSF" Constraint;
-                Sfsf "SFSF" Data;
+                Sfsf "SFSF" Constraint;
                 FeLoad "FE_LOAD" Force;
                 Mforce "MFORCE" Force;
                 Tire "TIRE" Force;
@@ -266,6 +266,11 @@ pub trait Element {
     /// Returns its functions by their arguments.
     fn formulas(&self) -> Vec<(&'static str, &Formula)> {
         Vec::new()
+    }
+
+    /// Returns how many equations it stands for; `None` for what is no constraint, or not solved.
+    fn equations(&self) -> Option<usize> {
+        None
     }
 
     /// Returns the numbers of the two markers between which it acts, where these must belong to two

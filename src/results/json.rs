@@ -3,6 +3,7 @@
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
 use super::{Counts, Jump, RankChange, Run, Simulation};
+use crate::model::ElementKind;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -49,7 +50,8 @@ pub fn with_files(mut record: Value, files: &BTreeMap<String, u64>) -> Value {
 }
 
 fn jump(j: &Jump) -> Value {
-    json!({ "element": format!("MOTION/{}", j.motion), "time": j.at, "of": j.of.word(), "by": j.by })
+    let motion = ElementKind::Motion.id(j.motion).to_string();
+    json!({ "element": motion, "time": j.at, "of": j.of.word(), "by": j.by })
 }
 
 fn rank_change(c: &RankChange) -> Value {

@@ -1,5 +1,5 @@
-//! PTCV and CVCV: their rows, where their contacts begin, how these are followed while parts are
-//! put together, and what ends them.
+//! PTCV and CVCV: their rows, where their contacts begin, and how these are followed while parts
+//! are put together. Their ends stand in `broken.rs`.
 //!
 //! The parameter of a contact is a state: its rate is that of the point which the rows hold, so
 //! that any method predicts it with the accuracy of all else, and Newton's iteration inside the
@@ -10,7 +10,6 @@ use super::build::Builder;
 use super::compile::Compiler;
 use super::configuration::{Configuration, Configured, ContactStart};
 use super::equations::Equations;
-use super::layout::Layout;
 use super::unknown::{Side, UnknownId};
 use super::{ConstraintElement, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
@@ -47,7 +46,7 @@ const CONTACT_GAP_TOLERANCE: f64 = 1e-9;
 /// Largest change of a parameter from one iterate to the next; a whole curve is 2.
 const MAX_PARAMETER_STEP: f64 = 0.1;
 /// Planes count as one below this sine of the angle between them.
-const COPLANAR_SINE: f64 = 1e-6;
+pub(super) const COPLANAR_SINE: f64 = 1e-6;
 
 impl Builder<'_> {
     /// Two rows for each PTCV and CVCV.
@@ -82,7 +81,8 @@ impl Builder<'_> {
                 if path.height > 1e-9 * path.length {
                     planar = false;
                     let what = format!(
-                        "CURVE/{curve} leaves the x-y plane of its marker by {:.4} along z",
+                        "{} leaves the x-y plane of its marker by {:.4} along z",
+                        ElementKind::Curve.id(curve),
                         path.height
                     );
                     c.errors.push(not_coplanar(name, what));
@@ -176,7 +176,7 @@ fn not_coplanar(name: ElementId, what: String) -> Diagnostic {
 }
 
 /// Returns the parameters of a contact from its states.
-fn parameters(cam: &Cam, start: &ContactStart, x: &[f64]) -> [f64; 2] {
+pub(super) fn parameters(cam: &Cam, start: &ContactStart, x: &[f64]) -> [f64; 2] {
     let mut s = start.offset;
     for (k, s) in s.iter_mut().enumerate().take(cam.contact.n_parameters()) {
         *s += x.get(cam.state + k).copied().unwrap_or(0.0);
@@ -384,91 +384,4 @@ fn closest_pair(
         }
     }
     best.map(|b| b.1)
-}
-
-/// The reason why the contacts of an instant are none, of the first that is not.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Broken {
-    /// which contact
-    pub element: ElementId,
-    /// of the diagnostic
-    pub code: &'static str,
-    /// what is wrong
-    pub sentence: String,
-    /// what to do
-    pub advice: String,
-}
-
-/// The first contact that is none. `until`: when the run was to end, for how far a curve is too
-/// short.
-pub fn broken(scene: Configured<'_>, numbers: &[f64], until: Option<f64>) -> Option<Broken> {
-    if scene.cams.is_empty() {
-        return None;
-    }
-    let at = Equations::<f64>::new(scene, numbers);
-    let x = &numbers[scene.layout.x()];
-    scene.cams.iter().enumerate().find_map(|(c, cam)| {
-        let (i, j) = (at.frame(cam.i), at.frame(cam.j));
-        let start = &scene.configuration.contacts[c];
-        let s = (cam.contact).refined(&i, &j, parameters(cam, start, x), 2);
-        let element = cam.id;
-        for (k, path) in cam.contact.paths().iter().enumerate() {
-            let beyond = path.beyond(s[k]);
-            if beyond <= 0.0 || beyond.is_nan() {
-                continue;
-            }
-            let end = if s[k] < 0.0 { -1.0 } else { 1.0 };
-            let place: Vec3<f64> = path.at(end, 0);
-            let tangent: Vec3<f64> = path.at(end, 1);
-            let speed = at.cam_jets(c)[k].first.abs() * tangent.norm();
-            let which = if end < 0.0 { "first" } else { "last" };
-            let sentence = format!(
-                "the contact leaves the open CURVE/{} at its {which} point ({:.6}, {:.6}, {:.6})",
-                cam.curves[k], place.0[0], place.0[1], place.0[2]
-            );
-            let advice = match until {
-                Some(until) => format!(
-                    "extend CURVE/{} beyond that point: it moves on at {speed:.4}, which takes {:.4} more until time {until}",
-                    cam.curves[k],
-                    speed * (until - numbers[Layout::TIME])
-                ),
-                None => format!("extend CURVE/{} beyond that point by more than {beyond:.6}", cam.curves[k]),
-            };
-            return Some(Broken {
-                element,
-                code: "curve_left",
-                sentence,
-                advice,
-            });
-        }
-        // what is inclined need not have a common tangent: that is said first
-        let tilt = i.rotation.column(2).cross(j.rotation.column(2)).norm();
-        if matches!(cam.contact, Contact::Curves(..)) && tilt > COPLANAR_SINE {
-            return Some(Broken {
-                element,
-                code: "curves_not_coplanar",
-                sentence: format!(
-                    "the planes of the curves are inclined to each other by {:.4} deg: the x-y planes of MARKER/{} and MARKER/{}",
-                    tilt.min(1.0).asin().to_degrees(),
-                    scene.markers[cam.i].id,
-                    scene.markers[cam.j].id
-                ),
-                advice: "turn one of these markers, and let joints hold their x-y planes together".into(),
-            });
-        }
-        let apart = cam.contact.missing(&i, &j, s);
-        if apart.is_nan() || apart > 1e-6 {
-            let what = match cam.contact {
-                Contact::Point(_) => "no point of the curve is next to I",
-                Contact::Curves(..) => "the two curves have no common tangent near",
-            };
-            return Some(Broken {
-                element,
-                code: "no_common_tangent",
-                sentence: what.into(),
-                advice: "bring the parts to where they touch, or say where with DISP, IDISP and JDISP".into(),
-            });
-        }
-        None
-    })
 }

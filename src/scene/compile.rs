@@ -542,7 +542,10 @@ impl<'m> Compiler<'m> {
         if self.markers[c].part != Some(part) {
             self.error(
                 name,
-                format!("its CM marker MARKER/{cm} belongs to another part"),
+                format!(
+                    "its CM marker {} belongs to another part",
+                    ElementKind::Marker.id(cm)
+                ),
             );
             return;
         }

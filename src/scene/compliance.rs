@@ -123,7 +123,8 @@ impl Builder<'_> {
                         Some(m) if m.file.is_some() => "stands in a file, which is not read".into(),
                         Some(m) => format!("is {} × {}", m.rows, m.columns),
                     };
-                    c.error(name, format!("{what}: MATRIX/{matrix} {why}, but {n} × {columns} numbers are needed: six for each I marker"));
+                    let matrix = ElementKind::Matrix.id(matrix);
+                    c.error(name, format!("{what}: {matrix} {why}, but {n} × {columns} numbers are needed: six for each I marker"));
                 }
                 found
             };

@@ -4,7 +4,9 @@ use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, HookKind, SceneHook};
 use super::forces::{ForceLaw, Touching};
+use super::left_out::Reason;
 use super::tunnelling::ThicknessBound;
+use super::untouchable::{NoPair, Untouchable};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Contact, ContactLaw, CoulombFriction, ElementId, ElementKind, Shape};
 use crate::physics::contact::extent::Extent;
@@ -65,7 +67,7 @@ fn ascending(a: f64, b: f64) -> [f64; 2] {
 }
 
 /// The part that a GRAPHICS plays in a contact.
-fn solid(shape: &Shape) -> Result<Placed, String> {
+fn solid(graphics: ElementId, shape: &Shape) -> Result<Placed, Untouchable> {
     let placed = |marker: u32, solid: Solid| Ok(Placed { marker, solid });
     match *shape {
         Shape::Box { corner, size } => {
@@ -118,8 +120,11 @@ fn solid(shape: &Shape) -> Result<Placed, String> {
         Shape::Circle { .. } | Shape::Arc { .. } | Shape::Curve { .. } => {
             unreachable!("it is an outline")
         }
-        Shape::Other(ref kind) => Err(format!("is {kind}, for which there is no contact")),
-        Shape::Nothing => Err("has no shape".into()),
+        Shape::Other(ref kind) => Err(Untouchable::Drawn {
+            graphics,
+            shape: kind.clone(),
+        }),
+        Shape::Nothing => Err(Untouchable::NoShape(graphics)),
     }
 }
 
@@ -174,14 +179,11 @@ impl Body {
     }
 }
 
-/// Why no distance is known between two bodies that do have one.
-const UNASKED: &str = " in this program: it was built without the feature geometry";
-
 /// Chooses the way in which the touches of two bodies are found.
 ///
 /// # Errors
 /// Why they are not.
-fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
+fn how(i: &Body, j: &Body) -> Result<How, NoPair> {
     let [a, b] = match (i, j) {
         (Body::Solid(a), Body::Solid(b)) => [&a.solid, &b.solid],
         _ => {
@@ -197,19 +199,15 @@ fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
                 }
                 _ => None,
             };
-            return question.map(How::Question).ok_or(UNASKED);
+            return question.map(How::Question).ok_or(NoPair::NoGeometry);
         }
     };
     match (a, b) {
         (Solid::Plane { .. }, Solid::Plane { .. }) => {
-            return Err(
-                ": planes have no end, so that they meet everywhere or never; draw the side that moves as a BOX",
-            );
+            return Err(NoPair::Planes);
         }
         (Solid::Ball { radius: 0.0 }, Solid::Ball { radius: 0.0 }) => {
-            return Err(
-                ": points have no size and pass each other; draw one of them as a sphere, an ELLIPSOID with three equal scales",
-            );
+            return Err(NoPair::Points);
         }
         _ => {}
     }
@@ -220,7 +218,9 @@ fn how(i: &Body, j: &Body) -> Result<How, &'static str> {
         let solids = Box::new([a.clone(), b.clone()]);
         return Ok(How::Question(Question::Solids(solids)));
     }
-    Question::wire(a, b).map(How::Question).ok_or(UNASKED)
+    Question::wire(a, b)
+        .map(How::Question)
+        .ok_or(NoPair::NoGeometry)
 }
 
 impl Builder<'_> {
@@ -237,7 +237,7 @@ impl Builder<'_> {
                         "give it an IMPACT or POISSON law, or take what USER would compute as zero (--zero-user)",
                     ));
                 } else {
-                    self.leave_out(name, "its force is computed by a routine");
+                    self.leave_out(name, &Reason::Routine);
                 }
                 continue;
             }
@@ -275,11 +275,11 @@ impl Builder<'_> {
                     }
                 }
                 Err(why) if skipped.contains(&ElementKind::Contact) => {
-                    self.leave_out(name, &why);
+                    self.leave_out(name, &Reason::Contact(why));
                 }
                 Err(why) => {
                     let help = "--skip-unsupported CONTACT leaves out the contacts that cannot be solved; the results are then those of another model";
-                    let error = Diagnostic::error("unsupported", why).element(name);
+                    let error = Diagnostic::error("unsupported", why.to_string()).element(name);
                     c.errors.push(error.help(help));
                 }
             }
@@ -301,10 +301,10 @@ impl Builder<'_> {
             let sine = i.cross(j).norm();
             if sine > COPLANAR_SINE {
                 let what = format!(
-                    "the planes of its curves are inclined to each other by {:.4} deg: the x-y planes of MARKER/{} and MARKER/{}",
+                    "the planes of its curves are inclined to each other by {:.4} deg: the x-y planes of {} and {}",
                     sine.min(1.0).asin().to_degrees(),
-                    ids[0],
-                    ids[1]
+                    ElementKind::Marker.id(ids[0]),
+                    ElementKind::Marker.id(ids[1])
                 );
                 let error = Diagnostic::error("curves_not_coplanar", what).element(name);
                 c.errors.push(error.help(
@@ -356,14 +356,12 @@ impl Builder<'_> {
         c: &mut Compiler,
         ids: &[u32],
         flipped: bool,
-    ) -> Result<Vec<(u32, Body)>, String> {
+    ) -> Result<Vec<(ElementId, Body)>, Untouchable> {
         let shells = self.shells;
         let mut out = Vec::new();
         for &id in ids {
-            let graphics = self.model.graphics.get(&id);
-            let shape = &graphics
-                .ok_or(format!("GRAPHICS/{id} does not exist"))?
-                .shape;
+            let (name, graphics) = (ElementKind::Graphics.id(id), self.model.graphics.get(&id));
+            let shape = &graphics.ok_or(Untouchable::Missing(name))?.shape;
             let body = match *shape {
                 Shape::Circle { cm, radius } => {
                     outline(cm, Rim::Circle(radius.abs(), TAU), flipped)
@@ -375,23 +373,30 @@ impl Builder<'_> {
                 }
                 Shape::Curve { curve, rm } => {
                     let path = self.path(c, curve);
-                    let path = path.ok_or(format!("GRAPHICS/{id} has no curve"))?;
+                    let path = path.ok_or(Untouchable::NoCurve(name))?;
                     if path.height > 1e-9 * path.length {
-                        return Err(format!(
-                            "CURVE/{curve} of GRAPHICS/{id} leaves the x-y plane of its marker by {:.4} along z: only plane curves touch",
-                            path.height
-                        ));
+                        return Err(Untouchable::NotPlane {
+                            curve: ElementKind::Curve.id(curve),
+                            graphics: name,
+                            height: path.height,
+                        });
                     }
                     outline(rm, Rim::Path(Box::new(path)), flipped)
                 }
                 Shape::External { rm, ref file, .. } | Shape::Shell { rm, ref file } => {
                     let shell = match shells.get(&id) {
                         Some(Ok(shell)) => shell,
-                        Some(Err(why)) => return Err(format!("GRAPHICS/{id} {why}")),
+                        Some(Err(why)) => {
+                            return Err(Untouchable::NotRead {
+                                graphics: name,
+                                why: why.clone(),
+                            });
+                        }
                         None => {
-                            return Err(format!(
-                                "GRAPHICS/{id} stands in {file:?}, which was not asked for"
-                            ));
+                            return Err(Untouchable::NotAsked {
+                                graphics: name,
+                                file: file.clone(),
+                            });
                         }
                     };
                     self.told_of_hull(id, shell);
@@ -399,35 +404,31 @@ impl Builder<'_> {
                     Some(Body::Solid(Placed { marker: rm, solid }))
                 }
                 _ => {
-                    let placed = solid(shape).map_err(|why| format!("GRAPHICS/{id} {why}"))?;
+                    let placed = solid(name, shape)?;
                     let sized = !is_degenerate(&placed.solid);
                     sized.then_some(Body::Solid(placed))
                 }
             };
-            let body = body.ok_or(format!("GRAPHICS/{id} has no size"))?;
+            let body = body.ok_or(Untouchable::NoSize(name))?;
             if flipped && !matches!(body, Body::Outline(..)) {
-                return Err(format!(
-                    "IFLIP and JFLIP turn a curve over, but GRAPHICS/{id} is a solid, which has its outside outside: leave the flag out"
-                ));
+                return Err(Untouchable::FlippedSolid(name));
             }
-            out.push((id, body));
+            out.push((name, body));
         }
         Ok(out)
     }
 
     /// The pairs of a contact.
-    fn couples(&mut self, c: &mut Compiler, contact: &Contact) -> Result<Vec<Couple>, String> {
+    fn couples(&mut self, c: &mut Compiler, contact: &Contact) -> Result<Vec<Couple>, Untouchable> {
         let all_i = self.bodies(c, &contact.i_geometry, contact.flip[0])?;
         let all_j = self.bodies(c, &contact.j_geometry, contact.flip[1])?;
         let mut out = Vec::new();
         for (gi, i) in &all_i {
             for (gj, j) in &all_j {
-                let how = how(i, j).map_err(|why| {
-                    format!(
-                        "there is no contact between a {} (GRAPHICS/{gi}) and a {} (GRAPHICS/{gj}){why}",
-                        i.name(),
-                        j.name()
-                    )
+                let how = how(i, j).map_err(|why| Untouchable::NoPair {
+                    i: (i.name(), *gi),
+                    j: (j.name(), *gj),
+                    why,
                 })?;
                 out.push(Couple {
                     markers: [i.marker(), j.marker()],

@@ -212,9 +212,10 @@ impl Builder<'_> {
         cv: u32,
     ) -> Option<GearBody> {
         let joint = active_joint(c, name, joint_id)?;
+        let geared = ElementKind::Joint.id(joint_id);
         let displacements = joint.kind.displacements();
         if displacements == Displacements::None {
-            c.error(name, format!("JOINT/{joint_id} cannot carry a gear: it must be revolute, translational or cylindrical"));
+            c.error(name, format!("{geared} cannot carry a gear: it must be revolute, translational or cylindrical"));
             return None;
         }
         let (turns, slides) = (displacements.turns(), displacements.slides());
@@ -227,13 +228,14 @@ impl Builder<'_> {
                 body.map_or_else(|| "no part".into(), String::from)
             };
             let advice = if owner(joint.i) == carrier {
-                format!("exchange I and J of JOINT/{joint_id}")
+                format!("exchange I and J of {geared}")
             } else {
                 "both joints of a gear must share one carrier, on which CV is fixed".into()
             };
             let what = format!(
-                "J of JOINT/{joint_id} is on {}, but CV (MARKER/{cv}) is on {}: the carrier must own both J markers and CV",
+                "J of {geared} is on {}, but CV ({}) is on {}: the carrier must own both J markers and CV",
                 on(owner(joint.j)),
+                ElementKind::Marker.id(cv),
                 on(carrier)
             );
             c.errors.push(
@@ -244,19 +246,20 @@ impl Builder<'_> {
             return None;
         }
         let (i, j) = (c.marker(joint.i, name)?, c.marker(joint.j, name)?);
-        let geared = GearedJoint {
+        let gear = GearedJoint {
             j: self.in_part(joint.j),
             turns,
             slides,
         };
-        let Some(factors) = gear_factors(&geared, &self.in_part(cv)) else {
+        let Some(factors) = gear_factors(&gear, &self.in_part(cv)) else {
             let why = if slides {
                 "z of CV is square to the direction of translation"
             } else {
                 "z of CV is parallel to the axis of rotation or points at it: it must be tangent to the pitch circle"
             };
             let what = format!(
-                "JOINT/{joint_id} gives CV (MARKER/{cv}) no velocity along its z axis: {why}"
+                "{geared} gives CV ({}) no velocity along its z axis: {why}",
+                ElementKind::Marker.id(cv)
             );
             c.errors.push(
                 Diagnostic::error("gear_line_of_action", what)
@@ -311,11 +314,11 @@ impl Builder<'_> {
 
 /// A joint that is there and switched on; says so when it is not.
 fn active_joint<'m>(c: &mut Compiler<'m>, name: ElementId, id: u32) -> Option<&'m Joint> {
-    let joint = c.model.joints.get(&id);
+    let (joint, coupled) = (c.model.joints.get(&id), ElementKind::Joint.id(id));
     match joint {
-        None => c.error(name, format!("JOINT/{id} does not exist")),
-        Some(_) if !c.model.is_active(ElementKind::Joint.id(id)) => {
-            c.error(name, format!("JOINT/{id} is switched off"));
+        None => c.error(name, format!("{coupled} does not exist")),
+        Some(_) if !c.model.is_active(coupled) => {
+            c.error(name, format!("{coupled} is switched off"));
             return None;
         }
         _ => {}

@@ -20,18 +20,18 @@ impl Builder<'_> {
         let model = self.model;
         for (id, f) in model.active(ElementKind::Friction, &model.frictions) {
             let name = ElementKind::Friction.id(id);
+            let braked = ElementKind::Joint.id(f.joint);
             let Some(joint) = model.joints.get(&f.joint) else {
-                c.error(name, format!("JOINT/{} does not exist", f.joint));
+                c.error(name, format!("{braked} does not exist"));
                 continue;
             };
-            if !model.is_active(ElementKind::Joint.id(f.joint)) {
+            if !model.is_active(braked) {
                 continue;
             }
             let Some(kind) = joint.kind.row().friction else {
-                let joint = ElementKind::Joint.id(f.joint);
                 c.error(
                     name,
-                    format!("{joint}: there is no friction law for its kind"),
+                    format!("{braked}: there is no friction law for its kind"),
                 );
                 continue;
             };

@@ -7,91 +7,123 @@
 //! loses its line here.
 
 use super::build::Builder;
+use super::untouchable::Untouchable;
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::{Family as MeasureFamily, Measure};
 use crate::expr::program::Input;
 use crate::model::{ElementId, ElementKind, Family, Formula, MarkerOwner, Model};
-use crate::physics::joint::Tie;
 use std::collections::BTreeSet;
+use std::fmt;
 
 /// A constraint of which nobody knows what it holds.
 #[derive(Clone, Debug)]
 pub struct Unknown {
     /// which
     pub id: ElementId,
-    /// how many equations it stands for
-    pub equations: usize,
-    /// why: "CURVE/3 is computed by a routine"
-    pub why: String,
-    /// a routine would tell
-    pub routine: bool,
+    /// why nobody does
+    pub hidden: Hidden,
 }
 
-/// Returns how many equations a constraint stands for; `None` for what is no constraint, or not
-/// solved.
-pub fn equations(model: &Model, id: ElementId) -> Option<usize> {
-    use ElementKind as E;
-    match id.kind {
-        E::Joint => Some(Tie::Joint(model.joints.get(&id.number)?.kind).removes()),
-        E::Jprim => Some(Tie::Primitive(model.primitives.get(&id.number)?.kind).removes()),
-        E::Motion | E::Coupler | E::Gear | E::Gcon => Some(1),
-        E::Ptcv | E::Cvcv => Some(2),
-        // not solved
-        E::Ucon | E::Ptsf | E::Cvsf => None,
-        // no constraints
-        E::Part | E::PointMass | E::Marker | E::FlexBody | E::FePart => None,
-        E::Sforce | E::Vforce | E::Vtorque | E::Gforce => None,
-        E::SpringDamper | E::Bushing | E::Field | E::Beam | E::Nforce => None,
-        E::Contact | E::Friction | E::FeLoad | E::Mforce | E::Tire | E::Wheel => None,
-        E::Variable | E::Diff | E::Lse | E::Tfsiso | E::Gse => None,
-        E::Pinput | E::Poutput | E::Sensor => None,
-        E::Array | E::Curve | E::Spline | E::String | E::Matrix => None,
-        E::Material | E::Section | E::FeNode | E::Surface | E::Sfsf => None,
-        E::Request | E::Mrequest | E::Graphics | E::Femdata => None,
+/// The place where what a constraint holds stands, outside the dataset.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Hidden {
+    /// a routine computes its function
+    InRoutine,
+    /// a routine computes a CURVE
+    CurveInRoutine(ElementId),
+    /// the points of a CURVE stand in a file
+    CurveInFile {
+        /// which
+        curve: ElementId,
+        /// the file, as the dataset names it
+        file: String,
+    },
+}
+
+impl Hidden {
+    /// Returns true if a routine would tell.
+    pub fn is_routine(&self) -> bool {
+        match self {
+            Hidden::InRoutine | Hidden::CurveInRoutine(_) => true,
+            Hidden::CurveInFile { .. } => false,
+        }
+    }
+}
+
+impl fmt::Display for Hidden {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Hidden::InRoutine => f.write_str("its function is computed by a routine"),
+            Hidden::CurveInRoutine(curve) => write!(f, "{curve} is computed by a routine"),
+            Hidden::CurveInFile { curve, file } => {
+                write!(f, "the points of {curve} stand in the file {file}")
+            }
+        }
+    }
+}
+
+/// The reason why an element is left out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reason {
+    /// elements of its kind are not solved
+    NotSolved,
+    /// a routine computes its force
+    Routine,
+    /// what it holds does not stand in the dataset
+    Hidden(Hidden),
+    /// the touches of a contact cannot be found
+    Contact(Untouchable),
+    /// an element that it cannot be without is left out
+    Without(ElementId),
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Reason::NotSolved => f.write_str("it is not solved"),
+            Reason::Routine => f.write_str("its force is computed by a routine"),
+            Reason::Hidden(hidden) => hidden.fmt(f),
+            Reason::Contact(why) => why.fmt(f),
+            Reason::Without(element) => write!(f, "{element} is left out"),
+        }
     }
 }
 
 /// Constraints that a routine computes, or whose curve does not stand in the dataset; inactive ones
 /// do not count.
 pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
-    let curve = |id: u32| -> Option<(String, bool)> {
-        let curve = model.curves.get(&id)?;
-        if curve.function.is_some() {
-            return Some((format!("CURVE/{id} is computed by a routine"), true));
+    let curve = |id: u32| -> Option<Hidden> {
+        let (given, curve) = (model.curves.get(&id)?, ElementKind::Curve.id(id));
+        if given.function.is_some() {
+            return Some(Hidden::CurveInRoutine(curve));
         }
-        let matrix = curve.matrix.and_then(|m| model.matrices.get(&m));
-        let file = matrix.and_then(|m| m.file.as_ref())?;
-        let why = format!("the points of CURVE/{id} stand in the file {file}");
-        Some((why, false))
+        let matrix = given.matrix.and_then(|m| model.matrices.get(&m));
+        let file = matrix.and_then(|m| m.file.clone())?;
+        Some(Hidden::CurveInFile { curve, file })
     };
     let mut found = Vec::new();
-    let mut add = |kind: ElementKind, number, equations, (why, routine): (String, bool)| {
-        found.push(Unknown {
-            id: kind.id(number),
-            equations,
-            why,
-            routine,
-        });
+    let mut add = |kind: ElementKind, number, hidden| {
+        let id = kind.id(number);
+        found.push(Unknown { id, hidden });
     };
     for (&id, p) in &model.points_on_curves {
-        if let Some(why) = curve(p.curve) {
-            add(ElementKind::Ptcv, id, 2, why);
+        if let Some(hidden) = curve(p.curve) {
+            add(ElementKind::Ptcv, id, hidden);
         }
     }
     for (&id, c) in &model.curves_on_curves {
-        if let Some(why) = curve(c.i.curve).or_else(|| curve(c.j.curve)) {
-            add(ElementKind::Cvcv, id, 2, why);
+        if let Some(hidden) = curve(c.i.curve).or_else(|| curve(c.j.curve)) {
+            add(ElementKind::Cvcv, id, hidden);
         }
     }
-    let routine = || ("its function is computed by a routine".to_string(), true);
     for (&id, g) in &model.general_constraints {
         if matches!(g.function, Formula::User { .. }) {
-            add(ElementKind::Gcon, id, 1, routine());
+            add(ElementKind::Gcon, id, Hidden::InRoutine);
         }
     }
     for (&id, c) in &model.couplers {
         if c.user.is_some() {
-            add(ElementKind::Coupler, id, 1, routine());
+            add(ElementKind::Coupler, id, Hidden::InRoutine);
         }
     }
     found.retain(|u| model.is_active(u.id));
@@ -120,7 +152,7 @@ impl LeftOut {
                 continue;
             }
             if skip.contains(&kind) {
-                this.leave(id, "it is not solved");
+                this.leave(id, &Reason::NotSolved);
                 continue;
             }
             let error = Diagnostic::error("unsupported", "is read, but not solved yet");
@@ -128,12 +160,13 @@ impl LeftOut {
                 "--skip-unsupported {kind} leaves all of its kind out; the results are then those of another model"
             )));
         }
+        this.old_friction(model, skip);
         for unknown in unknown_constraints(model) {
-            let Unknown { id, why, .. } = &unknown;
+            let Unknown { id, hidden } = unknown;
             let on_curve = matches!(id.kind, ElementKind::Ptcv | ElementKind::Cvcv);
             let curve = on_curve && skip.contains(&ElementKind::Curve);
-            if skip.contains(&id.kind) || curve || zero_user && unknown.routine {
-                this.leave(*id, why);
+            if skip.contains(&id.kind) || curve || zero_user && hidden.is_routine() {
+                this.leave(id, &Reason::Hidden(hidden));
             }
         }
         for (&id, marker) in &model.markers {
@@ -147,7 +180,27 @@ impl LeftOut {
         this
     }
 
-    fn leave(&mut self, id: ElementId, why: &str) {
+    /// Tells of joints whose own argument FRICTION, of datasets older than the statement FRICTION,
+    /// asks for friction: it is read, but not solved.
+    fn old_friction(&mut self, model: &Model, skip: &BTreeSet<ElementKind>) {
+        for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
+            let Some(value) = joint.friction.as_deref().filter(|value| *value != "OFF") else {
+                continue;
+            };
+            let told = if skip.contains(&ElementKind::Friction) {
+                let what = format!("moves without the friction of FRICTION={value}");
+                Diagnostic::warning("skipped", what)
+            } else {
+                let what = format!("FRICTION={value} of a joint is read, but not solved");
+                Diagnostic::error("unsupported", what)
+                    .help("state its friction in a statement FRICTION, which is solved")
+                    .help("--skip-unsupported FRICTION moves it without friction; the results are then those of another model")
+            };
+            self.told.push(told.element(ElementKind::Joint.id(id)));
+        }
+    }
+
+    fn leave(&mut self, id: ElementId, why: &Reason) {
         if self.elements.insert(id) {
             let warning = Diagnostic::warning("skipped", format!("is left out: {why}"));
             self.told.push(warning.element(id));
@@ -164,7 +217,7 @@ impl LeftOut {
             // these ask, or are the body itself
             Family::Body | Family::Output => {}
             Family::Constraint | Family::Force | Family::System | Family::Data => {
-                self.leave(element, &format!("{target} is left out"));
+                self.leave(element, &Reason::Without(target));
             }
         }
     }
@@ -241,7 +294,7 @@ impl super::Scene {
 
 impl Builder<'_> {
     /// Leaves out one more element, for a reason that only compiling it tells.
-    pub(super) fn leave_out(&mut self, id: ElementId, why: &str) {
+    pub(super) fn leave_out(&mut self, id: ElementId, why: &Reason) {
         self.scene.left_out.leave(id, why);
         self.scene.inactive.insert(id);
         self.scene.warnings.append(&mut self.scene.left_out.told);

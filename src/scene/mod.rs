@@ -6,6 +6,7 @@
 //! before it starts.
 
 pub mod articulated;
+pub mod broken;
 pub mod build;
 pub mod cams;
 pub mod compile;
@@ -36,6 +37,7 @@ pub mod sweep;
 mod systems;
 pub mod tunnelling;
 pub mod unknown;
+pub mod untouchable;
 
 use crate::expr::measures::Measure;
 use crate::expr::program::Program;

@@ -84,19 +84,20 @@ impl Builder<'_> {
                 });
             }
         };
+        let name = ElementKind::Joint.id(joint);
         let Some(found) = joints.get(&joint) else {
-            c.error(id, format!("JOINT/{joint} does not exist"));
+            c.error(id, format!("{name} does not exist"));
             return None;
         };
         let has = found.kind.displacements();
         let allowed = if turn { has.turns() } else { has.slides() };
         if !allowed {
             let what = if turn { "rotation" } else { "translation" };
-            c.error(id, format!("JOINT/{joint} has no {what} to drive: a motion needs a revolute, translational or cylindrical joint"));
+            c.error(id, format!("{name} has no {what} to drive: a motion needs a revolute, translational or cylindrical joint"));
             return None;
         }
         if c.driven.insert((joint, turn), m).is_some() {
-            c.error(id, format!("JOINT/{joint} is driven twice"));
+            c.error(id, format!("{name} is driven twice"));
         }
         Some(Drive {
             motion: m,

@@ -8,6 +8,7 @@
 use super::{Entry, Scene};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
+use crate::model::ElementKind;
 use std::fmt;
 
 /// Inputs that a function may read.
@@ -88,7 +89,7 @@ impl fmt::Display for Offence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "its function reads {}", input_name(self.input))?;
         if let Some(id) = self.variable {
-            write!(f, " (in VARIABLE/{id})")?;
+            write!(f, " (in {})", ElementKind::Variable.id(id))?;
         }
         write!(f, ": {}", self.why)
     }

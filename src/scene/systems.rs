@@ -127,7 +127,12 @@ impl Builder<'_> {
     fn values_of(&self, variables: &[u32]) -> Result<Vec<usize>, String> {
         let found = variables.iter().map(|v| {
             let formula = self.scene.variables.get(v).copied();
-            formula.ok_or_else(|| format!("VARIABLE/{v} does not exist or is not active"))
+            formula.ok_or_else(|| {
+                format!(
+                    "{} does not exist or is not active",
+                    ElementKind::Variable.id(*v)
+                )
+            })
         });
         found.collect()
     }
@@ -261,8 +266,9 @@ impl Builder<'_> {
 
     /// An array that an element fills, `n` long: whether its kind and size are right.
     fn filled(&mut self, id: u32, states: bool, entries: Vec<Entry>) -> Result<(), String> {
+        let name = ElementKind::Array.id(id);
         let Some(array) = self.model.arrays.get(&id) else {
-            return Err(format!("ARRAY/{id} does not exist"));
+            return Err(format!("{name} does not exist"));
         };
         let (kind, expected) = if states {
             ("X", ArrayKind::States)
@@ -270,24 +276,25 @@ impl Builder<'_> {
             ("Y", ArrayKind::Outputs)
         };
         if array.kind != expected {
-            return Err(format!("ARRAY/{id} should be of the kind {kind}"));
+            return Err(format!("{name} should be of the kind {kind}"));
         }
         if array.size.is_some_and(|n| n != entries.len()) {
             let (given, n) = (array.size.unwrap_or(0), entries.len());
-            return Err(format!("ARRAY/{id} has SIZE = {given}, but {n} entries"));
+            return Err(format!("{name} has SIZE = {given}, but {n} entries"));
         }
         if self.scene.arrays.insert(id, entries).is_some() {
-            return Err(format!("ARRAY/{id} is already filled by another element"));
+            return Err(format!("{name} is already filled by another element"));
         }
         Ok(())
     }
 
     fn length_of_inputs(&self, u: Option<u32>) -> Result<usize, String> {
         let Some(u) = u else { return Ok(0) };
+        let name = ElementKind::Array.id(u);
         match self.model.arrays.get(&u).map(|a| &a.kind) {
             Some(ArrayKind::Inputs(variables)) => Ok(variables.len()),
-            Some(_) => Err(format!("ARRAY/{u} should be of the kind U")),
-            None => Err(format!("ARRAY/{u} does not exist")),
+            Some(_) => Err(format!("{name} should be of the kind U")),
+            None => Err(format!("{name} does not exist")),
         }
     }
 
@@ -296,14 +303,15 @@ impl Builder<'_> {
         let Some(ic) = ic else {
             return Ok(vec![0.0; n]);
         };
+        let name = ElementKind::Array.id(ic);
         match self.model.arrays.get(&ic).map(|a| &a.kind) {
             Some(ArrayKind::Ic(numbers)) if numbers.len() == n => Ok(numbers.clone()),
             Some(ArrayKind::Ic(numbers)) => Err(format!(
-                "ARRAY/{ic} gives {} initial values for {n} states",
+                "{name} gives {} initial values for {n} states",
                 numbers.len()
             )),
-            Some(_) => Err(format!("ARRAY/{ic} should be of the kind IC")),
-            None => Err(format!("ARRAY/{ic} does not exist")),
+            Some(_) => Err(format!("{name} should be of the kind IC")),
+            None => Err(format!("{name} does not exist")),
         }
     }
 
@@ -314,11 +322,12 @@ impl Builder<'_> {
         rows: Option<usize>,
         columns: Option<usize>,
     ) -> Result<Numbers, String> {
+        let name = ElementKind::Matrix.id(id);
         let Some(matrix) = self.model.matrices.get(&id) else {
-            return Err(format!("MATRIX/{id} does not exist"));
+            return Err(format!("{name} does not exist"));
         };
         let values = matrix.by_rows().ok_or_else(|| {
-            format!("MATRIX/{id} does not hold as many numbers as its ROWS and COLUMNS say")
+            format!("{name} does not hold as many numbers as its ROWS and COLUMNS say")
         })?;
         let found = Numbers {
             rows: matrix.rows,
@@ -331,7 +340,7 @@ impl Builder<'_> {
         }
         let wanted = |n: Option<usize>| n.map_or_else(|| "any".to_string(), |n| n.to_string());
         Err(format!(
-            "MATRIX/{id} is {} by {}, but {} by {} are wanted here",
+            "{name} is {} by {}, but {} by {} are wanted here",
             found.rows,
             found.columns,
             wanted(rows),
@@ -344,8 +353,9 @@ impl Builder<'_> {
         let n = a.rows;
         if a.columns != n {
             return Err(format!(
-                "MATRIX/{} is {n} by {}, not square",
-                s.a, a.columns
+                "{} is {n} by {}, not square",
+                ElementKind::Matrix.id(s.a),
+                a.columns
             ));
         }
         let m = self.length_of_inputs(s.u)?;
@@ -408,7 +418,8 @@ impl Builder<'_> {
             ));
         }
         if self.length_of_inputs(Some(s.u))? != 1 {
-            return Err(format!("ARRAY/{} should hold the one input", s.u));
+            let inputs = ElementKind::Array.id(s.u);
+            return Err(format!("{inputs} should hold the one input"));
         }
         let at = |k: usize| b.get(k).copied().unwrap_or(0.0);
         let mut states = Vec::with_capacity(n);

@@ -10,6 +10,7 @@ use crate::analysis::time::{dynamics, kinematics};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
+use crate::model::ElementKind;
 use crate::numeric;
 use crate::results::{self, Event, Kind, Status};
 use std::time::Instant;
@@ -117,7 +118,8 @@ impl Session {
     fn note_sensors(&mut self, system: &System, trajectory: &Trajectory) {
         for &(t, k) in &trajectory.triggered {
             let sensor = &system.scene.sensors[k];
-            let message = format!("SENSOR/{} is triggered at time {t}", sensor.id);
+            let sensor = ElementKind::Sensor.id(sensor.id);
+            let message = format!("{sensor} is triggered at time {t}");
             self.run.log.push(Event::Info(message));
         }
         if let Some(Ended::Sensor(k)) = trajectory.ended {

@@ -5,8 +5,9 @@ use crate::analysis::quantity::place;
 use crate::analysis::statics::Imbalance;
 use crate::analysis::time::ranks::Lock;
 use crate::analysis::time::valueless::Valueless;
+use crate::model::ElementKind;
 use crate::results::Status;
-use crate::scene::cams::Broken;
+use crate::scene::broken::Broken;
 use std::fmt;
 
 /// Why a simulation ended early.
@@ -130,7 +131,7 @@ impl StopReason {
         match self {
             StopReason::Interrupted => "interrupted",
             StopReason::Sensor { .. } => "sensor",
-            StopReason::Contact { broken, .. } => broken.code,
+            StopReason::Contact { broken, .. } => broken.code(),
             StopReason::Function { .. } => "no_finite_value",
             StopReason::Locked { .. } => "locked",
             StopReason::Method { cause, .. } => cause.code(),
@@ -183,10 +184,11 @@ impl fmt::Display for StopReason {
         match self {
             StopReason::Interrupted => f.write_str("interrupted; the results so far are kept"),
             StopReason::Sensor { id, at } => {
-                write!(f, "SENSOR/{id} ended the simulation at time {at}")
+                let sensor = ElementKind::Sensor.id(*id);
+                write!(f, "{sensor} ended the simulation at time {at}")
             }
             StopReason::Contact { at, broken } => {
-                let (what, advice) = (&broken.sentence, &broken.advice);
+                let (what, advice) = (&broken.reason, broken.advice());
                 write!(f, "stopped at time {at}: {what}; {advice}")
             }
             StopReason::Function { at, lost } => write!(f, "stopped at time {at}: {lost}"),
@@ -196,7 +198,8 @@ impl fmt::Display for StopReason {
                 match lock.motion {
                     Some(id) => write!(
                         f,
-                        "the mechanism is locked: MOTION/{id} drives it past its reach, {row} cannot follow"
+                        "the mechanism is locked: {} drives it past its reach, {row} cannot follow",
+                        ElementKind::Motion.id(id)
                     )?,
                     None => write!(
                         f,

@@ -4,13 +4,14 @@
 //! found there by reflections (`numeric/rank.rs`), translations first; a row that depends on
 //! earlier ones is left out, and is no contradiction as long as it holds.
 
-use crate::analysis::direction::{AXIS_LETTERS, Direction};
+use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::quantity::{length, short};
 use crate::analysis::start::nearby;
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
 use crate::numeric::rank::Rank;
 use crate::physics::row::Law;
+use crate::scene::broken;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
@@ -296,11 +297,11 @@ pub fn positions(
     found.iterations = closed.iterations;
     let here = scene.within(configuration);
     let reached = numbers(here, t, q, &vec![0.0; scene.layout.n_v], x);
-    if let Some(broken) = cams::broken(here, &reached, None) {
+    if let Some(broken) = broken::broken(here, &reached, None) {
         return Err(vec![
-            Diagnostic::error(broken.code, broken.sentence)
+            Diagnostic::error(broken.code(), broken.reason.to_string())
                 .element(broken.element)
-                .help(broken.advice),
+                .help(broken.advice()),
         ]);
     }
     if !closed.size.is_finite() || closed.size > CLOSED {
@@ -364,9 +365,7 @@ fn gap(scene: &Scene, at: &Equations<'_, f64>, r: usize, g: f64) -> String {
             j,
             ..
         } if direction == Direction::Nothing => {
-            let axis = |k: usize, m: usize| {
-                format!("{} of MARKER/{}", AXIS_LETTERS[k], scene.markers[m].id)
-            };
+            let axis = |k: usize, m: usize| Axis::Marker(scene.markers[m].id, k).to_string();
             return format!(
                 "the axes {} and {} are parallel; {} needs 90 deg between them",
                 axis(a, i),

@@ -9,6 +9,7 @@
 
 use crate::analysis::warning::AssemblyWarning;
 use crate::diagnostic::Diagnostic;
+use crate::model::ElementKind;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::forces::{ForceElement, ForceLaw};
@@ -46,8 +47,10 @@ pub fn lines(
         let problem = Diagnostic::error(
             "coincident",
             format!(
-                "its markers MARKER/{i} and MARKER/{j} coincide: the line between them has no direction, \
-                 and its force of {magnitude:.6} there none either"
+                "its markers {} and {} coincide: the line between them has no direction, \
+                 and its force of {magnitude:.6} there none either",
+                ElementKind::Marker.id(i),
+                ElementKind::Marker.id(j)
             ),
         );
         wrong.push(problem.element(force.id).help(

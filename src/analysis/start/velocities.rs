@@ -5,7 +5,7 @@ use super::initial_conditions::of_joints;
 use crate::analysis::direction::Direction;
 use crate::analysis::quantity::{length, short};
 use crate::diagnostic::Diagnostic;
-use crate::model::Model;
+use crate::model::{ElementKind, Model};
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
@@ -26,7 +26,7 @@ fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f
         length(rate, &scene.length_unit)
     };
     let motions: Vec<String> = (scene.motions.iter())
-        .map(|m| format!("MOTION/{}", m.id))
+        .map(|m| ElementKind::Motion.id(m.id).to_string())
         .collect();
     Diagnostic::error(
         "assembly",

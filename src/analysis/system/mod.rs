@@ -32,7 +32,7 @@ use crate::diagnostic::Diagnostic;
 use crate::numeric::Ode;
 use crate::scalar::Dual;
 use crate::scene::Scene;
-use crate::scene::cams::{self, Broken};
+use crate::scene::broken::{Broken, broken};
 use crate::scene::configuration::{Configuration, Configured, Elimination};
 use crate::scene::equations::Unsupported;
 use crate::scene::layout::Layout;
@@ -227,7 +227,7 @@ impl System {
             return None;
         }
         self.set(t, y);
-        cams::broken(self.configured(), &self.numbers, Some(until))
+        broken(self.configured(), &self.numbers, Some(until))
     }
 
     /// Returns how long a step from here may be so that no body of a contact passes unseen through

@@ -16,7 +16,7 @@ use crate::analysis::time::switches::{Switches, Verdict};
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{Method, Reason, Step, Stop};
-use crate::scene::cams::Broken;
+use crate::scene::broken::Broken;
 
 /// Attempted steps after which a run must have come further by [`STALLED_PART`].
 const STALLED_STEPS: usize = 20_000;

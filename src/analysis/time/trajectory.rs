@@ -1,7 +1,7 @@
 //! The result of an analysis over time: states at output times, events, and why it ended.
 
 use crate::numeric::{Stats, Stop};
-use crate::scene::cams::Broken;
+use crate::scene::broken::Broken;
 
 /// The reason why an analysis ended before the last output time.
 #[derive(Clone, Debug, PartialEq)]

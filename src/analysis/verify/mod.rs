@@ -32,7 +32,7 @@ use crate::scene::Scene;
 use crate::scene::build::Options;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::{Equations, row_name};
-use crate::scene::left_out::{Unknown, equations, unknown_constraints};
+use crate::scene::left_out::{Unknown, unknown_constraints};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Stress in an element, relative to the largest in the state, below which it takes no part.
@@ -154,6 +154,9 @@ fn skeleton(model: &Model) -> Model {
     for kind in solved.filter(idle) {
         model.clear(kind);
     }
+    for joint in model.joints.values_mut() {
+        joint.friction = None;
+    }
     model
 }
 
@@ -203,17 +206,21 @@ fn stand_still(model: &mut Model, warnings: &mut Vec<Warning>) {
 /// but cannot be among the rows: nobody knows what they hold.
 fn leave_out_unknown(model: &mut Model, warnings: &mut Vec<Warning>) {
     for unknown in unknown_constraints(model) {
-        let Unknown {
-            id, equations, why, ..
-        } = unknown;
+        let Unknown { id, hidden } = unknown;
         let counted = VerificationWarning::UnknownConstraint {
             element: id,
-            equations,
-            why,
+            equations: equations(model, id).unwrap_or(0),
+            hidden,
         };
         warnings.push(counted.into());
         model.inactive.insert(id);
     }
+}
+
+/// Returns how many equations a constraint stands for; `None` for what is no constraint, or not
+/// solved.
+fn equations(model: &Model, id: ElementId) -> Option<usize> {
+    model.element(id)?.equations()
 }
 
 /// The statement of a constraint, with its type where it has several.

@@ -115,7 +115,10 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         .collect();
     out.prescribed = (scene.coordinates.iter())
         .filter_map(|c| match c.source {
-            Source::Driven(m) => Some(format!("{} by MOTION/{}", c.id, scene.motions[m].id)),
+            Source::Driven(m) => {
+                let motion = ElementKind::Motion.id(scene.motions[m].id);
+                Some(format!("{} by {motion}", c.id))
+            }
             Source::Free { .. } => None,
         })
         .collect();

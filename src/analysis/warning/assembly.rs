@@ -2,7 +2,7 @@
 
 use crate::analysis::direction::Axis;
 use crate::analysis::quantity::{length, short};
-use crate::model::ElementId;
+use crate::model::{ElementId, ElementKind};
 use std::fmt;
 
 /// Something that assembly made of the configuration of the dataset.
@@ -102,14 +102,18 @@ impl fmt::Display for AssemblyWarning {
             } => write!(
                 f,
                 "{name} is assembled the wrong way round: \
-                 the z axes of MARKER/{i} and MARKER/{j} point against each other"
+                 the z axes of {} and {} point against each other",
+                ElementKind::Marker.id(*i),
+                ElementKind::Marker.id(*j)
             ),
             AssemblyWarning::Coincident {
                 markers: [i, j], ..
             } => write!(
                 f,
-                "{name}: its markers MARKER/{i} and MARKER/{j} coincide: the line between them has no \
-                 direction; its force is zero there, so that it can begin, but Adams refuses it"
+                "{name}: its markers {} and {} coincide: the line between them has no \
+                 direction; its force is zero there, so that it can begin, but Adams refuses it",
+                ElementKind::Marker.id(*i),
+                ElementKind::Marker.id(*j)
             ),
             AssemblyWarning::HeldSum { sum, .. } => write!(
                 f,

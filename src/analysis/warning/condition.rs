@@ -1,7 +1,7 @@
 //! Warnings of initial conditions: not met, or read in another way than documented.
 
 use crate::analysis::quantity::{length, short};
-use crate::model::ElementId;
+use crate::model::{ElementId, ElementKind};
 use std::fmt;
 
 /// Something about an initial condition.
@@ -108,7 +108,8 @@ impl fmt::Display for ConditionWarning {
                 write!(
                     f,
                     "{name} {argument} cannot be met: the constraints put the contact {off} away from \
-                     the point of CURVE/{curve} next to it"
+                     the point of {} next to it",
+                    ElementKind::Curve.id(*curve)
                 )
             }
         }

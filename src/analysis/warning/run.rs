@@ -112,7 +112,8 @@ impl fmt::Display for RunWarning {
                     Quantity::Displacement | Quantity::Velocity => "it runs piecewise",
                     Quantity::Acceleration => "forces jump there",
                 };
-                write!(f, "MOTION/{motion}: {}; {then}", jumps(*quantity, all))
+                let motion = ElementKind::Motion.id(*motion);
+                write!(f, "{motion}: {}; {then}", jumps(*quantity, all))
             }
             RunWarning::MethodReplaced(d) => write!(f, "{}: RADAU5 takes its place", d.message),
             RunWarning::EmptyColumn(unsupported) => unsupported.fmt(f),

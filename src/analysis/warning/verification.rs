@@ -3,6 +3,7 @@
 use super::owner;
 use crate::diagnostic::Diagnostic;
 use crate::model::ElementId;
+use crate::scene::left_out::Hidden;
 use std::fmt;
 
 /// Something that a verification takes for granted, or that a simulation would need.
@@ -18,8 +19,8 @@ pub enum VerificationWarning {
         element: ElementId,
         /// number of its equations
         equations: usize,
-        /// why nobody knows
-        why: String,
+        /// where that stands
+        hidden: Hidden,
     },
     /// the freedom at this position is not that nearby
     FreedomNearby {
@@ -66,13 +67,13 @@ impl fmt::Display for VerificationWarning {
             VerificationWarning::UnknownConstraint {
                 element,
                 equations: n,
-                why,
+                hidden,
             } => {
                 let plural = if *n == 1 { "" } else { "s" };
                 write!(
                     f,
                     "{element} is counted with {n} equation{plural}, but what it holds is unknown: \
-                     {why}; the freedom from the rank is that without it, and up to {n} too large"
+                     {hidden}; the freedom from the rank is that without it, and up to {n} too large"
                 )
             }
             VerificationWarning::FreedomNearby { here, nearby } => write!(

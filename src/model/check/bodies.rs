@@ -14,7 +14,8 @@ pub(super) fn one_ground(model: &Model, out: &mut Out) {
         );
     }
     for &(&id, part) in grounds.iter().skip(1) {
-        let message = format!("a second ground; PART/{} is GROUND already", grounds[0].0);
+        let first = ElementKind::Part.id(*grounds[0].0);
+        let message = format!("a second ground; {first} is GROUND already");
         error(
             out,
             "several_grounds",
@@ -75,12 +76,13 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
             let Some(m) = marker.and_then(|m| model.markers.get(&m).map(|_| m)) else {
                 continue;
             };
+            let marker = ElementKind::Marker.id(m);
             if model.body_of(m).is_some_and(|body| body != id) {
                 error(
                     out,
                     "marker_of_another_part",
                     who,
-                    format!("{name} = {m}: MARKER/{m} belongs to another part"),
+                    format!("{name} = {m}: {marker} belongs to another part"),
                 );
             }
             if model.markers[&m].floating {
@@ -88,7 +90,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
                     out,
                     "floating_marker",
                     who,
-                    format!("{name} = {m}: MARKER/{m} is FLOATING"),
+                    format!("{name} = {m}: {marker} is FLOATING"),
                 );
             }
         }
@@ -176,8 +178,8 @@ pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
         let who = (r.element, r.place);
         if !marker.floating {
             let message = format!(
-                "{} = {1}: MARKER/{1} is not FLOATING",
-                r.argument, r.target.number
+                "{} = {}: {} is not FLOATING",
+                r.argument, r.target.number, r.target
             );
             warn(out, "not_floating", who, message);
             continue;
@@ -185,8 +187,8 @@ pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
         let owner = r.element;
         if let Some(first) = owners.get(&r.target.number).filter(|f| **f != owner) {
             let message = format!(
-                "{} = {1}: the floating MARKER/{1} belongs to {first} already",
-                r.argument, r.target.number
+                "{} = {}: the floating {} belongs to {first} already",
+                r.argument, r.target.number, r.target
             );
             error(out, "floating_marker_shared", who, message);
             advise(out, "each such element needs a floating marker of its own");
@@ -199,8 +201,9 @@ pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
         };
         for (name, m) in [("I", i), ("J", j)] {
             if model.markers.get(&m).is_some_and(|m| m.floating) {
+                let marker = ElementKind::Marker.id(m);
                 let message =
-                    format!("{name} = {m}: MARKER/{m} is FLOATING and has no frame of its own");
+                    format!("{name} = {m}: {marker} is FLOATING and has no frame of its own");
                 error(out, "floating_marker", (id, element.place()), message);
             }
         }

@@ -105,7 +105,11 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
                 out,
                 "driven_twice",
                 who,
-                format!("MOTION/{first} drives JOINT/{joint} already"),
+                format!(
+                    "{} drives {} already",
+                    ElementKind::Motion.id(first),
+                    ElementKind::Joint.id(joint)
+                ),
             );
         }
         driven.entry((joint, turns)).or_insert(id);
@@ -114,7 +118,7 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
 
 /// Tells why a motion cannot drive a joint.
 fn undriven(out: &mut Out, who: Who, (joint, kind): (u32, JointKind), why: Unclear) {
-    let is = format!("JOINT/{joint} is {}", kind.keyword());
+    let is = format!("{} is {}", ElementKind::Joint.id(joint), kind.keyword());
     match why {
         Unclear::Several => {
             let message = format!("{is}: ROTATION or TRANSLATION is needed");

@@ -12,7 +12,7 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
                     out,
                     "contradiction",
                     who,
-                    format!("JOINT/{joint} stands twice in JOINTS"),
+                    format!("{} stands twice in JOINTS", ElementKind::Joint.id(*joint)),
                 );
             }
             let Some(kind) = model.joints.get(joint).map(|j| j.kind) else {
@@ -58,7 +58,10 @@ pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
                 out,
                 "contradiction",
                 who,
-                format!("JOINT/{} stands twice in JOINTS", g.joints[0]),
+                format!(
+                    "{} stands twice in JOINTS",
+                    ElementKind::Joint.id(g.joints[0])
+                ),
             );
         }
         let carrier = model.body_of(g.cv);
@@ -66,14 +69,15 @@ pub(super) fn gears_share_a_carrier(model: &Model, out: &mut Out) {
             let Some(joint) = model.joints.get(&n) else {
                 continue;
             };
+            let id = ElementKind::Joint.id(n);
             if joint.kind.displacements() == Displacements::None {
-                let message = format!("JOINT/{n} is {}: it cannot be geared", joint.kind.keyword());
+                let message = format!("{id} is {}: it cannot be geared", joint.kind.keyword());
                 error(out, "wrong_joint", who, message);
             }
             let of_j = model.body_of(joint.j);
             if carrier.is_some() && of_j.is_some() && carrier != of_j {
                 let message = format!(
-                    "the J marker of JOINT/{n} and the CV marker {} belong to different parts",
+                    "the J marker of {id} and the CV marker {} belong to different parts",
                     g.cv
                 );
                 error(out, "no_common_carrier", who, message);

@@ -49,8 +49,8 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
         let kind = model.joints.get(&f.joint).map(|j| j.kind);
         if let Some(kind) = kind.filter(|k| k.row().friction.is_none()) {
             let message = format!(
-                "JOINT/{} is {}: there is no friction law for it",
-                f.joint,
+                "{} is {}: there is no friction law for it",
+                ElementKind::Joint.id(f.joint),
                 kind.keyword()
             );
             error(

@@ -120,8 +120,8 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
                 other => other,
             };
             let message = format!(
-                "{} = {1}: ARRAY/{1} is not of the kind {kind}",
-                r.argument, r.target.number
+                "{} = {}: {} is not of the kind {kind}",
+                r.argument, r.target.number, r.target
             );
             error(out, "wrong_array", (r.element, r.place), message);
         }

@@ -3,7 +3,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::{Measure, orientation_components};
-use crate::model::ElementId;
+use crate::model::{ElementId, ElementKind};
 use std::fmt;
 
 /// A number that somebody asks for and that the equations cannot supply.
@@ -109,7 +109,9 @@ impl fmt::Display for Lack {
             }
             Lack::NodalForce { id, marker } => write!(
                 f,
-                "NFORCE/{id} does not exist, is not active, or does not act on MARKER/{marker}"
+                "{} does not exist, is not active, or does not act on {}",
+                ElementKind::Nforce.id(id),
+                ElementKind::Marker.id(marker)
             ),
             Lack::Entry { element, entry } => write!(f, "{element} has no entry {entry}"),
             Lack::Marker(measure) => write!(
