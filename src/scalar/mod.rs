@@ -200,8 +200,8 @@ pub trait Scalar:
     /// Returns this number, to the bit, where `x` is finite, and NaN elsewhere; derivatives are
     /// those of this number. So a result goes with an operand that its operation would lose.
     #[inline(always)]
+    #[expect(clippy::eq_op, reason = "x − x is +0 where x is finite, NaN elsewhere")]
     fn kept_with(self, x: Self) -> Self {
-        // x − x is +0
         self - (x - x)
     }
 
