@@ -4,11 +4,13 @@ use super::outcome::counts;
 use super::simulate::Span;
 use super::{Analysis, Session};
 use crate::analysis::system::System;
+use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::options::{self, Options};
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::time::{dynamics, kinematics};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
+use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::ElementKind;
 use crate::numeric;
@@ -17,6 +19,9 @@ use std::time::Instant;
 
 impl Session {
     /// Runs a kinematic or dynamic simulation and adds its rows to the run.
+    ///
+    /// # Errors
+    /// Motions that the equations cannot supply.
     pub(super) fn over_time(
         &mut self,
         system: &mut System,
@@ -24,7 +29,7 @@ impl Session {
         span: Span,
         program: &Program,
         watch: &mut dyn Watch,
-    ) -> Status {
+    ) -> Result<Status, Vec<Diagnostic>> {
         let kind = if analysis == Analysis::Kinematic {
             Kind::Kinematic
         } else {
@@ -35,7 +40,7 @@ impl Session {
         self.log_begin(kind, &settings);
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
-        let (trajectory, seconds) = self.timed(system, kind, span, &settings, watch);
+        let (trajectory, seconds) = self.timed(system, kind, span, &settings, watch)?;
         // its results
         self.selected_rows(kind, program, system, &trajectory);
         self.run.log.push(Event::End);
@@ -57,12 +62,15 @@ impl Session {
             counts: counts(&trajectory.stats),
             ..results::Simulation::new(kind, span.start)
         };
-        self.close(simulation, stopped)
+        Ok(self.close(simulation, stopped))
     }
 
     /// Chooses the method, and prepares the system for it.
     fn integration_of(&mut self, system: &mut System, kind: Kind, span: Span) -> Options {
         let mut settings = self.integration();
+        if let (Kind::Kinematic, Some(longest)) = (kind, self.kinematic_hmax()) {
+            settings.h_max = longest;
+        }
         if settings.method == "AUTO" && kind == Kind::Dynamic {
             settings.first = options::first_method(system, span.end - span.start).into();
         }
@@ -83,6 +91,9 @@ impl Session {
     }
 
     /// Integrates as often as the options say; the last trajectory, and the median of the seconds.
+    ///
+    /// # Errors
+    /// Motions that the equations cannot supply.
     fn timed(
         &self,
         system: &mut System,
@@ -90,28 +101,35 @@ impl Session {
         span: Span,
         settings: &Options,
         watch: &mut dyn Watch,
-    ) -> (Trajectory, f64) {
+    ) -> Result<(Trajectory, f64), Vec<Diagnostic>> {
         let outputs = span.output.times(span.start, span.end);
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
+        let follows = kind == Kind::Kinematic && !is_integrated(system);
+        let mut path = match follows {
+            true => Some(Continuation::new(system)?),
+            false => None,
+        };
         let mut seconds = Vec::new();
         let mut trajectory = Trajectory::default();
         for _ in 0..self.options.repeat.max(1) {
-            if !trajectory.selections.is_empty() && system.reselect(chosen.clone()).is_err() {
-                break;
+            if !trajectory.selections.is_empty() {
+                if system.reselect(chosen.clone()).is_err() {
+                    break;
+                }
+                path.iter_mut().for_each(|path| path.see_rows(system));
             }
             system.numbers.copy_from_slice(&first);
             let clock = Instant::now();
-            trajectory = if kind == Kind::Kinematic && !is_integrated(system) {
-                kinematics::trace(system, &outputs, settings.h_max, watch)
-            } else {
-                dynamics::integrate(system, &outputs, settings, watch)
+            trajectory = match &mut path {
+                Some(path) => kinematics::trace(system, path, &outputs, settings, watch),
+                None => dynamics::integrate(system, &outputs, settings, watch),
             };
             seconds.push(clock.elapsed().as_secs_f64());
         }
         seconds.sort_by(f64::total_cmp);
         let median = seconds[seconds.len() / 2];
-        (trajectory, median)
+        Ok((trajectory, median))
     }
 
     /// Notes in the log which sensors were triggered, and whether one ended the run.

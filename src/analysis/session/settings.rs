@@ -63,6 +63,11 @@ impl Session {
                 whole(i.maxit).filter(|k| !positive(*k)),
             ),
             (
+                "KINEMATICS",
+                "HMAX",
+                self.kinematic_hmax().filter(|h| !positive(*h)),
+            ),
+            (
                 "INTEGRATOR",
                 "HMIN",
                 i.hmin.filter(|h| h.is_nan() || *h < 0.0),
@@ -80,6 +85,11 @@ impl Session {
             wrong.push(Diagnostic::error("unfit_value", what).element("INTEGRATOR"));
         }
         if wrong.is_empty() { Ok(()) } else { Err(wrong) }
+    }
+
+    /// Returns the longest step of KINEMATICS.
+    pub(super) fn kinematic_hmax(&self) -> Option<f64> {
+        self.model.kinematics.numbers.get("HMAX").copied()
     }
 
     /// Returns the options of an integration: INTEGRATOR, overruled by those of the session.

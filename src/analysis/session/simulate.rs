@@ -64,7 +64,7 @@ impl Session {
                 Status::Completed
             }
             Analysis::Static => self.at_rest(&mut system, span, &program, watch),
-            _ => self.over_time(&mut system, analysis, span, &program, watch),
+            _ => self.over_time(&mut system, analysis, span, &program, watch)?,
         };
         if system.configuration.active != active {
             // reactions are others

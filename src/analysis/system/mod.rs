@@ -353,7 +353,12 @@ impl System {
         if Ode::project(self, t, &mut y).is_err() {
             y = kept;
         }
-        self.set(t, &y);
+        self.row_of(t, &y)
+    }
+
+    /// Returns all numbers at a state that is on the rows.
+    pub fn row_of(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        self.set(t, y);
         if !self.external.is_empty() {
             self.external.evaluate(&mut self.numbers, true);
         }

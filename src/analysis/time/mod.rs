@@ -5,11 +5,13 @@
 //! leg          the loop over the steps of one method; leg_rows, leg_output: its rows, its results
 //! switches     branches: held within a step, changed where they end
 //! ranks        positions where rows become dependent; better rows; why a mechanism is locked
-//! kinematics   mechanisms without freedom, from output time to output time
+//! kinematics   mechanisms without freedom; continuation: their steps along a branch
+//! states       states on the way, and those between
 //! drives       motions that jump              valueless   functions that lose their value
 //! output       output times
 //! ```
 
+pub mod continuation;
 pub mod drives;
 pub mod dynamics;
 pub mod kinematics;
@@ -19,6 +21,7 @@ mod leg_rows;
 pub mod options;
 pub mod output;
 pub mod ranks;
+pub mod states;
 pub mod switches;
 pub mod trajectory;
 pub(super) mod valueless;

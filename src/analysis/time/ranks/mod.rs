@@ -9,9 +9,11 @@
 
 mod locked;
 mod passes;
+mod sides;
 
 pub use locked::{Lock, locked};
 pub use passes::{Pass, passes};
+pub use sides::{Side, Sides};
 
 use crate::analysis::start::assemble::{self, DEPENDENT};
 use crate::analysis::start::velocities;

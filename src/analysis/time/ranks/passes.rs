@@ -12,7 +12,7 @@ use crate::scene::mover::Mover;
 
 /// Smallest part of a row outside the others, relative to its length, at a located position that
 /// still counts as dependent: positions are located to the square root of rounding.
-const DEPENDENT_THERE: f64 = 1e-6;
+pub(super) const DEPENDENT_THERE: f64 = 1e-6;
 /// The same at a state, below which a minimum is located.
 const LARGEST_MINIMUM: f64 = 0.7;
 /// The same at a minimum found without closing states onto the rows, above which it is none.

@@ -1,0 +1,255 @@
+//! The sides of singular positions: between two states the rows may have become dependent and
+//! independent again, which a smooth motion does only where two branches meet.
+//!
+//! ```text
+//! B = G₁ A G₀ᵀ (G₀ A G₀ᵀ)⁻¹          rows G₀ at one state, G₁ at a later one; B = 1 where they are the same
+//! ```
+//!
+//! While the rows stay independent no eigenvalue of B vanishes; where a combination of rows vanishes
+//! in passing, one goes through zero and is negative afterwards. So a pair of states on two branches
+//! that only come near each other is told from a pair on one branch, however long the step was. Each
+//! loop (rows that share coordinates) has a B of its own.
+
+use super::passes::DEPENDENT_THERE;
+use super::select;
+use crate::analysis::system::System;
+use crate::analysis::time::states::{Cubic, Node};
+use crate::expr::program::{Program, Work};
+use crate::numeric::Ode;
+use crate::scene::configuration::Configured;
+use crate::scene::mover::Mover;
+use crate::scene::programs::{record, weights};
+use nalgebra::DMatrix;
+use nalgebra::linalg::Schur;
+use std::collections::BTreeMap;
+
+/// Rows of the largest loop whose eigenvalues are found; of a larger one the sign of the
+/// determinant must do.
+const MAX_EIGENVALUES: usize = 60;
+/// Imaginary part of an eigenvalue that counts as real, over its real part: a turn of the rows by
+/// 150° is not the passage of a singular position.
+const NEARLY_REAL: f64 = 0.5;
+/// Iterations for the eigenvalues of a loop.
+const MAX_SCHUR: usize = 1000;
+/// Failures to find a state, in a row, after which there is none.
+const MAX_FAILURES: u32 = 3;
+/// States looked at in search of the position at which branches meet, at most.
+const MAX_LOOKS: usize = 60;
+/// Width of the interval that is left of the search, over the one in which branches that meet
+/// would be as far from dependence as its ends, below which they pass each other.
+const PASSED_BY: f64 = 0.05;
+
+/// Rows of a loop: those that share coordinates.
+#[derive(Clone, Debug, Default)]
+struct Loop {
+    /// indices of its rows
+    rows: Vec<usize>,
+    /// places in v of its coordinates
+    coordinates: Vec<usize>,
+}
+
+/// The gradients of the rows at one state, by loops: rows against what counts as one, columns in
+/// the metric of projections.
+#[derive(Clone, Debug, Default)]
+pub struct Side(Vec<DMatrix<f64>>);
+
+/// What finds out on which side of singular positions states are.
+#[derive(Debug)]
+pub struct Sides {
+    loops: Vec<Loop>,
+    /// gradients of the rows that take part
+    program: Program,
+    work: Work,
+    values: Vec<f64>,
+    /// loop, row and column of each value, and its factor
+    places: Vec<(usize, usize, usize, f64)>,
+    /// the longest that each row has been, by loops
+    usual: Vec<Vec<f64>>,
+}
+
+impl Sides {
+    /// Records the gradients of the rows that take part; `None` where none does.
+    pub fn new(scene: Configured<'_>) -> Option<Self> {
+        let rows: Vec<usize> = scene.configuration.active_rows().collect();
+        let mut entries = Vec::new();
+        let program = record(scene, |at| {
+            let mut values = Vec::new();
+            for &r in &rows {
+                for (v, x) in at.row(r).gradient {
+                    entries.push((r, v));
+                    values.push(x);
+                }
+            }
+            values
+        });
+        let program = program.ok()?;
+        let loops = loops(&rows, &entries, scene.layout.n_v);
+        let w = weights(&scene);
+        let place = |&(r, v): &(usize, usize)| {
+            let k = loops.iter().position(|l| l.rows.contains(&r))?;
+            let i = loops[k].rows.iter().position(|&x| x == r)?;
+            let j = loops[k].coordinates.iter().position(|&x| x == v)?;
+            Some((k, i, j, w[v].sqrt() / scene.row_scale(r)))
+        };
+        let places: Vec<_> = entries.iter().filter_map(place).collect();
+        (!loops.is_empty() && places.len() == entries.len()).then(|| Self {
+            usual: loops.iter().map(|l| vec![0.0; l.rows.len()]).collect(),
+            loops,
+            values: vec![0.0; program.n_outputs()],
+            program,
+            work: Work::default(),
+            places,
+        })
+    }
+
+    /// Returns the places in v of the coordinates of each loop.
+    pub fn coordinates(&self) -> impl Iterator<Item = &[usize]> {
+        self.loops.iter().map(|l| &l.coordinates[..])
+    }
+
+    /// Evaluates the gradients at all numbers of a state.
+    pub fn look(&mut self, numbers: &[f64]) -> Side {
+        self.program.run(numbers, &mut self.work, &mut self.values);
+        let size = |l: &Loop| DMatrix::zeros(l.rows.len(), l.coordinates.len());
+        let mut side: Vec<DMatrix<f64>> = self.loops.iter().map(size).collect();
+        for (&(k, i, j, factor), x) in self.places.iter().zip(&self.values) {
+            side[k][(i, j)] += factor * x;
+        }
+        for (usual, block) in self.usual.iter_mut().zip(&side) {
+            for (usual, row) in usual.iter_mut().zip(block.row_iter()) {
+                *usual = usual.max(row.norm());
+            }
+        }
+        Side(side)
+    }
+
+    /// Returns the loops of which a combination of rows has gone through zero between two states.
+    pub fn turned(from: &Side, to: &Side) -> Vec<usize> {
+        let turned = |&k: &usize| has_turned(&from.0[k], &to.0[k]);
+        (0..from.0.len()).filter(turned).collect()
+    }
+
+    /// Returns the least that any row of some loops determines beyond the others of its loop, over
+    /// its usual length: zero where rows are dependent.
+    fn margin(&self, loops: &[usize], side: &Side) -> f64 {
+        let of = |&k: &usize| {
+            let rows = side.0[k].row_iter().zip(&self.usual[k]);
+            let rows: Vec<Vec<f64>> = rows
+                .map(|(row, usual)| {
+                    row.iter()
+                        .map(|x| x / usual.max(f64::MIN_POSITIVE))
+                        .collect()
+                })
+                .collect();
+            let n = rows.len();
+            let (chosen, least) = select(rows, |_| false, n);
+            if chosen.len() < n { 0.0 } else { least }
+        };
+        loops.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Finds out whether two states between which loops have turned are on branches that meet:
+    /// whether there is a state between them at which rows are dependent. `from`: the rows at the
+    /// first.
+    pub fn meet(
+        &mut self,
+        system: &mut System,
+        (loops, from): (&[usize], &Side),
+        [a, b]: [&Node; 2],
+    ) -> bool {
+        let (l, mover) = (system.scene.layout, Mover::new(&system.scene));
+        let (mut a, mut b) = (a.clone(), b.clone());
+        let after = self.look(&system.numbers_at(b.t, &b.y));
+        let mut margins = [from, &after].map(|side| self.margin(loops, side));
+        // σ falls and rises in proportion to time
+        let slope = (margins[0] + margins[1]) / (b.t - a.t);
+        let mut failed = 0;
+        for _ in 0..MAX_LOOKS {
+            if margins[0].min(margins[1]) < DEPENDENT_THERE {
+                return true;
+            }
+            let width = b.t - a.t;
+            if slope * width < PASSED_BY * (margins[0] + margins[1]) {
+                return false;
+            }
+            // aside of where there was no state
+            let aside = 0.1 * f64::from(failed);
+            let part = margins[0] / (margins[0] + margins[1]) * (1.0 - aside);
+            let t = a.t + part.clamp(0.02, 0.98) * width;
+            let mut y = a.y.clone();
+            Cubic::new(&mover, l, [&a, &b]).at(&mover, t, &mut y);
+            if system.project(t, &mut y).is_err() {
+                failed += 1;
+                if failed > MAX_FAILURES {
+                    return false;
+                }
+                continue;
+            }
+            failed = 0;
+            let side = self.look(&system.numbers_at(t, &y));
+            let margin = self.margin(loops, &side);
+            if loops.iter().any(|&k| has_turned(&from.0[k], &side.0[k])) {
+                (b, margins[1]) = (Node { t, y }, margin);
+            } else {
+                (a, margins[0]) = (Node { t, y }, margin);
+            }
+        }
+        false
+    }
+}
+
+/// Sorts rows into loops: those that share coordinates.
+fn loops(rows: &[usize], entries: &[(usize, usize)], n_v: usize) -> Vec<Loop> {
+    // the loop of each coordinate, by its first row
+    let mut parent: Vec<usize> = (0..n_v).collect();
+    fn root(parent: &[usize], mut k: usize) -> usize {
+        while parent[k] != k {
+            k = parent[k];
+        }
+        k
+    }
+    let mut first = BTreeMap::new();
+    for &(r, v) in entries {
+        let other = *first.entry(r).or_insert(v);
+        let (a, b) = (root(&parent, v), root(&parent, other));
+        parent[a.max(b)] = a.min(b);
+    }
+    let mut loops: BTreeMap<usize, Loop> = BTreeMap::new();
+    for &r in rows {
+        if let Some(&v) = first.get(&r) {
+            loops.entry(root(&parent, v)).or_default().rows.push(r);
+        }
+    }
+    for v in 0..n_v {
+        if let Some(l) = loops.get_mut(&root(&parent, v)) {
+            l.coordinates.push(v);
+        }
+    }
+    loops.into_values().collect()
+}
+
+/// Returns whether a combination of rows has gone through zero from one state to another.
+fn has_turned(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
+    let (square, mixed) = (from * from.transpose(), from * to.transpose());
+    let Some(factor) = square.cholesky() else {
+        return false;
+    };
+    let b = factor.solve(&mixed);
+    if b.iter().any(|x| !x.is_finite()) {
+        return false;
+    }
+    if b.nrows() == 1 {
+        return b[0] < 0.0;
+    }
+    if b.nrows() > MAX_EIGENVALUES {
+        let lu = b.lu();
+        let pivots = lu.u().diagonal();
+        let negative = pivots.iter().filter(|x| **x < 0.0).count();
+        let swaps: f64 = lu.p().determinant();
+        return (negative % 2 == 1) != (swaps < 0.0);
+    }
+    Schur::try_new(b, f64::EPSILON, MAX_SCHUR).is_some_and(|schur| {
+        let eigenvalues = schur.complex_eigenvalues();
+        (eigenvalues.iter()).any(|z| z.re < 0.0 && z.im.abs() <= NEARLY_REAL * z.re.abs())
+    })
+}

@@ -1,0 +1,67 @@
+//! States on the way, and those between or after them: positions cubic in time, from positions and
+//! velocities at two instants.
+
+use crate::scene::layout::Layout;
+use crate::scene::mover::Mover;
+
+/// A state at an instant.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// time
+    pub t: f64,
+    /// q | v | x   (n_y)
+    pub y: Vec<f64>,
+}
+
+/// The cubic through the positions and velocities of two states.
+#[derive(Clone, Debug)]
+pub struct Cubic {
+    layout: Layout,
+    /// where it begins, and the distance in time of its ends
+    t: f64,
+    h: f64,
+    /// coefficients of powers of the part of the way, by positions   (4 n_q)
+    q: Vec<[f64; 4]>,
+    /// the same of further states, which are linear   (2 n_x)
+    x: Vec<[f64; 2]>,
+}
+
+impl Cubic {
+    /// Lays a cubic through two states at different instants.
+    pub fn new(mover: &Mover, layout: Layout, [a, b]: [&Node; 2]) -> Self {
+        let h = b.t - a.t;
+        let (before, after) = (layout.state(&a.y), layout.state(&b.y));
+        let (mut m0, mut m1) = (vec![0.0; layout.n_q], vec![0.0; layout.n_q]);
+        mover.untangent(before.q, before.v, &mut m0);
+        mover.untangent(after.q, after.v, &mut m1);
+        let coefficients = |k: usize| {
+            let (m0, m1, d) = (h * m0[k], h * m1[k], after.q[k] - before.q[k]);
+            [before.q[k], m0, 3.0 * d - 2.0 * m0 - m1, m0 + m1 - 2.0 * d]
+        };
+        let lines = before.x.iter().zip(after.x);
+        Self {
+            layout,
+            t: a.t,
+            h,
+            q: (0..layout.n_q).map(coefficients).collect(),
+            x: lines.map(|(&a, &b)| [a, b - a]).collect(),
+        }
+    }
+
+    /// Evaluates positions, velocities and further states at a time between the ends or beyond.
+    pub fn at(&self, mover: &Mover, t: f64, y: &mut [f64]) {
+        let s = (t - self.t) / self.h;
+        let state = self.layout.state_mut(y);
+        let mut rate = vec![0.0; self.layout.n_q];
+        for ((q, rate), [p, m, second, third]) in state.q.iter_mut().zip(&mut rate).zip(&self.q) {
+            *q = p + s * (m + s * (second + s * third));
+            *rate = (m + s * (2.0 * second + s * 3.0 * third)) / self.h;
+        }
+        let v = mover.tangent(state.q, &rate, self.layout.n_v);
+        state.v.copy_from_slice(&v);
+        mover.normalize(state.q);
+        for (x, [a, d]) in state.x.iter_mut().zip(&self.x) {
+            *x = a + s * d;
+        }
+    }
+}
