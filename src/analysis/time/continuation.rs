@@ -424,8 +424,8 @@ impl Continuation {
         Ok(y)
     }
 
-    /// Goes back to the beginning of the last step, to go on from there to a time within it; returns
-    /// whether there is one.
+    /// Goes back to the beginning of the last step, to go on from there to a time within it;
+    /// returns whether there is one.
     pub fn step_back(&mut self, system: &System, t: f64) -> bool {
         let Some(before) = self.before.take() else {
             return false;

@@ -35,6 +35,25 @@ pub fn singular() -> Vec<Scene> {
             ),
         );
     }
+    // a rod hardly longer than its crank: the slider stays at the middle while the crank goes round behind it, and does not go through;
+    // hardly shorter: the crank gets no further
+    for (power, steps) in [(-9, 1), (-6, 3), (-6, 40), (-3, 7)] {
+        let longer = 10f64.powi(power);
+        let rod = 1.0 + longer;
+        let text = crank_and_rod(rod) + "MOTION/1, JOINT=1, ROTATION, FUNCTION=2*PI*TIME\n";
+        let exact = move |t: f64| {
+            let a = TAU * t;
+            // 1 + ε − |sin| without cancellation
+            let near = (2.0 * longer + longer * longer + a.cos().powi(2)).sqrt();
+            a.cos() + near
+        };
+        let name = format!("a rod longer than its crank by 1e{power}, {steps} outputs");
+        all.push((scene(f, name, text).kinematic().steps(steps)).follows("DX(40,1)", exact, 1e-7));
+        let text =
+            crank_and_rod(1.0 - longer) + "MOTION/1, JOINT=1, ROTATION, FUNCTION=2*PI*TIME\n";
+        let name = format!("a rod shorter than its crank by 1e{power}, {steps} outputs");
+        all.push((scene(f, name, text).kinematic().steps(steps)).ends("MOTION/1 drives it past"));
+    }
     // angles of a free body pass through their singular positions while it turns about a fixed axis
     for (k, w) in [
         [3.0, 0.0, 0.0],
@@ -83,4 +102,17 @@ pub fn singular() -> Vec<Scene> {
          JOINT/3, TRANSLATIONAL, I=31, J=11\nMOTION/1, JOINT=3, TRANSLATION, FUNCTION=1+0.5*TIME\n";
     all.push(scene(f, "a rod is pulled longer than it is", text).ends("MOTION/1"));
     all
+}
+
+/// A crank of length one on JOINT/1 along x, a rod, and a slider on the x axis with MARKER/40.
+fn crank_and_rod(rod: f64) -> String {
+    let x = 1.0 + rod;
+    format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=1,0,0\n\
+         PART/3, MASS=1, CM=30, IP=1,1,1, QG=1,0,0\nMARKER/30, PART=3\nMARKER/31, PART=3, QP={rod:?},0,0\n\
+         PART/4, MASS=1, CM=40, IP=1,1,1, QG={x:?},0,0\nMARKER/40, PART=4\nMARKER/41, PART=4, REULER=90D,90D,0\n\
+         MARKER/11, PART=1, REULER=90D,90D,0\n\
+         JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=21\n\
+         JOINT/3, REVOLUTE, I=31, J=40\nJOINT/4, TRANSLATIONAL, I=41, J=11\n"
+    )
 }

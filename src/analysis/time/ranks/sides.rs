@@ -2,12 +2,12 @@
 //! independent again, which a smooth motion does only where two branches meet.
 //!
 //! ```text
-//! B = G₁ A G₀ᵀ (G₀ A G₀ᵀ)⁻¹          rows G₀ at one state, G₁ at a later one; B = 1 where they are the same
+//! B = G₁ A G₀ᵀ (G₀ A G₀ᵀ)⁻¹      rows G₀ at one state, G₁ at a later one; one where they are the same
 //! ```
 //!
-//! While the rows stay independent no eigenvalue of B vanishes; where a combination of rows vanishes
-//! in passing, one goes through zero and is negative afterwards. So a pair of states on two branches
-//! that only come near each other is told from a pair on one branch, however long the step was. Each
+//! While the rows stay independent no eigenvalue of B vanishes; where a combination of rows
+//! vanishes in passing, one goes through zero and is negative afterwards. So two states on branches
+//! that only come near each other are told from two on one branch, however long the step was. Each
 //! loop (rows that share coordinates) has a B of its own.
 
 use super::passes::DEPENDENT_THERE;
