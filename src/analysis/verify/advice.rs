@@ -7,7 +7,7 @@
 
 use super::numbers_at;
 use crate::analysis::start::assemble::{self, Assembly};
-use crate::model::{JointKind, PrimitiveKind};
+use crate::model::{ElementId, JointKind, PrimitiveKind};
 use crate::physics::joint::Tie;
 use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
@@ -34,8 +34,8 @@ const CANDIDATES: [Tie; 12] = [
 /// A change of an element after which it fixes nothing twice, and the motion is the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// "JOINT/4"
-    pub element: String,
+    /// the constraint
+    pub element: ElementId,
     /// what to do with it
     pub change: Change,
 }
@@ -109,7 +109,7 @@ pub(super) fn advice(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly
                 },
             };
             Advice {
-                element: element.id.to_string(),
+                element: element.id,
                 change,
             }
         })

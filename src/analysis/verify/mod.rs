@@ -11,12 +11,13 @@
 //! at positions nearby.
 
 mod advice;
+mod axes;
 mod free;
 pub(crate) mod massless;
 pub mod outline;
-mod words;
 
 pub use advice::{Advice, Change};
+pub use axes::Axes;
 pub use free::{Free, Moving};
 
 use crate::analysis::direction::Direction;
@@ -43,12 +44,12 @@ const LEAST_STRESS: f64 = 1e-7;
 pub struct Dependent {
     /// "JOINT/4 Zi.Xj"
     pub row: String,
-    /// "JOINT/4"
-    pub element: String,
+    /// the constraint whose row it is
+    pub element: ElementId,
     /// the motion it forbids
     pub direction: Direction,
     /// elements that fix the same already, carriers first
-    pub fixed_by: Vec<String>,
+    pub fixed_by: Vec<ElementId>,
     /// factors of the rows it is a combination of; rows of joints that carry parts are not among
     /// them
     pub combination: Vec<(String, f64)>,
@@ -73,7 +74,7 @@ impl Dependent {
         if self.fixed_by.is_empty() {
             text += ", though the parts it ties cannot move against each other";
         } else {
-            text += &format!(", already fixed by {}", self.fixed_by.join(", "));
+            text += &format!(", already fixed by {}", listed(&self.fixed_by));
         }
         if self.only_here {
             text += " (at this position only)";
@@ -82,15 +83,21 @@ impl Dependent {
     }
 }
 
+/// Returns the names of elements in a row: "JOINT/1, JOINT/2".
+pub fn listed<'a>(elements: impl IntoIterator<Item = &'a ElementId>) -> String {
+    let names: Vec<String> = elements.into_iter().map(ElementId::to_string).collect();
+    names.join(", ")
+}
+
 /// An element whose reaction is not determined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Undetermined {
-    /// "JOINT/4"
-    pub element: String,
+    /// the constraint
+    pub element: ElementId,
     /// of FX FY FZ TX TY TZ
     pub components: Vec<&'static str>,
-    /// in whose axes: "ground", "MARKER/12"
-    pub axes: String,
+    /// in whose axes
+    pub axes: Axes,
 }
 
 /// The freedoms of a model, explained.
@@ -410,21 +417,21 @@ fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &
             if !takes_part {
                 continue;
             }
-            let axes = words::axes(&at, element.markers.map(|m| m.1));
+            let (_, R) = axes::of(&at, element.markers.map(|m| m.1));
             for k in 0..3 {
-                let e = axes.1.column(k);
+                let e = R.column(k);
                 open[c][k] |= e.dot(action.force).abs() > LEAST_STRESS * largest;
                 open[c][k + 3] |=
                     e.dot(action.torque).abs() > LEAST_STRESS * largest * scene.length;
             }
             if own != Some(c) {
-                fixed_by.push(element.id.to_string());
+                fixed_by.push(element.id);
             }
         }
         let row = &scene.rows[d.row];
         found.dependent.push(Dependent {
             row: d.name.clone(),
-            element: row.element.to_string(),
+            element: row.element,
             direction: Direction::of_row(&scene, &at, d.row),
             fixed_by,
             combination: (d.combination.iter())
@@ -439,9 +446,9 @@ fn explain(scene: Configured<'_>, numbers: &[f64], assembly: &Assembly, found: &
         let components: Vec<&str> = (0..6).filter(|&k| open[k]).map(|k| COMPONENTS[k]).collect();
         if !components.is_empty() {
             found.undetermined.push(Undetermined {
-                element: element.id.to_string(),
+                element: element.id,
                 components,
-                axes: words::axes(&at, element.markers.map(|m| m.1)).0,
+                axes: axes::of(&at, element.markers.map(|m| m.1)).0,
             });
         }
     }

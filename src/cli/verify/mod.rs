@@ -89,8 +89,10 @@ fn as_json(v: &Verification) -> Value {
             let combination: Vec<Value> = (d.combination.iter())
                 .map(|(row, factor)| json!({ "row": row, "factor": factor }))
                 .collect();
+            let fixed_by: Vec<String> = d.fixed_by.iter().map(ToString::to_string).collect();
             json!({
-                "row": d.row, "element": d.element, "direction": d.direction.to_string(), "fixed_by": d.fixed_by,
+                "row": d.row, "element": d.element.to_string(),
+                "direction": d.direction.to_string(), "fixed_by": fixed_by,
                 "combination": combination, "only_here": d.only_here, "words": d.sentence(),
             })
         })
@@ -109,7 +111,7 @@ fn as_json(v: &Verification) -> Value {
         .map(|(what, n, equations)| json!({ "what": what, "elements": n, "equations": equations }))
         .collect();
     let undetermined: Vec<Value> = (v.undetermined.iter())
-        .map(|u| json!({ "element": u.element, "components": u.components, "axes": u.axes }))
+        .map(|u| json!({ "element": u.element.to_string(), "components": u.components, "axes": u.axes.to_string() }))
         .collect();
     json!({
         "parts": v.parts,

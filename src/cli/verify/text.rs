@@ -1,7 +1,7 @@
 //! A verification as text: the count line by line, then the findings; equal findings about many
 //! elements are given once.
 
-use crate::analysis::verify::{Advice, Dependent, Undetermined, Verification};
+use crate::analysis::verify::{Advice, Dependent, Undetermined, Verification, listed};
 use std::fmt::Write;
 
 /// Number of findings of one sort above which they are grouped: one in full, the names of the
@@ -96,7 +96,7 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
             .iter()
             .map(|(d, _)| match d.fixed_by.as_slice() {
                 [one] => format!("{} by {one}", d.element),
-                _ => d.element.clone(),
+                _ => d.element.to_string(),
             })
             .collect();
         others.dedup();
@@ -117,11 +117,10 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
 /// Prints the reactions that are not unique.
 fn not_unique(all: &[Undetermined]) -> Vec<String> {
     let tell = |first: &Undetermined, group: &[&Undetermined], axes: &str| {
-        let elements: Vec<&str> = group.iter().map(|u| u.element.as_str()).collect();
         format!(
             "not unique: {} of {} ({axes}); results tell the smallest set",
             first.components.join(" "),
-            elements.join(", "),
+            listed(group.iter().map(|u| &u.element)),
         )
     };
     let exact = groups(all, |a, b| {
@@ -147,10 +146,11 @@ fn advice(all: &[Advice]) -> Vec<String> {
     }
     let mut lines = Vec::new();
     for (first, group) in groups(all, |a, b| a.change == b.change) {
-        let others: Vec<&str> = group[1..].iter().map(|a| a.element.as_str()).collect();
+        let others = &group[1..];
         let mut text = format!("advice: {first}");
         if !others.is_empty() {
-            let _ = write!(text, "; likewise {}", others.join(", "));
+            let others = listed(others.iter().map(|a| &a.element));
+            let _ = write!(text, "; likewise {others}");
         }
         lines.push(text);
     }
@@ -174,10 +174,11 @@ mod tests {
     use super::*;
     use crate::analysis::direction::{Axis, Direction};
     use crate::analysis::verify::Change;
+    use crate::model::ElementKind;
 
-    fn dependent(k: usize, fixed_by: &[&str]) -> Dependent {
-        let element = format!("JOINT/{k}");
-        let fixed_by: Vec<String> = fixed_by.iter().map(ToString::to_string).collect();
+    fn dependent(k: u32, fixed_by: &[u32]) -> Dependent {
+        let element = ElementKind::Joint.id(k);
+        let fixed_by = fixed_by.iter().map(|&k| ElementKind::Joint.id(k)).collect();
         Dependent {
             row: format!("{element} Zi.Xj"),
             element,
@@ -191,10 +192,10 @@ mod tests {
 
     #[test]
     fn few_findings_are_told_one_by_one_and_many_by_their_kinds() {
-        let few: Vec<Dependent> = (1..=6).map(|k| dependent(k, &["JOINT/9"])).collect();
+        let few: Vec<Dependent> = (1..=6).map(|k| dependent(k, &[9])).collect();
         assert_eq!(redundant(&few).len(), 6);
-        let mut many: Vec<Dependent> = (1..=20).map(|k| dependent(k, &["JOINT/90"])).collect();
-        many.extend((31..=35).map(|k| dependent(k, &["JOINT/91", "JOINT/92"])));
+        let mut many: Vec<Dependent> = (1..=20).map(|k| dependent(k, &[90])).collect();
+        many.extend((31..=35).map(|k| dependent(k, &[91, 92])));
         let lines = redundant(&many);
         assert_eq!(lines.len(), 3, "{lines:#?}");
         assert!(lines[0].starts_with("25 redundant equations"));
@@ -203,7 +204,7 @@ mod tests {
         // every element is named
         for d in &many {
             assert!(
-                lines.iter().any(|l| l.contains(&d.element)),
+                lines.iter().any(|l| l.contains(&d.element.to_string())),
                 "{}",
                 d.element
             );
@@ -212,8 +213,8 @@ mod tests {
 
     #[test]
     fn advice_of_one_kind_is_given_once() {
-        let of = |k: usize| Advice {
-            element: format!("JPRIM/{k}"),
+        let of = |k: u32| Advice {
+            element: ElementKind::Jprim.id(k),
             change: Change::Remove,
         };
         let all: Vec<Advice> = (1..=9).map(of).collect();
