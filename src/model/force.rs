@@ -3,6 +3,7 @@
 
 use super::element::{Element, ElementKind, Named, names, names_each, placed};
 use super::{Formula, Place};
+use crate::physics::{bushing, spring_damper};
 
 /// SFORCE: a force along the line between two markers, or a torque about z of J.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -104,6 +105,18 @@ impl Element for SpringDamper {
     }
 }
 
+impl From<&SpringDamper> for spring_damper::SpringDamper {
+    fn from(s: &SpringDamper) -> Self {
+        Self {
+            rotational: s.rotational,
+            stiffness: s.stiffness,
+            damping: s.damping,
+            free: s.free,
+            preload: s.preload,
+        }
+    }
+}
+
 /// BUSHING: three linear springs with dampers along, and three about, the axes of J.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bushing {
@@ -128,6 +141,16 @@ impl Element for Bushing {
     }
     fn ends(&self) -> Option<[u32; 2]> {
         Some([self.i, self.j])
+    }
+}
+
+impl From<&Bushing> for bushing::Bushing {
+    fn from(b: &Bushing) -> Self {
+        Self {
+            stiffness: b.stiffness,
+            damping: b.damping,
+            preload: b.preload,
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! `T_J = −T_I − (p_I − p_J) × F_I`: the transfer moment of bushings and beams, and no moment at
 //! all for a force along the line I–J.
 
+use crate::expr::measures::Measure;
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 
@@ -55,6 +56,24 @@ impl<S: Scalar> Action<S> {
         }
     }
 }
+
+/// A law between two markers that needs nothing but its own numbers, their states and the angles
+/// between them.
+pub trait Law {
+    /// Returns the angles of I in J that it reads.
+    fn angles(&self) -> &'static [Measure];
+
+    /// Returns the action on I. `angle`: one of these angles, in rad, turns counted.
+    fn action<S: Scalar>(
+        &self,
+        i: &MarkerState<S>,
+        j: &MarkerState<S>,
+        angle: impl Fn(Measure) -> S,
+    ) -> Action<S>;
+}
+
+/// The three angles of I in J.
+pub const ALL_ANGLES: [Measure; 3] = [Measure::Ax, Measure::Ay, Measure::Az];
 
 /// Returns the unit vector from J to I and the distance; the vector and its derivative are zero
 /// where they coincide.

@@ -13,7 +13,8 @@
 //!
 //! Two of the three angles must stay small: only then are a, b, c rotations about the axes of J.
 
-use super::action::Action;
+use super::action::{ALL_ANGLES, Action, Law};
+use crate::expr::measures::Measure;
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 
@@ -54,15 +55,18 @@ pub fn in_axes_of<S: Scalar>(j: &MarkerState<S>, f: [S; 6]) -> Action<S> {
     }
 }
 
-impl Bushing {
-    /// Returns the action on I. `angles`: AX, AY, AZ of I in J, in rad.
-    pub fn action<S: Scalar>(
+impl Law for Bushing {
+    fn angles(&self) -> &'static [Measure] {
+        &ALL_ANGLES
+    }
+
+    fn action<S: Scalar>(
         &self,
         i: &MarkerState<S>,
         j: &MarkerState<S>,
-        angles: [S; 3],
+        angle: impl Fn(Measure) -> S,
     ) -> Action<S> {
-        let (x, rate) = deformation(i, j, angles);
+        let (x, rate) = deformation(i, j, ALL_ANGLES.map(angle));
         let f = std::array::from_fn(|k| {
             S::constant(self.preload[k])
                 - x[k].scale(self.stiffness[k])

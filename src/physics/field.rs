@@ -17,8 +17,9 @@
 //! conserves energy where K is symmetric and the rotations are small or about one axis: only then
 //! are the components of ω the rates of a, b, c.
 
-use super::action::Action;
+use super::action::{ALL_ANGLES, Action, Law};
 use super::bushing::{deformation, in_axes_of};
+use crate::expr::measures::Measure;
 use crate::scalar::Scalar;
 use crate::space::MarkerState;
 
@@ -61,15 +62,18 @@ pub fn resisting<S: Scalar>(row: &[f64], x: &[S]) -> S {
     entries.fold(S::zero(), |sum, (&k, &x)| sum - x.scale(k))
 }
 
-impl Field {
-    /// Returns the action on I. `angles`: AX, AY, AZ of I in J, in rad.
-    pub fn action<S: Scalar>(
+impl Law for Field {
+    fn angles(&self) -> &'static [Measure] {
+        &ALL_ANGLES
+    }
+
+    fn action<S: Scalar>(
         &self,
         i: &MarkerState<S>,
         j: &MarkerState<S>,
-        angles: [S; 3],
+        angle: impl Fn(Measure) -> S,
     ) -> Action<S> {
-        let (x, rate) = deformation(i, j, angles);
+        let (x, rate) = deformation(i, j, ALL_ANGLES.map(angle));
         let stretch: [S; 6] = std::array::from_fn(|k| x[k] - S::constant(self.free[k]));
         let f = std::array::from_fn(|k| {
             S::constant(self.preload[k])

@@ -15,7 +15,8 @@
 //! Singular where I and J coincide in translation: the direction, and with it the force, is zero
 //! there.
 
-use super::action::{Action, line_of_sight};
+use super::action::{Action, Law, line_of_sight};
+use crate::expr::measures::Measure;
 use crate::scalar::Scalar;
 use crate::space::{MarkerState, Vec3};
 
@@ -35,32 +36,36 @@ pub struct SpringDamper {
 }
 
 impl SpringDamper {
-    fn law<S: Scalar>(&self, x: S, rate: S) -> S {
+    fn magnitude<S: Scalar>(&self, x: S, rate: S) -> S {
         S::constant(self.preload)
             - rate.scale(self.damping)
             - (x - S::constant(self.free)).scale(self.stiffness)
     }
+}
 
-    /// Returns the action on I. `angle`: of I about z_J with its turns, in rad, for the rotational
-    /// one.
-    pub fn action<S: Scalar>(
+impl Law for SpringDamper {
+    fn angles(&self) -> &'static [Measure] {
+        if self.rotational { &[Measure::Az] } else { &[] }
+    }
+
+    fn action<S: Scalar>(
         &self,
         i: &MarkerState<S>,
         j: &MarkerState<S>,
-        angle: impl FnOnce() -> S,
+        angle: impl Fn(Measure) -> S,
     ) -> Action<S> {
         if self.rotational {
             let z_J = j.R_GM.column(2);
             let rate = (i.w_GM - j.w_GM).dot(z_J);
             return Action {
                 force: Vec3::zero(),
-                torque: z_J.times(self.law(angle(), rate)),
+                torque: z_J.times(self.magnitude(angle(Measure::Az), rate)),
             };
         }
         let (u, length) = line_of_sight(i, j);
         let rate = (i.v_GM - j.v_GM).dot(u);
         Action {
-            force: u.times(self.law(length, rate)),
+            force: u.times(self.magnitude(length, rate)),
             torque: Vec3::zero(),
         }
     }

@@ -2,48 +2,70 @@
 //! laws need no more than their numbers.
 //!
 //! FIELD, BEAM and NFORCE are made in `compliance.rs`, contacts in `contacts.rs`, friction in
-//! `frictions.rs`. A new kind of element is an arm here that the compiler asks for.
+//! `frictions.rs`. A new law of two markers is a row in `forces.rs`; a new kind of element of another
+//! sort is an arm here that the compiler asks for.
 
 use super::LinkIx;
 use super::build::Builder;
 use super::compile::Compiler;
-use super::forces::{ForceElement, ForceLaw};
+use super::forces::{ForceElement, ForceLaw, laws_of_two_markers};
 use super::functions::Owner;
-use crate::model::{ById, COMPONENTS, ElementId, ElementKind, VectorForce};
-use crate::physics::bushing::Bushing;
-use crate::physics::spring_damper::SpringDamper;
+use crate::model::{ById, COMPONENTS, Element, ElementId, ElementKind, VectorForce};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+macro_rules! kinds_of_forces {
+    ($($kind:ident $list:ident: $law:ty;)*) => {
+        impl Builder<'_> {
+            /// Makes force elements of all kinds, in the order of the table.
+            pub(super) fn forces(&mut self, c: &mut Compiler, skipped: &BTreeSet<ElementKind>) {
+                use ElementKind as E;
+                for &kind in ElementKind::ALL {
+                    match kind {
+                        $(E::$kind => {
+                            self.laws(c, kind, &self.model.$list, |s| ForceLaw::$kind(s.into()));
+                        })*
+                        E::Sforce => self.single_forces(c),
+                        E::Vforce => self.vectors(c, kind, &self.model.vforces, 0..3),
+                        E::Vtorque => self.vectors(c, kind, &self.model.vtorques, 3..6),
+                        E::Gforce => self.vectors(c, kind, &self.model.gforces, 0..6),
+                        E::Field => self.fields(c),
+                        E::Beam => self.beams(c),
+                        E::Nforce => self.nodal_forces(c),
+                        E::Contact => self.contacts(c, skipped),
+                        E::Friction => self.frictions(c),
+                        // other passes make these
+                        E::Part | E::PointMass | E::Marker => {}
+                        E::Joint | E::Jprim | E::Motion | E::Coupler => {}
+                        E::Gear | E::Gcon | E::Ptcv | E::Cvcv => {}
+                        E::Variable | E::Diff | E::Lse | E::Tfsiso | E::Gse => {}
+                        E::Pinput | E::Poutput | E::Sensor => {}
+                        E::Array | E::Curve | E::Spline | E::String | E::Matrix => {}
+                        E::Request | E::Mrequest | E::Graphics => {}
+                        // not solved: see `left_out.rs`
+                        E::FlexBody | E::FePart | E::Ucon | E::Ptsf | E::Cvsf | E::Sfsf => {}
+                        E::FeLoad | E::Mforce | E::Tire | E::Wheel | E::Material => {}
+                        E::Section | E::FeNode | E::Surface | E::Femdata => {}
+                    }
+                }
+            }
+        }
+    };
+}
+laws_of_two_markers!(kinds_of_forces);
+
 impl Builder<'_> {
-    /// Makes force elements of all kinds, in the order of the table.
-    pub(super) fn forces(&mut self, c: &mut Compiler, skipped: &BTreeSet<ElementKind>) {
-        use ElementKind as E;
-        for &kind in ElementKind::ALL {
-            match kind {
-                E::Sforce => self.single_forces(c),
-                E::Vforce => self.vectors(c, kind, &self.model.vforces, 0..3),
-                E::Vtorque => self.vectors(c, kind, &self.model.vtorques, 3..6),
-                E::Gforce => self.vectors(c, kind, &self.model.gforces, 0..6),
-                E::SpringDamper => self.spring_dampers(c),
-                E::Bushing => self.bushings(c),
-                E::Field => self.fields(c),
-                E::Beam => self.beams(c),
-                E::Nforce => self.nodal_forces(c),
-                E::Contact => self.contacts(c, skipped),
-                E::Friction => self.frictions(c),
-                // other passes make these
-                E::Part | E::PointMass | E::Marker => {}
-                E::Joint | E::Jprim | E::Motion | E::Coupler => {}
-                E::Gear | E::Gcon | E::Ptcv | E::Cvcv => {}
-                E::Variable | E::Diff | E::Lse | E::Tfsiso | E::Gse => {}
-                E::Pinput | E::Poutput | E::Sensor => {}
-                E::Array | E::Curve | E::Spline | E::String | E::Matrix => {}
-                E::Request | E::Mrequest | E::Graphics => {}
-                // not solved: see `left_out.rs`
-                E::FlexBody | E::FePart | E::Ucon | E::Ptsf | E::Cvsf | E::Sfsf => {}
-                E::FeLoad | E::Mforce | E::Tire | E::Wheel | E::Material => {}
-                E::Section | E::FeNode | E::Surface | E::Femdata => {}
+    /// Makes the elements of one kind whose law is nothing but their numbers.
+    fn laws<T: Element>(
+        &mut self,
+        c: &mut Compiler,
+        kind: ElementKind,
+        list: &ById<T>,
+        law: impl Fn(&T) -> ForceLaw,
+    ) {
+        for (id, statement) in self.model.active(kind, list) {
+            if let Some([i, j]) = statement.ends() {
+                self.between(c, kind.id(id), (i, j), law(statement));
             }
         }
     }
@@ -70,33 +92,6 @@ impl Builder<'_> {
                 reaction,
                 law,
             });
-        }
-    }
-
-    fn spring_dampers(&mut self, c: &mut Compiler) {
-        let model = self.model;
-        for (id, s) in model.active(ElementKind::SpringDamper, &model.spring_dampers) {
-            let law = SpringDamper {
-                rotational: s.rotational,
-                stiffness: s.stiffness,
-                damping: s.damping,
-                free: s.free,
-                preload: s.preload,
-            };
-            let law = ForceLaw::SpringDamper(law);
-            self.between(c, ElementKind::SpringDamper.id(id), (s.i, s.j), law);
-        }
-    }
-
-    fn bushings(&mut self, c: &mut Compiler) {
-        let model = self.model;
-        for (id, b) in model.active(ElementKind::Bushing, &model.bushings) {
-            let law = ForceLaw::Bushing(Bushing {
-                stiffness: b.stiffness,
-                damping: b.damping,
-                preload: b.preload,
-            });
-            self.between(c, ElementKind::Bushing.id(id), (b.i, b.j), law);
         }
     }
 

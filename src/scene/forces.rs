@@ -4,15 +4,15 @@ use super::LinkIx;
 use super::equations::Equations;
 use crate::expr::measures::Measure;
 use crate::model::ElementId;
-use crate::physics::action::{self, Action};
+use crate::physics::action::{self, ALL_ANGLES, Action, Law};
 use crate::physics::bushing::{self, Bushing};
-use crate::physics::contact;
+use crate::physics::contact::{self, Touch};
 use crate::physics::field::Field;
 use crate::physics::friction::{Friction, Slip};
 use crate::physics::nodal_force::NodalForce;
 use crate::physics::spring_damper::SpringDamper;
 use crate::scalar::Scalar;
-use crate::space::Vec3;
+use crate::space::{MarkerState, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -42,120 +42,158 @@ pub enum Touching {
     Query(Range<usize>),
 }
 
-/// The laws.
-#[derive(Clone, Debug)]
-pub enum ForceLaw {
-    /// SFORCE
-    Single {
-        /// ROTATION
-        rotational: bool,
-        /// ACTIONONLY
-        action_only: bool,
-        /// index in the formulas
-        formula: usize,
-    },
-    /// VFORCE, VTORQUE, GFORCE
-    Vector {
-        /// marker whose axes the components have; `None` = ground
-        rm: Option<usize>,
-        /// indices in the formulas: FX FY FZ TX TY TZ
-        formulas: [Option<usize>; 6],
-    },
-    /// SPRINGDAMPER
-    SpringDamper(SpringDamper),
-    /// BUSHING
-    Bushing(Bushing),
-    /// FIELD, BEAM
-    Field(Box<Field>),
-    /// two solids of a CONTACT, and what they do where they touch
-    Contact(Box<(Touching, contact::Law)>),
-    /// FRICTION in a joint
-    Friction {
-        /// its numbers
-        law: Box<Friction>,
-        /// the joint's number
-        joint: u32,
-    },
-    /// one marker of an NFORCE
-    Nodal {
-        /// its numbers, shared by all its markers
-        law: Arc<NodalForce>,
-        /// all its I markers
-        markers: Arc<[usize]>,
-        /// which of them this is
-        place: usize,
-    },
+/// Hands the table of laws that are nothing but their numbers, between two markers, to the macro
+/// `$then`. A law is made of its statement by `From`, beside the statement in `model/force.rs`.
+///
+/// ```text
+/// kind  list of its statements in the model: its law
+/// ```
+macro_rules! laws_of_two_markers {
+    ($then:ident) => {
+        $then! {
+            SpringDamper spring_dampers: SpringDamper;
+            Bushing bushings: Bushing;
+        }
+    };
 }
+pub(super) use laws_of_two_markers;
 
-impl ForceLaw {
-    /// The angles of I in J that the law reads.
-    pub fn angles(&self) -> &'static [Measure] {
-        match self {
-            ForceLaw::SpringDamper(law) if law.rotational => &[Measure::Az],
-            ForceLaw::Bushing(_) | ForceLaw::Field(_) | ForceLaw::Nodal { .. } => {
-                &[Measure::Ax, Measure::Ay, Measure::Az]
+macro_rules! force_laws {
+    ($($kind:ident $list:ident: $law:ty;)*) => {
+        /// The laws.
+        #[derive(Clone, Debug)]
+        pub enum ForceLaw {
+            /// SFORCE
+            Single {
+                /// ROTATION
+                rotational: bool,
+                /// ACTIONONLY
+                action_only: bool,
+                /// index in the formulas
+                formula: usize,
+            },
+            /// VFORCE, VTORQUE, GFORCE
+            Vector {
+                /// marker whose axes the components have; `None` = ground
+                rm: Option<usize>,
+                /// indices in the formulas: FX FY FZ TX TY TZ
+                formulas: [Option<usize>; 6],
+            },
+            $(
+                #[doc = concat!("the law of ", stringify!($kind))]
+                $kind($law),
+            )*
+            /// FIELD, BEAM
+            Field(Box<Field>),
+            /// two solids of a CONTACT, and what they do where they touch
+            Contact(Box<(Touching, contact::Law)>),
+            /// FRICTION in a joint
+            Friction {
+                /// its numbers
+                law: Box<Friction>,
+                /// the joint's number
+                joint: u32,
+            },
+            /// one marker of an NFORCE
+            Nodal {
+                /// its numbers, shared by all its markers
+                law: Arc<NodalForce>,
+                /// all its I markers
+                markers: Arc<[usize]>,
+                /// which of them this is
+                place: usize,
+            },
+        }
+
+        impl ForceLaw {
+            /// Returns the angles of I in J that the law reads.
+            pub fn angles(&self) -> &'static [Measure] {
+                match self {
+                    $(ForceLaw::$kind(law) => law.angles(),)*
+                    ForceLaw::Field(law) => law.angles(),
+                    ForceLaw::Nodal { .. } => &ALL_ANGLES,
+                    ForceLaw::Single { .. }
+                    | ForceLaw::Vector { .. }
+                    | ForceLaw::Contact(_)
+                    | ForceLaw::Friction { .. } => &[],
+                }
             }
-            ForceLaw::Single { .. }
-            | ForceLaw::Vector { .. }
-            | ForceLaw::SpringDamper(_)
-            | ForceLaw::Contact(_)
-            | ForceLaw::Friction { .. } => &[],
+        }
+
+        impl ForceElement {
+            /// Returns the action on I, in ground axes.
+            pub fn action<S: Scalar>(&self, at: &Equations<'_, S>) -> Action<S> {
+                let i = at.marker(self.i);
+                let j = self.j.map_or_else(MarkerState::ground, |j| at.marker(j));
+                let angle = |measure: Measure| at.angle_between(measure, self.i, self.j);
+                match &self.law {
+                    ForceLaw::Single {
+                        rotational,
+                        action_only,
+                        formula,
+                    } => {
+                        let magnitude = at.formula(*formula);
+                        action::single_force(*rotational, *action_only, &i, &j, magnitude)
+                    }
+                    ForceLaw::Vector { rm, formulas } => {
+                        let axes = rm.map_or_else(MarkerState::ground, |m| at.marker(m));
+                        let c = formulas.map(|f| f.map_or_else(S::zero, |f| at.formula(f)));
+                        action::vector_force(&axes, [c[0], c[1], c[2]], [c[3], c[4], c[5]])
+                    }
+                    $(ForceLaw::$kind(law) => law.action(&i, &j, angle),)*
+                    ForceLaw::Field(law) => law.action(&i, &j, angle),
+                    ForceLaw::Contact(contact) => {
+                        let (touching, law) = contact.as_ref();
+                        contact::action(&touching.touches(at, &i, &j), law, &i, &j)
+                    }
+                    ForceLaw::Friction { law, joint } => {
+                        law.slip(&i, &j, &self.pressing(at, law, *joint)).action
+                    }
+                    ForceLaw::Nodal {
+                        law,
+                        markers,
+                        place,
+                    } => self.nodal(at, law, markers, *place, &j),
+                }
+            }
+        }
+    };
+}
+laws_of_two_markers!(force_laws);
+
+impl Touching {
+    /// Returns the touches of the solids of I and J.
+    fn touches<S: Scalar>(
+        &self,
+        at: &Equations<'_, S>,
+        i: &MarkerState<S>,
+        j: &MarkerState<S>,
+    ) -> Vec<Touch<S>> {
+        match self {
+            Touching::Formula(pair) => pair.touches(i, j),
+            Touching::Query(numbers) => contact::found(at.external(numbers.clone()), i, j),
         }
     }
 }
 
 impl ForceElement {
-    /// The action on I, ground axes.
-    pub fn action<S: Scalar>(&self, at: &Equations<'_, S>) -> Action<S> {
-        let i = at.marker(self.i);
-        let j = self
-            .j
-            .map_or_else(crate::space::MarkerState::ground, |j| at.marker(j));
-        let angle = |measure: Measure| at.angle_between(measure, self.i, self.j);
-        let angles = || [Measure::Ax, Measure::Ay, Measure::Az].map(angle);
-        match &self.law {
-            ForceLaw::Single {
-                rotational,
-                action_only,
-                formula,
-            } => action::single_force(*rotational, *action_only, &i, &j, at.formula(*formula)),
-            ForceLaw::Vector { rm, formulas } => {
-                let axes = rm.map_or_else(crate::space::MarkerState::ground, |m| at.marker(m));
-                let c = formulas.map(|f| f.map_or_else(S::zero, |f| at.formula(f)));
-                action::vector_force(&axes, [c[0], c[1], c[2]], [c[3], c[4], c[5]])
-            }
-            ForceLaw::SpringDamper(law) => law.action(&i, &j, || angle(Measure::Az)),
-            ForceLaw::Bushing(law) => law.action(&i, &j, angles()),
-            ForceLaw::Field(law) => law.action(&i, &j, angles()),
-            ForceLaw::Contact(contact) => {
-                let (touching, law) = contact.as_ref();
-                let touches = match touching {
-                    Touching::Formula(pair) => pair.touches(&i, &j),
-                    Touching::Query(numbers) => {
-                        contact::found(at.external(numbers.clone()), &i, &j)
-                    }
-                };
-                contact::action(&touches, law, &i, &j)
-            }
-            ForceLaw::Friction { law, joint } => {
-                law.slip(&i, &j, &self.pressing(at, law, *joint)).action
-            }
-            ForceLaw::Nodal {
-                law,
-                markers,
-                place,
-            } => {
-                let (mut x, mut rate) = (Vec::new(), Vec::new());
-                for &m in markers.iter() {
-                    let angles = [Measure::Ax, Measure::Ay, Measure::Az]
-                        .map(|measure| at.angle_between(measure, m, self.j));
-                    let (displacement, velocity) = bushing::deformation(&at.marker(m), &j, angles);
-                    x.extend(displacement);
-                    rate.extend(velocity);
-                }
-                law.action(*place, &j, &x, &rate)
-            }
+    /// Returns the action of an NFORCE on one of its markers.
+    fn nodal<S: Scalar>(
+        &self,
+        at: &Equations<'_, S>,
+        law: &NodalForce,
+        markers: &[usize],
+        place: usize,
+        j: &MarkerState<S>,
+    ) -> Action<S> {
+        let (mut x, mut rate) = (Vec::new(), Vec::new());
+        for &m in markers {
+            let angles = ALL_ANGLES.map(|measure| at.angle_between(measure, m, self.j));
+            let (displacement, velocity) = bushing::deformation(&at.marker(m), j, angles);
+            x.extend(displacement);
+            rate.extend(velocity);
         }
+        law.action(place, j, &x, &rate)
     }
 
     /// The joint's reaction on I as far as friction in it depends on it: unknowns, as it depends on
