@@ -6,6 +6,7 @@
 mod running;
 
 use cognate::expr::measures::Measure;
+use cognate::physics::action::Law;
 use cognate::physics::beam::Section;
 use cognate::physics::field::Field;
 use cognate::physics::kinematic::kinematic;
@@ -478,9 +479,8 @@ fn virtual_work_is_symmetric_where_nothing_is_loaded() {
         };
         let (i, j) = (state(R_GJ, p_GI, 0), state(R_GJ, p_GJ, 6));
         let ground = MarkerState::ground();
-        let angles = [Measure::Ax, Measure::Ay, Measure::Az]
-            .map(|m| kinematic(m, &i, &j, &ground, &ground).unwrap());
-        let action = law.action(&i, &j, angles);
+        let angle = |m: Measure| kinematic(m, &i, &j, &ground, &ground).unwrap();
+        let action = law.action(&i, &j, angle);
         let reaction = action.reaction(i.p_GM, j.p_GM);
         let all: Vec<Dual<12>> = [action.force, action.torque, reaction.force, reaction.torque]
             .iter()

@@ -446,3 +446,71 @@ fn keywords_of_elements_are_compared_nowhere() {
     }
     none("comparisons of keywords", offences);
 }
+
+/// Words that ask rather than say: the first of no sentence that documents something.
+const QUESTIONS: [&str; 3] = ["What ", "How ", "Whether "];
+
+#[test]
+fn docs_begin_with_a_verb_or_with_the_thing() {
+    let mut wrong = Vec::new();
+    for file in files("src") {
+        for (k, line) in file.lines.iter().enumerate() {
+            let text = line.trim_start();
+            let said = ["/// ", "//! "].iter().find_map(|s| text.strip_prefix(s));
+            let asks = |said: &str| QUESTIONS.iter().any(|word| said.starts_with(word));
+            if said.is_some_and(asks) {
+                wrong.push(format!("{}:{}: {text}", file.path, k + 1));
+            }
+        }
+    }
+    none("docs that begin with a question", wrong);
+}
+
+/// Returns true if a line writes the name of an element by its keyword, as in `"JOINT/{id}"`.
+fn names_by_keyword(line: &str) -> bool {
+    line.match_indices("/{").any(|(at, _)| {
+        let word = line[..at].rsplit(|c: char| !(c.is_ascii_uppercase() || c == '_'));
+        word.into_iter().next().is_some_and(|word| word.len() > 2)
+    })
+}
+
+/// Ways to look into a sentence that the program itself has made.
+const READS_SENTENCE: [&str; 12] = [
+    ".message.contains(",
+    ".message.starts_with(",
+    ".message.ends_with(",
+    ".message.split",
+    ".message.strip_",
+    ".message.find(",
+    ".message ==",
+    ".message !=",
+    ".sentence.contains(",
+    ".sentence.starts_with(",
+    ".to_string().starts_with(",
+    ".to_string().contains(",
+];
+
+#[test]
+fn no_text_is_data() {
+    assert!(names_by_keyword("format!(\"JOINT/{id} is driven\")"));
+    assert!(names_by_keyword("write!(f, \"of MARKER/{}\")"));
+    assert!(!names_by_keyword("format!(\"{a}/{b} mm/{c}\")"));
+    let mut wrong = Vec::new();
+    for file in files("src") {
+        if file.path.ends_with("/tests.rs") {
+            continue;
+        }
+        let lines = &file.lines[..file.n_lines_before_tests];
+        for (k, line) in lines.iter().enumerate() {
+            let reads = READS_SENTENCE.iter().any(|way| line.contains(way));
+            let comment = line.trim_start().starts_with("//");
+            if !comment && (reads || names_by_keyword(line)) {
+                wrong.push(format!("{}:{}: {}", file.path, k + 1, line.trim()));
+            }
+        }
+    }
+    none(
+        "names written by keyword, or sentences that are read",
+        wrong,
+    );
+}

@@ -10,7 +10,7 @@ use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::model::{ElementKind, Model};
+use crate::model::{ElementKind, Model, SettingsStatement};
 use crate::numeric::Stats;
 use crate::results::output_folder::OutputFolder;
 use crate::results::{Event, Status, csv, json, msg, res};
@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> Outcome {
     };
     remark_on_warnings(args, &reading);
     let (model, dataset) = (reading.model, reading.dataset);
-    let full = model.settings.contains_key("RESULTS");
+    let full = model.settings.contains_key(&SettingsStatement::Results);
     let mut session = open(args, model, &base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
 
@@ -180,7 +180,7 @@ fn remark_on_warnings(args: &Args, reading: &Reading) {
 
 /// Opens the session of a model, with the options of the command line.
 fn open(args: &Args, model: Model, base: &str) -> Session {
-    let full = model.settings.contains_key("RESULTS");
+    let full = model.settings.contains_key(&SettingsStatement::Results);
     let options = Options {
         error: args.error,
         method: args.method.clone(),

@@ -48,7 +48,7 @@ pub fn points(name: &str, bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     Ok(points)
 }
 
-/// Whether the beginning of a file is text.
+/// Returns true if the beginning of a file is text.
 fn is_text(bytes: &[u8]) -> bool {
     bytes.starts_with(b"solid") && !bytes.iter().take(1000).any(|&b| b == 0)
 }

@@ -45,8 +45,8 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// What is said about an element, with the place of its statement; unchanged where that is not
-    /// known, or a place has been given.
+    /// Adds the place of an element's statement to what is said about it; leaves it unchanged where
+    /// that is not known, or a place has been given.
     pub fn locate(&self, d: Diagnostic) -> Diagnostic {
         let named = d.element.as_deref().and_then(|e| e.split(' ').next());
         let (None, Some(element)) = (&d.file, named) else {
@@ -70,7 +70,7 @@ impl Dataset {
     }
 }
 
-/// What reading a dataset gave: always everything that could be understood, with all that was found
+/// The outcome of reading a dataset: always everything that could be understood, with all that was found
 /// wrong.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
@@ -83,7 +83,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Whether there is any error.
+    /// Returns true if there is any error.
     pub fn failed(&self) -> bool {
         self.diagnostics
             .iter()

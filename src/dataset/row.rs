@@ -1,5 +1,5 @@
-//! What a row of the table of statements is, and the two directions it serves: from a record into
-//! the Model and back.
+//! Rows of the table of statements, and the two directions that they serve: from a record into the
+//! Model and back.
 //!
 //! A [`Record`] is a statement read but not yet believed: which row, which number, which arguments
 //! with their values. The rows themselves stand in `statement.rs`.
@@ -7,7 +7,8 @@
 use super::value::{Field, Kind, Value};
 use crate::diagnostic::{Span, near_names};
 use crate::model::{
-    self, ById, ElementKind, Formula, IntegratorSettings, Model, Place, Settings, Units,
+    self, ById, ElementKind, EquilibriumSettings, Formula, IntegratorSettings, Model, Place,
+    Settings, Units,
 };
 use std::fmt::Debug;
 
@@ -164,11 +165,11 @@ pub trait Statement: Sync {
     fn kind(&self) -> Option<ElementKind> {
         None
     }
-    /// Whether each has a number.
+    /// Returns true if each has a number.
     fn numbered(&self) -> bool {
         self.kind().is_some()
     }
-    /// Whether arguments that no row describes are kept rather than refused.
+    /// Returns true if arguments that no row describes are kept rather than refused.
     fn open(&self) -> bool;
     /// Its arguments.
     fn arguments(&self) -> Vec<Argument>;
@@ -181,7 +182,7 @@ pub trait Statement: Sync {
     fn records(&self, model: &Model) -> Vec<Record>;
 }
 
-/// What the table needs of whatever a statement fills: elements and settings.
+/// Needs of the table of whatever a statement fills: elements and settings.
 pub trait Element: Clone + Default + PartialEq {
     /// Line and name, for elements that have them.
     fn place(&self) -> Option<&Place>;
@@ -194,7 +195,7 @@ pub trait Element: Clone + Default + PartialEq {
             place.extra.push((keyword.to_owned(), text));
         }
     }
-    /// What was kept.
+    /// Returns the arguments that were kept.
     fn kept(&self) -> Vec<(String, String)> {
         self.place().map(|p| p.extra.clone()).unwrap_or_default()
     }
@@ -238,7 +239,12 @@ macro_rules! placeless {
         }
     )+ };
 }
-placeless!(IntegratorSettings, Option<Units>, [f64; 3]);
+placeless!(
+    IntegratorSettings,
+    EquilibriumSettings,
+    Option<Units>,
+    [f64; 3]
+);
 
 /// A kind of statement of which there are many, each with its number.
 pub struct Numbered<T: 'static> {
@@ -545,7 +551,7 @@ pub fn canonical(name: &str) -> String {
     name.split('|').next().unwrap_or(name).to_ascii_uppercase()
 }
 
-/// What a word of a file means among names of the table.
+/// The meaning of a word of a file among the names of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Meaning {
     /// this one
@@ -592,7 +598,7 @@ pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Meaning 
     }
 }
 
-/// How one kind of argument sits in a field whose type alone does not say it.
+/// The place of one kind of argument in a field whose type alone does not say it.
 pub trait Lens<F> {
     /// what the argument accepts
     const KIND: Kind;

@@ -27,7 +27,7 @@ use super::value::{Always, Field, Kind, Number, Value};
 use crate::model::*;
 use crate::physics::joint::Displacements;
 
-/// What a word means among the statements of a dataset; at least three letters.
+/// Returns the meaning of a word among the statements of a dataset; at least three letters.
 pub fn find(word: &str) -> Meaning {
     if word.len() < 3 && !word.eq_ignore_ascii_case("IC") {
         return Meaning::Unknown;
@@ -254,11 +254,11 @@ macro_rules! single {
 }
 /// Statements whose arguments are looked up by keyword; they keep what is not listed.
 macro_rules! settings {
-    ($keyword:literal, { $($rows:tt)* }) => {
+    ($statement:ident, { $($rows:tt)* }) => {
         &Single::<Settings> {
-            keyword: $keyword,
-            value: |m| m.settings.get(&canonical($keyword)).cloned(),
-            value_mut: |m| m.settings.entry(canonical($keyword)).or_default(),
+            keyword: SettingsStatement::$statement.keyword(),
+            value: |m| m.settings.get(&SettingsStatement::$statement).cloned(),
+            value_mut: |m| m.settings.entry(SettingsStatement::$statement).or_default(),
             bindings: bindings!(Settings: $($rows)*),
             open: true,
             finish: nothing,
@@ -908,22 +908,22 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         set "REPEAT" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
         set "LIST" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
     }),
-    single!("EQUILIBRIUM", equilibrium: Settings, {
-        set "STATICS" (Kind::Flag).group("kind");
-        set "DYNAMICS" (Kind::Flag).group("kind");
-        set "ALimit" (ANGLE);
-        set "TLimit" (REAL);
-        set "ERRor" (REAL);
-        set "IMBALANCE" (REAL);
-        set "MAXIT" (REAL);
-        set "STABILITY" (REAL);
-        set "PATTERN" (WORDS);
-        set "ACCELERATION_ERROR|AERROR" (REAL);
-        set "KINETIC_ENERGY_ERROR" (REAL);
-        set "GLOBAL_DAMPING" (REAL);
-        set "SETTLING_TIME" (REAL);
-        set "DEFAULT" (Kind::Flag);
-        set "LIST" (Kind::Flag);
+    single!("EQUILIBRIUM", equilibrium: EquilibriumSettings, {
+        set "STATICS" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).group("kind");
+        set "DYNAMICS" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).group("kind");
+        angle "ALimit" (alimit);
+        field "TLimit" (tlimit);
+        field "ERRor" (error);
+        field "IMBALANCE" (imbalance);
+        field "MAXIT" (maxit);
+        field "STABILITY" (stability);
+        set "PATTERN" (WORDS, |e| &mut e.rest, |e| &e.rest);
+        set "ACCELERATION_ERROR|AERROR" (REAL, |e| &mut e.rest, |e| &e.rest);
+        set "KINETIC_ENERGY_ERROR" (REAL, |e| &mut e.rest, |e| &e.rest);
+        set "GLOBAL_DAMPING" (REAL, |e| &mut e.rest, |e| &e.rest);
+        set "SETTLING_TIME" (REAL, |e| &mut e.rest, |e| &e.rest);
+        set "DEFAULT" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
+        set "LIST" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
     }),
     single!("KINEMATICS", kinematics: Settings, {
         set "ERRor" (REAL);
@@ -950,7 +950,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         set "AERROR" (REAL);
         set "LIST" (Kind::Flag);
     }),
-    settings!("PREFERENCES", {
+    settings!(Preferences, {
         set "SOLVER" (WORD);
         set "SIMERR" (WORD);
         set "LIBPATH" (Kind::Text);
@@ -961,16 +961,16 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         set "THREAD_COUNT" (REAL);
         set "LIST" (Kind::Flag);
     }),
-    settings!("DEBUG", {
+    settings!(Debug, {
         set "EPRINT" (Kind::Flag);
         set "VERBOSE" (Kind::Flag);
     }),
-    settings!("LSOLVER", {}),
-    settings!("ENVIRONMENT", {
+    settings!(Lsolver, {}),
+    settings!(Environment, {
         set "NAME" (Kind::Text);
         set "VALUE" (Kind::Text);
     }),
-    settings!("OUTPUT", {
+    settings!(Output, {
         set "REQSAVE" (Kind::Flag);
         set "GRSAVE" (Kind::Flag);
         set "NOPRINT" (Kind::Flag);
@@ -984,7 +984,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         set "DSCALE" (REALS); set "VSCALE" (REALS); set "ASCALE" (REALS); set "FSCALE" (REALS);
         set "DZERO" (REALS); set "VZERO" (REALS); set "AZERO" (REALS); set "FZERO" (REALS);
     }),
-    settings!("RESULTS", {
+    settings!(Results, {
         set "XRF" (Kind::Flag);
         set "FORMATTED" (Kind::Flag);
         set "Comment" (Kind::Text);
@@ -1002,8 +1002,8 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         set "NOREQUESTS" (Kind::Flag);
         set "NOCONTACTS" (Kind::Flag);
     }),
-    settings!("LIST", {}),
-    settings!("NOLIST", {}),
+    settings!(List, {}),
+    settings!(Nolist, {}),
     &Opaque { kind: ElementKind::Material },
     &Opaque { kind: ElementKind::Section },
     &Opaque { kind: ElementKind::FePart },

@@ -1,5 +1,4 @@
-//! What can stand behind an argument: the kinds of value, and how each kind sits in a field of the
-//! Model.
+//! Values of arguments: their kinds, and how each kind sits in a field of the Model.
 //!
 //! A [`Value`] is the one form between text and Model: the reader makes it from tokens, the table
 //! puts it into a field ([`Field::put`]), takes it out again ([`Field::written`]), and the writer

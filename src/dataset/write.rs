@@ -284,9 +284,9 @@ fn break_at(text: &str, room: usize) -> Option<usize> {
     blank.or(mark)
 }
 
-/// Whether the byte before `at` ends something after which blanks do not matter: `,`, `(`, an
-/// operator that is not the sign of an exponent, nor half of `**`, nor a division (which at the end
-/// of a line looks like the end of the function).
+/// Returns true if the byte before `at` ends something after which blanks do not matter: `,`, `(`,
+/// an operator that is not the sign of an exponent, nor half of `**`, nor a division (which at the
+/// end of a line looks like the end of the function).
 fn after_mark(bytes: &[u8], at: usize) -> bool {
     let before = |k: usize| {
         at.checked_sub(k)

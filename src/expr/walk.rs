@@ -421,7 +421,7 @@ impl<'a> Walk<'a> {
         trouble
     }
 
-    /// How a step is written whose second place stands before its first.
+    /// Writes a step anew whose second place stands before its first.
     fn step_in_order(&self, ix: NodeIx, operands: &[f64]) -> Option<String> {
         let Node::Call {
             callee: Callee::Function(f @ (Function::Step | Function::Step5 | Function::Havsin)),

@@ -1,4 +1,4 @@
-//! What the user wrote: the dataset as data. Numbers are the user's, in the user's units; angles
+//! The dataset as data, as the user wrote it. Numbers are the user's, in the user's units; angles
 //! are radians.
 //!
 //! Elements refer to each other by their numbers, unresolved, so that a model can be built, changed
@@ -156,13 +156,13 @@ macro_rules! model {
             /// INTEGRATOR
             pub integrator: IntegratorSettings,
             /// EQUILIBRIUM
-            pub equilibrium: Settings,
+            pub equilibrium: EquilibriumSettings,
             /// KINEMATICS
             pub kinematics: Settings,
             /// IC
             pub initial_conditions: Settings,
-            /// OUTPUT, RESULTS, PREFERENCES, DEBUG, LSOLVER … by keyword
-            pub settings: BTreeMap<String, Settings>,
+            /// OUTPUT, RESULTS, PREFERENCES, DEBUG, LSOLVER …
+            pub settings: BTreeMap<SettingsStatement, Settings>,
             /// elements switched off by DEACTIVATE
             pub inactive: BTreeSet<ElementId>,
         }

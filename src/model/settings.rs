@@ -46,7 +46,63 @@ pub struct IntegratorSettings {
     pub rest: Settings,
 }
 
-/// EQUILIBRIUM, KINEMATICS, IC and the like: numbers and words by full keyword; empty = defaults.
+/// EQUILIBRIUM; `None` = not given.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EquilibriumSettings {
+    /// ERROR: largest change of a coordinate in the last iteration
+    pub error: Option<f64>,
+    /// IMBALANCE: largest force or torque that may remain
+    pub imbalance: Option<f64>,
+    /// TLIMIT: largest translation in one iteration   [length]
+    pub tlimit: Option<f64>,
+    /// ALIMIT: largest rotation in one iteration   [rad]
+    pub alimit: Option<f64>,
+    /// MAXIT: most iterations
+    pub maxit: Option<f64>,
+    /// STABILITY: least part of the mass matrix that is added to the stiffness
+    pub stability: Option<f64>,
+    /// STATICS, DYNAMICS, PATTERN, AERROR … by full keyword
+    pub rest: Settings,
+}
+
+macro_rules! settings_statements {
+    ($($(#[$doc:meta])* $statement:ident $keyword:literal;)*) => {
+        /// Statements without a number whose arguments are kept by their keywords.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum SettingsStatement {
+            $($(#[$doc])* $statement,)*
+        }
+
+        impl SettingsStatement {
+            /// Returns its keyword, in capitals.
+            pub const fn keyword(self) -> &'static str {
+                match self {
+                    $(Self::$statement => $keyword,)*
+                }
+            }
+        }
+    };
+}
+settings_statements! {
+    /// numbers of threads, tolerances of facets …
+    Preferences "PREFERENCES";
+    /// prints of the solver's work
+    Debug "DEBUG";
+    /// the linear solver
+    Lsolver "LSOLVER";
+    /// variables of the environment
+    Environment "ENVIRONMENT";
+    /// which files are written, and scales of their columns
+    Output "OUTPUT";
+    /// what the file of results holds
+    Results "RESULTS";
+    /// which statements are printed
+    List "LIST";
+    /// which are not
+    Nolist "NOLIST";
+}
+
+/// KINEMATICS, IC and the like: numbers and words by full keyword; empty = defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// arguments that are one number

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Decisions about a scene, made by assembly, by sessions and by systems.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Configuration {
-    /// Whether each row takes part; a row that depends on others does not. Assembly chooses, and
-    /// systems choose again where the rank changes.   (n_rows)
+    /// True of each row that takes part; a row that depends on others does not. Assembly chooses,
+    /// and systems choose again where the rank changes.   (n_rows)
     pub active: Vec<bool>,
     /// The value that each sum of displacements keeps; zero for rows that are no sums. Assembly
     /// adds what the configuration shows where the sum is held.   (n_rows)   [rad, length]

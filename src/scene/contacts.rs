@@ -128,7 +128,7 @@ fn solid(graphics: ElementId, shape: &Shape) -> Result<Placed, Untouchable> {
     }
 }
 
-/// Whether a solid has a size.
+/// Returns true if a solid has no size.
 fn is_degenerate(solid: &Solid) -> bool {
     let bad = |x: f64| x.is_nan() || x <= 0.0 || x == f64::INFINITY;
     match solid {

@@ -98,7 +98,7 @@ pub struct HookName {
 }
 
 impl HookName {
-    /// Whether it computes this USER of this element.
+    /// Returns true if it computes this USER of this element.
     pub fn stands_for(&self, element: ElementId, user: &Formula) -> bool {
         let Formula::User { constants, routine } = user else {
             return false;

@@ -157,7 +157,7 @@ fn residuals<'b>(
     (rho, jacobian)
 }
 
-/// Whether ρ is linear in its unknowns.
+/// Returns true if ρ is linear in its unknowns.
 fn linear(scene: Configured<'_>) -> Result<bool, Vec<Unsupported>> {
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let numbers = inputs(&scene, &builder);

@@ -479,7 +479,7 @@ impl Scene {
         all.map(ToString::to_string).collect()
     }
 
-    /// Whether a motion drives an angle rather than a length.
+    /// Returns true if a motion drives an angle rather than a length.
     pub fn drives_an_angle(&self, motion: usize) -> bool {
         if let Some(c) = self.motions[motion].coordinate {
             return self.coordinates[c].angular;

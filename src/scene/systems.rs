@@ -205,7 +205,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Whether a formula reads DIF1 of an equation, itself or through VARIABLEs and other rates.
+    /// Returns true if a formula reads DIF1 of an equation, itself or through VARIABLEs and other
+    /// rates.
     fn reads_rate(&self, formula: usize, id: DifferentialId) -> bool {
         let mut seen = BTreeSet::new();
         let mut next = vec![formula];

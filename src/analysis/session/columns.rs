@@ -428,7 +428,7 @@ impl Columns {
         self.what.len()
     }
 
-    /// Whether there are none.
+    /// Returns true if there are none.
     pub fn is_empty(&self) -> bool {
         self.what.is_empty()
     }

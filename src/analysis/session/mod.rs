@@ -183,7 +183,7 @@ impl Session {
         self.changing.extend(variables);
     }
 
-    /// Whether a sensor has ended the run.
+    /// Returns true if a sensor has ended the run.
     pub fn halted(&self) -> bool {
         self.halted
     }

@@ -1,4 +1,4 @@
-//! What a run tells about its simulations: rows of results, facts of the record, how it ended and
+//! Outcomes of simulations, as a run tells them: rows of results, facts of the record, how it ended and
 //! which element is to blame.
 
 use super::Session;

@@ -1,5 +1,5 @@
-//! How well the parts of a dataset fit together before and after assembly: by how much joints are
-//! off, and which parts had to be turned round.
+//! Misalignments of a dataset, before and after assembly: by how much joints are off, and which
+//! parts had to be turned round.
 
 use crate::analysis::direction::Axis;
 use crate::analysis::warning::{AssemblyWarning, ConditionWarning};
@@ -135,7 +135,7 @@ pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
     found
 }
 
-/// What assembly has turned round: parts that stand the other way than in the dataset, joints whose
+/// Finds what assembly has turned round: parts that stand the other way than in the dataset, joints whose
 /// axes point against each other.
 pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<AssemblyWarning> {
     let at = Equations::new(scene, numbers);

@@ -75,23 +75,20 @@ pub struct Settings {
 
 impl Settings {
     /// Takes the settings of a model, defaults where it says nothing.
-    pub fn of(settings: &model::Settings) -> Self {
-        let number = |name: &str, default: f64| {
-            let given = settings.numbers.get(name).copied();
+    pub fn of(settings: &model::EquilibriumSettings) -> Self {
+        let number = |given: Option<f64>, default: f64| {
             given
                 .filter(|x| x.is_finite() && *x > 0.0)
                 .unwrap_or(default)
         };
         Self {
-            error: number("ERROR", 1e-4),
-            translation: number("TLIMIT", 20.0),
-            angle: number("ALIMIT", 10f64.to_radians()),
-            iterations: number("MAXIT", 25.0) as usize,
-            imbalance: number("IMBALANCE", 1e-4),
-            asked: ["ERROR", "IMBALANCE"]
-                .iter()
-                .all(|&name| settings.numbers.contains_key(name)),
-            stability: number("STABILITY", 1e-5),
+            error: number(settings.error, 1e-4),
+            translation: number(settings.tlimit, 20.0),
+            angle: number(settings.alimit, 10f64.to_radians()),
+            iterations: number(settings.maxit, 25.0) as usize,
+            imbalance: number(settings.imbalance, 1e-4),
+            asked: settings.error.is_some() && settings.imbalance.is_some(),
+            stability: number(settings.stability, 1e-5),
         }
     }
 }

@@ -284,7 +284,7 @@ impl ExternalInputs {
     /// Records the external inputs of a scene, with the closures that its hooks refer to.
     ///
     /// # Errors
-    /// What the equations cannot supply; closures that would read what depends on them.
+    /// Whatever the equations cannot supply; closures that would read what depends on them.
     pub fn new(scene: Configured<'_>, hooks: &[Hook]) -> Result<Self, Vec<Unsupported>> {
         let l = scene.layout;
         let mut this = Self {

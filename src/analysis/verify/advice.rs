@@ -1,4 +1,4 @@
-//! What could be changed so that nothing is fixed twice: for each element with superfluous rows the
+//! Advice for constraints that fix something twice: for each element with superfluous rows the
 //! weaker element that keeps the rest.
 //!
 //! A candidate is tried, not guessed: with its rows in place of those of the element the rank must

@@ -31,7 +31,7 @@ const NOTHING: f64 = 1e-24;
 /// is taken away.
 const SINGULAR: f64 = 1e-13;
 
-/// Whether some part lacks mass or a principal inertia: otherwise every motion is resisted.
+/// Returns true if some part lacks mass or a principal inertia: otherwise every motion is resisted.
 pub(crate) fn possible(scene: &Scene, model: &Model) -> bool {
     scene.parts.iter().any(|p| {
         let turns = !p.is_point_mass();
@@ -143,7 +143,7 @@ fn said(model: &Model, free: &Free) -> Diagnostic {
     advised(Diagnostic::error("no_mass", what).element(element(free)))
 }
 
-/// What a part would need to resist its motion.
+/// Names the numbers that a part would need to resist its motion.
 fn lacking(model: &Model, part: &Moving) -> &'static str {
     let data = model.body(part.part);
     match data {

@@ -262,7 +262,7 @@ fn counted(model: &Model) -> Vec<(String, usize, usize)> {
 /// Verifies a model: counts, assembles, and explains its freedoms.
 ///
 /// # Errors
-/// What keeps the model from being assembled at all. Rows that contradict each other are no such
+/// Mistakes that keep the model from being assembled at all. Rows that contradict each other are no such
 /// error.
 pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     // the model without all that has no influence on its freedoms

@@ -1,4 +1,4 @@
-//! What becomes of a model when it is compiled: what carries what, the unknowns, the rows, what is
+//! Outline of a model as it is compiled: what carries what, the unknowns, the rows, what is
 //! left out, and how much there is to compute.
 
 use crate::analysis::start::{assemble, initial_conditions, misalignment, placement, velocities};

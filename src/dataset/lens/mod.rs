@@ -1,5 +1,5 @@
-//! How arguments sit in fields whose types alone do not say it: orientations, inertia, driven
-//! freedoms, requests.
+//! Lenses: arguments in fields whose types alone do not say how they sit there: orientations,
+//! inertia, driven freedoms, requests.
 //!
 //! Helpers of the rows in `statement.rs`; each pair puts a value and takes it out again. `get`
 //! returns `None` where nothing need be written.

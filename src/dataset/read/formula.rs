@@ -57,7 +57,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Whether a line after an expression holds a bare keyword, before which a `\` belongs.
+    /// Returns true if a line after an expression holds a bare keyword, before which a `\` belongs.
     pub(super) fn forgotten_backslash(&mut self, at: usize, span: Span) -> bool {
         let Some(&t) = self.tokens.get(at) else {
             return false;

@@ -130,7 +130,7 @@ impl<'a> Reader<'a> {
         self.out.push(d);
     }
 
-    /// Whether the statement looks like an argument whose leading comma was forgotten.
+    /// Returns true if the statement looks like an argument whose leading comma was forgotten.
     fn argument_like(&self) -> bool {
         self.tokens
             .get(1)

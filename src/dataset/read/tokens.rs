@@ -44,7 +44,7 @@ impl<'a> Reader<'a> {
         (text.trim_end().to_owned(), breaks)
     }
 
-    /// Whether the next token stands on the same line as this one.
+    /// Returns true if the next token stands on the same line as this one.
     pub(super) fn same_line(&self, k: usize) -> bool {
         let gap = Span::new(self.tokens[k].span.end, self.tokens[k + 1].span.start);
         !self.source.slice(gap).contains(['\n', '\r'])
@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether a word begins like a number.
+    /// Returns true if a word begins like a number.
     pub(super) fn numeric(&self, token: Token) -> bool {
         let text = self.text(token);
         text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-'))
@@ -106,7 +106,7 @@ impl<'a> Reader<'a> {
             .count()
     }
 
-    /// Whether a word and an equals sign stand here.
+    /// Returns true if a word and an equals sign stand here.
     pub(super) fn is_assignment(&self, at: usize) -> bool {
         self.tokens
             .get(at)
@@ -117,7 +117,7 @@ impl<'a> Reader<'a> {
                 .is_some_and(|t| t.kind == TokenKind::Equals)
     }
 
-    /// Whether an argument of this statement stands here.
+    /// Returns true if an argument of this statement stands here.
     pub(super) fn begins_argument(&self, at: usize) -> bool {
         let Some(&t) = self.tokens.get(at) else {
             return false;

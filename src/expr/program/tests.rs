@@ -1,4 +1,4 @@
-//! What builder, schedule and machine promise, on small programs and on random ones.
+//! Promises of builder, schedule and machine, kept on small programs and on random ones.
 
 use super::operation::arithmetic_if;
 use super::*;
@@ -179,7 +179,7 @@ fn engines(program: &Program) -> impl Iterator<Item = Program> {
         .filter_map(|engine| program.with_engine(engine))
 }
 
-/// Whether all engines give the same bits.
+/// Returns true if all engines give the same bits.
 fn engines_agree(program: &Program, x: &[f64]) -> bool {
     let outputs: Vec<Vec<f64>> = engines(program)
         .map(|program| {
@@ -405,7 +405,7 @@ fn gradients_have_gradients() {
     );
 }
 
-/// Whether the value may depend on the sign of a zero or on an exact comparison with one.
+/// Returns true if the value may depend on the sign of a zero or on an exact comparison with one.
 fn has_sign_of_zero(f: &Formula) -> bool {
     match f {
         Formula::Constant(_) | Formula::Input(_) => false,

@@ -66,7 +66,7 @@ fn number(out: &mut Out, who: Who, argument: &str, angle: Option<f64>) {
     );
 }
 
-/// Whether a motion prescribes an angle.
+/// Returns true if a motion prescribes an angle.
 fn turns(model: &Model, motion: &Motion) -> bool {
     match motion.driven {
         Driven::JointRotation(_) => true,

@@ -1,4 +1,4 @@
-//! What does not fit together in a model: one function per rule, all of them run, all findings
+//! Rules of what does not fit together in a model: a function each, all of them run, all findings
 //! reported.
 //!
 //! A rule reads the model and says what is wrong with which element, and what to do. Rules about

@@ -11,7 +11,7 @@ use crate::scene::{LinkMotion, Source, programs};
 use crate::space::{Mat3, Vec3};
 
 impl<S: Scalar> Equations<'_, S> {
-    /// Whether a row takes part (it does not where it depends on earlier ones).
+    /// Returns true if a row takes part (it does not where it depends on earlier ones).
     pub fn is_active(&self, r: usize) -> bool {
         self.configuration.active[r]
     }

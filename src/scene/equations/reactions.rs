@@ -272,7 +272,7 @@ impl<S: Scalar> Equations<'_, S> {
         self.component(&total, comp, k, asked_by)
     }
 
-    /// Whether a constraint acts between two markers, given by their numbers.
+    /// Returns true if a constraint acts between two markers, given by their numbers.
     pub(super) fn carries_reaction(&self, i: u32, j: u32) -> bool {
         let mut all = self.scene.constraints.iter();
         all.any(|c| (self.named(c)).is_some_and(|m| m == (i, j) || m == (j, i)))

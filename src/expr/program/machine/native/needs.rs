@@ -1,4 +1,4 @@
-//! How soon each value is needed again: what the translator keeps in registers and what it stores.
+//! Next needs of each value: what the translator keeps in registers and what it stores.
 //!
 //! Jumps lead forward only, so that one pass from the end sees what is still needed.
 
