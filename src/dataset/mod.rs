@@ -70,8 +70,8 @@ impl Dataset {
     }
 }
 
-/// The outcome of reading a dataset: always everything that could be understood, with all that was found
-/// wrong.
+/// The outcome of reading a dataset: always everything that could be understood, with all that was
+/// found wrong.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
     /// the file as written

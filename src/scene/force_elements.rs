@@ -2,8 +2,8 @@
 //! laws need no more than their numbers.
 //!
 //! FIELD, BEAM and NFORCE are made in `compliance.rs`, contacts in `contacts.rs`, friction in
-//! `frictions.rs`. A new law of two markers is a row in `forces.rs`; a new kind of element of another
-//! sort is an arm here that the compiler asks for.
+//! `frictions.rs`. A new law of two markers is a row in `forces.rs`; a new kind of element of
+//! another sort is an arm here that the compiler asks for.
 
 use super::LinkIx;
 use super::build::Builder;

@@ -1,5 +1,5 @@
-//! Outcomes of simulations, as a run tells them: rows of results, facts of the record, how it ended and
-//! which element is to blame.
+//! Outcomes of simulations, as a run tells them: rows of results, facts of the record, how it ended
+//! and which element is to blame.
 
 use super::Session;
 use super::stop_reason::{Cause, StopReason};

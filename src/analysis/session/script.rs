@@ -15,8 +15,8 @@ use crate::results::{Event, Status};
 pub const DEFAULT_STEPS: usize = 50;
 
 impl Simulate {
-    /// Returns true if its END is the time that the clock shows: a command after one that was to end
-    /// there at the latest.
+    /// Returns true if its END is the time that the clock shows: a command after one that was to
+    /// end there at the latest.
     fn is_over(&self, now: f64) -> bool {
         let over_time = !matches!(
             self.kind,

@@ -135,8 +135,8 @@ pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
     found
 }
 
-/// Finds what assembly has turned round: parts that stand the other way than in the dataset, joints whose
-/// axes point against each other.
+/// Finds what assembly has turned round: parts that stand the other way than in the dataset, joints
+/// whose axes point against each other.
 pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<AssemblyWarning> {
     let at = Equations::new(scene, numbers);
     let mut found = Vec::new();

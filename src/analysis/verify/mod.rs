@@ -262,8 +262,8 @@ fn counted(model: &Model) -> Vec<(String, usize, usize)> {
 /// Verifies a model: counts, assembles, and explains its freedoms.
 ///
 /// # Errors
-/// Mistakes that keep the model from being assembled at all. Rows that contradict each other are no such
-/// error.
+/// Mistakes that keep the model from being assembled at all. Rows that contradict each other are no
+/// such error.
 pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     // the model without all that has no influence on its freedoms
     let mut model = skeleton(model);
