@@ -92,7 +92,7 @@ pub struct Continuation {
     met: bool,
 }
 
-/// How a step that was tried came out.
+/// The outcome of a step that was tried.
 enum Tried {
     /// on the branch, with the factor that the next step may be longer by
     Continues {

@@ -53,7 +53,7 @@ struct Loop {
 #[derive(Clone, Debug, Default)]
 pub struct Side(Vec<DMatrix<f64>>);
 
-/// What finds out on which side of singular positions states are.
+/// Watch that finds out on which side of singular positions states are.
 #[derive(Debug)]
 pub struct Sides {
     loops: Vec<Loop>,
