@@ -343,6 +343,11 @@ impl Measure {
             Measure::Ax | Measure::Ay | Measure::Az | Measure::Incang | Measure::Orient
         )
     }
+    /// Returns whether its value goes on beyond half a turn. INCANG never goes there: it has no
+    /// sign.
+    pub fn counts_turns(self) -> bool {
+        self.needs_history() && self != Measure::Incang
+    }
 }
 
 /// Returns the number of components of a system of ORIENT.

@@ -32,7 +32,7 @@ use crate::scalar::Scalar;
 use crate::space::{Frame, Vec3};
 
 /// The quantity that a displacement measures; lengths in model units, angles in rad, right-handed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Gauge {
     /// distance along z of J (1)
     Distance,

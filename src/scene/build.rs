@@ -2,16 +2,19 @@
 
 use super::compile::{Compiler, NamedTie};
 use super::contacts::Shell;
+use super::coordinate_sums::{self, Draws, Reading};
 use super::equations::Unsupported;
 use super::external_inputs::HookName;
 use super::functions::Owner;
+use super::history::AngleId;
 use super::left_out::LeftOut;
 use super::loops::{self, Key};
 use super::sweep::Freedom;
 use super::unknown::UnknownId;
-use super::{ConstraintElement, Counted, Entry, LinkMotion, RowKind, Scene, Source};
+use super::{ConstraintElement, CountedAngle, Entry, LinkMotion, RowKind, Scene, Source};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::interpolation::Bindings;
+use crate::expr::measures::Measure;
 use crate::expr::program::Input;
 use crate::model::{ArrayKind, ElementKind, Model, Text};
 use crate::physics::joint::Tie;
@@ -287,36 +290,70 @@ impl<'m> Builder<'m> {
         }
     }
 
-    /// Angles whose turns are counted, wherever they are asked for.
+    /// Finds the angles whose turns are counted, wherever they are asked for, and the coordinates
+    /// that know their turns.
     fn counted(&mut self) {
-        let mut found: BTreeSet<Counted> = BTreeSet::new();
-        for f in &self.scene.formulas {
+        let scene = &self.scene;
+        let mut found: BTreeSet<AngleId> = BTreeSet::new();
+        for f in &scene.formulas {
             for input in f.program.inputs() {
                 if let Input::Measure(m, ids) = input
-                    && m.needs_history()
+                    && m.counts_turns()
                 {
-                    found.insert(Counted::Measure(*m, *ids));
+                    found.insert(AngleId::Measure(*m, *ids));
                 }
             }
         }
-        for f in &self.scene.forces {
-            let id = |m: usize| self.scene.markers[m].id;
-            let ids = [id(f.i), f.j.map_or(0, id), 0, 0];
-            found.extend(f.law.angles().iter().map(|&m| Counted::Measure(m, ids)));
+        let number = |m: usize| scene.markers[m].id;
+        for f in &scene.forces {
+            let ids = [number(f.i), f.j.map_or(0, number), 0, 0];
+            found.extend(f.law.angles().iter().map(|&m| AngleId::Measure(m, ids)));
         }
-        let sums = self.scene.rows.iter().filter_map(|row| match &row.kind {
+        let sums = scene.rows.iter().filter_map(|row| match &row.kind {
             RowKind::Displacements(sum) => Some(&sum.terms),
             _ => None,
         });
         let in_rows = sums.flatten().map(|(_, d)| d);
-        let shown = self.scene.joint_variables.iter().map(|v| &v.displacement);
+        let shown = scene.joint_variables.iter().map(|v| &v.displacement);
         for d in in_rows.chain(shown) {
             if d.gauge.is_angle() && d.coordinates.is_none() {
-                let (gauge, i, j) = (d.gauge, d.i, d.j);
-                found.insert(Counted::Angle { gauge, i, j });
+                found.insert(scene.angle_id(d));
             }
         }
-        self.scene.counted = found.into_iter().collect();
+        let draws = (!found.is_empty()).then(|| Draws::of(scene));
+        let counted = found
+            .into_iter()
+            .map(|id| counted(scene, draws.as_ref(), id));
+        self.scene.counted = counted.collect();
         self.scene.layout.n_turns = self.scene.counted.len();
+    }
+}
+
+/// Returns a counted angle with the coordinates that know its turns: of AX, AY and AZ, which are
+/// analytic functions of the coordinates, between markers of parts.
+fn counted(scene: &Scene, draws: Option<&Draws<'_>>, id: AngleId) -> CountedAngle {
+    let (reading, [i, j]) = match id {
+        AngleId::Measure(Measure::Orient, [.., i, j]) => (None, [i, j]),
+        AngleId::Measure(measure, [i, j, ..]) => (Some(Reading::Measure(measure)), [i, j]),
+        AngleId::Gauge { markers, .. } => (None, markers),
+    };
+    let marker = |id: u32| match id {
+        0 => Some(None),
+        id => scene.marker_of.get(&id).map(|&m| Some(m)),
+    };
+    match (marker(i), marker(j)) {
+        (Some(i), Some(j)) => CountedAngle {
+            id,
+            coordinates: (draws.zip(reading)).and_then(|(draws, reading)| draws.sum(reading, i, j)),
+            between: coordinate_sums::turns_between(scene, i, j),
+        },
+        // a marker that floats along a curve
+        _ => CountedAngle {
+            id,
+            coordinates: None,
+            between: (0..scene.freedoms.len())
+                .filter(|&k| scene.freedoms[k].turn)
+                .collect(),
+        },
     }
 }

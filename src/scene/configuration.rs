@@ -24,8 +24,8 @@ pub struct Configuration {
     pub motions: Vec<MotionStart>,
     /// Where contacts on curves begin. Assembly follows them.   (n_cams)
     pub contacts: Vec<ContactStart>,
-    /// Counted angles before the first step. A session carries them on.   (n_turns)   in rad
-    pub turns: Vec<f64>,
+    /// Where counted angles begin. A session carries them on.   (n_turns)
+    pub turns: Vec<TurnStart>,
     /// External inputs before the first step. A session supplies them.   (n_external)
     pub external: Vec<f64>,
     /// The way in which accelerations and multipliers are found. A system chooses.
@@ -50,6 +50,16 @@ pub struct ContactStart {
     pub offset: [f64; 2],
     /// States and offset say where it touches; before that the whole curve is searched.
     pub begun: bool,
+}
+
+/// The beginning of an angle whose turns are counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TurnStart {
+    /// The angle before the first step.   [rad]
+    pub angle: f64,
+    /// Whole turns between the angle and the sum of coordinates that it is; `None`: the angle is
+    /// the value nearest to the one last accepted.   [rad]
+    pub offset: Option<f64>,
 }
 
 /// The way in which accelerations and multipliers are found.
@@ -79,7 +89,7 @@ impl Configuration {
             sums: scene.rows.iter().map(constant).collect(),
             motions: vec![MotionStart::default(); scene.motions.len()],
             contacts: vec![ContactStart::default(); scene.cams.len()],
-            turns: vec![0.0; scene.layout.n_turns],
+            turns: vec![TurnStart::default(); scene.layout.n_turns],
             external: vec![0.0; scene.layout.n_external],
             elimination: Elimination::default(),
         }
@@ -102,6 +112,11 @@ impl Configuration {
     pub fn active_rows(&self) -> impl Iterator<Item = usize> {
         let rows = self.active.iter().enumerate();
         rows.filter(|(_, active)| **active).map(|(r, _)| r)
+    }
+
+    /// Returns the counted angles before the first step   (n_turns)   [rad]
+    pub fn angles(&self) -> impl Iterator<Item = f64> {
+        self.turns.iter().map(|start| start.angle)
     }
 
     /// Hands what assembly has found for contacts, and for motions that begin where they are, over

@@ -13,6 +13,7 @@ pub mod compile;
 mod compliance;
 pub mod configuration;
 pub mod contacts;
+mod coordinate_sums;
 mod couplers;
 pub mod equations;
 pub mod external_inputs;
@@ -23,6 +24,7 @@ mod formula;
 mod frictions;
 mod functions;
 mod general;
+pub mod history;
 pub mod layout;
 pub mod left_out;
 pub mod loops;
@@ -39,13 +41,13 @@ pub mod tunnelling;
 pub mod unknown;
 pub mod untouchable;
 
-use crate::expr::measures::Measure;
 use crate::expr::program::Program;
 use crate::model::{ElementId, ElementKind, Level};
 use crate::physics::coupler::Gauge;
 use crate::physics::row::Law;
 use crate::space::{Frame, Mat3, Vec3};
 use forces::ForceElement;
+use history::AngleId;
 use layout::{Layout, State};
 use std::collections::{BTreeMap, BTreeSet};
 use sweep::Freedom;
@@ -243,9 +245,18 @@ pub struct Displacement {
     pub i: usize,
     /// J marker
     pub j: usize,
-    /// the same as a sum over coordinates of the forest plus a constant, where it is one in every
-    /// configuration
-    pub coordinates: Option<(Vec<(usize, f64)>, f64)>,
+    /// the same as a sum of coordinates, where it is one in every configuration
+    pub coordinates: Option<CoordinateSum>,
+}
+
+/// `Σ factor · coordinate + constant`: a displacement that is this in every configuration; an angle
+/// up to whole turns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CoordinateSum {
+    /// indices in [`Scene::coordinates`], and factors
+    pub terms: Vec<(usize, f64)>,
+    /// the displacement where all coordinates are zero   [rad, length]
+    pub constant: f64,
 }
 
 /// A variable of a joint that is shown among the results.
@@ -260,19 +271,15 @@ pub struct JointVariable {
 }
 
 /// An angle whose turns are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Counted {
-    /// a measure with its arguments
-    Measure(Measure, [u32; 4]),
-    /// of marker `i` against marker `j` (indices in [`Scene::markers`])
-    Angle {
-        /// which angle
-        gauge: Gauge,
-        /// I marker
-        i: usize,
-        /// J marker
-        j: usize,
-    },
+#[derive(Clone, Debug, PartialEq)]
+pub struct CountedAngle {
+    /// which angle it is
+    pub id: AngleId,
+    /// the coordinates that know its turns; `None`: these are counted from step to step
+    pub coordinates: Option<CoordinateSum>,
+    /// angular coordinates that turn its markers against each other: indices in
+    /// [`Scene::coordinates`]
+    pub between: Vec<usize>,
 }
 
 /// An expression of the model, compiled.
@@ -420,7 +427,7 @@ pub struct Scene {
     /// elements that are left out because they are not solved
     pub left_out: left_out::LeftOut,
     /// angles whose turns are counted, in the order of their places in the layout
-    pub counted: Vec<Counted>,
+    pub counted: Vec<CountedAngle>,
     /// variables of joints, where somebody wants to see them
     pub joint_variables: Vec<JointVariable>,
     /// what functions read too early: unknowns of their own
@@ -464,6 +471,14 @@ impl Scene {
             let p = &self.parts[p];
             p.initial.compose(&p.frame.inverse().compose(&m.frame))
         })
+    }
+
+    /// Returns the identity of a displacement that is an angle.
+    pub(in crate::scene) fn angle_id(&self, d: &Displacement) -> AngleId {
+        AngleId::Gauge {
+            gauge: d.gauge,
+            markers: [d.i, d.j].map(|m| self.markers[m].id),
+        }
     }
 
     /// Returns the differential equation of a DIFF by the user's number: its index.

@@ -41,4 +41,13 @@ impl<S: Scalar> MarkerState<S> {
             a_GM: Vec3::zero(),
         }
     }
+
+    /// Returns the state of a marker at a frame that does not move.
+    pub fn at_rest(X_GM: Frame<S>) -> Self {
+        Self {
+            R_GM: X_GM.rotation,
+            p_GM: X_GM.position,
+            ..Self::ground()
+        }
+    }
 }

@@ -8,6 +8,7 @@ use crate::physics::kinematic::kinematic;
 use crate::scene::Scene;
 use crate::scene::compile::orientation;
 use crate::scene::equations::Equations;
+use crate::scene::history::AngleId;
 use crate::scene::layout::{Layout, State};
 use crate::scene::unknown::UnknownId;
 use crate::space::{MarkerState, Vec3};
@@ -26,8 +27,8 @@ pub(super) struct Carried {
     pub(super) at_rest: bool,
     /// place and motion of every part (point masses: true), for when the unknowns are others
     pub(super) parts: Vec<(ElementId, MarkerState<f64>)>,
-    /// turns that angles have counted
-    pub(super) turns: Vec<f64>,
+    /// angles with the turns that they have counted   [rad]
+    pub(super) turns: BTreeMap<AngleId, f64>,
     /// values of EVALUATE of sensors, by their numbers
     pub(super) sensors: BTreeMap<u32, f64>,
     /// states of sampled systems, by the numbers of their GSE
@@ -50,10 +51,12 @@ impl Session {
         let at = Equations::new(system.configured(), &numbers);
         let parts = system.scene.parts.iter().enumerate();
         let parts = parts.map(|(k, p)| (p.id, at.part(k, false))).collect();
+        let counted = system.scene.counted.iter();
+        let turns = counted.map(|c| (c.id, at.counted(c.id))).collect();
         let unknowns = &system.scene.unknowns;
         self.carried = Some(Carried {
             t: numbers[Layout::TIME],
-            turns: numbers[system.scene.layout.turns()].to_vec(),
+            turns,
             sensors: sensed(&system.scene, &numbers),
             samples: system.samples.held(&numbers),
             past: system.external.past(),

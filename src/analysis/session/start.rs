@@ -100,6 +100,7 @@ impl Session {
             self.assemble(&mut start)?
         };
         (start.configuration).begin_states(&start.scene, &mut start.x);
+        start.begin_turns(self.carried.as_ref());
         let v = self.velocities(&mut start, moved.as_ref())?;
         let system = self.system(start, v)?;
         Ok((system, assembly))
@@ -222,7 +223,6 @@ impl Session {
     /// Records the programs and puts the system into its state, with past, samples and sensors.
     fn system(&self, start: Start, v: Vec<f64>) -> Result<System, Vec<Diagnostic>> {
         let (mode, t, l) = (start.mode, start.t, start.scene.layout);
-        let turns = start.configuration.turns.clone();
         let mut y = start.q;
         y.extend(v);
         y.extend(start.x);
@@ -231,7 +231,6 @@ impl Session {
         system
             .external
             .begin(t, carried.map_or(&[][..], |c| &c.past));
-        system.numbers[l.turns()].copy_from_slice(&turns);
         system.numbers[Layout::TIME] = t;
         system.numbers[l.y()].copy_from_slice(&y);
         if let Err(k) = system.resolve() {
@@ -303,7 +302,10 @@ impl Session {
             numbers[Layout::TIME] = t;
             numbers[l.q()].copy_from_slice(q);
             numbers[l.x()].copy_from_slice(x);
-            numbers[l.turns()].copy_from_slice(&scene.configuration.turns);
+            let angles = numbers[l.turns()].iter_mut();
+            angles
+                .zip(scene.configuration.angles())
+                .for_each(|(x, angle)| *x = angle);
             let mut outside =
                 external_inputs::ExternalInputs::new(scene, &self.hooks).map_err(complaints)?;
             outside.evaluate(&mut numbers, true);

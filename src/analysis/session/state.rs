@@ -11,6 +11,7 @@ use crate::analysis::system::samples::Held;
 use crate::dataset;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::{ElementId, ElementKind, Model};
+use crate::scene::history::AngleId;
 use crate::scene::unknown::{MotionState, UnknownId};
 use crate::space::{MarkerState, Mat3, Vec3};
 use serde_json::{Map, Value, json};
@@ -172,6 +173,9 @@ fn state(c: &Carried) -> Value {
             json!({ "point_mass": id.kind == ElementKind::PointMass, "id": id.number, "axes": numbers(&axes), "vectors": numbers(&vectors) })
         })
         .collect();
+    let turns: Map<String, Value> = (c.turns.iter())
+        .map(|(id, x)| (id.to_string(), number(*x)))
+        .collect();
     let sensors: Map<String, Value> = (c.sensors.iter())
         .map(|(id, x)| (id.to_string(), number(*x)))
         .collect();
@@ -192,7 +196,7 @@ fn state(c: &Carried) -> Value {
         "numbers": numbers(&c.numbers),
         "at_rest": c.at_rest,
         "parts": parts,
-        "turns": numbers(&c.turns),
+        "turns": turns,
         "sensors": sensors,
         "samples": samples,
         "past": past,
@@ -238,11 +242,24 @@ fn carried(v: &Value) -> Option<Carried> {
         unknowns,
         at_rest: v["at_rest"].as_bool()?,
         parts,
-        turns: as_numbers(&v["turns"])?,
+        turns: turns(&v["turns"])?,
         sensors: sensors?,
         samples: samples?,
         past: past.collect::<Option<_>>()?,
     })
+}
+
+/// Reads the angles with their turns. They once were a list without names, which is of use only
+/// where it is empty.
+fn turns(v: &Value) -> Option<BTreeMap<AngleId, f64>> {
+    match v {
+        Value::Array(list) => list.is_empty().then(BTreeMap::new),
+        _ => {
+            let all = v.as_object()?.iter();
+            all.map(|(id, x)| Some((id.parse().ok()?, as_number(x)?)))
+                .collect()
+        }
+    }
 }
 
 /// Reads the names of the unknowns. A velocity of a MOTION once had none: it stands after the

@@ -7,12 +7,17 @@ use crate::analysis::start::initial_conditions::{self, InitialCondition};
 use crate::analysis::start::placement;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
-use crate::scene::Scene;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
+use crate::scene::equations::Equations;
 use crate::scene::unknown::UnknownId;
+use crate::scene::{CountedAngle, Scene};
 use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
+
+/// Part of a turn by which rounding may put half a turn below minus half a turn.
+const ROUNDING_OF_A_TURN: f64 = 1e-12;
 
 /// A state on its way to be consistent.
 pub(super) struct Start {
@@ -68,8 +73,31 @@ impl Start {
         if complete && !carried.at_rest {
             self.v = Some(v);
         }
-        if carried.turns.len() == l.n_turns {
-            self.configuration.turns.copy_from_slice(&carried.turns);
+        for (angle, start) in self.scene.counted.iter().zip(&mut self.configuration.turns) {
+            if let Some(&carried) = carried.turns.get(&angle.id) {
+                start.angle = carried;
+            }
+        }
+    }
+
+    /// Lets angles that coordinates know begin where the last simulation left them, else within
+    /// half a turn of zero.
+    pub fn begin_turns(&mut self, carried: Option<&Carried>) {
+        let still = vec![0.0; self.scene.layout.n_v];
+        let numbers = assemble::numbers(self.here(), self.t, &self.q, &still, &self.x);
+        let at = Equations::new(self.scene.within(&self.configuration), &numbers);
+        let offset = |angle: &CountedAngle| {
+            let sum = at.sum_of_coordinates(angle.coordinates.as_ref()?);
+            let turns = match carried.and_then(|c| c.turns.get(&angle.id)) {
+                Some(before) => ((before - sum) / TAU).round(),
+                // half a turn is positive
+                None => -((sum - PI) / TAU - ROUNDING_OF_A_TURN).ceil(),
+            };
+            Some(turns * TAU)
+        };
+        let offsets: Vec<Option<f64>> = self.scene.counted.iter().map(offset).collect();
+        for (start, offset) in self.configuration.turns.iter_mut().zip(offsets) {
+            start.offset = offset;
         }
     }
 

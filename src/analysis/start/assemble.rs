@@ -74,7 +74,7 @@ pub(in crate::analysis) fn numbers(
     n.extend_from_slice(q);
     n.extend_from_slice(v);
     n.extend_from_slice(x);
-    n.extend_from_slice(&scene.configuration.turns);
+    n.extend(scene.configuration.angles());
     n.resize(scene.layout.external().start, 0.0);
     n.extend_from_slice(&scene.configuration.external);
     n.resize(scene.layout.len(), 0.0);

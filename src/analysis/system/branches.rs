@@ -8,6 +8,7 @@ use super::complaints;
 use super::sliding::Slides;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
+use crate::model::Level;
 use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
 use crate::scene::programs::{self, Switching};
@@ -34,8 +35,8 @@ pub struct Branches {
     sides: Vec<f64>,
     /// switches at which the motion stays while branches are held
     pub(super) slides: Slides,
-    /// places in v of the angles that decide a branch
-    watched_angles: Vec<usize>,
+    /// angles that decide a branch again in every turn
+    watched_angles: Vec<WatchedAngle>,
 }
 
 impl Branches {
@@ -173,9 +174,8 @@ impl Branches {
     /// more than [`MAX_TURN_PER_STEP`]: a free flight or a free rotation leaves long steps no
     /// reason to become shorter, and a branch may come and go in every turn.
     pub(in crate::analysis) fn longest_turn(&self, y: &[f64], ydot: &[f64]) -> f64 {
-        let (v, vdot) = (self.layout.state(y).v, self.layout.state(ydot).v);
-        let time = |&k: &usize| {
-            let (speed, acceleration) = (v[k].abs(), vdot[k].abs());
+        let time = |angle: &WatchedAngle| {
+            let [speed, acceleration] = angle.rates(&self.layout, y, ydot).map(f64::abs);
             let fastest = (speed * speed + 2.0 * MAX_TURN_PER_STEP * acceleration).sqrt();
             2.0 * MAX_TURN_PER_STEP / (speed + fastest)
         };
@@ -184,15 +184,51 @@ impl Branches {
     }
 }
 
-/// Returns the places in v of the angles that a switch reads; of those of a ball all three.
-fn watched_angles(scene: &Scene, switching: Option<&Switching>) -> Vec<usize> {
+/// An angle that decides a branch again in every turn.
+#[derive(Clone, Copy, Debug)]
+enum WatchedAngle {
+    /// an unknown: its place in v
+    Free(usize),
+    /// driven at a given velocity: place in x of the displacement
+    Velocity(usize),
+    /// driven by a given acceleration: place in x of the displacement
+    Acceleration(usize),
+}
+
+impl WatchedAngle {
+    /// Returns its rate, and the rate of that as far as the state says it.
+    fn rates(self, layout: &Layout, y: &[f64], ydot: &[f64]) -> [f64; 2] {
+        let (y, ydot) = (layout.state(y), layout.state(ydot));
+        match self {
+            Self::Free(v) => [y.v[v], ydot.v[v]],
+            Self::Velocity(x) => [ydot.x[x], 0.0],
+            Self::Acceleration(x) => [ydot.x[x], ydot.x[x + 1]],
+        }
+    }
+}
+
+/// Returns the angles that a switch reads otherwise than by straight pieces; of those of a ball all
+/// three. Angles that time drives are left to time events.
+fn watched_angles(scene: &Scene, switching: Option<&Switching>) -> Vec<WatchedAngle> {
     let Some(Switching { switches, .. }) = switching else {
         return Vec::new();
     };
     let angular = scene.coordinates.iter().filter(|c| c.angular);
-    let free = angular.filter_map(|c| match c.source {
-        Source::Free { q, v } if switches.reads(scene.layout.q_at(q)) => Some(v),
-        _ => None,
+    let watched = angular.filter_map(|c| match c.source {
+        Source::Free { q, v } => {
+            let bends = switches.bends(scene.layout.q_at(q));
+            bends.then_some(WatchedAngle::Free(v))
+        }
+        Source::Driven(m) => {
+            let motion = &scene.motions[m];
+            let x = motion.state?;
+            let angle = match motion.level {
+                Level::Displacement => return None,
+                Level::Velocity => WatchedAngle::Velocity(x),
+                Level::Acceleration => WatchedAngle::Acceleration(x),
+            };
+            switches.bends(scene.layout.x_at(x)).then_some(angle)
+        }
     });
-    free.collect()
+    watched.collect()
 }

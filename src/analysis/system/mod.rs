@@ -27,6 +27,7 @@ mod singular_step;
 mod sliding;
 pub(super) mod time_events;
 mod tunnelling;
+pub mod turns;
 
 use crate::diagnostic::Diagnostic;
 use crate::numeric::Ode;
@@ -49,6 +50,7 @@ use singular_step::SingularSteps;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use time_events::TimeEvents;
+use turns::Look;
 
 /// A scene with its programs, ready to be integrated.
 #[derive(Debug)]
@@ -273,23 +275,37 @@ impl System {
         rows.worst_left_out(&self.scene, &self.numbers)
     }
 
-    /// Returns whether there are angles whose turns are counted.
+    /// Returns whether there are angles whose turns are counted from step to step.
     pub fn counts_turns(&self) -> bool {
         self.recorded.turns.is_some()
     }
 
-    /// Takes over the turns of counted angles at an accepted state.
-    pub fn count_turns(&mut self, t: f64, y: &[f64]) {
+    /// Returns whether angles that are counted from step to step decide forces.
+    pub fn turns_decide(&self) -> bool {
+        let turns = self.recorded.turns.as_ref();
+        turns.is_some_and(|turns| turns.decide)
+    }
+
+    /// Looks at counted angles at a state; they count from those last taken over.
+    pub fn look_at_turns(&mut self, t: f64, y: &[f64], look: &mut Look) {
         self.set(t, y);
         if let Some(turns) = &mut self.recorded.turns {
-            let angles = turns.run(&self.numbers);
-            let places = self.scene.layout.turns();
-            for (turn, angle) in self.numbers[places].iter_mut().zip(angles) {
-                if angle.is_finite() {
-                    *turn = *angle;
-                }
-            }
+            turns.look(t, &self.numbers, look);
         }
+    }
+
+    /// Takes over the counted angles of a look.
+    pub fn take_turns(&mut self, look: &Look) {
+        if let Some(turns) = &self.recorded.turns {
+            turns.take_over(look, &mut self.numbers);
+        }
+    }
+
+    /// Takes over the counted angles at a state less than half a turn from the one before.
+    pub fn count_turns(&mut self, t: f64, y: &[f64]) {
+        let mut look = Look::default();
+        self.look_at_turns(t, y, &mut look);
+        self.take_turns(&look);
     }
 
     /// Returns a bound of the speed of any angle at a state, rad per time; at a rate, of its
@@ -429,12 +445,16 @@ impl System {
     }
 }
 
-/// Returns the numbers before the first step: guesses of loops, and external inputs.
+/// Returns the numbers before the first step: angles, guesses of loops, and external inputs.
 fn first_numbers(scene: Configured<'_>) -> Vec<f64> {
     let l = scene.layout;
     let mut numbers = vec![0.0; l.len()];
     for (z, unknown) in numbers[l.loops()].iter_mut().zip(&scene.loops) {
         *z = unknown.guess;
+    }
+    let angles = numbers[l.turns()].iter_mut();
+    for (x, angle) in angles.zip(scene.configuration.angles()) {
+        *x = angle;
     }
     let external = numbers[l.external()].iter_mut();
     for (x, value) in external.zip(&scene.configuration.external) {

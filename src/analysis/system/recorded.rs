@@ -10,6 +10,7 @@ use super::jacobian::Derivatives;
 use super::recording::Recording;
 use super::rows::Rows;
 use super::tunnelling::ThicknessBounds;
+use super::turns::Turns;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::scene::Scene;
@@ -37,8 +38,8 @@ pub(super) struct Recorded {
     pub branches: Branches,
     /// unknowns of loops that are not linear
     pub loops: Option<AlgebraicLoops>,
-    /// angles whose turns are counted   (n_turns)
-    pub turns: Option<Recording>,
+    /// angles whose turns are counted from step to step
+    pub turns: Option<Turns>,
     /// bodies that could pass through each other
     pub thickness: ThicknessBounds,
     /// derivatives of the rates
@@ -60,12 +61,15 @@ impl Recorded {
         configuration.elimination.usual_pivots = usual_pivots;
         let rate = shortest_rate(scene, configuration)?;
         let here = scene.within(configuration);
+        let branches = Branches::new(here)?;
+        let switches = branches.switching.as_ref().map(|s| &s.switches);
+        let readers: Vec<&Program> = std::iter::once(&rate).chain(switches).collect();
         Ok(Self {
+            turns: Turns::new(here, &readers)?,
             rate: Recording::new(rate),
             rows: Rows::new(here)?,
-            branches: Branches::new(here)?,
+            branches,
             loops: AlgebraicLoops::new(here).map_err(complaints)?,
-            turns: turns_program(here)?.map(Recording::new),
             thickness: ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?,
             derivatives: Derivatives::default(),
         })
@@ -104,18 +108,6 @@ fn shortest_rate(
 #[allow(clippy::redundant_closure)]
 fn rate_program(scene: Configured<'_>) -> Result<Program, Vec<Diagnostic>> {
     record(scene, |at| programs::rate(at)).map_err(complaints)
-}
-
-/// Records the angles whose turns are counted; `None` where there are none.
-fn turns_program(scene: Configured<'_>) -> Result<Option<Program>, Vec<Diagnostic>> {
-    if scene.counted.is_empty() {
-        return Ok(None);
-    }
-    let counted = &scene.counted;
-    let program = record(scene, |at| {
-        counted.iter().map(|&angle| at.counted(angle)).collect()
-    });
-    program.map(Some).map_err(complaints)
 }
 
 /// Returns the inertia to lend to freedoms that have none although rows determine their motion

@@ -11,6 +11,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::system::external_inputs;
+use crate::analysis::time::leg_output::Counting;
 use crate::analysis::time::output::Output;
 use crate::analysis::time::switches::{Switches, Verdict};
 use crate::analysis::time::trajectory::{Ended, Trajectory};
@@ -76,6 +77,8 @@ pub(super) struct Leg<'a> {
     pub(super) halved: usize,
     /// the state before the step, where there are rows   (n)
     pub(super) before: Vec<f64>,
+    /// angles whose turns are counted
+    pub(super) counting: Counting,
     /// attempted steps, and the time, when the run last came further
     progressed: (usize, f64),
 }
@@ -118,6 +121,7 @@ impl<'a> Leg<'a> {
             landing: limits.end,
             halved: 0,
             before: vec![0.0; if has_rows { size } else { 0 }],
+            counting: Counting::default(),
             progressed: (0, limits.start),
             system,
             watch,
@@ -221,7 +225,14 @@ impl<'a> Leg<'a> {
         let unseen = unseen.max(LEAST_HORIZON * (end - t));
         // however near, it must be further on
         let event = (self.system.time_events.next(t, end)).max(t + 4.0 * f64::EPSILON * t.abs());
-        let due = self.system.samples.due().min(t + unseen).min(event);
+        let turned = self.longest_turn(t, y);
+        let due = self
+            .system
+            .samples
+            .due()
+            .min(t + unseen)
+            .min(event)
+            .min(turned);
         if !self.system.external.remembers() {
             return due;
         }
@@ -240,6 +251,12 @@ impl<'a> Leg<'a> {
             return Ok(Judged::Undone);
         }
         self.halved = 0;
+        // angles that decide forces by the wrong turn
+        if let Some(t) = self.loses_turn(method, step) {
+            method.undo();
+            self.landing = t;
+            return Ok(Judged::Undone);
+        }
         // switches
         let verdict = self.switches.judge(self.system, method, step);
         if let Verdict::Redo(at) = verdict {

@@ -1,29 +1,12 @@
 //! Output times within the steps of a leg, and the turns of angles that are counted on the way.
 
 use crate::analysis::system::System;
+use crate::analysis::system::turns::Look;
 use crate::analysis::time::leg::Leg;
 use crate::numeric::{Method, Step};
 
-/// Looks at counted angles within a step, at most.
-const MAX_LOOKS: f64 = 1e6;
-/// Angle by which a counted angle may turn between looks, rad: it must not be half a turn.
-const TURN_BETWEEN_LOOKS: f64 = 1.5;
-
-/// The looks at counted angles within a step, at equal distances.
-struct Looks {
-    /// intervals between them; zero: none
-    intervals: usize,
-    /// the next one
-    next: usize,
-}
-
-impl Looks {
-    /// Returns the time of the next look, if it is inside the step.
-    fn next(&self, step: &Step) -> Option<f64> {
-        (self.next < self.intervals)
-            .then(|| step.t0 + step.h * self.next as f64 / self.intervals as f64)
-    }
-}
+/// Part of a step between looks at which an angle is taken to jump.
+const SHORTEST_INTERVAL: f64 = 1e-9;
 
 impl Leg<'_> {
     /// Returns the first output time inside a step at which the interpolant has no value: a step
@@ -46,81 +29,149 @@ impl Leg<'_> {
     /// it; counts turns up to its end.
     pub(super) fn emit(&mut self, method: &mut dyn Method<System>, step: &Step, until: f64) {
         let mut state = method.y().to_vec();
-        let mut looks = self.looks(method, step);
+        self.begin_counting(method, step);
         while let Some(&t) = self.outputs.get(self.out.t.len()) {
             if t > until {
                 break;
             }
-            self.count_turns(method, step, &mut looks, t, &mut state);
-            if t >= step.t1 {
-                state.copy_from_slice(method.y());
-            } else if method.interpolate(self.system, t, &mut state).is_err() {
+            self.count_turns(method, step, t);
+            if !state_at(self.system, method, step, t, &mut state) {
                 // tried before the step was accepted: a method that had a value once has it again
                 state.fill(f64::NAN);
-            }
-            if self.system.counts_turns() {
-                self.system.count_turns(t, &state);
             }
             let row = self.system.row(t, &state);
             self.out.push(t, row);
         }
-        if self.system.counts_turns() {
-            self.count_turns(method, step, &mut looks, f64::INFINITY, &mut state);
-            self.system.count_turns(step.t1, method.y());
-        }
+        self.count_turns(method, step, step.t1);
     }
 
-    /// Returns how often counted angles are looked at within a step.
-    fn looks(&mut self, method: &mut dyn Method<System>, step: &Step) -> Looks {
-        let mut intervals = 0;
-        if self.system.counts_turns() {
-            let turn = self.spin_within(method, step) * step.h;
-            intervals = (turn / TURN_BETWEEN_LOOKS).ceil().min(MAX_LOOKS) as usize;
+    /// Looks at the counted angles at both ends of a step; returns a bound of the turn of their
+    /// markers within it, rad.
+    pub(super) fn turn_within(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
+        let Counting {
+            from, next, state, ..
+        } = &mut self.counting;
+        state.resize(method.y().len(), 0.0);
+        let mut acceleration = self.system.spin(method.ydot());
+        if state_at(self.system, method, step, step.t0, state) {
+            self.system.look_at_turns(step.t0, state, from);
         }
-        if intervals > 0 {
-            intervals += 1;
+        if (method.interpolate_rate(self.system, step.t0, state)).is_ok() {
+            acceleration = acceleration.max(self.system.spin(state));
         }
-        Looks { intervals, next: 1 }
+        self.system.look_at_turns(step.t1, method.y(), next);
+        acceleration += from.driven_acceleration.max(next.driven_acceleration);
+        // what grows and falls again within the step is at its largest near the middle
+        (from.speed.max(next.speed) + 0.25 * step.h * acceleration) * step.h
     }
 
-    /// Follows counted angles up to a time.
-    fn count_turns(
+    /// Returns the time up to which the next step may go so that angles that decide forces keep
+    /// their turns in it.
+    pub(super) fn longest_turn(&mut self, t: f64, y: &[f64]) -> f64 {
+        if !self.system.turns_decide() {
+            return f64::INFINITY;
+        }
+        self.system.look_at_turns(t, y, &mut self.counting.from);
+        t + self.counting.from.longest_step()
+    }
+
+    /// Returns where a step should have ended in which angles that decide forces turn by so much
+    /// that they were taken with the wrong turns.
+    pub(super) fn loses_turn(
         &mut self,
         method: &mut dyn Method<System>,
         step: &Step,
-        looks: &mut Looks,
-        until: f64,
-        state: &mut [f64],
-    ) {
-        while let Some(at) = looks.next(step).filter(|&at| at <= until) {
-            if method.interpolate(self.system, at, state).is_ok() {
-                self.system.count_turns(at, state);
-            }
-            looks.next += 1;
+    ) -> Option<f64> {
+        if !self.system.turns_decide() || step.h <= 1e-12 * step.t1.abs() {
+            return None;
+        }
+        let turn = self.turn_within(method, step);
+        let part = Look::part_of_step(turn)?;
+        Some(step.t0 + part * step.h)
+    }
+
+    /// Begins to count the angles of a step, which is divided by how much they turn at most.
+    fn begin_counting(&mut self, method: &mut dyn Method<System>, step: &Step) {
+        if self.system.counts_turns() {
+            let intervals = Look::intervals(self.turn_within(method, step));
+            let place = |k: usize| step.t0 + step.h * (k as f64 / intervals as f64);
+            self.counting.ahead.clear();
+            self.counting.ahead.extend((1..intervals).rev().map(place));
         }
     }
 
-    /// Returns a bound of how fast any angle turns within a step, rad per time: at its ends it may
-    /// stand still.
-    fn spin_within(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
-        let (mut speed, mut acceleration) = (
-            self.system.spin(method.y()),
-            self.system.spin(method.ydot()),
-        );
-        let mut before = method.y().to_vec();
-        if method
-            .interpolate(self.system, step.t0, &mut before)
-            .is_ok()
-        {
-            speed = speed.max(self.system.spin(&before));
+    /// Counts angles up to a time in the step.
+    fn count_turns(&mut self, method: &mut dyn Method<System>, step: &Step, until: f64) {
+        if !self.system.counts_turns() {
+            return;
         }
-        if method
-            .interpolate_rate(self.system, step.t0, &mut before)
-            .is_ok()
-        {
-            acceleration = acceleration.max(self.system.spin(&before));
+        while let Some(t) = self.counting.ahead.pop_if(|t| *t < until) {
+            self.counting.follow(self.system, method, step, t);
         }
-        // what grows and falls again within the step is at its largest near the middle
-        speed + 0.25 * step.h * acceleration
+        self.counting.follow(self.system, method, step, until);
     }
+}
+
+/// The angles that are counted from look to look within a step.
+#[derive(Debug, Default)]
+pub(super) struct Counting {
+    /// the last look whose angles were taken over
+    from: Look,
+    /// the look that is tried
+    next: Look,
+    /// looks that are to come in the step, the latest first
+    ahead: Vec<f64>,
+    /// looks that are to be taken before one can be, the nearest last
+    halves: Vec<f64>,
+    /// the state at a look   (n)
+    state: Vec<f64>,
+}
+
+impl Counting {
+    /// Takes over the angles at a time, by as many looks on the way as that takes.
+    fn follow(
+        &mut self,
+        system: &mut System,
+        method: &mut dyn Method<System>,
+        step: &Step,
+        to: f64,
+    ) {
+        let Self {
+            from,
+            next,
+            halves,
+            state,
+            ..
+        } = self;
+        halves.clear();
+        halves.push(to);
+        while let Some(&t) = halves.last() {
+            if state_at(system, method, step, t, state) {
+                system.look_at_turns(t, state, next);
+                let interval = t - from.t;
+                if !from.leads_to(next) && interval > SHORTEST_INTERVAL * step.h {
+                    halves.push(from.t + 0.5 * interval);
+                    continue;
+                }
+                system.take_turns(next);
+                std::mem::swap(from, next);
+            }
+            halves.pop();
+        }
+    }
+}
+
+/// Puts the state at a time of a step in place; returns false where the interpolant has no value.
+fn state_at(
+    system: &mut System,
+    method: &mut dyn Method<System>,
+    step: &Step,
+    t: f64,
+    state: &mut [f64],
+) -> bool {
+    if t >= step.t1 {
+        state.copy_from_slice(method.y());
+        return true;
+    }
+    method.interpolate(system, t, state).is_ok()
 }

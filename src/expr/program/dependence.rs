@@ -10,7 +10,7 @@
 //! no derivative.
 
 use super::code::{Code, Core, Instruction};
-use super::operation::BinaryOp;
+use super::operation::{BinaryOp, UnaryOp};
 use super::run::Program;
 
 /// Directions per word.
@@ -55,9 +55,66 @@ impl Program {
         };
         core.outputs.iter().map(members).collect()
     }
+
+    /// Returns whether an output depends on the input at a position otherwise than by straight
+    /// pieces, of which each formula has a few: by a sine it may come back to a value for ever, by
+    /// sums, multiples, comparisons and selections it may not.
+    pub fn bends(&self, position: usize) -> bool {
+        let core = self.core();
+        let mut shapes = vec![Shape::Free; core.size as usize];
+        let first = core.constants.len();
+        for (k, &input) in core.used.iter().enumerate() {
+            if input as usize == position {
+                shapes[first + k] = Shape::Straight;
+            }
+        }
+        for instruction in &core.code {
+            shapes[instruction.to as usize] = core.shape(instruction, |r| shapes[r as usize]);
+        }
+        let mut outputs = core.outputs.iter();
+        outputs.any(|&r| shapes[r as usize] == Shape::Bent)
+    }
+}
+
+/// The form in which a register depends on an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Shape {
+    /// not at all
+    Free,
+    /// by straight pieces
+    Straight,
+    /// by any function
+    Bent,
 }
 
 impl Core {
+    /// Returns the shape of the result of an instruction, from those of its operands.
+    fn shape(&self, instruction: &Instruction, of: impl Fn(u32) -> Shape) -> Shape {
+        let Instruction {
+            code, a, b, c, d, ..
+        } = *instruction;
+        let joined = |all: &[u32]| all.iter().map(|&r| of(r)).fold(Shape::Free, Shape::max);
+        let bent = |all: &[u32]| match joined(all) {
+            Shape::Free => Shape::Free,
+            Shape::Straight | Shape::Bent => Shape::Bent,
+        };
+        match code {
+            Code::Unary(UnaryOp::Neg | UnaryOp::Abs | UnaryOp::Not) => joined(&[a]),
+            Code::Binary(
+                BinaryOp::Add | BinaryOp::Sub | BinaryOp::And | BinaryOp::Or | BinaryOp::Along,
+            )
+            | Code::Compare(_) => joined(&[a, b]),
+            Code::Binary(BinaryOp::Mul) if of(a) == Shape::Free => joined(&[b]),
+            Code::Binary(BinaryOp::Mul | BinaryOp::Div) if of(b) == Shape::Free => joined(&[a]),
+            Code::Select => joined(&[a, b, c]),
+            Code::CompareSelect(_) | Code::If => joined(&[a, b, c, d]),
+            Code::Unary(_) | Code::Whole(_) | Code::Lookup { .. } => bent(&[a]),
+            Code::Binary(_) => bent(&[a, b]),
+            Code::HalfPower(_) => bent(&[a, b, c]),
+            Code::Call(_, count) | Code::Partial(_, count, _) => bent(self.arguments(a, count)),
+        }
+    }
+
     /// Returns the registers by which the result of an instruction has derivatives.
     fn differentiated(&self, instruction: &Instruction, mut each: impl FnMut(u32)) {
         let Instruction {

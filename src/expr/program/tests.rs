@@ -744,3 +744,22 @@ fn an_output_depends_on_what_it_has_a_derivative_by() {
         assert_eq!(found, wanted);
     }
 }
+
+#[test]
+fn straight_pieces_are_told_from_functions_that_come_back() {
+    let mut b = Builder::new(Folding::Strict);
+    let slots = [0, 1, 2].map(|k| b.input(Input::Slot(k)));
+    let [x, y, z] = slots;
+    let [two, level] = [2.0, 100.0].map(|c| b.constant(c));
+    let double = b.binary(BinaryOp::Mul, two, x);
+    let beyond = b.binary(BinaryOp::Sub, double, level);
+    let magnitude = b.unary(UnaryOp::Abs, beyond);
+    let scaled = b.binary(BinaryOp::Div, magnitude, y);
+    let sine = b.unary(UnaryOp::Sin, z);
+    let either = b.arithmetic_if(scaled, two, sine, beyond);
+    let program = b.finish_with_inputs(&[either], &layout());
+    assert_eq!(
+        [0, 1, 2, 3].map(|k| program.bends(k)),
+        [false, true, true, false]
+    );
+}

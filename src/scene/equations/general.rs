@@ -14,8 +14,9 @@ use crate::expr::program::{Input, Work};
 use crate::physics::action::Action;
 use crate::physics::kinematic;
 use crate::scalar::{Jet, Scalar};
-use crate::scene::{Counted, Entry};
-use crate::space::{Frame, MarkerState};
+use crate::scene::Entry;
+use crate::scene::history::AngleId;
+use crate::space::MarkerState;
 
 /// Most markers that one measure reads.
 const MAX_MARKERS: usize = 3;
@@ -117,10 +118,10 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn place_in_time(&self, measure: Measure, ids: [u32; 4]) -> Option<Jet<S>> {
         let index = |id: u32| self.scene.marker_of.get(&id).copied();
         let mut jet = kinematic::kinematic_of(measure, ids, |id| {
-            Some(placed(moving(&self.marker(index(id)?))))
+            Some(MarkerState::at_rest(moving(&self.marker(index(id)?))))
         })?;
-        if measure.needs_history() {
-            jet.value = self.turned(Counted::Measure(measure, ids), jet.value);
+        if measure.counts_turns() {
+            jet.value = self.turned(AngleId::Measure(measure, ids), jet.value);
         }
         Some(jet)
     }
@@ -136,8 +137,9 @@ impl<S: Scalar> Equations<'_, S> {
                 read.push(m);
                 read.len() - 1
             });
-            (k < MAX_MARKERS)
-                .then(|| placed(seed::<{ 6 * MAX_MARKERS }, S>(&self.marker(m), 6 * k)))
+            (k < MAX_MARKERS).then(|| {
+                MarkerState::at_rest(seed::<{ 6 * MAX_MARKERS }, S>(&self.marker(m), 6 * k))
+            })
         })?;
         let actions = read
             .iter()
@@ -145,14 +147,5 @@ impl<S: Scalar> Equations<'_, S> {
             .map(|(k, &m)| (m, twist(&seeded, 6 * k)))
             .collect();
         Some(Traced { jet, actions })
-    }
-}
-
-/// A frame as the state of a marker whose motion nobody asks for.
-fn placed<T: Scalar>(frame: Frame<T>) -> MarkerState<T> {
-    MarkerState {
-        R_GM: frame.rotation,
-        p_GM: frame.position,
-        ..MarkerState::ground()
     }
 }

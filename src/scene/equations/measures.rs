@@ -3,12 +3,12 @@
 
 use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure, orientation_components};
-use crate::expr::program::Input;
 use crate::model::ElementKind;
 use crate::physics::kinematic;
 use crate::scalar::Scalar;
+use crate::scene::Entry;
+use crate::scene::history::AngleId;
 use crate::scene::loops::Key;
-use crate::scene::{Counted, Entry, sweep};
 
 impl<S: Scalar> Equations<'_, S> {
     /// Value of a measure.
@@ -27,8 +27,8 @@ impl<S: Scalar> Equations<'_, S> {
             Family::Displacement | Family::Velocity => {
                 let state = |id: u32| self.marker_by_id(id, false);
                 match kinematic::kinematic_of(measure, ids, state) {
-                    Some(value) if measure.needs_history() => {
-                        self.turned(Counted::Measure(measure, ids), value)
+                    Some(value) if measure.counts_turns() => {
+                        self.turned(AngleId::Measure(measure, ids), value)
                     }
                     Some(value) => value,
                     None => self.complain(asked_by, without_value(measure, ids)),
@@ -52,43 +52,11 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
-    /// An angle with its turns: the value nearest to the one last accepted.
-    pub(super) fn turned(&self, angle: Counted, principal: S) -> S {
-        let Some(k) = self.scene.counted.iter().position(|c| *c == angle) else {
-            return principal;
-        };
-        let turn = std::f64::consts::TAU;
-        let turns = (self.turns[k] - principal).scale(1.0 / turn).round();
-        principal + turns.scale(turn)
-    }
-
     /// Value of a variable of a joint: its index in
     /// [`Scene::joint_variables`](crate::scene::Scene::joint_variables).
     pub fn joint_variable(&self, k: usize) -> S {
         let variable = &self.scene.joint_variables[k];
         self.displacement(&variable.displacement).value
-    }
-
-    /// Value of an angle whose turns are counted.
-    pub fn counted(&self, angle: Counted) -> S {
-        match angle {
-            Counted::Measure(measure, ids) => {
-                let asks = Input::Measure(measure, ids);
-                let mut formulas = self.scene.formulas.iter();
-                let asked_by = formulas.find(|f| f.program.inputs().contains(&asks));
-                self.measure(measure, ids, asked_by.map_or(measure.name(), |f| &f.name))
-            }
-            Counted::Angle { gauge, i, j } => {
-                let frame = |m: usize| sweep::marker_frame(&self.scene.markers[m], &self.links);
-                self.turned(angle, gauge.value(&frame(i), &frame(j)))
-            }
-        }
-    }
-
-    /// AX, AY or AZ of one marker against another, with its turns.
-    pub fn angle_between(&self, measure: Measure, i: usize, j: Option<usize>) -> S {
-        let id = |m: usize| self.scene.markers[m].id;
-        self.measure(measure, [id(i), j.map_or(0, id), 0, 0], measure.name())
     }
 
     pub(super) fn system(&self, measure: Measure, [id, k, ..]: [u32; 4], asked_by: &str) -> S {

@@ -17,12 +17,14 @@ mod loops;
 mod measures;
 mod reactions;
 mod rows;
+mod turns;
 mod undetermined_reactions;
 mod unsupported;
 
 pub use dynamics::Solved;
 pub(in crate::scene) use reactions::element_of;
 pub use rows::{RowValue, row_name};
+pub use turns::TurnedAngle;
 pub use undetermined_reactions::Share;
 pub use unsupported::{Lack, Unsupported};
 

@@ -4,7 +4,7 @@ use super::Equations;
 use crate::physics::action::Action;
 use crate::physics::row::Law;
 use crate::scalar::{Dual, Jet, Scalar};
-use crate::scene::{Counted, Displacement, Row, RowKind, Source, Sum};
+use crate::scene::{CoordinateSum, Displacement, Row, RowKind, Source, Sum};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
 
 impl<S: Scalar> Equations<'_, S> {
@@ -131,7 +131,7 @@ impl<S: Scalar> Equations<'_, S> {
         let (I, J) = (self.marker(d.i), self.marker(d.j));
         let seeded = d.gauge.value(&seed::<12, S>(&I, 0), &seed::<12, S>(&J, 6));
         let actions = vec![(d.i, twist(&seeded, 0)), (d.j, twist(&seeded, 6))];
-        if let Some((terms, constant)) = &d.coordinates {
+        if let Some(CoordinateSum { terms, constant }) = &d.coordinates {
             let mut value = S::constant(*constant);
             let (mut drift, mut second) = (S::zero(), S::zero());
             let mut gradient = Vec::new();
@@ -157,8 +157,7 @@ impl<S: Scalar> Equations<'_, S> {
         let rates = d.gauge.value(&moving(&I), &moving(&J));
         let gradient = self.gradient_of(&actions);
         let value = if d.gauge.is_angle() {
-            let (gauge, i, j) = (d.gauge, d.i, d.j);
-            self.turned(Counted::Angle { gauge, i, j }, seeded.re)
+            self.turned(self.scene.angle_id(d), seeded.re)
         } else {
             seeded.re
         };
