@@ -6,6 +6,9 @@
 //! ```
 //!
 //! The iteration begins where the last one ended, so that z follows its branch as the state moves.
+//! It ends at rounding, which is measured: reactions that nearly vanish are differences of large
+//! loads, and ρ is rounded as these are. Where no step leads further, the residual counts as zero
+//! if positions moved by a few units in their last place change it as much.
 
 use super::recording::Recording;
 use crate::expr::program::{Program, Work};
@@ -15,6 +18,7 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 use crate::scene::loops;
 use crate::scene::slopes::{self, WIDTH};
+use crate::scene::{Scene, Source};
 use std::ops::Range;
 
 const MAX_ITERATIONS: usize = 60;
@@ -28,6 +32,13 @@ const STALLED: f64 = 1e-13;
 /// Part of the residual that a step by factors from elsewhere may leave: else new ones are
 /// computed.
 const CONTRACTION: f64 = 0.2;
+/// Units in the last place by which positions are moved to measure rounding, of their size or of
+/// the mechanism's.
+const MOVED_BY: f64 = 2.0 * f64::EPSILON;
+/// Directions along which positions are moved.
+const MOVED_ALONG: usize = 4;
+/// Residual that counts as rounding, as a multiple of the largest change so measured.
+const ROUNDING_MARGIN: f64 = 8.0;
 
 /// Solves the loops of a scene.
 #[derive(Debug)]
@@ -46,6 +57,26 @@ pub(in crate::analysis) struct AlgebraicLoops {
     lu: Lu,
     /// `lu` holds factors, of ∂ρ/∂z here or where it was last solved
     factored: bool,
+    /// sizes of positions: angles count from one, lengths from that of the mechanism   (n_q)
+    sizes: Vec<f64>,
+    /// where positions stand
+    positions: Range<usize>,
+    /// rounding of ρ as it was measured since the last factors; zero: not yet
+    rounding: f64,
+}
+
+/// Returns the sizes from which positions count when they are rounded   (n_q)
+fn sizes_of_positions(scene: &Scene) -> Vec<f64> {
+    let mut sizes = vec![1.0; scene.layout.n_q];
+    for (c, f) in scene.coordinates.iter().zip(&scene.freedoms) {
+        if let Source::Free { q, .. } = c.source
+            && !c.angular
+            && !f.in_ball
+        {
+            sizes[q] = scene.length;
+        }
+    }
+    sizes
 }
 
 fn largest(x: &[f64]) -> f64 {
@@ -87,6 +118,9 @@ impl AlgebraicLoops {
             step: vec![0.0; n],
             lu: Lu::new(n),
             factored: false,
+            sizes: sizes_of_positions(&scene),
+            positions: scene.layout.q(),
+            rounding: 0.0,
         }))
     }
 
@@ -128,6 +162,7 @@ impl AlgebraicLoops {
 
     fn factors(&mut self) -> Result<(), usize> {
         let outcome = self.lu.factor(1e-14);
+        self.rounding = 0.0;
         self.factored = outcome.is_ok();
         outcome
     }
@@ -140,7 +175,7 @@ impl AlgebraicLoops {
         let begun = largest(&numbers[self.places.clone()]);
         let mut size = self.evaluate(numbers);
         for _ in 0..MAX_ITERATIONS {
-            if size == 0.0 {
+            if size <= self.rounding {
                 return Ok(());
             }
             if !size.is_finite() {
@@ -173,7 +208,9 @@ impl AlgebraicLoops {
                 // no better number: rounding, or no solution
                 None => {
                     self.evaluate(numbers);
-                    if self.is_rounding(&numbers[self.places.clone()]) {
+                    if self.is_rounding(&numbers[self.places.clone()])
+                        || size <= self.measure_rounding(numbers)
+                    {
                         return Ok(());
                     }
                     break;
@@ -219,6 +256,28 @@ impl AlgebraicLoops {
         let rounding =
             |(z, d): (&f64, &f64)| d.abs() <= 1e-9 * z.abs() || d.abs() <= 1e-13 * largest;
         z.iter().zip(&self.step).all(rounding)
+    }
+
+    /// Measures the rounding of ρ, whose present value is left in place.
+    fn measure_rounding(&mut self, numbers: &mut [f64]) -> f64 {
+        let here = numbers[self.positions.clone()].to_vec();
+        let rho = self.rho.clone();
+        let mut largest = 0.0_f64;
+        for along in 0..MOVED_ALONG {
+            let moved = numbers[self.positions.clone()].iter_mut();
+            for (k, (q, size)) in moved.zip(&self.sizes).enumerate() {
+                // four directions at right angles: signs of a Hadamard matrix
+                let side = if (k & along).count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+                *q += side * MOVED_BY * q.abs().max(*size);
+            }
+            self.evaluate(numbers);
+            let change = self.rho.iter().zip(&rho).map(|(a, b)| (a - b) * (a - b));
+            largest = largest.max(change.sum::<f64>().sqrt());
+            numbers[self.positions.clone()].copy_from_slice(&here);
+        }
+        self.rho = rho;
+        self.rounding = ROUNDING_MARGIN * largest;
+        self.rounding
     }
 
     /// Returns the unknown with the largest residual.
