@@ -282,27 +282,115 @@ fn an_overlap_that_is_used_up_presses_like_a_thousandth_of_it() {
     }
 }
 
-#[test]
-fn below_the_angle_of_friction_a_block_creeps_within_the_stiction_velocity() {
-    let theta: f64 = 0.2;
-    let text = format!(
+/// A block on a plane of slope `tangent`, with its friction.
+fn on_slope(tangent: f64, friction: &str) -> String {
+    let theta = tangent.atan();
+    format!(
         "PART/2, MASS=2, CM=2, IP=1,1,1\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/4, PART=1, REULER=90D,90D,0\n\
          JOINT/1, TRANSLATIONAL, I=2, J=4\nACCGRAV/IGRAV={:?}, KGRAV={:?}\n\
-         FRICTION/1, JOINT=1, MU_STATIC=0.3, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=1E-4\n",
+         FRICTION/1, JOINT=1, MU_STATIC=0.3, MU_DYNAMIC=0.2{friction}\n",
         G * theta.sin(),
         -G * theta.cos()
-    );
-    let s = run(&text, &["VX(2,1)", "FRICTION(1,3)"], 1.0);
-    assert!(last(&s, "VX(2,1)") < 1e-4 && last(&s, "VX(2,1)") > 0.0);
-    // it carries the weight along the guide
-    assert!((last(&s, "FRICTION(1,3)") + 2.0 * G * theta.sin()).abs() < 1e-6);
-    assert!(
+    )
+}
+
+const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+
+#[test]
+fn below_the_angle_of_friction_a_block_is_held_within_the_stiction_deformation() {
+    for (tangent, velocity, deformation) in [
+        (0.05, 1e-2, 1e-4),
+        (0.15, 1e-2, 1e-4),
+        (0.25, 1e-3, 1e-5),
+        (0.29, 1e-2, 1e-3),
+    ] {
+        let text = on_slope(
+            tangent,
+            &format!(
+                ", STICTION_TRANSITION_VELOCITY={velocity:?}, MAX_STICTION_DEFORMATION={deformation:?}"
+            ),
+        );
+        for method in METHODS {
+            let what = format!("slope {tangent} by {method}");
+            let mut s = session_by(
+                &text,
+                &["DX(2,1)", "VX(2,1)", "FRICTION(1,3)"],
+                method,
+                1e-7,
+            );
+            go(&mut s, Analysis::Dynamic, 20.0, 10);
+            // S(x/Δ) = tan θ/µ_s
+            let moved = last(&s, "DX(2,1)") / deformation;
+            let held = (15.0 * moved - 10.0 * moved.powi(3) + 3.0 * moved.powi(5)) / 8.0;
+            assert!(
+                (held - tangent / 0.3).abs() < 1e-3,
+                "{what}: {moved} of the deformation"
+            );
+            assert!(
+                last(&s, "VX(2,1)").abs() < 1e-6 * velocity,
+                "{what}: {}",
+                last(&s, "VX(2,1)")
+            );
+            let load = 2.0 * G * tangent.atan().sin();
+            let force = last(&s, "FRICTION(1,3)");
+            assert!(
+                (force + load).abs() < 1e-4 * load,
+                "{what}: {force} holds {load}"
+            );
+        }
+    }
+}
+
+#[test]
+fn above_the_angle_of_friction_a_block_breaks_away_and_slides_under_dynamic_friction() {
+    let tangent: f64 = 0.31;
+    let law = ", STICTION_TRANSITION_VELOCITY=0.01, MAX_STICTION_DEFORMATION=1E-4";
+    for method in METHODS {
+        let mut s = session_by(&on_slope(tangent, law), &["ACCX(2,1)"], method, 1e-7);
+        go(&mut s, Analysis::Dynamic, 2.0, 10);
+        let theta = tangent.atan();
+        let expected = G * (theta.sin() - 0.2 * theta.cos());
+        assert!(
+            (last(&s, "ACCX(2,1)") - expected).abs() < 1e-6,
+            "{method}: {}",
+            last(&s, "ACCX(2,1)")
+        );
+    }
+}
+
+#[test]
+fn a_load_that_vibrates_within_the_cone_moves_nothing_on() {
+    let law = ", STICTION_TRANSITION_VELOCITY=0.01, MAX_STICTION_DEFORMATION=1E-4";
+    // tan θ = 0.15, shaken by a third of the static limit
+    let shake = "SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=4, FUNCTION=1.9*SIN(60*TIME)\n";
+    let text = on_slope(0.15, law) + shake;
+    let mut s = session_by(&text, &["DX(2,1)"], "AUTO", 1e-7);
+    go(&mut s, Analysis::Dynamic, 20.0, 200);
+    let all = values(&s, "DX(2,1)");
+    assert!(all.iter().all(|x| x.abs() < 1e-4), "{all:?}");
+    // the same range in the first cycles as in the last
+    let largest = |part: &[f64]| part.iter().fold(0.0_f64, |m, x| m.max(*x));
+    let (early, late) = (largest(&all[20..100]), largest(&all[120..]));
+    assert!((late - early).abs() < 2e-6, "{early} {late}");
+}
+
+#[test]
+fn statics_tell_that_friction_holds_nothing_there() {
+    let spring = "SPRINGDAMPER/1, TRANSLATION, I=2, J=4, K=1000, C=10, LENGTH=0\n";
+    let text = on_slope(0.15, "").replace("PART/2, ", "PART/2, QG=0.01,0,0, ") + spring;
+    let told = |text: &str| {
+        let mut s = session_by(text, &["DX(2,1)"], "AUTO", 1e-7);
+        go(&mut s, Analysis::Static, 0.0, 0);
         s.run
             .record
             .warned()
             .iter()
-            .any(|w| w.contains("FRICTION/1") && w.contains("creeps"))
-    );
+            .any(|w| w.contains("FRICTION/1"))
+    };
+    assert!(told(&text));
+    assert!(!told(
+        &text.replace("JOINT=1, MU", "JOINT=1, INACTIVE=STATIC, MU")
+    ));
 }
 
 #[test]

@@ -93,6 +93,8 @@ macro_rules! force_laws {
                 law: Box<Friction>,
                 /// the joint's number
                 joint: u32,
+                /// places in x of the creep
+                creep: Range<usize>,
             },
             /// one marker of an NFORCE
             Nodal {
@@ -146,8 +148,9 @@ macro_rules! force_laws {
                         let (touching, law) = contact.as_ref();
                         contact::action(&touching.touches(at, &i, &j), law, &i, &j)
                     }
-                    ForceLaw::Friction { law, joint } => {
-                        law.slip(&i, &j, &self.pressing(at, law, *joint)).action
+                    ForceLaw::Friction { law, joint, creep } => {
+                        let pressing = self.pressing(at, law, *joint);
+                        law.slip(&i, &j, &pressing, at.further_states(creep)).action
                     }
                     ForceLaw::Nodal {
                         law,
@@ -218,10 +221,21 @@ impl ForceElement {
 
     /// Returns the slip in the joint, for FRICTION; `None` for other elements.
     pub fn slip<S: Scalar>(&self, at: &Equations<'_, S>) -> Option<Slip<S>> {
-        let (ForceLaw::Friction { law, joint }, Some(j)) = (&self.law, self.j) else {
+        let (ForceLaw::Friction { law, joint, creep }, Some(j)) = (&self.law, self.j) else {
             return None;
         };
         let (i, j) = (at.marker(self.i), at.marker(j));
-        Some(law.slip(&i, &j, &self.pressing(at, law, *joint)))
+        let pressing = self.pressing(at, law, *joint);
+        Some(law.slip(&i, &j, &pressing, at.further_states(creep)))
+    }
+
+    /// Returns the places in x of the states of the element, and their rates.
+    pub fn state_rates<S: Scalar>(&self, at: &Equations<'_, S>) -> (Range<usize>, Vec<S>) {
+        let (ForceLaw::Friction { law, creep, .. }, Some(j)) = (&self.law, self.j) else {
+            return (0..0, Vec::new());
+        };
+        let (i, j) = (at.marker(self.i), at.marker(j));
+        let rates = law.creep_rates(&i, &j, at.further_states(creep));
+        (creep.clone(), rates)
     }
 }

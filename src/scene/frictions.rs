@@ -2,18 +2,16 @@
 //!
 //! The reaction depends on the friction and the friction on the reaction: an algebraic loop like
 //! any other (`loops.rs`), whose unknowns are the components of `JOINT(id, 0, …)` that the law
-//! reads.
+//! reads. What the surfaces have crept is a state, over the largest deformation that is possible.
 
 use super::build::Builder;
 use super::compile::Compiler;
+use super::equations::{KINEMATIC, STATIC};
 use super::forces::ForceLaw;
+use super::unknown::{DifferentialId, UnknownId};
 use crate::diagnostic::Diagnostic;
 use crate::model::{self, ElementKind};
-use crate::physics::contact::law::Coulomb;
-use crate::physics::friction::{Friction, Kind, Overlap};
-
-/// Beyond this multiple of the stiction velocity friction is dynamic.
-const DYNAMIC_SPEED_RATIO: f64 = 1.5;
+use crate::physics::friction::{Friction, Grip, Kind, Overlap};
 
 impl Builder<'_> {
     pub(super) fn frictions(&mut self, c: &mut Compiler) {
@@ -37,12 +35,26 @@ impl Builder<'_> {
             };
             match friction(f, kind) {
                 Ok(law) => {
-                    let what = "what should stick creeps below the stiction velocity, and at rest there is no friction";
-                    let warning = Diagnostic::warning("creeping_friction", what).element(name);
-                    self.scene.warnings.push(warning);
+                    let at_rest = self.scene.mode == STATIC;
+                    if at_rest && !f.inactive_in_statics {
+                        let what = "at rest nothing has crept, and there is no friction: what friction would hold is moved by its load";
+                        let warning =
+                            Diagnostic::warning("frictionless_statics", what).element(name);
+                        self.scene.warnings.push(warning);
+                    }
+                    let moves = !at_rest && self.scene.mode != KINEMATIC;
+                    let n_creeps = if moves { law.n_creeps() } else { 0 };
+                    let creep = self.scene.layout.n_x;
+                    for k in 1..=n_creeps {
+                        self.add_state(UnknownId::Differential(DifferentialId {
+                            element: name,
+                            number: Some(k),
+                        }));
+                    }
                     let law = ForceLaw::Friction {
                         law: Box::new(law),
                         joint: f.joint,
+                        creep: creep..creep + n_creeps,
                     };
                     self.between(c, name, (joint.i, joint.j), law);
                 }
@@ -74,16 +86,20 @@ fn friction(f: &model::Friction, kind: Kind) -> Result<Friction, String> {
         f.stiction_transition_velocity,
         0.1,
     )?;
-    let mut law = Coulomb {
+    let deformation = positive("MAX_STICTION_DEFORMATION", f.max_stiction_deformation, 0.01)?;
+    let mut grip = Grip {
         mu_static: not_negative("MU_STATIC", f.mu_static)?,
         mu_dynamic: not_negative("MU_DYNAMIC", f.mu_dynamic)?,
         stiction_velocity: vs,
-        friction_velocity: DYNAMIC_SPEED_RATIO * vs,
+        deformation: Some(deformation),
     };
     match f.effect.as_deref() {
         // only what acts below the stiction velocity, only what acts beyond it
-        Some("STICTION") => law.mu_dynamic = 0.0,
-        Some("SLIDING") => law.mu_static = law.mu_dynamic,
+        Some("STICTION") => grip.mu_dynamic = 0.0,
+        Some("SLIDING") => {
+            grip.mu_static = grip.mu_dynamic;
+            grip.deformation = None;
+        }
         _ => {}
     }
     let all = f.inputs.is_empty() || f.inputs.iter().any(|i| i == "ALL");
@@ -103,7 +119,7 @@ fn friction(f: &model::Friction, kind: Kind) -> Result<Friction, String> {
     };
     Ok(Friction {
         kind,
-        law,
+        grip,
         takes: ["REACTION_FORCE", "BENDING_MOMENT", "TORSIONAL_MOMENT"].map(takes),
         force_preload: preload("FRICTION_FORCE_PRELOAD", f.force_preload)?,
         torque_preload: preload("FRICTION_TORQUE_PRELOAD", f.torque_preload)?,

@@ -267,7 +267,11 @@ impl AlgebraicLoops {
             let moved = numbers[self.positions.clone()].iter_mut();
             for (k, (q, size)) in moved.zip(&self.sizes).enumerate() {
                 // four directions at right angles: signs of a Hadamard matrix
-                let side = if (k & along).count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+                let side = if (k & along).count_ones() % 2 == 0 {
+                    1.0
+                } else {
+                    -1.0
+                };
                 *q += side * MOVED_BY * q.abs().max(*size);
             }
             self.evaluate(numbers);

@@ -142,9 +142,9 @@ begin to hold. The run goes on; reactions may jump there.",
         explanation: "Left-out elements exert nothing and have no place: functions read zero of them. The message names the function and what it reads.",
     },
     Code {
-        name: "creeping_friction",
-        summary: "friction in a joint that creeps where it should stick",
-        explanation: "Below the stiction velocity the friction is proportional to the velocity: what should stick creeps, and at rest there is no friction.",
+        name: "frictionless_statics",
+        summary: "statics without the friction of a joint",
+        explanation: "FRICTION holds by what its surfaces have crept, and in statics nothing has moved yet: a load that friction would hold moves its part. INACTIVE=STATIC says the same; a dynamic simulation that comes to rest is held.",
     },
     Code {
         name: "convex_hull",

@@ -366,8 +366,13 @@ impl<S: Scalar> Equations<'_, S> {
                 self.rate_of(k)
             };
         }
+        for force in &self.scene.forces {
+            let (places, rates) = force.state_rates(self);
+            out[places].copy_from_slice(&rates);
+        }
         out
     }
+
     /// Kinetic energy, and potential energy in gravity.
     pub fn energy(&self) -> [S; 2] {
         let (mut kinetic, mut potential) = (S::zero(), S::zero());

@@ -163,6 +163,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
         self.t
     }
 
+    /// Returns some of the further states.
+    pub fn further_states(&self, places: &std::ops::Range<usize>) -> &[S] {
+        &self.x[places.clone()]
+    }
+
     /// Velocities of the free coordinates   (n_v)
     pub fn velocities(&self) -> &[S] {
         &self.v
