@@ -65,8 +65,8 @@ where
 }
 
 /// Records what `f` computes, and what `end` makes of the values: a program for each of its lists.
-/// The unknowns of linear loops are eliminated, or, where `known`, read after the numbers of the
-/// layout. `moving`: velocities are not taken as zero at rest.
+/// The unknowns of linear loops are eliminated; where `known`, those of all loops are read after the
+/// numbers of the layout. `moving`: velocities are not taken as zero at rest.
 fn recorded<F, E>(
     scene: Configured<'_>,
     n_more: usize,
@@ -90,12 +90,10 @@ where
         numbers[scene.layout.v()].fill(Sym::Constant(0.0));
     }
     let mut solved = numbers[scene.layout.loops()].to_vec();
-    if scene.layout.n_loops == 0 && !scene.loops.is_empty() {
-        solved = if known {
-            numbers[n..].to_vec()
-        } else {
-            loops::eliminated(scene, &numbers, &builder)
-        };
+    if known {
+        solved = numbers[n..n + scene.loops.len()].to_vec();
+    } else if scene.layout.n_loops == 0 && !scene.loops.is_empty() {
+        solved = loops::eliminated(scene, &numbers, &builder);
     }
     let equations = Equations::with_unknowns(scene, &numbers[..n], solved, false);
     let out = f(&equations, &numbers[n..]);
@@ -109,14 +107,15 @@ where
 /// Where loads, differential equations and motions change branch.
 #[derive(Debug)]
 pub struct Switching {
-    /// one value per switch, changing sign there; reads the unknowns of linear loops after the
-    /// layout's numbers
+    /// one value per switch, changing sign there; reads what the held rates read
     pub switches: Program,
-    /// these unknowns
+    /// the unknowns of linear loops, as the state says
     pub unknowns: Option<Program>,
-    /// the rates with every branch as the sign of its switch says: reads one sign per switch (−1,
-    /// 0, 1) after the layout's numbers. `None` where there are loops
+    /// the rates with every branch as the sign of its switch says: reads the unknowns of all loops,
+    /// then one sign per switch (−1, 0, 1) after the layout's numbers
     pub held: Option<Program>,
+    /// residuals of the loops with branches held; reads the same
+    pub held_loops: Option<Program>,
 }
 
 /// Returns the numbers that loads and differential equations are made of: where these change
@@ -186,13 +185,13 @@ pub(crate) fn timed(scene: Configured<'_>) -> Result<Timed, Vec<Unsupported>> {
 /// # Errors
 /// Functions ask for what the equations cannot supply.
 pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsupported>> {
-    let linear = scene.loops_linear && !scene.loops.is_empty();
-    let n_more = if linear { scene.loops.len() } else { 0 };
+    let n_loops = scene.loops.len();
     // unknowns are known here, so that their elimination does not count as a switch
+    let known = n_loops > 0;
     let (mut switches, complaints) = recorded(
         scene,
-        n_more,
-        linear,
+        n_loops,
+        known,
         false,
         |at, _| sources(at, &scene),
         |builder, values| vec![builder.switching(&values)],
@@ -200,46 +199,43 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
     if !complaints.is_empty() {
         return Err(complaints);
     }
-    let switches = switches.remove(0);
-    if switches.n_outputs() == 0 {
+    let n_switches = switches.remove(0).n_outputs();
+    if n_switches == 0 {
         return Ok(None);
     }
-    if !scene.loops.is_empty() {
-        let unknowns = if linear {
-            let count = scene.loops.len();
-            Some(record(scene, |at| at.unknowns(count))?)
-        } else {
-            None
-        };
-        return Ok(Some(Switching {
-            switches,
-            unknowns,
-            held: None,
-        }));
-    }
-    let n = scene.layout.len();
-    let (mut both, _) = recorded(
+    let unknowns = if known && scene.loops_linear {
+        Some(record(scene, |at| at.unknowns(n_loops))?)
+    } else {
+        None
+    };
+    let first = scene.layout.len() + n_loops;
+    let n_rates = scene.layout.n_y() + 1;
+    let (mut all, _) = recorded(
         scene,
-        switches.n_outputs(),
-        false,
+        n_loops + n_switches,
+        known,
         false,
         |at, _| {
             let mut out = rate(at);
+            out.extend(at.loop_residuals());
             out.extend(sources(at, &scene));
             out
         },
         |builder, values| {
-            let (rates, sources) = values.split_at(scene.layout.n_y() + 1);
-            let side = |k: usize| Input::Slot((n + k) as u32);
-            let (held, switches) = builder.held(rates, sources, side);
-            vec![held, switches]
+            let (wanted, sources) = values.split_at(n_rates + n_loops);
+            let side = |k: usize| Input::Slot((first + k) as u32);
+            let (held, switches) = builder.held(wanted, sources, side);
+            let (rates, residuals) = held.split_at(n_rates);
+            vec![switches, residuals.to_vec(), rates.to_vec()]
         },
     );
-    let switches = both.remove(1);
-    Ok(Some(Switching {
+    let held = all.pop();
+    let held_loops = all.pop().filter(|_| known);
+    Ok(all.pop().map(|switches| Switching {
         switches,
-        unknowns: None,
-        held: Some(both.remove(0)),
+        unknowns,
+        held,
+        held_loops,
     }))
 }
 
@@ -256,7 +252,7 @@ pub fn held_with<F>(
 where
     F: for<'b> FnOnce(&Equations<'_, Sym<'b>>, &[Sym<'b>]) -> [Vec<Sym<'b>>; 2],
 {
-    switching.held.as_ref()?;
+    switching.held.as_ref().filter(|_| scene.loops.is_empty())?;
     let n_switches = switching.switches.n_outputs();
     let first = scene.layout.len() + n_more;
     let (n_first, n_all, same) = (Cell::new(0), Cell::new(0), Cell::new(false));

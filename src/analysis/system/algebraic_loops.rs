@@ -103,9 +103,14 @@ enum Simplified {
 impl AlgebraicLoops {
     /// Records the loops of a scene; `None` when it has no such unknowns.
     pub fn new(scene: Configured<'_>) -> Result<Option<Self>, Vec<Unsupported>> {
-        let n = scene.layout.n_loops;
         let places = scene.layout.loops();
-        Ok(loops::program(scene)?.map(|residual| Self {
+        Ok(loops::program(scene)?.map(|residual| Self::of(&scene, residual, places)))
+    }
+
+    /// Prepares to solve for the unknowns at some places of a row, which zero a residual of it.
+    pub(super) fn of(scene: &Scene, residual: Program, places: Range<usize>) -> Self {
+        let n = places.len();
+        Self {
             gradient: slopes::recorded(&residual, n, places.clone()).map(Recording::new),
             residual,
             places,
@@ -118,10 +123,10 @@ impl AlgebraicLoops {
             step: vec![0.0; n],
             lu: Lu::new(n),
             factored: false,
-            sizes: sizes_of_positions(&scene),
+            sizes: sizes_of_positions(scene),
             positions: scene.layout.q(),
             rounding: 0.0,
-        }))
+        }
     }
 
     fn evaluate(&mut self, numbers: &[f64]) -> f64 {

@@ -4,6 +4,7 @@
 //! While branches are held the rates are smooth, wherever a step leads. `Slides` are the switches
 //! at which the motion stays meanwhile.
 
+use super::algebraic_loops::AlgebraicLoops;
 use super::complaints;
 use super::sliding::Slides;
 use crate::diagnostic::Diagnostic;
@@ -26,8 +27,12 @@ pub struct Branches {
     switch_work: Work,
     unknown_work: Work,
     pub(super) held_work: Work,
-    /// the numbers, then what the switches read after them: unknowns of linear loops, or sides
+    /// the numbers, then what the switches read after them: unknowns of loops, then sides
     pub(super) numbers: Vec<f64>,
+    /// loops with branches held, solved in that row
+    pub(super) loops: Option<AlgebraicLoops>,
+    /// number of unknowns of all loops
+    n_loops: usize,
     pub(super) layout: Layout,
     /// whether branches are held
     holding: bool,
@@ -47,7 +52,11 @@ impl Branches {
     pub(super) fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
         let switching = programs::switching(scene).map_err(complaints)?;
         let n = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
+        let (first, n_loops) = (scene.layout.len(), scene.loops.len());
+        let residual = switching.as_ref().and_then(|s| s.held_loops.clone());
         Ok(Self {
+            loops: residual.map(|r| AlgebraicLoops::of(&scene, r, first..first + n_loops)),
+            n_loops,
             watched_angles: watched_angles(&scene, switching.as_ref()),
             layout: scene.layout,
             switching,
@@ -77,11 +86,6 @@ impl Branches {
         self.held_rate().is_some()
     }
 
-    /// Returns the sides of the switches while branches are held.
-    pub(super) fn held_sides(&self) -> Option<&[f64]> {
-        self.holding.then_some(&self.sides[..])
-    }
-
     /// Returns the sides of the switches, whether or not branches are held   (n_switches)
     pub(super) fn sides(&self) -> &[f64] {
         &self.sides
@@ -92,8 +96,8 @@ impl Branches {
         self.holding
     }
 
-    /// Returns the program of the rates with branches held, which reads the sides after the
-    /// numbers.
+    /// Returns the program of the rates with branches held, which reads the unknowns of loops and
+    /// the sides after the numbers.
     pub(super) fn held_rate(&self) -> Option<&Program> {
         self.switching.as_ref().and_then(|s| s.held.as_ref())
     }
@@ -112,14 +116,58 @@ impl Branches {
         self.holding = false;
     }
 
-    /// Returns the numbers followed by the sides, as the held rate reads them.
-    pub(super) fn with_sides(&mut self, numbers: &[f64]) -> &[f64] {
+    /// Returns the numbers followed by the unknowns of loops, as the held branches have them, and by
+    /// the sides: what the held rate reads. `None`: a loop has no solution near.
+    pub(super) fn with_sides(&mut self, numbers: &[f64]) -> Option<&[f64]> {
+        self.put(numbers);
+        self.solve_held().is_ok().then_some(&self.numbers[..])
+    }
+
+    /// Puts numbers and sides into the row that held programs read. Unknowns of loops stay what they
+    /// were, where the numbers do not say them.
+    pub(super) fn put(&mut self, numbers: &[f64]) {
         let n = numbers.len();
-        let all = &mut self.numbers;
-        all.resize(n + self.sides.len(), 0.0);
-        all[..n].copy_from_slice(numbers);
-        all[n..].copy_from_slice(&self.sides);
-        all
+        let sides = n + self.n_loops;
+        self.numbers.resize(sides + self.sides.len(), 0.0);
+        self.numbers[..n].copy_from_slice(numbers);
+        let known = self.layout.loops();
+        if !known.is_empty() {
+            self.numbers[n..sides].copy_from_slice(&numbers[known]);
+        }
+        self.numbers[sides..].copy_from_slice(&self.sides);
+    }
+
+    /// Solves the loops of the held branches in the row.
+    ///
+    /// # Errors
+    /// The index of a loop without a solution near.
+    pub(super) fn solve_held(&mut self) -> Result<(), usize> {
+        match &mut self.loops {
+            Some(loops) => loops.solve(&mut self.numbers),
+            None => Ok(()),
+        }
+    }
+
+    /// Puts the unknowns of loops, as the held branches have them, into the numbers. False: no
+    /// branches are held, or a loop has no solution near.
+    pub(super) fn fill_loops(&mut self, numbers: &mut [f64]) -> bool {
+        if !self.holding || self.loops.is_none() || self.with_sides(numbers).is_none() {
+            return false;
+        }
+        let first = numbers.len();
+        let places = self.layout.loops();
+        numbers[places].copy_from_slice(&self.numbers[first..first + self.n_loops]);
+        true
+    }
+
+    /// Returns the first place of the sides in the row.
+    pub(super) fn first_side(&self) -> usize {
+        self.layout.len() + self.n_loops
+    }
+
+    /// Returns whether what held branches read has to be solved for beside the programs.
+    pub(super) fn has_loops(&self) -> bool {
+        self.loops.is_some()
     }
 
     /// Evaluates the rates of the branches that are held; false where none are, or where they have
@@ -131,7 +179,9 @@ impl Branches {
         if self.is_sliding() && self.run_sliding(numbers, rates) {
             return true;
         }
-        self.with_sides(numbers);
+        if self.with_sides(numbers).is_none() {
+            return false;
+        }
         let Some(Switching {
             held: Some(held), ..
         }) = &self.switching
@@ -146,25 +196,18 @@ impl Branches {
     /// Evaluates the switching functions, the branches of others held where branches are held
     /// (n_switches)
     pub(super) fn values(&mut self, numbers: &[f64], values: &mut [f64]) {
+        self.put(numbers);
+        let solved = self.holding && self.solve_held().is_ok();
         let Some(switching) = &self.switching else {
             return;
         };
-        let n = numbers.len();
-        let all = &mut self.numbers;
-        if let Some(unknowns) = &switching.unknowns {
-            all.resize(n + unknowns.n_outputs(), 0.0);
-            all[..n].copy_from_slice(numbers);
-            unknowns.run(numbers, &mut self.unknown_work, &mut all[n..]);
-        } else if switching.held.is_some() {
-            all.resize(n + values.len(), 0.0);
-            all[..n].copy_from_slice(numbers);
-            all[n..].copy_from_slice(&self.sides);
-        } else {
-            let work = &mut self.switch_work;
-            switching.switches.run(numbers, work, values);
-            return;
+        if let (Some(unknowns), false) = (&switching.unknowns, solved) {
+            let places = numbers.len()..numbers.len() + self.n_loops;
+            let (work, unknown) = (&mut self.unknown_work, &mut self.numbers[places]);
+            unknowns.run(numbers, work, unknown);
         }
-        switching.switches.run(all, &mut self.switch_work, values);
+        let work = &mut self.switch_work;
+        switching.switches.run(&self.numbers, work, values);
         if self.is_sliding() {
             self.sliding_values(numbers, values);
         }

@@ -62,7 +62,9 @@ impl System {
     fn gradient(&mut self, n: usize) -> &mut Gradient {
         let holding = usize::from(self.recorded.branches.is_holding());
         if self.recorded.derivatives.gradients[holding].is_none() {
-            let beside = self.recorded.loops.is_some() || !self.external.is_empty();
+            let loops =
+                self.recorded.loops.is_some() || holding == 1 && self.recorded.branches.has_loops();
+            let beside = loops || !self.external.is_empty();
             let gradient = if beside {
                 Gradient::Duals
             } else {
@@ -86,7 +88,8 @@ impl System {
         match &mut self.recorded.derivatives.gradients[usize::from(holding)] {
             Some(Gradient::Recorded(recording)) if !sliding => {
                 let entries = if holding {
-                    recording.run(branches.with_sides(&self.numbers))
+                    branches.put(&self.numbers);
+                    recording.run(&branches.numbers)
                 } else {
                     recording.run(&self.numbers)
                 };
@@ -143,7 +146,12 @@ impl System {
         self.depend_along(&mut along);
         let mut rows = self.recorded.rate.program.dependence(&along);
         rows.truncate(n);
-        if let Some(held) = self.recorded.branches.held_rate() {
+        let branches = &self.recorded.branches;
+        if let Some(held) = branches.held_rate() {
+            along.resize(branches.first_side(), Vec::new());
+            if let Some(loops) = &branches.loops {
+                loops.depend(&mut along);
+            }
             for (row, more) in rows.iter_mut().zip(held.dependence(&along)) {
                 row.extend(more);
             }
@@ -188,10 +196,16 @@ impl System {
         };
         // the derivatives are taken out, as those of loops and closures come from all of the system
         let mut own = std::mem::take(&mut self.recorded.derivatives);
-        let sides = self.recorded.branches.held_sides().unwrap_or_default();
-        let numbers = self.numbers.iter().chain(sides);
+        let branches = &mut self.recorded.branches;
+        let numbers = if branches.is_holding() {
+            // solved just now, where the rates were evaluated
+            let _ = branches.with_sides(&self.numbers);
+            &branches.numbers[..]
+        } else {
+            &self.numbers[..]
+        };
         own.numbers.clear();
-        (own.numbers).extend(numbers.map(|&re| Dual { re, ..constant }));
+        (own.numbers).extend(numbers.iter().map(|&re| Dual { re, ..constant }));
         own.out.resize(n + 1, constant);
         let mut outcome = Ok(());
         for (chunk, some) in sums.chunks(WIDTH).enumerate() {
@@ -214,7 +228,13 @@ impl System {
                 take(chunk * WIDTH + k, &|i| own.out[i].eps[k]);
             }
             self.external.forget(&mut own.numbers);
-            if let Some(loops) = &self.recorded.loops {
+            let recorded = &self.recorded;
+            let loops = if recorded.branches.is_holding() {
+                &recorded.branches.loops
+            } else {
+                &recorded.loops
+            };
+            if let Some(loops) = loops {
                 loops.forget(&mut own.numbers);
             }
         }

@@ -418,7 +418,13 @@ impl System {
             self.external.evaluate(&mut self.numbers, output);
         }
         if let Some(loops) = &mut self.recorded.loops {
-            self.unsolved = loops.solve(&mut self.numbers).err();
+            // where branches are held, the branch that the state says may have no solution
+            let held = self.recorded.branches.fill_loops(&mut self.numbers);
+            self.unsolved = if held {
+                None
+            } else {
+                loops.solve(&mut self.numbers).err()
+            };
         }
     }
 
@@ -432,13 +438,21 @@ impl System {
     }
 
     /// Puts the derivatives of closures' results and loops' unknowns along the directions of a row
-    /// of numbers into their places; `first`: at new numbers.
+    /// of numbers into their places; `first`: at new numbers. A longer row is that of the held
+    /// programs.
     ///
     /// # Errors
     /// The index of a loop that nothing determines, in [`Scene::loops`].
     pub fn follow_along(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
         self.external.follow(numbers, first);
-        match &mut self.recorded.loops {
+        let recorded = &mut self.recorded;
+        let held = recorded.branches.is_holding() && numbers.len() > self.scene.layout.len();
+        let loops = if held {
+            &mut recorded.branches.loops
+        } else {
+            &mut recorded.loops
+        };
+        match loops {
             Some(loops) => loops.follow(numbers, first),
             None => Ok(()),
         }

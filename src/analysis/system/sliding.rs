@@ -12,7 +12,9 @@
 //! ```
 //!
 //! A switch slides while 0 ≤ αₖ ≤ 1; min(αₖ, 1 − αₖ) is its switching function meanwhile.
-//! Branches of several functions that slide at once are taken to add up, as forces do.
+//! Branches of several functions that slide at once are taken to add up, as forces do. Where there
+//! are algebraic loops, each branch has their unknowns as it solves them: friction that reads the
+//! reaction it depends on.
 //!
 //! Source: Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), §4;
 //! Piiroinen & Kuznetsov, ACM TOMS 34 (2008).
@@ -40,6 +42,8 @@ pub(super) struct Slides {
     /// rates of σ along the base, then along each change   (m each)
     slopes: Vec<f64>,
     lu: Option<Lu>,
+    /// unknowns of loops on each branch, where their solution began last   ((m + 1) × n_loops)
+    unknowns: Vec<f64>,
     work: Work<Dual<WIDTH>>,
     numbers: Vec<Dual<WIDTH>>,
     out: Vec<Dual<WIDTH>>,
@@ -154,8 +158,9 @@ impl Branches {
         if !self.can_hold() {
             return false;
         }
-        self.rates_of_branches(numbers);
-        self.slopes_of_switches();
+        if !self.rates_of_branches(numbers) || !self.slopes_of_switches() {
+            return false;
+        }
         let s = &mut self.slides;
         let m = s.which.len();
         let (along_base, matrix) = s.slopes.split_at(m);
@@ -172,38 +177,74 @@ impl Branches {
         s.alpha.iter().all(|alpha| alpha.is_finite())
     }
 
-    /// Evaluates f and each dₖ; all that slide are left on their negative sides.
-    fn rates_of_branches(&mut self, numbers: &[f64]) {
-        let (first, n) = (numbers.len(), self.layout.n_y() + 1);
-        self.with_sides(numbers);
-        let Some(Switching {
-            held: Some(held), ..
-        }) = &self.switching
-        else {
-            return;
-        };
-        let (s, all, work) = (&mut self.slides, &mut self.numbers, &mut self.held_work);
-        for &k in &s.which {
-            all[first + k] = -1.0;
+    /// Evaluates f and each dₖ; all that slide are left on their negative sides. False: a loop has
+    /// no solution on one of them.
+    fn rates_of_branches(&mut self, numbers: &[f64]) -> bool {
+        let (first, n) = (self.first_side(), self.layout.n_y() + 1);
+        self.put(numbers);
+        let m = self.slides.which.len();
+        let known = self.layout.len()..first;
+        if self.slides.unknowns.len() != known.len() * (m + 1) {
+            self.slides.unknowns = self.numbers[known].repeat(m + 1);
         }
-        s.base.resize(n, 0.0);
-        s.changes.resize(n * s.which.len(), 0.0);
-        s.alpha.resize(s.which.len(), 0.0);
-        held.run(all, work, &mut s.base);
-        for (&k, change) in s.which.iter().zip(s.changes.chunks_exact_mut(n)) {
-            all[first + k] = 1.0;
-            held.run(all, work, change);
-            all[first + k] = -1.0;
+        self.slides.base.resize(n, 0.0);
+        self.slides.changes.resize(n * m, 0.0);
+        self.slides.alpha.resize(m, 0.0);
+        for place in 0..m {
+            self.numbers[first + self.slides.which[place]] = -1.0;
+        }
+        for place in 0..m {
+            let side = first + self.slides.which[place];
+            self.numbers[side] = 1.0;
+            if !self.run_branch(place + 1) {
+                return false;
+            }
+            self.numbers[side] = -1.0;
+        }
+        if !self.run_branch(0) {
+            return false;
+        }
+        let s = &mut self.slides;
+        for change in s.changes.chunks_exact_mut(n) {
             for (d, f) in change.iter_mut().zip(&s.base) {
                 *d -= f;
             }
         }
+        true
     }
 
-    /// Evaluates the rates of σ along the base, with time, and along each change.
-    fn slopes_of_switches(&mut self) {
+    /// Evaluates the rates on the sides that the row says: f as branch 0, those of the others into
+    /// the places of their changes. False: a loop has no solution.
+    fn run_branch(&mut self, branch: usize) -> bool {
+        let places = self.layout.len()..self.first_side();
+        let known = places.len() * branch..places.len() * (branch + 1);
+        self.numbers[places.clone()].copy_from_slice(&self.slides.unknowns[known.clone()]);
+        if self.solve_held().is_err() {
+            self.slides.unknowns.clear();
+            return false;
+        }
+        let Some(Switching {
+            held: Some(held), ..
+        }) = &self.switching
+        else {
+            return false;
+        };
+        let s = &mut self.slides;
+        s.unknowns[known].copy_from_slice(&self.numbers[places]);
+        let n = s.base.len();
+        let rates = match branch.checked_sub(1) {
+            Some(k) => &mut s.changes[n * k..n * (k + 1)],
+            None => &mut s.base[..],
+        };
+        held.run(&self.numbers, &mut self.held_work, rates);
+        true
+    }
+
+    /// Evaluates the rates of σ along the base, with time, and along each change. False: a loop
+    /// determines nothing there.
+    fn slopes_of_switches(&mut self) -> bool {
         let Some(Switching { switches, .. }) = &self.switching else {
-            return;
+            return false;
         };
         let constant = |re: f64| Dual {
             re,
@@ -229,6 +270,11 @@ impl Branches {
                     s.numbers[place].eps[j - first] = *d;
                 }
             }
+            if let Some(loops) = &mut self.loops
+                && loops.follow(&mut s.numbers, first == 0).is_err()
+            {
+                return false;
+            }
             switches.eval(&s.numbers, &mut s.work, &mut s.out);
             for j in some {
                 for (slope, &k) in s.slopes[m * j..m * (j + 1)].iter_mut().zip(&s.which) {
@@ -236,5 +282,6 @@ impl Branches {
                 }
             }
         }
+        true
     }
 }
