@@ -293,14 +293,15 @@ impl Friction {
         }
     }
 
-    /// Returns the ranges of the components that slip together.
-    fn surfaces(&self) -> &'static [Range<usize>] {
-        match self.kind {
-            Kind::Revolute | Kind::Translational => &[0..1],
-            Kind::Cylindrical => &[0..2],
-            Kind::Spherical => &[0..3],
-            Kind::Pins { .. } => &[0..1, 1..2],
-        }
+    /// Returns the components that slip together, surface by surface.
+    fn surfaces(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let (n_surfaces, n_slips) = match self.kind {
+            Kind::Revolute | Kind::Translational => (1, 1),
+            Kind::Cylindrical => (1, 2),
+            Kind::Spherical => (1, 3),
+            Kind::Pins { .. } => (2, 1),
+        };
+        (0..n_surfaces).map(move |k| k * n_slips..(k + 1) * n_slips)
     }
 
     /// Returns µ along each component, and the same with coefficients of one.
@@ -324,8 +325,7 @@ impl Friction {
         creep: &[S],
     ) -> Vec<S> {
         let v = self.slips(i, j);
-        let surfaces = self.surfaces().iter();
-        let rates = surfaces.filter_map(|surface| {
+        let rates = self.surfaces().filter_map(|surface| {
             let crept = creep.get(surface.clone())?;
             let rates = self.grip.creep_rates(&v[surface.clone()], crept);
             Some(rates.into_iter().take(surface.len()))

@@ -434,13 +434,39 @@ impl Columns {
     }
 }
 
-/// Evaluates the columns at each row of numbers and appends them to the run.
-pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
+/// Evaluates the columns at each row of numbers and appends them to the run; `branches`: the numbers
+/// on the branches between which the motion stays at the row of an index, and the part of each.
+pub fn append<'a>(
+    run: &mut Run,
+    program: &Program,
+    rows: &[Vec<f64>],
+    branches: impl Fn(usize) -> Option<&'a Vec<(f64, Vec<f64>)>>,
+) {
     let mut work = Work::default();
     let mut values = vec![0.0; program.n_outputs() + 1];
-    for row in rows {
+    let (mut mean, mut other) = (values[1..].to_vec(), values[1..].to_vec());
+    let mut changes = vec![false; other.len()];
+    for (k, row) in rows.iter().enumerate() {
         values[0] = row[Layout::TIME];
         program.run(row, &mut work, &mut values[1..]);
+        if let Some(branches) = branches(k) {
+            mean.fill(0.0);
+            changes.fill(false);
+            for (part, row) in branches {
+                program.run(row, &mut work, &mut other);
+                let all = mean.iter_mut().zip(&mut changes).zip(&other);
+                for (((mean, changes), other), value) in all.zip(&values[1..]) {
+                    *mean += part * other;
+                    *changes |= other != value;
+                }
+            }
+            let all = values[1..].iter_mut().zip(&mean).zip(&changes);
+            for ((value, mean), _) in
+                all.filter(|((_, mean), changes)| **changes && mean.is_finite())
+            {
+                *value = *mean;
+            }
+        }
         run.push(&values);
     }
 }

@@ -45,7 +45,7 @@ impl Session {
         rows: &[Vec<f64>],
     ) {
         self.run.begin(kind);
-        columns::append(&mut self.run, program, rows);
+        columns::append(&mut self.run, program, rows, |_| None);
         self.run.end();
         self.warn_of_gaps(rows.len());
     }
@@ -79,13 +79,20 @@ impl Session {
         let mut from = 0;
         let mut program = program.clone();
         for (until, _, active) in &trajectory.selections {
-            columns::append(&mut self.run, &program, &trajectory.rows[from..*until]);
+            columns::append(
+                &mut self.run,
+                &program,
+                &trajectory.rows[from..*until],
+                |k| trajectory.means.get(&(from + k)),
+            );
             let mut configuration = system.configuration.clone();
             configuration.active.clone_from(active);
             let there = system.scene.within(&configuration);
             (program, from) = (self.columns.program(there).0, *until);
         }
-        columns::append(&mut self.run, &program, &trajectory.rows[from..]);
+        columns::append(&mut self.run, &program, &trajectory.rows[from..], |k| {
+            trajectory.means.get(&(from + k))
+        });
         self.run.end();
         self.warn_of_gaps(trajectory.rows.len());
     }

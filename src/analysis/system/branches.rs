@@ -111,6 +111,11 @@ impl Branches {
         self.holding = self.can_hold();
     }
 
+    /// Exchanges the sides of the switches: a look at another branch.
+    pub(super) fn exchange_sides(&mut self, sides: &mut Vec<f64>) {
+        std::mem::swap(&mut self.sides, sides);
+    }
+
     /// Takes the branch that the state says from now on.
     pub fn release(&mut self) {
         self.holding = false;

@@ -381,6 +381,34 @@ impl System {
         self.numbers.clone()
     }
 
+    /// Returns, for a state whose numbers are `row`, the numbers on the branches between which the
+    /// motion stays, and the part of each in the mean that is what happens: dry friction at rest is
+    /// between its values on both sides. Empty: nothing slides.
+    pub fn rows_of_branches(&mut self, row: &[f64]) -> Vec<(f64, Vec<f64>)> {
+        if !self.recorded.branches.is_sliding() {
+            return Vec::new();
+        }
+        let y = &row[self.scene.layout.y()];
+        let mut sizes = vec![1.0; y.len()];
+        Ode::typical(self, &mut sizes);
+        (sizes.iter_mut().zip(y)).for_each(|(size, y)| *size = size.max(y.abs()));
+        let found = self.recorded.branches.between(row, &sizes);
+        let mut rows = Vec::with_capacity(found.len());
+        for mut branch in found {
+            let mut state = y.to_vec();
+            (state.iter_mut().zip(&branch.shift)).for_each(|(y, shift)| *y += shift);
+            (self.recorded.branches).exchange_sides(&mut branch.sides);
+            self.set(row[Layout::TIME], &state);
+            (self.recorded.branches).exchange_sides(&mut branch.sides);
+            if !self.external.is_empty() {
+                self.external.evaluate(&mut self.numbers, true);
+            }
+            rows.push((branch.part, self.numbers.clone()));
+        }
+        self.numbers.copy_from_slice(row);
+        rows
+    }
+
     /// Returns all numbers with time and state put into them; multipliers after the state are of no
     /// concern.
     pub(super) fn numbers_at(&self, t: f64, y: &[f64]) -> Vec<f64> {

@@ -27,6 +27,20 @@ use crate::scene::layout::Layout;
 use crate::scene::programs::Switching;
 use crate::scene::slopes::WIDTH;
 
+/// Distance of the states on either side of what slides, as a part of their sizes.
+const BESIDE: f64 = 1e-12;
+
+/// One of the branches between which the motion stays.
+#[derive(Debug)]
+pub(super) struct Branch {
+    /// how much of it there is in the mean
+    pub part: f64,
+    /// the way from the state to one nearby on which it holds   (n)
+    pub shift: Vec<f64>,
+    /// the sides of all switches   (n_switches)
+    pub sides: Vec<f64>,
+}
+
 /// The switches that slide, and the part of each branch that holds.
 #[derive(Debug, Default)]
 pub(super) struct Slides {
@@ -99,6 +113,75 @@ impl Branches {
                 *y += impulse * d;
             }
         }
+    }
+
+    /// Returns the branches between which the motion stays, with states where they hold. Where a
+    /// quantity changes with the branch, its mean over these is what it is; the mean of the states
+    /// themselves is the state. `sizes`: of the unknowns   (n). Empty: nothing slides.
+    pub(super) fn between(&mut self, numbers: &[f64], sizes: &[f64]) -> Vec<Branch> {
+        if !self.is_sliding() {
+            return Vec::new();
+        }
+        let mut values = vec![0.0; self.len()];
+        let which = std::mem::take(&mut self.slides.which);
+        self.values(numbers, &mut values);
+        self.slides.which = which;
+        if !self.weigh(numbers) {
+            return Vec::new();
+        }
+        let s = &self.slides;
+        let (m, n) = (s.which.len(), s.base.len());
+        let Some(lu) = &s.lu else { return Vec::new() };
+        // ways along which one σ changes by one, the others not at all   (m of n)
+        let ways: Vec<Vec<f64>> = (0..m)
+            .map(|k| {
+                let mut impulses = vec![0.0; m];
+                impulses[k] = 1.0;
+                lu.solve(&mut impulses);
+                let mut way = vec![0.0; n - 1];
+                for (impulse, change) in impulses.iter().zip(s.changes.chunks_exact(n)) {
+                    for (way, d) in way.iter_mut().zip(change) {
+                        *way += impulse * d;
+                    }
+                }
+                way
+            })
+            .collect();
+        let steps: Vec<f64> = ways
+            .iter()
+            .map(|way| {
+                let parts = way.iter().zip(sizes).map(|(w, size)| w.abs() / size);
+                BESIDE / parts.fold(f64::MIN_POSITIVE, f64::max)
+            })
+            .collect();
+        let mut base = vec![0.0; n - 1];
+        for k in 0..m {
+            let to = -values[s.which[k]] - 2.0 * s.alpha[k].clamp(0.1, 0.9) * steps[k];
+            for (shift, way) in base.iter_mut().zip(&ways[k]) {
+                *shift += to * way;
+            }
+        }
+        let mut sides = self.sides().to_vec();
+        s.which.iter().for_each(|&k| sides[k] = -1.0);
+        let mut found = vec![Branch {
+            part: 1.0 - s.alpha.iter().sum::<f64>(),
+            shift: base.clone(),
+            sides: sides.clone(),
+        }];
+        for k in 0..m {
+            let mut shift = base.clone();
+            for (shift, way) in shift.iter_mut().zip(&ways[k]) {
+                *shift += 2.0 * steps[k] * way;
+            }
+            sides[s.which[k]] = 1.0;
+            found.push(Branch {
+                part: s.alpha[k],
+                shift,
+                sides: sides.clone(),
+            });
+            sides[s.which[k]] = -1.0;
+        }
+        found
     }
 
     /// Returns the side on which a switch that slid goes on: that of the branch of which there is

@@ -40,6 +40,10 @@ impl Leg<'_> {
                 state.fill(f64::NAN);
             }
             let row = self.system.row(t, &state);
+            let branches = self.system.rows_of_branches(&row);
+            if !branches.is_empty() {
+                self.out.means.insert(self.out.t.len(), branches);
+            }
             self.out.push(t, row);
         }
         self.count_turns(method, step, step.t1);

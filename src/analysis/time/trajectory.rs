@@ -2,6 +2,7 @@
 
 use crate::numeric::{Stats, Stop};
 use crate::scene::broken::Broken;
+use std::collections::BTreeMap;
 
 /// The reason why an analysis ended before the last output time.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +29,9 @@ pub struct Trajectory {
     pub t: Vec<f64>,
     /// all numbers (t | q | v | x | turns) at each
     pub rows: Vec<Vec<f64>>,
+    /// rows at which the motion stays where functions change branch: the numbers on each of the
+    /// branches, and its part in the mean
+    pub means: BTreeMap<usize, Vec<(f64, Vec<f64>)>>,
     /// what it cost
     pub stats: Stats,
     /// the methods that worked, in order, with the time at which each took over
