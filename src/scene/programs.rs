@@ -65,8 +65,8 @@ where
 }
 
 /// Records what `f` computes, and what `end` makes of the values: a program for each of its lists.
-/// The unknowns of linear loops are eliminated; where `known`, those of all loops are read after the
-/// numbers of the layout. `moving`: velocities are not taken as zero at rest.
+/// The unknowns of linear loops are eliminated; where `known`, those of all loops are read after
+/// the numbers of the layout. `moving`: velocities are not taken as zero at rest.
 fn recorded<F, E>(
     scene: Configured<'_>,
     n_more: usize,

@@ -434,8 +434,9 @@ impl Columns {
     }
 }
 
-/// Evaluates the columns at each row of numbers and appends them to the run; `branches`: the numbers
-/// on the branches between which the motion stays at the row of an index, and the part of each.
+/// Evaluates the columns at each row of numbers and appends them to the run; `branches`: the
+/// numbers on the branches between which the motion stays at the row of an index, and the part of
+/// each.
 pub fn append<'a>(
     run: &mut Run,
     program: &Program,

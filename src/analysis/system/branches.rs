@@ -121,15 +121,15 @@ impl Branches {
         self.holding = false;
     }
 
-    /// Returns the numbers followed by the unknowns of loops, as the held branches have them, and by
-    /// the sides: what the held rate reads. `None`: a loop has no solution near.
+    /// Returns the numbers followed by the unknowns of loops, as the held branches have them, and
+    /// by the sides: what the held rate reads. `None`: a loop has no solution near.
     pub(super) fn with_sides(&mut self, numbers: &[f64]) -> Option<&[f64]> {
         self.put(numbers);
         self.solve_held().is_ok().then_some(&self.numbers[..])
     }
 
-    /// Puts numbers and sides into the row that held programs read. Unknowns of loops stay what they
-    /// were, where the numbers do not say them.
+    /// Puts numbers and sides into the row that held programs read. Unknowns of loops stay what
+    /// they were, where the numbers do not say them.
     pub(super) fn put(&mut self, numbers: &[f64]) {
         let n = numbers.len();
         let sides = n + self.n_loops;
