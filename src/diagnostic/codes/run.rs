@@ -144,7 +144,7 @@ begin to hold. The run goes on; reactions may jump there.",
     Code {
         name: "frictionless_statics",
         summary: "statics without the friction of a joint",
-        explanation: "FRICTION holds by what its surfaces have crept, and in statics nothing has moved yet: a load that friction would hold moves its part. INACTIVE=STATIC says the same; a dynamic simulation that comes to rest is held.",
+        explanation: "In statics nothing has crept, so FRICTION holds nothing and loads move its part. To see it hold, let a dynamic simulation come to rest.",
     },
     Code {
         name: "convex_hull",
