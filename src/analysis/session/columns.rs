@@ -434,10 +434,14 @@ impl Columns {
     }
 }
 
-/// Evaluates the columns at each row of numbers and appends them to the run; `branches`: the
-/// numbers on the branches between which the motion stays at the row of an index, and the part of
-/// each.
-pub fn append<'a>(
+/// Evaluates the columns at each row of numbers and appends them to the run.
+pub fn append(run: &mut Run, program: &Program, rows: &[Vec<f64>]) {
+    append_means(run, program, rows, |_| None);
+}
+
+/// Appends the columns as [`append`] does; `branches`: the numbers on the branches between which
+/// the motion stays at the row of an index, and the part of each in the mean that is what happens.
+pub fn append_means<'a>(
     run: &mut Run,
     program: &Program,
     rows: &[Vec<f64>],

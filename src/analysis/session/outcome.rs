@@ -45,7 +45,7 @@ impl Session {
         rows: &[Vec<f64>],
     ) {
         self.run.begin(kind);
-        columns::append(&mut self.run, program, rows, |_| None);
+        columns::append(&mut self.run, program, rows);
         self.run.end();
         self.warn_of_gaps(rows.len());
     }
@@ -79,7 +79,7 @@ impl Session {
         let mut from = 0;
         let mut program = program.clone();
         for (until, _, active) in &trajectory.selections {
-            columns::append(
+            columns::append_means(
                 &mut self.run,
                 &program,
                 &trajectory.rows[from..*until],
@@ -90,7 +90,7 @@ impl Session {
             let there = system.scene.within(&configuration);
             (program, from) = (self.columns.program(there).0, *until);
         }
-        columns::append(&mut self.run, &program, &trajectory.rows[from..], |k| {
+        columns::append_means(&mut self.run, &program, &trajectory.rows[from..], |k| {
             trajectory.means.get(&(from + k))
         });
         self.run.end();
