@@ -4,11 +4,12 @@
 //! A [`Record`] is a statement read but not yet believed: which row, which number, which arguments
 //! with their values. The rows themselves stand in `statement.rs`.
 
+use super::command::Command;
 use super::value::{Field, Kind, Value};
-use crate::diagnostic::{Span, near_names};
+use crate::diagnostic::{Diagnostic, Span, near_names};
 use crate::model::{
     self, ById, ElementKind, EquilibriumSettings, Formula, IntegratorSettings, Model, Place,
-    Settings, Units,
+    Settings, SettingsStatement, Units,
 };
 use std::fmt::Debug;
 
@@ -176,6 +177,14 @@ pub trait Statement: Sync {
     /// Puts a record into the model: a new element, or (`change`) new values for arguments of one
     /// that is there.
     fn enter(&self, model: &mut Model, record: &Record, change: bool) -> Vec<Problem>;
+    /// Which settings it keeps by keyword; `None` for other statements.
+    fn settings(&self) -> Option<SettingsStatement> {
+        None
+    }
+    /// The command that a record is; `None` for statements of the dataset, which change the model.
+    fn command(&self, _: &Record) -> Option<Result<Command, Box<Diagnostic>>> {
+        None
+    }
     /// Sets what a statement without a number sets back to what holds without it.
     fn reset(&self, _: &mut Model) {}
     /// All elements of this kind as records, for writing.
@@ -345,8 +354,9 @@ pub struct Single<T: 'static> {
     pub value_mut: fn(&mut Model) -> &mut T,
     /// its arguments
     pub bindings: &'static [Binding<T>],
-    /// whether it keeps what no row describes
-    pub open: bool,
+    /// which settings it keeps by keyword, and with them whatever no row describes; `None` for
+    /// others
+    pub settings: Option<SettingsStatement>,
     /// what concerns several arguments at once
     pub finish: fn(&mut T) -> Result<(), String>,
 }
@@ -355,8 +365,11 @@ impl<T: Element> Statement for Single<T> {
     fn keyword(&self) -> &'static str {
         self.keyword
     }
+    fn settings(&self) -> Option<SettingsStatement> {
+        self.settings
+    }
     fn open(&self) -> bool {
-        self.open
+        self.settings.is_some()
     }
     fn arguments(&self) -> Vec<Argument> {
         self.bindings.iter().map(|b| b.argument).collect()
@@ -483,6 +496,19 @@ fn apply<T: Element>(
         element.keep(keyword, text.clone());
     }
     problems
+}
+
+/// Returns what the arguments of a record fill.
+pub fn filled<T: Default>(bindings: &'static [Binding<T>], record: &Record) -> T {
+    let mut filled = T::default();
+    for g in &record.given {
+        if let Some(b) = bindings.get(g.argument) {
+            // the reader has checked that the value is of the kind that the argument accepts
+            let done = (b.put)(&mut filled, b.argument.name, g.value.clone());
+            debug_assert!(done.is_ok(), "{}: {done:?}", b.argument.name);
+        }
+    }
+    filled
 }
 
 /// Returns the required arguments that a new element misses.

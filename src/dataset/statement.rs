@@ -247,7 +247,7 @@ macro_rules! single {
             value: |m| (m.$field != <$t>::default()).then(|| m.$field.clone()),
             value_mut: |m| &mut m.$field,
             bindings: bindings!($t: $($rows)*),
-            open: false,
+            settings: None,
             finish: nothing,
         }
     };
@@ -260,7 +260,7 @@ macro_rules! settings {
             value: |m| m.settings.get(&SettingsStatement::$statement).cloned(),
             value_mut: |m| m.settings.entry(SettingsStatement::$statement).or_default(),
             bindings: bindings!(Settings: $($rows)*),
-            open: true,
+            settings: Some(SettingsStatement::$statement),
             finish: nothing,
         }
     };
@@ -361,7 +361,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
             own "SYSTEM" (Kind::Word(units::SYSTEMS), put_unit_system, no_units);
             own "UCF" (REAL, put_ucf, stated_ucf);
         ),
-        open: false,
+        settings: None,
         finish: consistent_units,
     },
     numbered!(Part, parts: Part, nothing, {

@@ -1,15 +1,22 @@
-//! One command: the table of commands with their arguments, and what each means.
+//! One command: the table of commands, each with its arguments as fields, and what it means.
 
 use super::*;
+use crate::dataset::row::{Binding, filled};
+use crate::dataset::value::Field;
 
-/// A command that is no statement: its arguments are picked out by [`interpret`].
-struct CommandRow {
+/// Makes a command of what its arguments have filled.
+type Meant<T> = fn(T, &Record) -> Result<Command, Box<Diagnostic>>;
+
+/// A command that is no statement: its arguments fill a `T`, of which it is made.
+struct CommandRow<T: 'static> {
     keyword: &'static str,
-    arguments: &'static [Argument],
+    bindings: &'static [Binding<T>],
+    /// other arguments are let pass
     open: bool,
+    meant: Meant<T>,
 }
 
-impl Statement for CommandRow {
+impl<T: Default> Statement for CommandRow<T> {
     fn keyword(&self) -> &'static str {
         self.keyword
     }
@@ -17,7 +24,7 @@ impl Statement for CommandRow {
         self.open
     }
     fn arguments(&self) -> Vec<Argument> {
-        self.arguments.to_vec()
+        self.bindings.iter().map(|b| b.argument).collect()
     }
     fn enter(&self, _: &mut Model, _: &Record, _: bool) -> Vec<Problem> {
         Vec::new()
@@ -25,142 +32,168 @@ impl Statement for CommandRow {
     fn records(&self, _: &Model) -> Vec<Record> {
         Vec::new()
     }
-}
-
-const fn flag(name: &'static str, group: Option<&'static str>) -> Argument {
-    Argument {
-        group,
-        ..Argument::new(name, Kind::Flag)
+    fn command(&self, record: &Record) -> Option<Result<Command, Box<Diagnostic>>> {
+        Some((self.meant)(filled(self.bindings, record), record))
     }
 }
-const fn real(name: &'static str) -> Argument {
-    Argument::new(name, Kind::Real { angle: false })
-}
-const fn text(name: &'static str) -> Argument {
-    Argument::new(name, Kind::Text)
-}
-const fn whole(name: &'static str) -> Argument {
-    Argument::new(name, Kind::Id)
-}
-const fn ids(name: &'static str, min: usize, max: usize) -> Argument {
-    Argument::new(name, Kind::Ids { min, max })
+
+/// The numbers that ACTIVATE and DEACTIVATE name.
+#[derive(Default)]
+struct Named {
+    ids: Vec<u32>,
+    range: Vec<u32>,
 }
 
-macro_rules! commands {
-    ($($keyword:literal $open:literal { $($argument:expr),* $(,)? })+) => {
-        &[$(&CommandRow { keyword: $keyword, arguments: &[$($argument),*], open: $open }),+]
+/// The arguments of FILE.
+#[derive(Default)]
+struct Files {
+    model: Option<String>,
+    output_prefix: Option<String>,
+    command: Option<String>,
+}
+
+/// The arguments of SIMULATE.
+#[derive(Default)]
+struct Simulation {
+    kind: Option<SimulationKind>,
+    end: Option<f64>,
+    duration: Option<f64>,
+    steps: Option<u32>,
+    dtout: Option<f64>,
+}
+
+/// Writes a row of the table: keyword, what it fills, whether other arguments are let pass, its
+/// arguments with what they accept and the field that each fills, and what it means.
+macro_rules! command {
+    ($keyword:literal, $t:ty, open: $open:literal, { $($how:ident $name:literal ($($rest:tt)*);)* }, $meant:expr) => {
+        &CommandRow::<$t> {
+            keyword: $keyword,
+            bindings: &[$($how!($t, $name, $($rest)*)),*],
+            open: $open,
+            meant: $meant,
+        }
     };
 }
-
-/// Commands that control the run. `true`: other arguments are let pass.
-pub(super) static COMMANDS: &[&dyn Statement] = commands! {
-    "SIMULATE" false {
-        flag("KINEMATICS", Some("kind")), flag("DYNAMICS", Some("kind")), flag("STATICS", Some("kind")),
-        flag("TRANSIENT", Some("kind")), flag("INITIAL_CONDITIONS|IC", Some("kind")),
-        real("END"), real("DURATION"), whole("STEPS"), real("DTOUT"),
-    }
-    "FILE" false { text("MODEL"), text("OUTPUT_PREFIX"), text("COMMAND") }
-    "ACTIVATE" true { ids("ID", 1, usize::MAX), ids("RANGE", 2, 2) }
-    "DEACTIVATE" true { ids("ID", 1, usize::MAX), ids("RANGE", 2, 2) }
-    "LINEAR" true {
-        flag("EIGENSOL", Some("task")), flag("STATEMAT", Some("task")), flag("NODAMPING", None),
-        ids("COORDS", 1, 2), whole("RM"), text("FILE"), Argument::new("FORMAT", Kind::Word(&[])),
-        whole("PINPUT"), whole("POUTPUT"),
-    }
-    "SAVE" true { text("SYSTEM") }
-    "RELOAD" true { text("SYSTEM") }
-    "INFO" true {}
-    "SHOW" true {}
-    "TIME" true {}
-    "HELP" true {}
-    "MENU" true {}
-    "STOP" true {}
-};
-
-/// The arguments of a record by keyword.
-struct Arguments(Vec<(String, Value)>);
-
-impl Arguments {
-    fn of(record: &Record) -> Self {
-        let names = record.row.arguments();
-        let named = |g: &super::super::row::Given| (names[g.argument].keyword(), g.value.clone());
-        Self(record.given.iter().map(named).collect())
-    }
-    fn get(&self, name: &str) -> Option<&Value> {
-        self.0.iter().find(|(n, _)| n == name).map(|(_, v)| v)
-    }
-    fn has(&self, name: &str) -> bool {
-        self.get(name).is_some()
-    }
-    fn real(&self, name: &str) -> Option<f64> {
-        match self.get(name)? {
-            Value::Real(x) => Some(x.value()),
-            _ => None,
+macro_rules! argument {
+    ($t:ty, $name:literal, $kind:expr, $field:ident) => {
+        Binding::<$t> {
+            argument: Argument::new($name, $kind),
+            put: |filled, _, value| filled.$field.put(value),
+            get: |_, _| Vec::new(),
         }
-    }
-    fn whole(&self, name: &str) -> Option<u32> {
-        match self.get(name)? {
-            Value::Id(n) => Some(*n),
-            _ => None,
+    };
+}
+macro_rules! text {
+    ($t:ty, $name:literal, $kind:expr, $field:ident) => {
+        Binding::<$t> {
+            argument: Argument::new($name, $kind),
+            put: |filled, _, value| {
+                filled.$field = Some(value.to_string());
+                Ok(())
+            },
+            get: |_, _| Vec::new(),
         }
-    }
-    fn ids(&self, name: &str) -> Vec<u32> {
-        match self.get(name) {
-            Some(Value::Ids(all)) => all.clone(),
-            _ => Vec::new(),
+    };
+}
+macro_rules! one_of {
+    ($t:ty, $name:literal, $group:literal, $field:ident = $value:expr) => {
+        Binding::<$t> {
+            argument: Argument {
+                group: Some($group),
+                ..Argument::new($name, Kind::Flag)
+            },
+            put: |filled, _, _| {
+                filled.$field = $value;
+                Ok(())
+            },
+            get: |_, _| Vec::new(),
         }
-    }
-    fn text(&self, name: &str) -> Option<String> {
-        self.get(name).map(Value::to_string)
-    }
+    };
+}
+macro_rules! system {
+    ($t:ty, $name:literal,) => {
+        Binding::<$t> {
+            argument: Argument::new($name, Kind::Text),
+            put: |file, _, value| {
+                *file = Some(value.to_string());
+                Ok(())
+            },
+            get: |_, _| Vec::new(),
+        }
+    };
+}
+const REAL: Kind = Kind::Real { angle: false };
+
+/// Commands that control the run.
+#[rustfmt::skip]
+pub(super) static COMMANDS: &[&dyn Statement] = &[
+    command!("SIMULATE", Simulation, open: false, {
+        one_of "KINEMATICS" ("kind", kind = Some(SimulationKind::Kinematic));
+        one_of "DYNAMICS" ("kind", kind = Some(SimulationKind::Dynamic));
+        one_of "STATICS" ("kind", kind = Some(SimulationKind::Static));
+        one_of "TRANSIENT" ("kind", kind = Some(SimulationKind::Transient));
+        one_of "INITIAL_CONDITIONS|IC" ("kind", kind = Some(SimulationKind::InitialConditions));
+        argument "END" (REAL, end);
+        argument "DURATION" (REAL, duration);
+        argument "STEPS" (Kind::Id, steps);
+        argument "DTOUT" (REAL, dtout);
+    }, |given, _| simulate(&given).map(Command::Simulate)),
+    command!("FILE", Files, open: false, {
+        text "MODEL" (Kind::Text, model);
+        text "OUTPUT_PREFIX" (Kind::Text, output_prefix);
+        text "COMMAND" (Kind::Text, command);
+    }, |Files { model, output_prefix, command }, _| Ok(Command::File { model, output_prefix, command })),
+    command!("ACTIVATE", Named, open: true, {
+        argument "ID" (Kind::Ids { min: 1, max: usize::MAX }, ids);
+        argument "RANGE" (Kind::Ids { min: 2, max: 2 }, range);
+    }, |named, record| activate(record, named, true)),
+    command!("DEACTIVATE", Named, open: true, {
+        argument "ID" (Kind::Ids { min: 1, max: usize::MAX }, ids);
+        argument "RANGE" (Kind::Ids { min: 2, max: 2 }, range);
+    }, |named, record| activate(record, named, false)),
+    command!("LINEAR", Linear, open: true, {
+        one_of "EIGENSOL" ("task", eigensolution = true);
+        one_of "STATEMAT" ("task", state_matrices = true);
+        argument "NODAMPING" (Kind::Flag, no_damping);
+        argument "COORDS" (Kind::Ids { min: 1, max: 2 }, coords);
+        argument "RM" (Kind::Id, rm);
+        text "FILE" (Kind::Text, file);
+        text "FORMAT" (Kind::Word(&[]), format);
+        argument "PINPUT" (Kind::Id, pinput);
+        argument "POUTPUT" (Kind::Id, poutput);
+    }, |linear, _| Ok(Command::Linear(linear))),
+    command!("SAVE", Option<String>, open: true, { system "SYSTEM" (); }, |system, _| Ok(Command::Save(system))),
+    command!("RELOAD", Option<String>, open: true, { system "SYSTEM" (); }, |system, _| Ok(Command::Reload(system))),
+    command!("INFO", (), open: true, {}, show),
+    command!("SHOW", (), open: true, {}, show),
+    command!("TIME", (), open: true, {}, show),
+    command!("HELP", (), open: true, {}, show),
+    command!("MENU", (), open: true, {}, show),
+    command!("STOP", (), open: true, {}, |(), _| Ok(Command::Stop)),
+];
+
+/// A command that asks for a print.
+fn show((): (), record: &Record) -> Result<Command, Box<Diagnostic>> {
+    Ok(Command::Show(record.element()))
 }
 
+/// Returns the command that a record is: one that controls the run, or a change of the model.
 pub(super) fn interpret(record: Record) -> Result<Command, Box<Diagnostic>> {
-    let a = Arguments::of(&record);
-    Ok(match record.row.keyword() {
-        "SIMULATE" => Command::Simulate(simulate(&a)?),
-        "FILE" => Command::File {
-            model: a.text("MODEL"),
-            output_prefix: a.text("OUTPUT_PREFIX"),
-            command: a.text("COMMAND"),
-        },
-        "ACTIVATE" => activate(&record, &a, true)?,
-        "DEACTIVATE" => activate(&record, &a, false)?,
-        "LINEAR" => Command::Linear(Linear {
-            eigensolution: a.has("EIGENSOL"),
-            state_matrices: a.has("STATEMAT"),
-            no_damping: a.has("NODAMPING"),
-            coords: a.ids("COORDS"),
-            rm: a.whole("RM"),
-            file: a.text("FILE"),
-            format: a.text("FORMAT"),
-            pinput: a.whole("PINPUT"),
-            poutput: a.whole("POUTPUT"),
-        }),
-        "SAVE" => Command::Save(a.text("SYSTEM")),
-        "RELOAD" => Command::Reload(a.text("SYSTEM")),
-        "STOP" => Command::Stop,
-        "INFO" | "SHOW" | "TIME" | "HELP" | "MENU" | "LIST" | "NOLIST" => {
-            Command::Show(record.element())
-        }
-        _ => Command::Change(record),
-    })
+    let prints = [SettingsStatement::List, SettingsStatement::Nolist];
+    match record.row.command(&record) {
+        Some(command) => command,
+        None if prints.into_iter().any(|s| record.row.settings() == Some(s)) => show((), &record),
+        None => Ok(Command::Change(record)),
+    }
 }
 
-fn simulate(a: &Arguments) -> Result<Simulate, Box<Diagnostic>> {
-    let kinds = [
-        ("KINEMATICS", SimulationKind::Kinematic),
-        ("DYNAMICS", SimulationKind::Dynamic),
-        ("STATICS", SimulationKind::Static),
-        ("TRANSIENT", SimulationKind::Transient),
-        ("INITIAL_CONDITIONS", SimulationKind::InitialConditions),
-    ];
+fn simulate(given: &Simulation) -> Result<Simulate, Box<Diagnostic>> {
     let refuse = |code, message: &str| {
         Err(Box::new(
             Diagnostic::error(code, message).element("SIMULATE"),
         ))
     };
-    let Some((_, kind)) = kinds.into_iter().find(|(word, _)| a.has(word)) else {
+    let Some(kind) = given.kind else {
         return refuse(
             "missing_argument",
             "SIMULATE does not say what: KINEMATIC, DYNAMIC, STATIC, TRANSIENT or INITIAL_CONDITIONS",
@@ -168,10 +201,10 @@ fn simulate(a: &Arguments) -> Result<Simulate, Box<Diagnostic>> {
     };
     let s = Simulate {
         kind,
-        end: a.real("END"),
-        duration: a.real("DURATION"),
-        steps: a.whole("STEPS"),
-        dtout: a.real("DTOUT"),
+        end: given.end,
+        duration: given.duration,
+        steps: given.steps,
+        dtout: given.dtout,
     };
     let timed = matches!(
         kind,
@@ -198,7 +231,7 @@ fn simulate(a: &Arguments) -> Result<Simulate, Box<Diagnostic>> {
     Ok(s)
 }
 
-fn activate(record: &Record, a: &Arguments, on: bool) -> Result<Command, Box<Diagnostic>> {
+fn activate(record: &Record, named: Named, on: bool) -> Result<Command, Box<Diagnostic>> {
     let refuse = |code, message: String| {
         Err(Box::new(
             Diagnostic::error(code, message).element(record.element()),
@@ -223,8 +256,8 @@ fn activate(record: &Record, a: &Arguments, on: bool) -> Result<Command, Box<Dia
         let message = format!("`{word}` is not a kind of element");
         return refuse("unknown_statement", message);
     };
-    let range = <[u32; 2]>::try_from(a.ids("RANGE")).ok();
-    let ids = a.ids("ID");
+    let range = <[u32; 2]>::try_from(named.range).ok();
+    let ids = named.ids;
     if ids.is_empty() && range.is_none() {
         return refuse(
             "missing_argument",
