@@ -12,6 +12,7 @@ use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::numeric::{self, Dop853, Failure, Method, Ode};
+use cognate::results::{Run, csv};
 use cognate::scalar::{Jet, Scalar};
 use requests::expressions;
 use std::path::{Path, PathBuf};
@@ -26,7 +27,7 @@ trait Hand {
     fn start(&self) -> Vec<f64>;
     /// its rate
     fn rate(&self, y: &[f64], ydot: &mut [f64]);
-    /// what the dataset asks for
+    /// the columns that the dataset asks for, in its order
     fn columns(&self, y: &[f64]) -> Vec<f64>;
 }
 
@@ -320,37 +321,31 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references")
 }
 
-/// Columns of a CSV with a header line.
-fn reference(problem: &str) -> Vec<Vec<f64>> {
-    let text =
-        std::fs::read_to_string(folder().join(format!("{problem}.csv"))).expect("a reference");
-    let number = |x: &str| x.parse::<f64>().expect("a number");
-    let rows: Vec<Vec<f64>> = text
-        .lines()
-        .skip(1)
-        .map(|l| l.split(',').map(number).collect())
-        .collect();
-    (0..rows[0].len())
-        .map(|k| rows.iter().map(|r| r[k]).collect())
-        .collect()
+/// A solution: the times, and the columns with the expressions for their names.
+fn reference(problem: &str) -> Run {
+    let bytes = std::fs::read(folder().join(format!("{problem}.csv"))).expect("a reference");
+    csv::read(&bytes).expect("a table")
 }
 
-/// Largest difference of our columns from the columns of the reference that they are nearest to, relative to magnitudes.
-fn true_error(reference: &[Vec<f64>], ours: &[Vec<f64>]) -> f64 {
-    let distance = |r: &[f64], x: &[f64]| {
+/// Largest difference of columns from those of the reference with the same names, relative to magnitudes.
+fn true_error(reference: &Run, names: &[String], columns: &[Vec<f64>]) -> f64 {
+    let distance = |(name, x): (&String, &Vec<f64>)| {
+        let r = reference.column(name).expect("a column of this name");
         let scale = r.iter().fold(1e-300, |m: f64, v| m.max(v.abs()));
         r.iter()
             .zip(x)
             .map(|(a, b)| (a - b).abs() / scale)
             .fold(0.0, f64::max)
     };
-    let nearest = |x: &Vec<f64>| {
-        reference[1..]
-            .iter()
-            .map(|r| distance(r, x))
-            .fold(f64::INFINITY, f64::min)
-    };
-    ours.iter().map(nearest).fold(0.0, f64::max)
+    assert_eq!(names.len(), columns.len());
+    names.iter().zip(columns).map(distance).fold(0.0, f64::max)
+}
+
+/// The dataset of a problem.
+fn dataset(problem: &str) -> (Script, Model) {
+    let script = Script::read(folder().join(format!("{problem}.acf"))).expect("a command file");
+    let model = Model::read(script.model_file().expect("a model")).expect("a dataset");
+    (script, model)
 }
 
 /// Seconds and columns of a hand-written mechanism.
@@ -387,8 +382,7 @@ fn by_hand(hand: &dyn Hand, times: &[f64], error: f64) -> (f64, Vec<Vec<f64>>) {
 
 /// A run of the dataset.
 fn by_us(problem: &str, error: f64, method: Option<&str>) -> (Session, Vec<Vec<f64>>) {
-    let script = Script::read(folder().join(format!("{problem}.acf"))).expect("a command file");
-    let model = Model::read(script.model_file().expect("a model")).expect("a dataset");
+    let (script, model) = dataset(problem);
     let columns = expressions(&model);
     let options = Options {
         error: Some(error),
@@ -434,7 +428,8 @@ fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
     );
     let mut logs = [(0.0, 0); 3];
     for (problem, hand) in problems.into_iter().filter(|p| chosen(p.0)) {
-        let reference = reference(problem);
+        let (reference, names) = (reference(problem), expressions(&dataset(problem).1));
+        let times = reference.column("t").expect("times");
         let (mut ours, mut theirs) = (Vec::new(), Vec::new());
         for error in REQUESTS {
             let (mut a, mut b) = (Vec::new(), Vec::new());
@@ -442,10 +437,10 @@ fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
             for _ in 0..ROUNDS {
                 let (session, columns) = by_us(problem, error, None);
                 a.push(session.run.record.solve_seconds);
-                ea = true_error(&reference, &columns);
-                let (seconds, columns) = by_hand(hand, &reference[0], error);
+                ea = true_error(&reference, &names, &columns);
+                let (seconds, columns) = by_hand(hand, times, error);
                 b.push(seconds);
-                eb = true_error(&reference, &columns);
+                eb = true_error(&reference, &names, &columns);
             }
             ours.push((ea, median(a)));
             theirs.push((eb, median(b)));

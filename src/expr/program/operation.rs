@@ -120,7 +120,23 @@ pub(super) enum Edges {
     PlusMinusOne,
 }
 
-/// Makes the enum of operations on one number, their evaluation, cost and edges.
+/// Makes a function of numbers of an operation.
+#[cfg(all(
+    feature = "native",
+    target_arch = "x86_64",
+    target_os = "linux",
+    not(miri)
+))]
+macro_rules! callable {
+    ($op:path, $($x:ident),+) => {{
+        extern "sysv64" fn called($($x: f64),+) -> f64 {
+            $op.apply($($x),+)
+        }
+        called
+    }};
+}
+
+/// Makes the enum of operations on one number, their evaluation, cost, edges and calls.
 macro_rules! define_unary {
     (
         methods {
@@ -151,6 +167,15 @@ macro_rules! define_unary {
                 match self {
                     $(UnaryOp::$body_op => { let $x = x; $body })+
                     $(UnaryOp::$method_op => x.$method(),)+
+                }
+            }
+
+            /// Returns the operation as a function that generated code can call.
+            #[cfg(all(feature = "native", target_arch = "x86_64", target_os = "linux", not(miri)))]
+            pub(super) fn callable(self) -> extern "sysv64" fn(f64) -> f64 {
+                match self {
+                    $(UnaryOp::$body_op => callable!(UnaryOp::$body_op, x),)+
+                    $(UnaryOp::$method_op => callable!(UnaryOp::$method_op, x),)+
                 }
             }
 
@@ -189,6 +214,14 @@ macro_rules! define_binary {
             pub fn apply<S: Scalar>(self, a: S, b: S) -> S {
                 match self {
                     $(BinaryOp::$op => { let ($a, $b) = (a, b); $body })+
+                }
+            }
+
+            /// Returns the operation as a function that generated code can call.
+            #[cfg(all(feature = "native", target_arch = "x86_64", target_os = "linux", not(miri)))]
+            pub(super) fn callable(self) -> extern "sysv64" fn(f64, f64) -> f64 {
+                match self {
+                    $(BinaryOp::$op => callable!(BinaryOp::$op, a, b),)+
                 }
             }
 

@@ -2,7 +2,7 @@
 //! whole steps.
 
 use super::super::super::code::Core;
-use super::super::super::operation::{BinaryOp, UnaryOp, unary_operations};
+use super::super::super::operation::{BinaryOp, UnaryOp};
 use super::super::prepared::PreparedCall;
 use super::super::steps::{Step, Steps};
 use crate::expr::functions::prepared::Prepared;
@@ -154,67 +154,12 @@ pub(super) extern "sysv64" fn sine_and_cosine(x: f64) -> Pair {
     Pair { first, second }
 }
 
-/// Makes the functions that operations on one number are called by.
-macro_rules! unary_functions {
-    (
-        methods {
-            $(
-                $(#[$doc:meta])*
-                $method_op:ident $method:ident, $method_cost:literal, $method_edges:ident, $_r:expr;
-            )+
-        }
-        bodies {
-            $(
-                $(#[$body_doc:meta])*
-                $body_op:ident |$x:ident| $body:expr,
-                $body_cost:literal, $body_edges:ident, $_s:expr;
-            )+
-        }
-    ) => {
-        /// Returns the address of the function of one number that is this operation.
-        pub(super) fn of_one_number(op: UnaryOp) -> usize {
-            let function: extern "sysv64" fn(f64) -> f64 = match op {
-                $(UnaryOp::$method_op => {
-                    extern "sysv64" fn called(x: f64) -> f64 {
-                        UnaryOp::$method_op.apply(x)
-                    }
-                    called
-                })+
-                $(UnaryOp::$body_op => {
-                    extern "sysv64" fn called(x: f64) -> f64 {
-                        UnaryOp::$body_op.apply(x)
-                    }
-                    called
-                })+
-            };
-            function as usize
-        }
-    };
+/// Returns the address of the function of one number that is this operation.
+pub(super) fn of_one_number(op: UnaryOp) -> usize {
+    op.callable() as usize
 }
-unary_operations!(unary_functions);
 
 /// Returns the address of the function of two numbers that is this operation.
 pub(super) fn of_two_numbers(op: BinaryOp) -> usize {
-    macro_rules! called {
-        ($op:ident) => {{
-            extern "sysv64" fn called(a: f64, b: f64) -> f64 {
-                BinaryOp::$op.apply(a, b)
-            }
-            called
-        }};
-    }
-    let function: extern "sysv64" fn(f64, f64) -> f64 = match op {
-        BinaryOp::Add => called!(Add),
-        BinaryOp::Sub => called!(Sub),
-        BinaryOp::Mul => called!(Mul),
-        BinaryOp::Div => called!(Div),
-        BinaryOp::Pow => called!(Pow),
-        BinaryOp::Atan2 => called!(Atan2),
-        BinaryOp::Rem => called!(Rem),
-        BinaryOp::And => called!(And),
-        BinaryOp::Or => called!(Or),
-        BinaryOp::Along => called!(Along),
-        BinaryOp::Kept => called!(Kept),
-    };
-    function as usize
+    op.callable() as usize
 }
