@@ -1,6 +1,6 @@
 //! Identities of what is remembered beside the unknowns: angles whose turns are counted.
 //!
-//! What one simulation remembers finds its place in the next by these. As texts they stand in saved
+//! The memory of one simulation finds its place in the next by these. As texts they stand in saved
 //! states, which read them back.
 
 use crate::expr::measures::Measure;
