@@ -57,7 +57,8 @@ enum Verb {
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 our mistake, 2 usage, 3 input (syntax, names), 4 model (freedom, contradiction, inertia),
-5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed, 130 interrupted.";
+5 no equilibrium, 6 integration stopped early, 7 limit (time, memory, steps), 8 a check failed,
+9 results could not be written, 130 interrupted.";
 
 /// The outcome of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,6 +81,8 @@ pub enum Exit {
     Limit,
     /// a check that was asked for failed
     CheckFailed,
+    /// results could not be written
+    Unwritable,
     /// the user interrupted it
     Interrupted,
 }
@@ -97,6 +100,7 @@ impl Exit {
             Exit::Stopped => 6,
             Exit::Limit => 7,
             Exit::CheckFailed => 8,
+            Exit::Unwritable => 9,
             Exit::Interrupted => 130,
         }
     }
@@ -114,10 +118,14 @@ pub struct Failure {
 }
 
 impl From<Diagnostic> for Failure {
-    /// A mistake in the input.
+    /// A mistake in the input, or a file that cannot be written.
     fn from(diagnostic: Diagnostic) -> Self {
+        let exit = match diagnostic.code {
+            "file_unwritable" => Exit::Unwritable,
+            _ => Exit::Input,
+        };
         Self {
-            exit: Exit::Input,
+            exit,
             diagnostics: vec![diagnostic],
             sources: Sources::default(),
         }
@@ -202,14 +210,21 @@ pub fn remark(message: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr(), "{message}");
 }
 
-/// Prints results on standard output. When the reader is gone (`| head`), the program ends quietly.
+/// Prints results on standard output. When the reader is gone (`| head`), the program ends quietly;
+/// when they cannot be written otherwise (a full disk), it says so and ends with
+/// [`Exit::Unwritable`].
 pub fn say(text: &str) {
     let mut out = std::io::stdout().lock();
-    if out
-        .write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .is_err()
-    {
+    let Err(e) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) else {
+        return;
+    };
+    if e.kind() == std::io::ErrorKind::BrokenPipe {
         std::process::exit(Exit::Done.code().into());
     }
+    let what = format!("results cannot be written to standard output: {e}");
+    complain(
+        &[Diagnostic::error("file_unwritable", what)],
+        &Sources::default(),
+    );
+    std::process::exit(Exit::Unwritable.code().into());
 }

@@ -119,6 +119,8 @@ pub fn run(args: &Args) -> Outcome {
     let full = model.settings.contains_key(&SettingsStatement::Results);
     let mut session = open(args, model, &base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
+    let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
+    let folder = OutputFolder::open(&dir, &session.run.name)?;
 
     // solve
     let (status, failure) = match solve(args, &mut session, &steps) {
@@ -140,12 +142,17 @@ pub fn run(args: &Args) -> Outcome {
     });
 
     // write and report
-    let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
     let shown = !args.json && !args.quiet;
-    let (written, record) = write(&mut session, &dir, full, shown)?;
+    let is_refused = failure.is_some() && session.run.rows() == 0;
+    let (written, record) = if is_refused {
+        // what an earlier run has written stays
+        (Vec::new(), json::text(&json::record(&session.run)))
+    } else {
+        write(&mut session, folder, full, shown)?
+    };
     if args.json {
         say(&record);
-    } else if shown {
+    } else if shown && !is_refused {
         say(&summary::table(&session.run));
         remark(summary::facts(&session.run, &written).trim_end());
     }
@@ -378,17 +385,16 @@ fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
 }
 
 /// Writes all files of the run; returns their names, and the record. The record comes last, so that
-/// its existence shows that the others are complete.
+/// its status shows that the others are complete.
 fn write(
     session: &mut Session,
-    dir: &Path,
+    mut folder: OutputFolder,
     full: bool,
     picture: bool,
 ) -> Result<(Vec<PathBuf>, String), Failure> {
     let clock = Instant::now();
     let run = &session.run;
     let own = |ending: &str| format!("{}.{ending}", run.name);
-    let mut folder = OutputFolder::new(dir, &run.name);
     folder.put(&own("csv"), &csv::write(run, true))?;
     if full {
         folder.put(&own("res"), &res::write(run))?;
@@ -403,6 +409,7 @@ fn write(
     if let Some(text) = summary::picture(run).filter(|_| picture) {
         folder.put(&own("svg"), &text)?;
     }
+    folder.remove_stale(&["csv", "res", "msg", "svg"].map(own))?;
     let name = own("json");
     session.run.record.write_seconds = clock.elapsed().as_secs_f64();
     let record = json::with_files(json::record(&session.run), folder.written());

@@ -2,7 +2,8 @@
 
 use super::{Run, csv, gra, json, msg, res};
 use crate::diagnostic::Diagnostic;
-use std::path::Path;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// Reads a file of results; its name tells the format: `.res`, `.gra` or `.csv`.
 ///
@@ -65,10 +66,18 @@ pub fn write(run: &Run, path: &Path) -> Result<(), Diagnostic> {
 /// # Errors
 /// When the file cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), Diagnostic> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let done = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    done.map_err(|e| {
+    let beside = |k: u32| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(format!(".part{k}"));
+        PathBuf::from(name)
+    };
+    // a file of that name is somebody's
+    let beside = (1..).map(beside).find(|p| p.symlink_metadata().is_err());
+    let beside = beside.unwrap_or_else(|| path.to_owned());
+    let written = std::fs::File::create_new(&beside)
+        .and_then(|mut file| file.write_all(text.as_bytes()))
+        .and_then(|()| std::fs::rename(&beside, path));
+    written.map_err(|e| {
         // a rest that cannot be removed either adds nothing to say
         let _ = std::fs::remove_file(&beside);
         let mut d = Diagnostic::error("file_unwritable", format!("cannot be written: {e}"));
