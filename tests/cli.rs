@@ -5,7 +5,7 @@
 mod command;
 
 use command::{cognate, cognate_with, path, scratch};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[test]
 fn a_value_is_printed_alone_with_its_shortest_digits() {
@@ -415,6 +415,148 @@ fn results_of_others_are_kept_and_those_of_an_earlier_run_are_replaced() {
         std::fs::read_to_string(dir.join("slider_crank.csv~")).unwrap(),
         text
     );
+}
+
+/// Names and contents of the files of a folder.
+fn contents(dir: &Path) -> Vec<(std::ffi::OsString, Vec<u8>)> {
+    let files = std::fs::read_dir(dir).unwrap().map(|f| f.unwrap());
+    let mut all: Vec<_> = files
+        .map(|f| (f.file_name(), std::fs::read(f.path()).unwrap()))
+        .collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn a_mistake_on_the_command_line_costs_no_results() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("refused");
+    let _ = std::fs::remove_dir_all(&dir);
+    let run = |more: &[&str]| {
+        let mut all = vec!["run", example, "--out", path(&dir)];
+        all.extend(more);
+        cognate(&all)
+    };
+    assert_eq!(run(&[]).code, 0);
+    let before = contents(&dir);
+    assert!(before.len() == 5, "{}", before.len());
+    for (more, code, said) in [
+        (["--column", "DX(41,2x2)"], 3, "--column:1:7"),
+        (["--column", "DX(41,99)"], 3, "MARKER/99 does not exist"),
+        (["--method", "RADAU7"], 4, "RADAU5"),
+        (["--error", "-1"], 4, "ERROR"),
+    ] {
+        let done = run(&more);
+        assert_eq!(done.code, code, "{more:?}: {}", done.err);
+        assert!(done.err.contains(said), "{more:?}: {}", done.err);
+        assert!(contents(&dir) == before, "{more:?} touched the results");
+    }
+}
+
+#[test]
+fn a_run_leaves_no_picture_of_an_earlier_one_and_knows_its_own_files() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("stale");
+    let _ = std::fs::remove_dir_all(&dir);
+    let run = |more: &[&str]| {
+        let mut all = vec!["run", example, "--out", path(&dir)];
+        all.extend(more);
+        let done = cognate(&all);
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(!done.err.contains("kept as"), "{}", done.err);
+    };
+    let picture = dir.join("slider_crank.svg");
+    run(&[]);
+    assert!(picture.exists());
+    run(&["--quiet"]);
+    assert!(!picture.exists());
+    run(&[]);
+    assert!(picture.exists());
+    // killed while it wrote: some files are of this run, the others of the one before, and the
+    // record says which sizes they may have
+    let size = |ending: &str| {
+        let file = dir.join(format!("slider_crank.{ending}"));
+        std::fs::metadata(file).unwrap().len()
+    };
+    let sizes = |endings: &[&str]| -> serde_json::Value {
+        let named = endings
+            .iter()
+            .map(|e| (format!("slider_crank.{e}"), size(e).into()));
+        serde_json::Value::Object(named.collect())
+    };
+    let record = serde_json::json!({
+        "status": "being written",
+        "versions": {"cognate": env!("CARGO_PKG_VERSION")},
+        "files": sizes(&["csv"]),
+        "replaced": sizes(&["res", "msg", "svg"]),
+    });
+    std::fs::write(dir.join("slider_crank.json"), record.to_string()).unwrap();
+    run(&[]);
+    // a file of somebody beside ours is nobody's to touch
+    let part = dir.join("slider_crank.csv.part1");
+    std::fs::write(&part, "mine").unwrap();
+    run(&[]);
+    assert_eq!(std::fs::read_to_string(&part).unwrap(), "mine");
+}
+
+#[test]
+fn results_that_cannot_be_written_have_an_exit_code_and_are_found_before_solving() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slider_crank.acf");
+    let file = scratch("unwritable", "a_file", "somebody's");
+    let done = cognate(&["run", example, "--out", path(&file.join("below"))]);
+    assert_eq!(done.code, 9, "{}", done.err);
+    assert!(done.err.contains("file_unwritable") && done.out.is_empty());
+    let full = Path::new("/dev/full");
+    if full.exists() {
+        let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("full");
+        let status = std::process::Command::new(env!("CARGO_BIN_EXE_cognate"))
+            .args(["run", example, "--json", "--out", path(&dir)])
+            .stdout(std::fs::OpenOptions::new().write(true).open(full).unwrap())
+            .stderr(std::process::Stdio::null())
+            .status()
+            .unwrap();
+        assert_eq!(status.code(), Some(9));
+    }
+}
+
+#[test]
+fn variables_that_read_each_other_a_thousand_times_need_no_stack() {
+    const N: usize = 3000;
+    let chain: String = (2..=N)
+        .map(|k| {
+            format!(
+                "VARIABLE/{k}, FUNCTION=0.5*VARVAL({})+0.5*VARVAL({})\n",
+                k - 1,
+                k.max(3) - 2
+            )
+        })
+        .collect();
+    let head = "t\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\n\
+                JOINT/1, TRANSLATIONAL, I=20, J=1\nVARIABLE/1, FUNCTION=TIME\n";
+    for last in [
+        format!("SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=1, FUNCTION=VARVAL({N})"),
+        format!("MOTION/1, JOINT=1, TRANSLATION, FUNCTION=VARVAL({N})"),
+        format!("GCON/1, FUNCTION=DZ(20,1)-VARVAL({N})"),
+    ] {
+        let text = format!("{head}{chain}{last}\nREQUEST/1, F2=DZ(20,1)\nEND\n");
+        let file = scratch("deep", "deep.adm", &text);
+        for command in ["check", "verify", "explain"] {
+            let done = cognate(&[command, path(&file)]);
+            assert_eq!(done.code, 0, "{command} {last}: {}", done.err);
+        }
+        let out = file.parent().unwrap();
+        let done = cognate(&[
+            "run",
+            path(&file),
+            "--end",
+            "1",
+            "--steps",
+            "2",
+            "--out",
+            path(out),
+        ]);
+        assert_eq!(done.code, 0, "{last}: {}", done.err);
+    }
 }
 
 #[test]

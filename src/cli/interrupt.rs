@@ -1,18 +1,38 @@
 //! Ctrl-C: the first asks the running analysis to stop and keep what it has, the second ends the
 //! program at once.
+//!
+//! Where nothing polls (while a large model is put together), a run that has no results yet ends by
+//! itself a moment later.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 static STOP: AtomicBool = AtomicBool::new(false);
+/// somebody has seen that the user asked to stop
+static SEEN: AtomicBool = AtomicBool::new(false);
+/// there are results, which must be written
+static HAS_RESULTS: AtomicBool = AtomicBool::new(false);
+
+/// How long a run without results may go on that does not see the request to stop.
+const PATIENCE: Duration = Duration::from_millis(700);
 
 /// Returns the flag that loops poll; Ctrl-C sets it once [`install`] has been called.
 pub fn flag() -> &'static AtomicBool {
     &STOP
 }
 
-/// Returns whether the user asked to stop.
+/// Returns true if the user asked to stop.
 pub fn requested() -> bool {
-    STOP.load(Ordering::Relaxed)
+    let stop = STOP.load(Ordering::Relaxed);
+    if stop {
+        SEEN.store(true, Ordering::Relaxed);
+    }
+    stop
+}
+
+/// Notes that there are results from now on, which are kept when the user interrupts.
+pub fn results_begin() {
+    HAS_RESULTS.store(true, Ordering::Relaxed);
 }
 
 /// Lets Ctrl-C set the flag from now on; where that is not possible it ends the program, as before.
@@ -23,4 +43,28 @@ pub fn install() {
             std::process::exit(130);
         }
     });
+}
+
+/// Lets Ctrl-C set the flag from now on, as [`install`], and ends a run that has no results and does
+/// not see it.
+pub fn install_for_run() {
+    let _ = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        std::thread::spawn(end_unless_seen);
+    });
+}
+
+fn end_unless_seen() {
+    std::thread::sleep(PATIENCE);
+    if SEEN.load(Ordering::Relaxed) {
+        return;
+    }
+    if HAS_RESULTS.load(Ordering::Relaxed) {
+        super::remark("interrupted: ends with the next step; Ctrl-C again ends at once");
+    } else {
+        super::remark("interrupted before there were results: nothing was written");
+        std::process::exit(130);
+    }
 }

@@ -159,9 +159,24 @@ impl Failure {
 /// The result of a verb.
 pub type Outcome = Result<Exit, Failure>;
 
+/// Stack of the thread that does the work, in bytes; what is not used is not taken.
+const STACK_BYTES: usize = 256 << 20;
+
 /// Runs the command that the arguments of the process name.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
+    std::thread::scope(|scope| {
+        let worker = std::thread::Builder::new().stack_size(STACK_BYTES);
+        match worker.spawn_scoped(scope, || obey(&cli)) {
+            Ok(worker) => worker.join().unwrap_or(ExitCode::from(Exit::Bug.code())),
+            // a system that has no room for the stack has room for most models
+            Err(_) => obey(&cli),
+        }
+    })
+}
+
+/// Runs a command.
+fn obey(cli: &Cli) -> ExitCode {
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Check(args) => check::run(args),
         Verb::Convert(args) => convert::run(args),

@@ -1,46 +1,90 @@
-//! The progress of a run: a bar on standard error when that is a terminal, otherwise nothing.
+//! The progress of a run that takes longer than two seconds: a bar on standard error when that is a
+//! terminal, otherwise a line now and then.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::cell::Cell;
 use std::io::IsTerminal;
+use std::time::{Duration, Instant};
 
 /// Parts of a whole bar.
 const LENGTH: u64 = 1000;
+/// How long a run goes on before its progress is shown.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// The longest time between two lines.
+const LONGEST_SILENCE: Duration = Duration::from_secs(60);
 
-/// A bar from one time to another.
+/// The progress from one time to another.
 pub struct Progress {
-    bar: ProgressBar,
+    /// where it is shown
+    shown: Shown,
+    begun: Instant,
+    /// when it is shown next, counted from the beginning
+    next: Cell<Duration>,
     start: f64,
     end: f64,
 }
 
+enum Shown {
+    Nowhere,
+    /// as a bar
+    Bar(ProgressBar),
+    /// as lines
+    Lines,
+}
+
 impl Progress {
-    /// Creates a bar for a run from `start` to `end`, in s; hidden when `quiet`, or when standard
-    /// error is no terminal.
+    /// Creates the progress of a run from `start` to `end`, in s; nothing is shown when `quiet`.
     pub fn new(quiet: bool, start: f64, end: f64) -> Self {
-        let hidden = quiet || !std::io::stderr().is_terminal();
-        let target = if hidden {
-            ProgressDrawTarget::hidden()
+        let shown = if quiet {
+            Shown::Nowhere
+        } else if std::io::stderr().is_terminal() {
+            let target = ProgressDrawTarget::stderr_with_hz(10);
+            let bar = ProgressBar::with_draw_target(Some(LENGTH), target);
+            let template = "{bar:40} {percent:>3} %  {msg}  {elapsed}";
+            if let Ok(style) = ProgressStyle::with_template(template) {
+                bar.set_style(style);
+            }
+            Shown::Bar(bar)
         } else {
-            ProgressDrawTarget::stderr_with_hz(10)
+            Shown::Lines
         };
-        let bar = ProgressBar::with_draw_target(Some(LENGTH), target);
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}")
-        {
-            bar.set_style(style);
+        Self {
+            shown,
+            begun: Instant::now(),
+            next: Cell::new(PATIENCE),
+            start,
+            end,
         }
-        Self { bar, start, end }
     }
-    /// Moves the bar to `time`, in s.
-    pub fn at(&self, time: f64) {
-        if self.bar.is_hidden() {
+    /// Shows that `time` has been reached, in s, after so many steps.
+    pub fn at(&self, time: f64, steps: usize) {
+        let elapsed = self.begun.elapsed();
+        if elapsed < self.next.get() {
             return;
         }
         let part = ((time - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
-        self.bar.set_position((part * LENGTH as f64) as u64);
-        self.bar.set_message(format!("time {time:.4}"));
+        match &self.shown {
+            Shown::Nowhere => {}
+            Shown::Bar(bar) => {
+                bar.set_position((part * LENGTH as f64) as u64);
+                bar.set_message(format!("time {time:.4}, {steps} steps"));
+            }
+            Shown::Lines => {
+                super::remark(format!(
+                    "{:.1} % done: time {time:.6} of {}, {steps} steps, {:.0} s",
+                    100.0 * part,
+                    self.end,
+                    elapsed.as_secs_f64()
+                ));
+                // twice as long each time
+                self.next.set(elapsed + elapsed.min(LONGEST_SILENCE));
+            }
+        }
     }
     /// Removes the bar.
     pub fn done(&self) {
-        self.bar.finish_and_clear();
+        if let Shown::Bar(bar) = &self.shown {
+            bar.finish_and_clear();
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! `cognate run`: a model with its commands, from file to results.
 
 use super::progress::Progress;
-
+use super::render::Sources;
 use super::{Exit, Failure, Outcome, interrupt, linear, remark, say, summary};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
@@ -90,8 +90,9 @@ impl Watch for Terminal<'_> {
     fn interrupted(&mut self) -> bool {
         interrupt::requested()
     }
-    fn progress(&mut self, t: f64, _h: f64, _stats: &Stats) {
-        self.progress.borrow().at(t);
+    fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
+        interrupt::results_begin();
+        self.progress.borrow().at(t, stats.steps);
     }
 }
 
@@ -101,7 +102,7 @@ impl Watch for Terminal<'_> {
 /// When a file has mistakes or cannot be written, or the model cannot work.
 pub fn run(args: &Args) -> Outcome {
     let clock = Instant::now();
-    interrupt::install();
+    interrupt::install_for_run();
 
     // read
     let is_command = has_commands(&args.model);
@@ -116,6 +117,7 @@ pub fn run(args: &Args) -> Outcome {
     };
     remark_on_warnings(args, &reading);
     let (model, dataset) = (reading.model, reading.dataset);
+    check_columns(args, &model, &steps)?;
     let full = model.settings.contains_key(&SettingsStatement::Results);
     let mut session = open(args, model, &base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
@@ -182,6 +184,36 @@ fn remark_on_warnings(args: &Args, reading: &Reading) {
             "{warnings} warning{} in the dataset: cognate check tells more",
             if warnings == 1 { "" } else { "s" }
         ));
+    }
+}
+
+/// Checks the columns that the command line asks for, before anything is solved or written.
+fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failure> {
+    // commands may make what a column reads
+    let changes = |s: &Step| matches!(s.command, Command::Change(_));
+    let is_final = !steps.iter().any(changes);
+    let mut failure = Failure {
+        exit: Exit::Input,
+        diagnostics: Vec::new(),
+        sources: Sources::default(),
+    };
+    for (k, text) in args.columns.iter().enumerate() {
+        let place = match args.columns.len() {
+            1 => "--column".to_owned(),
+            _ => format!("--column {}", k + 1),
+        };
+        for mut d in model.check_expression(text) {
+            if is_final || d.code != "unknown_element" {
+                d.file = Some(place.clone());
+                failure.diagnostics.push(d);
+            }
+        }
+        failure.sources.add(place, text.clone());
+    }
+    if failure.diagnostics.is_empty() {
+        Ok(())
+    } else {
+        Err(failure)
     }
 }
 

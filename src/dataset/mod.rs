@@ -186,7 +186,8 @@ pub fn read_source(source: Source) -> Reading {
     reading
 }
 
-/// The first line is a title, whatever it holds; warn where it holds a statement.
+/// The first line is a title, whatever it holds: one that holds a statement is a mistake, for the
+/// statement is lost.
 fn check_title(source: &Source, syntax: &Syntax, out: &mut Vec<Diagnostic>) {
     let title = source.slice(syntax.title);
     let head = title
@@ -195,14 +196,16 @@ fn check_title(source: &Source, syntax: &Syntax, out: &mut Vec<Diagnostic>) {
         .next()
         .unwrap_or_default();
     let after = title.trim_start().get(head.len()..).unwrap_or_default();
-    let number = after
-        .strip_prefix('/')
-        .is_some_and(|r| r.starts_with(|c: char| c.is_ascii_digit()));
-    if number && statement::find(head) != row::Meaning::Unknown {
-        let d = Diagnostic::warning(
+    let is_written = after.strip_prefix('/').is_some_and(|rest| {
+        let numbered = rest.trim_start().starts_with(|c: char| c.is_ascii_digit());
+        numbered || rest.contains('=')
+    });
+    if is_written && statement::find(head) != row::Meaning::Unknown {
+        let d = Diagnostic::error(
             "statement_as_title",
             format!("the first line is the title: {head} there is not read"),
         );
+        let d = d.help("put a line with a title above it");
         out.push(source.locate(d, syntax.title));
     }
 }

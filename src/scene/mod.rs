@@ -41,6 +41,7 @@ pub mod tunnelling;
 pub mod unknown;
 pub mod untouchable;
 
+use crate::expr::measures::Measure;
 use crate::expr::program::Program;
 use crate::model::{ElementId, ElementKind, Level};
 use crate::physics::coupler::Gauge;
@@ -514,6 +515,22 @@ impl Scene {
             Some(external_inputs::ExternalInput::Hook(..))
         )
         .then_some(place)
+    }
+
+    /// Returns the formula of an entry of PINPUT or POUTPUT, which PINVAL or POUVAL reads; entries
+    /// count from 1.
+    pub(in crate::scene) fn plant_formula(
+        &self,
+        measure: Measure,
+        id: u32,
+        k: u32,
+    ) -> Option<usize> {
+        let kind = match measure {
+            Measure::Pouval => ElementKind::Poutput,
+            _ => ElementKind::Pinput,
+        };
+        let entries = self.plants.get(&kind.id(id))?;
+        entries.get((k as usize).checked_sub(1)?).copied()
     }
 
     /// Where SENVAL of a sensor stands among the numbers from outside.

@@ -97,52 +97,93 @@ impl fmt::Display for Offence {
 
 /// The first thing that a formula reads although it may not.
 pub(super) fn offence(scene: &Scene, formula: usize, allowed: Allowed) -> Option<Offence> {
-    search(scene, formula, allowed, &mut Vec::new())
+    let mut visits = vec![Visit::Untouched; scene.formulas.len()];
+    *visits.get_mut(formula)? = Visit::Open;
+    // formula, the input that is looked at next, the innermost VARIABLE around it
+    let mut path = vec![(formula, 0, None)];
+    while let Some((formula, next, variable)) = path.last_mut() {
+        let (here, around) = (*formula, *variable);
+        let inputs = scene.formulas[here].program.inputs();
+        let Some(&input) = inputs.get(*next) else {
+            visits[here] = Visit::Done;
+            path.pop();
+            continue;
+        };
+        *next += 1;
+        let (read, variable, circular) = match step(scene, input, allowed) {
+            Step::Refused(why) => {
+                let variable = around;
+                return Some(Offence {
+                    input,
+                    variable,
+                    why,
+                });
+            }
+            Step::Permitted => continue,
+            Step::Variable(id, v) => (v, Some(id), Some(Refusal::VariableLoop)),
+            Step::Entry(f) => (f, around, Some(Refusal::Loop)),
+            // a rate may depend on the state itself
+            Step::Rate(f) => (f, around, None),
+        };
+        match (visits[read], circular) {
+            (Visit::Untouched, _) => {
+                visits[read] = Visit::Open;
+                path.push((read, 0, variable));
+            }
+            (Visit::Open, Some(why)) => {
+                let variable = around;
+                return Some(Offence {
+                    input,
+                    variable,
+                    why,
+                });
+            }
+            (Visit::Open, None) | (Visit::Done, _) => {}
+        }
+    }
+    None
 }
 
-fn search(
-    scene: &Scene,
-    formula: usize,
-    allowed: Allowed,
-    open: &mut Vec<usize>,
-) -> Option<Offence> {
-    let f = scene.formulas.get(formula)?;
-    open.push(formula);
-    let found = f.program.inputs().iter().find_map(|&input| {
-        let offence = |why| Offence {
-            input,
-            variable: None,
-            why,
+/// How far the search has come with a formula.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Visit {
+    Untouched,
+    Open,
+    Done,
+}
+
+/// Where an input of a formula leads.
+enum Step {
+    /// nowhere: it may be read
+    Permitted,
+    /// nowhere: it may not be read
+    Refused(Refusal),
+    /// to the formula of a VARIABLE; its number
+    Variable(u32, usize),
+    /// to the formula of an entry of an ARRAY
+    Entry(usize),
+    /// to the formula of the rate of a state
+    Rate(usize),
+}
+
+fn step(scene: &Scene, input: Input, allowed: Allowed) -> Step {
+    if let Input::Measure(Measure::Varval, [id, ..]) = input {
+        return match scene.variables.get(&id) {
+            Some(&v) => Step::Variable(id, v),
+            None => Step::Refused(Refusal::NoVariable),
         };
-        if let Input::Measure(Measure::Varval, [id, ..]) = input {
-            return match scene.variables.get(&id) {
-                Some(&v) if open.contains(&v) => Some(offence(Refusal::VariableLoop)),
-                Some(&v) => search(scene, v, allowed, open).map(|o| o.within(id)),
-                None => Some(offence(Refusal::NoVariable)),
-            };
+    }
+    if let (Some(equation), Allowed::Time) = (state(scene, input), allowed) {
+        let d = &scene.differentials[equation];
+        if d.implicit || d.state.is_none() {
+            return Step::Refused(Refusal::NoRate);
         }
-        if let (Some(equation), Allowed::Time) = (state(scene, input), allowed) {
-            let d = &scene.differentials[equation];
-            if d.implicit || d.state.is_none() {
-                return Some(offence(Refusal::NoRate));
-            }
-            // a rate may depend on the state itself
-            if open.contains(&d.formula) {
-                return None;
-            }
-            return search(scene, d.formula, allowed, open);
-        }
-        if let Some(Entry::Formula(f)) = entry(scene, input) {
-            return if open.contains(&f) {
-                Some(offence(Refusal::Loop))
-            } else {
-                search(scene, f, allowed, open)
-            };
-        }
-        refused(scene, input, allowed).map(offence)
-    });
-    open.pop();
-    found
+        return Step::Rate(d.formula);
+    }
+    if let Some(Entry::Formula(f)) = entry(scene, input) {
+        return Step::Entry(f);
+    }
+    refused(scene, input, allowed).map_or(Step::Permitted, Step::Refused)
 }
 
 /// The entry of an ARRAY that an input is.
@@ -160,16 +201,6 @@ fn state(scene: &Scene, input: Input) -> Option<usize> {
         (Some(Entry::State(d)), _) => Some(d),
         (_, Input::Measure(Measure::Dif, [id, ..])) => scene.differential(id),
         _ => None,
-    }
-}
-
-impl Offence {
-    /// Names the VARIABLE that reads it, unless a deeper one does.
-    fn within(self, variable: u32) -> Self {
-        Self {
-            variable: self.variable.or(Some(variable)),
-            ..self
-        }
     }
 }
 

@@ -48,8 +48,9 @@ impl Pulses {
     /// # Errors
     /// Functions that cannot be recorded.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
+        let of_time = timed(&scene);
         let timed: Vec<usize> = (0..scene.formulas.len())
-            .filter(|&f| acts(&scene, f))
+            .filter(|&f| of_time[f] && acts(&scene, f))
             .collect();
         if timed.is_empty() {
             return Ok(Self::default());
@@ -104,33 +105,44 @@ impl Pulses {
     }
 }
 
-/// Returns whether a formula acts on the mechanism, and reads time alone.
+/// Returns true if a formula reads time itself and acts on the mechanism.
 fn acts(scene: &Scene, f: usize) -> bool {
     let asks = [ElementKind::Request, ElementKind::Sensor];
     let element = scene.formulas[f].element;
     let acts = element.is_some_and(|e| !asks.contains(&e.kind));
-    let mut open = Vec::new();
-    acts && scene.formulas[f].program.inputs().contains(&Input::Time) && timed(scene, f, &mut open)
+    acts && scene.formulas[f].program.inputs().contains(&Input::Time)
 }
 
-fn timed(scene: &Scene, f: usize, open: &mut Vec<usize>) -> bool {
-    if open.contains(&f) {
-        return false;
-    }
-    open.push(f);
-    let own = scene.formulas[f]
-        .program
-        .inputs()
-        .iter()
-        .all(|input| match input {
-            Input::Time | Input::Mode => true,
-            Input::Measure(Measure::Varval, [id, ..]) => {
-                (scene.variables.get(id)).is_some_and(|&v| timed(scene, v, open))
+/// Returns which formulas depend on time alone, if need be through VARIABLEs   (n_formulas)
+fn timed(scene: &Scene) -> Vec<bool> {
+    let n = scene.formulas.len();
+    // how many VARIABLEs a formula still waits for; none that reads anything else ever ends to
+    let (mut waits, mut readers) = (vec![0; n], vec![Vec::new(); n]);
+    for (f, formula) in scene.formulas.iter().enumerate() {
+        for input in formula.program.inputs() {
+            let read = match input {
+                Input::Time | Input::Mode => continue,
+                Input::Measure(Measure::Varval, [id, ..]) => scene.variables.get(id),
+                Input::Measure(..) | Input::Delayed(_) | Input::Slot(_) => None,
+            };
+            waits[f] += 1;
+            if let Some(&v) = read {
+                readers[v].push(f);
             }
-            Input::Measure(..) | Input::Delayed(_) | Input::Slot(_) => false,
-        });
-    open.pop();
-    own
+        }
+    }
+    let mut timed = vec![false; n];
+    let mut ready: Vec<usize> = (0..n).filter(|&f| waits[f] == 0).collect();
+    while let Some(f) = ready.pop() {
+        timed[f] = true;
+        for &reader in &readers[f] {
+            waits[reader] -= 1;
+            if waits[reader] == 0 {
+                ready.push(reader);
+            }
+        }
+    }
+    timed
 }
 
 /// Finds the pulses of a function: from the sample just before to the one just after each.

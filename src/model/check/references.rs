@@ -1,7 +1,7 @@
 //! Rules of references: elements that are named exist, and functions can be read.
 
 use super::{Out, about, advise, error, near};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Span};
 use crate::expr::Expr;
 use crate::expr::ast::Node;
 use crate::expr::signature;
@@ -72,6 +72,30 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
                 }
             }
         }
+    }
+}
+
+impl Model {
+    /// Returns the mistakes in an expression that is not part of the model but reads it, as a column
+    /// of results does: what cannot be read, elements that do not exist. Places count in its text.
+    pub fn check_expression(&self, text: &str) -> Vec<Diagnostic> {
+        let expr = match Expr::parse(text) {
+            Ok(expr) => expr,
+            Err(d) => return vec![d],
+        };
+        let mut known = Known::default();
+        let mut out = Vec::new();
+        for (at, target) in named(&expr) {
+            if known.has(self, target) {
+                continue;
+            }
+            let message = format!("{target} does not exist");
+            let mut d = Diagnostic::error("unknown_element", message);
+            d.help
+                .extend(near(target.number, &self.numbers(target.kind)));
+            out.push(d.at(text, Span::new(at, at + 1)));
+        }
+        out
     }
 }
 

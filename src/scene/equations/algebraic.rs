@@ -9,6 +9,7 @@
 //! with y alone moving. What e reads may be time, other equations, VARIABLEs and ARRAYs of these,
 //! and places of markers; what has no rate that is known without accelerations is named.
 
+use super::formulas::nothing;
 use super::{Equations, Lack};
 use crate::expr::measures::{Family, Measure};
 use crate::expr::program::{Input, Work};
@@ -35,45 +36,47 @@ impl<S: Scalar> Equations<'_, S> {
             );
         }
         self.rates_open.borrow_mut().push(d);
-        let along = self.moved(equation.formula, Moving::Others(d), &mut Vec::new());
-        let own = self.moved(equation.formula, Moving::Only(d), &mut Vec::new());
+        let along = self.moved(equation.formula, Moving::Others(d));
+        let own = self.moved(equation.formula, Moving::Only(d));
         self.rates_open.borrow_mut().pop();
         -(along.first / own.first)
     }
 
     /// A formula with its rate while some of what it reads moves.
-    fn moved(&self, formula: usize, moving: Moving, open: &mut Vec<usize>) -> Jet<S> {
-        let f = &self.scene.formulas[formula];
-        if open.contains(&formula) {
-            return Jet::constant(f64::NAN);
+    fn moved(&self, formula: usize, moving: Moving) -> Jet<S> {
+        let found = self.found_in_order(formula, |formula, read| {
+            let f = &self.scene.formulas[formula];
+            let inputs = f.program.inputs().iter();
+            let inputs: Vec<Jet<S>> = inputs
+                .map(|&input| match self.written_as(input) {
+                    Some(formula) => read.get(&formula).copied().unwrap_or_else(nothing),
+                    None => self.moved_input(input, moving, &f.name),
+                })
+                .collect();
+            let mut out = [Jet::zero()];
+            f.program.eval(&inputs, &mut Work::default(), &mut out);
+            out[0]
+        });
+        found.unwrap_or_else(nothing)
+    }
+
+    fn moved_input(&self, input: Input, moving: Moving, asked_by: &str) -> Jet<S> {
+        match input {
+            Input::Time => at_rate(self.t, if own(moving) { S::zero() } else { S::one() }),
+            Input::Mode => Jet::constant(self.scene.mode),
+            Input::Measure(Measure::Varval, _) => nothing(),
+            Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k) {
+                Some(Entry::Number(x)) => Jet::constant(x),
+                Some(Entry::State(d)) => self.moved_state(d, moving),
+                Some(Entry::Formula(_)) | None => nothing(),
+            },
+            Input::Measure(Measure::Dif, [id, ..]) => match self.scene.differential(id) {
+                Some(d) => self.moved_state(d, moving),
+                None => nothing(),
+            },
+            Input::Measure(measure, ids) => self.moved_measure(asked_by, measure, ids, moving),
+            Input::Delayed(_) | Input::Slot(_) => nothing(),
         }
-        open.push(formula);
-        let inputs: Vec<Jet<S>> = (f.program.inputs().iter())
-            .map(|&input| match input {
-                Input::Time => at_rate(self.t, if own(moving) { S::zero() } else { S::one() }),
-                Input::Mode => Jet::constant(self.scene.mode),
-                Input::Measure(Measure::Varval, [id, ..]) => match self.scene.variables.get(&id) {
-                    Some(&v) => self.moved(v, moving, open),
-                    None => Jet::constant(f64::NAN),
-                },
-                Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k) {
-                    Some(Entry::Number(x)) => Jet::constant(x),
-                    Some(Entry::State(d)) => self.moved_state(d, moving),
-                    Some(Entry::Formula(f)) => self.moved(f, moving, open),
-                    None => Jet::constant(f64::NAN),
-                },
-                Input::Measure(Measure::Dif, [id, ..]) => match self.scene.differential(id) {
-                    Some(d) => self.moved_state(d, moving),
-                    None => Jet::constant(f64::NAN),
-                },
-                Input::Measure(measure, ids) => self.moved_measure(&f.name, measure, ids, moving),
-                Input::Delayed(_) | Input::Slot(_) => Jet::constant(f64::NAN),
-            })
-            .collect();
-        open.pop();
-        let mut out = [Jet::zero()];
-        f.program.eval(&inputs, &mut Work::default(), &mut out);
-        out[0]
     }
 
     fn moved_state(&self, d: usize, moving: Moving) -> Jet<S> {

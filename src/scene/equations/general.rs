@@ -8,7 +8,7 @@
 //! measure over duals along the twists of the markers it reads, the rates from both over jets.
 
 use super::rows::{moving, seed, twist};
-use super::{Equations, RowValue};
+use super::{Equations, RowValue, formulas};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Work};
 use crate::physics::action::Action;
@@ -17,17 +17,22 @@ use crate::scalar::{Jet, Scalar};
 use crate::scene::Entry;
 use crate::scene::history::AngleId;
 use crate::space::MarkerState;
+use std::collections::HashMap;
 
 /// Most markers that one measure reads.
 const MAX_MARKERS: usize = 3;
 
 /// A function of places: its value with rates in time, and what a unit multiplier on it exerts.
+#[derive(Clone)]
 struct Traced<S> {
     jet: Jet<S>,
     actions: Vec<(usize, Action<S>)>,
 }
 
 impl<S: Scalar> Traced<S> {
+    fn nothing() -> Self {
+        Self::of_time(formulas::nothing())
+    }
     fn of_time(jet: Jet<S>) -> Self {
         Self {
             jet,
@@ -39,7 +44,7 @@ impl<S: Scalar> Traced<S> {
 impl<S: Scalar> Equations<'_, S> {
     /// A row that says that a formula of places is zero.
     pub(super) fn formula_row(&self, formula: usize) -> RowValue<S> {
-        let Traced { jet, actions } = self.traced(formula, &mut Vec::new());
+        let Traced { jet, actions } = self.traced(formula);
         let gradient = self.gradient_of(&actions);
         RowValue {
             value: jet.value,
@@ -50,42 +55,39 @@ impl<S: Scalar> Equations<'_, S> {
         }
     }
 
-    fn traced(&self, formula: usize, open: &mut Vec<usize>) -> Traced<S> {
-        let f = &self.scene.formulas[formula];
-        let nothing = || Traced::of_time(Jet::constant(f64::NAN));
-        if open.contains(&formula) {
-            return nothing();
-        }
-        open.push(formula);
-        let inputs: Vec<Traced<S>> = f
-            .program
-            .inputs()
-            .iter()
-            .map(|&input| match input {
-                Input::Time => Traced::of_time(Jet::variable(self.t)),
-                Input::Mode => Traced::of_time(Jet::constant(self.scene.mode)),
-                Input::Measure(Measure::Varval, [id, ..]) => {
-                    let variable = self.scene.variables.get(&id);
-                    variable.map_or_else(nothing, |&v| self.traced(v, open))
-                }
-                Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k) {
-                    Some(Entry::Number(x)) => Traced::of_time(Jet::constant(x)),
-                    Some(Entry::Formula(f)) => self.traced(f, open),
-                    _ => nothing(),
-                },
-                Input::Measure(measure, ids) => {
-                    self.traced_measure(measure, ids).unwrap_or_else(nothing)
-                }
-                _ => nothing(),
-            })
-            .collect();
-        open.pop();
-        let jets: Vec<Jet<S>> = inputs.iter().map(|i| i.jet).collect();
-        let mut out = [Jet::zero()];
-        f.program.eval(&jets, &mut Work::default(), &mut out);
-        Traced {
-            jet: out[0],
-            actions: self.chained(formula, &inputs),
+    fn traced(&self, formula: usize) -> Traced<S> {
+        let found = self.found_in_order(formula, |formula, read: &HashMap<usize, Traced<S>>| {
+            let program = &self.scene.formulas[formula].program;
+            let inputs = program.inputs().iter();
+            let inputs: Vec<Traced<S>> = inputs
+                .map(|&input| match self.written_as(input) {
+                    Some(formula) => read.get(&formula).cloned(),
+                    None => self.traced_input(input),
+                })
+                .map(|traced| traced.unwrap_or_else(Traced::nothing))
+                .collect();
+            let jets: Vec<Jet<S>> = inputs.iter().map(|i| i.jet).collect();
+            let mut out = [Jet::zero()];
+            program.eval(&jets, &mut Work::default(), &mut out);
+            Traced {
+                jet: out[0],
+                actions: self.chained(formula, &inputs),
+            }
+        });
+        found.unwrap_or_else(Traced::nothing)
+    }
+
+    /// An input that is no formula; `None`: it is no function of places.
+    fn traced_input(&self, input: Input) -> Option<Traced<S>> {
+        match input {
+            Input::Time => Some(Traced::of_time(Jet::variable(self.t))),
+            Input::Mode => Some(Traced::of_time(Jet::constant(self.scene.mode))),
+            Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k)? {
+                Entry::Number(x) => Some(Traced::of_time(Jet::constant(x))),
+                Entry::State(_) | Entry::Formula(_) => None,
+            },
+            Input::Measure(measure, ids) => self.traced_measure(measure, ids),
+            Input::Delayed(_) | Input::Slot(_) => None,
         }
     }
 

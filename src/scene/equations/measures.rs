@@ -80,9 +80,8 @@ impl<S: Scalar> Equations<'_, S> {
                     Measure::Pouval => ElementKind::Poutput.id(id),
                     _ => ElementKind::Pinput.id(id),
                 };
-                let plant = scene.plants.get(&element);
-                match plant.and_then(|p| p.get((k as usize).wrapping_sub(1))) {
-                    Some(&f) => self.formula(f),
+                match scene.plant_formula(measure, id, k) {
+                    Some(f) => self.formula(f),
                     None => self.complain(asked_by, Lack::Entry { element, entry: k }),
                 }
             }

@@ -12,6 +12,7 @@
 mod algebraic;
 mod cams;
 mod dynamics;
+mod formulas;
 mod general;
 mod loops;
 mod measures;
@@ -28,18 +29,17 @@ pub use turns::TurnedAngle;
 pub use undetermined_reactions::Share;
 pub use unsupported::{Lack, Unsupported};
 
+use super::Scene;
 use super::configuration::{Configuration, Configured};
-use super::external_inputs::ExternalInput;
 use super::layout::Layout;
 use super::loops::Key;
 use super::sweep::{self, Coordinates, LinkState};
-use super::{Entry, Scene};
-use crate::expr::measures::Measure;
-use crate::expr::program::{Input, Work};
+use crate::expr::program::Input;
 use crate::model::{ElementId, Level};
 use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
 use crate::space::MarkerState;
+use formulas::Opened;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::ops::Range;
 
@@ -65,7 +65,7 @@ pub struct Equations<'s, S: Scalar> {
     markers: RefCell<Vec<Option<MarkerState<S>>>>,
     formulas: RefCell<Vec<Option<S>>>,
     /// formulas being evaluated: a formula that asks for itself is a loop
-    open: RefCell<Vec<usize>>,
+    open: RefCell<Opened>,
     solved: OnceCell<Solved<S>>,
     solving: Cell<bool>,
     /// states of stress that dependent rows permit
@@ -114,7 +114,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             links: Vec::new(),
             markers: RefCell::new(vec![None; scene.markers.len()]),
             formulas: RefCell::new(vec![None; scene.formulas.len()]),
-            open: RefCell::new(Vec::new()),
+            open: RefCell::new(Opened::none(scene.formulas.len())),
             solved: OnceCell::new(),
             solving: Cell::new(false),
             shares: OnceCell::new(),
@@ -192,7 +192,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         let f = match self.scene.computed(motion.formula) {
             // a closure of the user's tells its derivatives
             Some(p) => Jet::new(self.external[p], self.external[p + 1], self.external[p + 2]),
-            None => self.in_time(motion.formula, 2, &mut Vec::new()),
+            None => self.in_time(motion.formula, 2),
         };
         let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
         let offset = S::constant(start.offset);
@@ -214,68 +214,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
             return S::constant(displacement);
         }
         let formula = self.scene.motions[m].formula;
-        self.in_time(formula, 0, &mut Vec::new()).value
-    }
-
-    /// A formula of time and of differential equations that depend on nothing else, with its rates
-    /// up to `order`.
-    fn in_time(&self, formula: usize, order: usize, open: &mut Vec<usize>) -> Jet<S> {
-        let f = &self.scene.formulas[formula];
-        if open.contains(&formula) {
-            return Jet::constant(f64::NAN);
-        }
-        open.push(formula);
-        let variable = |id: &u32, open: &mut Vec<usize>| match self.scene.variables.get(id) {
-            Some(&v) => self.in_time(v, order, open),
-            None => Jet::constant(f64::NAN),
-        };
-        let inputs: Vec<Jet<S>> = f
-            .program
-            .inputs()
-            .iter()
-            .map(|input| match input {
-                Input::Time => Jet::variable(self.t),
-                Input::Mode => Jet::constant(self.scene.mode),
-                Input::Measure(Measure::Varval, [id, ..]) => variable(id, open),
-                Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(*id, *k) {
-                    Some(Entry::Number(x)) => Jet::constant(x),
-                    Some(Entry::State(d)) => self.state_in_time(d, order),
-                    Some(Entry::Formula(f)) => self.in_time(f, order, open),
-                    None => Jet::constant(f64::NAN),
-                },
-                Input::Measure(Measure::Dif, [id, ..]) => match self.scene.differential(*id) {
-                    Some(d) => self.state_in_time(d, order),
-                    None => Jet::constant(f64::NAN),
-                },
-                _ => Jet::constant(f64::NAN),
-            })
-            .collect();
-        open.pop();
-        let mut out = [Jet::zero()];
-        f.program.eval(&inputs, &mut Work::default(), &mut out);
-        out[0] + Jet::new(self.added(formula), S::zero(), S::zero())
-    }
-
-    /// A state of a differential equation with its rates up to `order`: each order needs its
-    /// formula one order lower.
-    fn state_in_time(&self, d: usize, order: usize) -> Jet<S> {
-        let equation = &self.scene.differentials[d];
-        let Some(value) = equation.state.map(|s| self.x[s]) else {
-            return Jet::constant(f64::NAN);
-        };
-        if order == 0 {
-            return Jet::new(value, S::zero(), S::zero());
-        }
-        if equation.implicit {
-            return Jet::constant(f64::NAN);
-        }
-        let rate = self.in_time(equation.formula, order - 1, &mut Vec::new());
-        Jet::new(value, rate.value, rate.first)
-    }
-
-    fn entry(&self, id: u32, k: u32) -> Option<Entry> {
-        let entries = self.scene.arrays.get(&id)?;
-        entries.get((k as usize).checked_sub(1)?).copied()
+        self.in_time(formula, 0).value
     }
 
     /// Pose and velocity of a marker; its accelerations are those of driven coordinates only.
@@ -336,69 +275,9 @@ impl<'s, S: Scalar> Equations<'s, S> {
         Some(self.floating_marker(floating, accelerated))
     }
 
-    /// Value of a formula.
-    pub fn formula(&self, f: usize) -> S {
-        if let Some(value) = self.unknown(Key::Formula(f)) {
-            return value;
-        }
-        if let Some(value) = self.formulas.borrow()[f] {
-            return value;
-        }
-        if self.open.borrow().contains(&f) {
-            let name = &self.scene.formulas[f].name;
-            return self.too_early(Key::Formula(f), name, Lack::OwnValue);
-        }
-        let value = self.evaluate(f);
-        self.formulas.borrow_mut()[f] = Some(value);
-        value
-    }
-
-    /// Evaluates a formula, also where it closes a loop.
-    fn evaluate(&self, f: usize) -> S {
-        let formula = &self.scene.formulas[f];
-        self.open.borrow_mut().push(f);
-        let inputs: Vec<S> = formula
-            .program
-            .inputs()
-            .iter()
-            .map(|&i| match i {
-                Input::Delayed(k) => self.delayed(formula.delayed.get(k as usize).copied()),
-                other => self.input(other, &formula.name),
-            })
-            .collect();
-        self.open.borrow_mut().pop();
-        let mut out = [S::zero()];
-        formula
-            .program
-            .eval(&inputs, &mut Work::default(), &mut out);
-        out[0] + self.added(f)
-    }
-
-    /// Returns what is added to a formula from outside, where it is a plant input.
-    fn added(&self, f: usize) -> S {
-        let mut inputs = self.scene.external_inputs.iter();
-        match inputs.position(|s| *s == ExternalInput::Input(f)) {
-            Some(place) => self.external[place],
-            None => S::zero(),
-        }
-    }
-
     /// Numbers from outside: places among these.
     pub fn external(&self, places: Range<usize>) -> &[S] {
         &self.external[places]
-    }
-
-    /// A number from outside; at rest the past is like the present.
-    fn delayed(&self, place: Option<usize>) -> S {
-        let Some(place) = place else {
-            return S::constant(f64::NAN);
-        };
-        match self.scene.external_inputs[place] {
-            ExternalInput::Delay(k) if self.scene.mode == STATIC => {
-                self.formula(self.scene.delays[k].expression)
-            }
-            _ => self.external[place],
-        }
     }
 
     /// Supplies what a formula asks for: the one door between the language and the scene.

@@ -16,7 +16,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// Action of a force element on its I marker.
     pub(super) fn force_action(&self, f: usize) -> Action<S> {
         // within a function: the function may be a load, which the accelerations wait for
-        let within = !self.open.borrow().is_empty();
+        let within = self.open.borrow().any();
         if self.solving.get() || self.discovering || within {
             self.scene.forces[f].action(self)
         } else {
