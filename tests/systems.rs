@@ -772,3 +772,28 @@ fn a_motion_may_read_a_number_that_commands_change() {
     let z = values(&s, "DZ(2,3,3)");
     assert!((z.last().unwrap() - 24.0).abs() < 1e-9, "{z:?}");
 }
+
+/// The past of a delayed value goes on in the next simulation by what it is of: not by how many
+/// others there are.
+#[test]
+fn the_past_goes_on_where_other_delays_come_and_go() {
+    use cognate::model::ElementKind;
+    let text = "DIFF/1, IC=0, FUNCTION=1\n\
+                VARIABLE/1, FUNCTION=DELAY(DIF(1),0.5,0)\n\
+                VARIABLE/2, FUNCTION=DELAY(2*DIF(1),0.25,0)\n\
+                VARIABLE/3, FUNCTION=DELAY(-DIF(1),0.25,7)\n";
+    let [first, third] = [1, 3].map(|id| ElementKind::Variable.id(id));
+    // another number of delays, and as many of which one is another
+    for comes in [None, Some(third)] {
+        let mut s = session(text, &["VARVAL(2)"], "AUTO");
+        s.model.inactive.insert(third);
+        go(&mut s, 1.0, 4);
+        s.model.inactive.insert(first);
+        if let Some(comes) = comes {
+            s.model.inactive.remove(&comes);
+        }
+        go(&mut s, 1.2, 4);
+        let exact = |t: f64| 2.0 * (t - 0.25).max(0.0);
+        assert!(running::off(&s, "VARVAL(2)", exact) < 1e-8, "{comes:?}");
+    }
+}

@@ -130,6 +130,7 @@ proptest! {
         b in -60.0..60.0f64,
         tilt in 0.2..1.3f64,
         steps in 1usize..10,
+        with_state: bool,
     ) {
         let text = format!(
             "PART/2, MASS=1, CM=20, IP=1,1,1\n\
@@ -142,7 +143,7 @@ proptest! {
              JOINT/2, REVOLUTE, I=30, J=2\n\
              MOTION/2, JOINT=2, ROTATION, FUNCTION={b:?}*TIME\n"
         );
-        let state = "DIFF/1, IC=0, FUNCTION=1\n";
+        let state = if with_state { "DIFF/1, IC=0, FUNCTION=1\n" } else { "" };
         let mut s = session(&(text + state), &["AZ(30,20)"], 1e-6);
         go(&mut s, Analysis::Dynamic, 2.0, steps);
         // x of 30 in the axes of 20: Rz(−at) Rx(tilt) (cos bt, sin bt, 0)
@@ -193,4 +194,93 @@ fn turns_go_on_in_the_next_simulation() {
     assert!(off(&next, "AZ(20,1)", |t| 20.0 * t) < 1e-6);
     let askew = 70f64.to_radians();
     assert!(off(&next, "AZ(21,1)", |t| 20.0 * t + askew) < 1e-6);
+}
+
+/// Between equilibria drives may turn by many turns, about axes askew too.
+#[test]
+fn turns_are_counted_between_equilibria() {
+    let text = "PART/2, MASS=1, CM=20, IP=1,1,1\n\
+                MARKER/20, PART=2\n\
+                JOINT/1, REVOLUTE, I=20, J=1\n\
+                MOTION/1, JOINT=1, ROTATION, FUNCTION=40*TIME\n\
+                MARKER/2, PART=1, REULER=0,0.5,0\n";
+    for steps in [1, 4] {
+        let mut s = session(text, &["AZ(20,1)", "AZ(20,2)"], 1e-6);
+        go(&mut s, Analysis::Static, 2.0, steps);
+        assert!(off(&s, "AZ(20,1)", |t| 40.0 * t) < 1e-9);
+        // x of 20 against axes that are inclined by 0.5
+        let inclined = |t: f64| {
+            let (sine, cosine) = (40.0 * t).sin_cos();
+            (sine * 0.5f64.cos()).atan2(cosine)
+        };
+        let times = values(&s, "time").to_vec();
+        let exact = unwrapped(&times, 50.0, inclined);
+        for (found, exact) in values(&s, "AZ(20,2)").iter().zip(exact) {
+            assert!((found - exact).abs() < 1e-9, "{found} for {exact}");
+        }
+    }
+}
+
+/// A sensor is triggered where its expression passes VALUE, not at the next output.
+#[test]
+fn sensors_of_mechanisms_without_freedom_are_located() {
+    let rotor = rotor(false)
+        + "MARKER/22, PART=2, QP=1,0,0\n\
+           MOTION/1, JOINT=1, ROTATION, FUNCTION=62.83185307179586*TIME\n";
+    let sensors = [
+        ("AZ(20,1)\\, GE, VALUE=62", 62.0 / (20.0 * PI)),
+        ("AZ(20,1)\\, EQ, VALUE=31", 31.0 / (20.0 * PI)),
+        (
+            "-AZ(21,1)\\, LE, VALUE=-20",
+            (20.0 - 70f64.to_radians()) / (20.0 * PI),
+        ),
+        // within the first of the turns between two outputs
+        ("DX(22,1)\\, LE, VALUE=0", 0.025),
+        // again and again the same angle
+        ("AZ(20,1)\\, ANGULAR, EQ, VALUE=3", 3.0 / (20.0 * PI)),
+    ];
+    for (sensor, at) in sensors {
+        for steps in [3, 50] {
+            let text = format!("{rotor}SENSOR/1, FUNCTION={sensor}, ERROR=1E-6, RETURN\n");
+            let mut s = session(&text, &["AZ(20,1)"], 1e-6);
+            let status = try_to(&mut s, Analysis::Kinematic, 10.0, steps);
+            println!("{sensor}: {status:?}");
+            let end = *values(&s, "time").last().expect("a row");
+            assert!(
+                (end - at).abs() < 1e-9,
+                "{sensor}: {end} for {at}, {steps} outputs"
+            );
+        }
+    }
+}
+
+/// A crank and a slider whose rod is carried by a ball: no coordinate knows the turns of its hinge.
+#[test]
+fn hinges_of_a_loop_count_with_kinematics() {
+    let text = "PART/2, MASS=1, CM=20, IP=1,1,1\n\
+                MARKER/20, PART=2\nMARKER/22, PART=2, QP=1,0,0\n\
+                PART/3, MASS=1, CM=30, IP=1,1,1, QG=1,0,0\n\
+                MARKER/30, PART=3\nMARKER/33, PART=3, QP=3,0,0\n\
+                PART/4, MASS=1, CM=40, IP=1,1,1, QG=4,0,0\n\
+                MARKER/40, PART=4\nMARKER/44, PART=4, REULER=90D,90D,0\n\
+                MARKER/4, PART=1, REULER=90D,90D,0\nMARKER/5, PART=1, REULER=0,0.5,0\n\
+                JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, SPHERICAL, I=30, J=22\n\
+                JOINT/3, UNIVERSAL, I=41, J=34\nJOINT/4, TRANSLATIONAL, I=44, J=4\n\
+                MARKER/41, PART=4, REULER=0,90D,0\nMARKER/34, PART=3, QP=3,0,0\n\
+                MOTION/1, JOINT=1, ROTATION, FUNCTION=40*TIME\n";
+    let rod = |t: f64| -((40.0 * t).sin() / 3.0).asin();
+    for steps in [1, 7] {
+        let columns = ["AZ(30,22)", "AZ(20,5)"];
+        let s = run(text, &columns, Analysis::Kinematic, (2.0, steps), 1e-6);
+        assert!(off(&s, "AZ(30,22)", |t| rod(t) - 40.0 * t) < 1e-6);
+        let inclined = |t: f64| {
+            let (sine, cosine) = (40.0 * t).sin_cos();
+            (sine * 0.5f64.cos()).atan2(cosine)
+        };
+        let times = values(&s, "time").to_vec();
+        let exact = unwrapped(&times, 50.0, inclined);
+        for (found, exact) in values(&s, "AZ(20,5)").iter().zip(exact) {
+            assert!((found - exact).abs() < 1e-9, "{found} for {exact}");
+        }
+    }
 }

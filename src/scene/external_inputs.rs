@@ -5,6 +5,7 @@
 //! computes them from what stands before them, so that the programs need not know where they come
 //! from.
 
+use super::history::DelayId;
 use crate::model::{Comparison, ElementId, Formula};
 use crate::physics::contact::Question;
 
@@ -77,8 +78,10 @@ pub struct SceneSampler {
 }
 
 /// A value of the past: `DELAY(expression, delay, history)`; indices in the formulas.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SceneDelay {
+    /// which value it is
+    pub id: DelayId,
     /// what is remembered
     pub expression: usize,
     /// how long ago

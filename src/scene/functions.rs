@@ -5,6 +5,7 @@ use super::Formula;
 use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook};
+use super::history::DelayId;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
 use crate::model::{ElementId, ElementKind, Formula as ModelFormula, RequestKind, Text};
@@ -85,9 +86,14 @@ impl Builder<'_> {
             .map(|k| self.supply(ExternalInput::Delay(first + k)))
             .collect();
         for programs in compiled.delays {
+            let id = DelayId {
+                owner: owner.name.clone(),
+                expression: programs[0].to_string(),
+            };
             let [expression, delay, history] =
                 programs.map(|p| self.push(owner, text, p, places.clone()));
             self.scene.delays.push(SceneDelay {
+                id,
                 expression,
                 delay,
                 history,

@@ -1,7 +1,8 @@
-//! Identities of what is remembered beside the unknowns: angles whose turns are counted.
+//! Identities of what is remembered beside the unknowns: angles whose turns are counted, and values
+//! whose past is kept.
 //!
-//! The memory of one simulation finds its place in the next by these. As texts they stand in saved
-//! states, which read them back.
+//! Each of them finds its place in the next simulation by its identity. As texts identities stand
+//! in saved states, which read them back.
 
 use crate::expr::measures::Measure;
 use crate::physics::coupler::Gauge;
@@ -20,6 +21,15 @@ pub enum AngleId {
         /// user's numbers of the markers I and J
         markers: [u32; 2],
     },
+}
+
+/// A value whose past is kept for DELAY: the same expression of the same owner.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct DelayId {
+    /// whose function asks for it: "SFORCE/3 FUNCTION"
+    pub owner: String,
+    /// the code of the expression, printed: what it computes whatever is written around it
+    pub expression: String,
 }
 
 /// Names of the angles of joints.

@@ -4,7 +4,7 @@ use super::Session;
 use super::outcome::counts;
 use super::simulate::Span;
 use super::stop_reason::StopReason;
-use crate::analysis::statics::{self, NoEquilibrium, Settings};
+use crate::analysis::statics::{self, Equilibrium, NoEquilibrium, Settings};
 use crate::analysis::system::System;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
@@ -13,6 +13,11 @@ use crate::numeric::Stats;
 use crate::results::{self, Event, Kind, Status};
 use crate::scene::layout::Layout;
 use std::time::Instant;
+
+/// Way of the drives between equilibria, rad, where turns are counted from one to the next.
+const TURN_BETWEEN_EQUILIBRIA: f64 = 1.0;
+/// Most equilibria between two outputs.
+const MAX_EQUILIBRIA_BETWEEN: f64 = 1e4;
 
 /// The equilibria that were found, one after the other.
 #[derive(Default)]
@@ -80,10 +85,7 @@ impl Session {
             ..Equilibria::default()
         };
         for &t in times {
-            let y = system.numbers[system.scene.layout.y()].to_vec();
-            let numbers = system.row(t, &y);
-            system.numbers.copy_from_slice(&numbers);
-            let found = match statics::settle(system, &settings, watch, &mut all.stats) {
+            let found = match settle_at(system, &settings, t, watch, &mut all.stats) {
                 Ok(found) => found,
                 Err(why) => {
                     all.failed = Some((t, why));
@@ -105,6 +107,41 @@ impl Session {
         }
         all
     }
+}
+
+/// Finds the equilibrium at a time. Where turns are counted from one to the next, drives come there
+/// by so small ways that none is lost.
+///
+/// # Errors
+/// There is none near.
+fn settle_at(
+    system: &mut System,
+    settings: &Settings,
+    t: f64,
+    watch: &mut dyn Watch,
+    stats: &mut Stats,
+) -> Result<Equilibrium, NoEquilibrium> {
+    let mut rest = |system: &mut System, t: f64| {
+        let y = system.numbers[system.scene.layout.y()].to_vec();
+        let numbers = system.row(t, &y);
+        system.numbers.copy_from_slice(&numbers);
+        statics::settle(system, settings, watch, stats)
+    };
+    let start = system.numbers[Layout::TIME];
+    if system.counts_turns() && t > start {
+        let way = system.turn_of_drives(t) / TURN_BETWEEN_EQUILIBRIA;
+        let ways = way.min(MAX_EQUILIBRIA_BETWEEN).ceil() as usize;
+        for k in 1..ways {
+            let kept = system.numbers.clone();
+            match rest(system, start + (t - start) * k as f64 / ways as f64) {
+                Ok(_) => {}
+                Err(NoEquilibrium::Interrupted) => return Err(NoEquilibrium::Interrupted),
+                // nobody has asked for this one
+                Err(NoEquilibrium::Unbalanced(_)) => system.numbers.copy_from_slice(&kept),
+            }
+        }
+    }
+    rest(system, t)
 }
 
 /// Returns why a search for an equilibrium at time `at` ended without one.

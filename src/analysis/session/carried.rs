@@ -8,7 +8,7 @@ use crate::physics::kinematic::kinematic;
 use crate::scene::Scene;
 use crate::scene::compile::orientation;
 use crate::scene::equations::Equations;
-use crate::scene::history::AngleId;
+use crate::scene::history::{AngleId, DelayId};
 use crate::scene::layout::{Layout, State};
 use crate::scene::unknown::UnknownId;
 use crate::space::{MarkerState, Vec3};
@@ -34,7 +34,7 @@ pub(super) struct Carried {
     /// states of sampled systems, by the numbers of their GSE
     pub(super) samples: BTreeMap<u32, samples::Held>,
     /// the past of delayed values
-    pub(super) past: Vec<external_inputs::Past>,
+    pub(super) past: BTreeMap<DelayId, external_inputs::Past>,
 }
 
 impl Carried {

@@ -228,9 +228,11 @@ impl Session {
         y.extend(start.x);
         let mut system = System::with_hooks(start.scene, start.configuration, &self.hooks)?;
         let carried = self.carried.as_ref();
-        system
-            .external
-            .begin(t, carried.map_or(&[][..], |c| &c.past));
+        if let Some(carried) = carried {
+            system.external.begin(t, &carried.past);
+        } else {
+            system.external.begin(t, &BTreeMap::new());
+        }
         system.numbers[Layout::TIME] = t;
         system.numbers[l.y()].copy_from_slice(&y);
         if let Err(k) = system.resolve() {

@@ -11,7 +11,7 @@ use crate::analysis::system::samples::Held;
 use crate::dataset;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::{ElementId, ElementKind, Model};
-use crate::scene::history::AngleId;
+use crate::scene::history::{AngleId, DelayId};
 use crate::scene::unknown::{MotionState, UnknownId};
 use crate::space::{MarkerState, Mat3, Vec3};
 use serde_json::{Map, Value, json};
@@ -188,7 +188,10 @@ fn state(c: &Carried) -> Value {
     let past: Vec<Value> = c
         .past
         .iter()
-        .map(|p| p.numbers().iter().map(|n| numbers(n)).collect())
+        .map(|(id, p)| {
+            let lists: Value = p.numbers().iter().map(|n| numbers(n)).collect();
+            json!({ "owner": id.owner, "expression": id.expression, "past": lists })
+        })
         .collect();
     json!({
         "time": number(c.t),
@@ -232,10 +235,7 @@ fn carried(v: &Value) -> Option<Carried> {
             Some((*id, held))
         })
         .collect();
-    let past = v["past"].as_array()?.iter().map(|p| {
-        let lists: Option<Vec<Vec<f64>>> = p.as_array()?.iter().map(as_numbers).collect();
-        Past::of_numbers(&lists?)
-    });
+    let past = v["past"].as_array()?.iter().map(past);
     Some(Carried {
         t: as_number(&v["time"])?,
         numbers: all,
@@ -260,6 +260,17 @@ fn turns(v: &Value) -> Option<BTreeMap<AngleId, f64>> {
                 .collect()
         }
     }
+}
+
+/// Reads the past of a delayed value.
+fn past(v: &Value) -> Option<(DelayId, Past)> {
+    let text = |key: &str| v[key].as_str().map(str::to_owned);
+    let id = DelayId {
+        owner: text("owner")?,
+        expression: text("expression")?,
+    };
+    let lists: Option<Vec<Vec<f64>>> = v["past"].as_array()?.iter().map(as_numbers).collect();
+    Some((id, Past::of_numbers(&lists?)?))
 }
 
 /// Reads the names of the unknowns. A velocity of a MOTION once had none: it stands after the

@@ -23,9 +23,11 @@ use crate::scalar::Dual;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::{Lack, Unsupported};
 use crate::scene::external_inputs::{ExternalInput, HookKind, HookName};
+use crate::scene::history::DelayId;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
 use crate::scene::slopes::WIDTH;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -154,6 +156,7 @@ impl Past {
 
 #[derive(Debug)]
 struct Track {
+    id: DelayId,
     place: usize,
     expression: Program,
     delay: Program,
@@ -295,8 +298,9 @@ impl ExternalInputs {
         for (place, supplied) in scene.external_inputs.iter().enumerate() {
             match *supplied {
                 ExternalInput::Delay(k) if !at_rest => {
-                    let d = scene.delays[k];
+                    let d = &scene.delays[k];
                     this.tracks.push(Track {
+                        id: d.id.clone(),
                         place: l.external_at(place),
                         expression: record(scene, |at| vec![at.formula(d.expression)])?,
                         delay: record(scene, |at| vec![at.formula(d.delay)])?,
@@ -474,16 +478,16 @@ impl ExternalInputs {
     }
 
     /// Returns the past of all delayed values, for the next simulation.
-    pub fn past(&self) -> Vec<Past> {
-        self.tracks.iter().map(|t| t.past.clone()).collect()
+    pub fn past(&self) -> BTreeMap<DelayId, Past> {
+        let tracks = self.tracks.iter();
+        tracks.map(|t| (t.id.clone(), t.past.clone())).collect()
     }
 
-    /// Goes on from a past, or begins at time `t`.
-    pub fn begin(&mut self, t: f64, past: &[Past]) {
-        let fits = past.len() == self.tracks.len();
-        for (k, track) in self.tracks.iter_mut().enumerate() {
-            if fits {
-                track.past.clone_from(&past[k]);
+    /// Goes on from a past as far as it is known, or begins at time `t`.
+    pub fn begin(&mut self, t: f64, past: &BTreeMap<DelayId, Past>) {
+        for track in &mut self.tracks {
+            if let Some(past) = past.get(&track.id) {
+                track.past.clone_from(past);
             }
             // steps beyond the beginning, of an earlier attempt, are no past
             track.past.pieces.retain(|p| p.t0 < t);

@@ -32,13 +32,13 @@ pub mod turns;
 use crate::diagnostic::Diagnostic;
 use crate::numeric::Ode;
 use crate::scalar::Dual;
-use crate::scene::Scene;
 use crate::scene::broken::{Broken, broken};
 use crate::scene::configuration::{Configuration, Configured, Elimination};
-use crate::scene::equations::Unsupported;
+use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
 use crate::scene::slopes::WIDTH;
+use crate::scene::{Coordinate, Scene, Source};
 use branches::Branches;
 use external_inputs::{ExternalInputs, Hook};
 use implicit::Implicit;
@@ -324,6 +324,39 @@ impl System {
             .sum()
     }
 
+    /// Returns how fast coordinates and drives move at a state: the sum of their speeds, rad per
+    /// time; lengths are measured by that of the mechanism.
+    pub fn pace(&self, t: f64, y: &[f64]) -> f64 {
+        let numbers = self.numbers_at(t, y);
+        let at = Equations::new(self.configured(), &numbers);
+        let v = self.scene.layout.state(y).v;
+        let speed = |c: &Coordinate| {
+            let rate = match c.source {
+                Source::Free { v: k, .. } => v[k],
+                Source::Driven(m) => at.prescribed(m).first,
+            };
+            let one = if c.angular { 1.0 } else { self.scene.length };
+            rate.abs() / one
+        };
+        self.scene.coordinates.iter().map(speed).sum()
+    }
+
+    /// Returns how far motions that are angles go from the present numbers to a time, rad.
+    pub fn turn_of_drives(&self, t: f64) -> f64 {
+        let mut numbers = self.numbers.clone();
+        let now = Equations::new(self.configured(), &numbers);
+        let value = |at: &Equations<'_, f64>, m| at.prescribed(m).value;
+        let motions = 0..self.scene.motions.len();
+        let angles: Vec<usize> = motions.filter(|&m| self.scene.drives_an_angle(m)).collect();
+        let before: Vec<f64> = angles.iter().map(|&m| value(&now, m)).collect();
+        drop(now);
+        numbers[Layout::TIME] = t;
+        let then = Equations::new(self.configured(), &numbers);
+        let ways = angles.iter().zip(before);
+        ways.map(|(&m, before)| (value(&then, m) - before).abs())
+            .sum()
+    }
+
     /// Takes the sensors as they stand at the start of a simulation.
     pub fn begin_sensing(&mut self) {
         self.sensors.begin(&self.scene.sensors, &mut self.numbers);
@@ -338,6 +371,18 @@ impl System {
         self.set(t, y);
         let sensors = &self.scene.sensors;
         self.sensors.sense(sensors, &mut self.numbers, switched)
+    }
+
+    /// Evaluates by how much the expressions of sensors are beyond their values   (n_sensors)
+    pub fn beyond_sensors(&mut self, t: f64, y: &[f64], values: &mut Vec<f64>) {
+        self.set(t, y);
+        let sensors = &self.scene.sensors;
+        self.sensors.beyond(sensors, &self.numbers, values);
+    }
+
+    /// Returns whether a sensor that waits for its value passes it between two such evaluations.
+    pub fn passes_sensor(&self, before: &[f64], after: &[f64]) -> bool {
+        self.sensors.passes(&self.scene.sensors, before, after)
     }
 
     /// Goes on as the last simulation left the samples, or takes the first ones here.

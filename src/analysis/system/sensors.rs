@@ -29,12 +29,19 @@ pub struct Sensors {
     places: Vec<usize>,
 }
 
+/// Returns by how much an expression is beyond the value of a sensor.
+fn beyond(s: &SceneSensor, e: f64) -> f64 {
+    let beyond = e - s.value;
+    if s.angular {
+        (beyond + PI).rem_euclid(TAU) - PI
+    } else {
+        beyond
+    }
+}
+
 /// Returns whether a sensor holds; `near`: a value within ERROR counts.
 fn holds(s: &SceneSensor, e: f64, near: bool) -> bool {
-    let mut beyond = e - s.value;
-    if s.angular {
-        beyond = (beyond + PI).rem_euclid(TAU) - PI;
-    }
+    let beyond = beyond(s, e);
     let slack = if near { s.error } else { 0.0 };
     match s.comparison {
         Comparison::Equal => beyond.abs() <= s.error,
@@ -115,6 +122,39 @@ impl Sensors {
             self.yield_value(k, &sensors[k], numbers);
         }
         triggered
+    }
+
+    /// Evaluates by how much the expressions are beyond the values of the sensors   (n)
+    pub(super) fn beyond(
+        &mut self,
+        sensors: &[SceneSensor],
+        numbers: &[f64],
+        values: &mut Vec<f64>,
+    ) {
+        self.look(numbers);
+        values.clear();
+        let expressions = sensors.iter().zip(self.values());
+        values.extend(expressions.map(|(sensor, &e)| beyond(sensor, e)));
+    }
+
+    /// Returns whether a sensor that waits for its value passes it between two evaluations of
+    /// [`beyond`](Self::beyond).
+    pub(super) fn passes(&self, sensors: &[SceneSensor], before: &[f64], after: &[f64]) -> bool {
+        let ends = before.iter().zip(after);
+        sensors
+            .iter()
+            .zip(&self.armed)
+            .zip(ends)
+            .any(|((s, &armed), (&a, &b))| {
+                // an angle passes half a turn without passing its value
+                let around = s.angular && (a - b).abs() > PI;
+                let passes = match s.comparison {
+                    Comparison::Equal => a < 0.0 && b >= 0.0 || a > 0.0 && b <= 0.0,
+                    Comparison::GreaterOrEqual => a < 0.0 && b >= 0.0,
+                    Comparison::LessOrEqual => a > 0.0 && b <= 0.0,
+                };
+                armed && passes && !around
+            })
     }
 
     fn look(&mut self, numbers: &[f64]) {

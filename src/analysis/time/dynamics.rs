@@ -10,6 +10,7 @@ use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{self, Method, Ode, Reason, Stop};
 use crate::scene::layout::Layout;
+use std::collections::BTreeMap;
 
 /// Restarts with other rows before something is wrong.
 const MAX_ROW_RESTARTS: usize = 10_000;
@@ -30,7 +31,7 @@ pub fn integrate(
     let t0 = system.numbers[Layout::TIME];
     let mut y = system.numbers[system.scene.layout.y()].to_vec();
     system.precision = options.error;
-    system.external.begin(t0, &[]);
+    system.external.begin(t0, &BTreeMap::new());
     system.restart_sampling();
     system.begin_sensing();
     if n == 0 {

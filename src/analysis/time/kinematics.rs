@@ -8,6 +8,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
+use crate::analysis::time::kinematic_sensors::{Followed, trigger};
 use crate::analysis::time::options::Options;
 use crate::analysis::time::ranks;
 use crate::analysis::time::trajectory::{Ended, Trajectory};
@@ -35,8 +36,11 @@ pub fn trace(
         out.weak.push(Some(system.numbers.clone()));
     }
     path.begin(system, options.h_max, end);
+    let mut followed = Followed::default();
+    followed.begin(system, path);
     let mut tracer = Tracer {
         started: t,
+        followed,
         max_steps: options.max_steps,
         path,
         system,
@@ -53,6 +57,8 @@ pub fn trace(
 struct Tracer<'a> {
     system: &'a mut System,
     started: f64,
+    /// turns and sensors
+    followed: Followed,
     max_steps: usize,
     path: &'a mut Continuation,
     out: Trajectory,
@@ -80,10 +86,13 @@ impl Tracer<'_> {
             }
         };
         self.out.stats.evaluations += 1;
-        self.system.count_turns(target, &y);
-        let row = self.system.row_of(target, &y);
-        self.out.push(target, row);
-        self.sense(target, &y)
+        (self.followed).follow(self.system, self.path, target, &mut self.out)?;
+        if self.out.ends_before(target) {
+            let row = self.system.row_of(target, &y);
+            self.out.push(target, row);
+        }
+        // at outputs a value within ERROR counts
+        trigger(self.system, (target, &y), true, &mut self.out)
     }
 
     /// Takes one step of the continuation, with the rows that are the better ones at its beginning.
@@ -93,12 +102,13 @@ impl Tracer<'_> {
             let (reason, h) = (Reason::TooManySteps, self.path.step());
             return Err(Ended::Stop(Stop { reason, t, h }));
         }
+        (self.followed).follow(self.system, self.path, t, &mut self.out)?;
         self.choose_rows();
         if let Err((failure, h)) = (self.path).advance(self.system, landing, &mut self.out.stats) {
             return Err(self.locked(failure, h));
         }
         let now = self.path.now();
-        self.system.count_turns(now.t, &now.y);
+        (self.followed).begin_step(self.system, self.path, t);
         let most = ranks::states_kept(self.system.scene.layout.n_v);
         if (self.out.weak.len() as f64) < most && !self.system.scene.rows.is_empty() {
             let numbers = self.system.numbers_at(now.t, &now.y);
@@ -135,17 +145,5 @@ impl Tracer<'_> {
         }
         let reason = Reason::Projection(failure);
         Ended::Stop(Stop { reason, t, h })
-    }
-
-    /// Looks at the sensors: positions are found from output to output, so sensors are, too.
-    fn sense(&mut self, t: f64, y: &[f64]) -> Result<(), Ended> {
-        for k in self.system.sense(t, y, true) {
-            self.out.triggered.push((t, k));
-            let sensor = &self.system.scene.sensors[k];
-            if sensor.halt || sensor.end_simulation {
-                return Err(Ended::Sensor(k));
-            }
-        }
-        Ok(())
     }
 }

@@ -11,7 +11,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::system::external_inputs;
-use crate::analysis::time::leg_output::Counting;
+use crate::analysis::time::counting::Counting;
 use crate::analysis::time::output::Output;
 use crate::analysis::time::switches::{Switches, Verdict};
 use crate::analysis::time::trajectory::{Ended, Trajectory};

@@ -5,9 +5,6 @@ use crate::analysis::system::turns::Look;
 use crate::analysis::time::leg::Leg;
 use crate::numeric::{Method, Step};
 
-/// Part of a step between looks at which an angle is taken to jump.
-const SHORTEST_INTERVAL: f64 = 1e-9;
-
 impl Leg<'_> {
     /// Returns the first output time inside a step at which the interpolant has no value: a step
     /// has to end there.
@@ -35,7 +32,7 @@ impl Leg<'_> {
                 break;
             }
             self.count_turns(method, step, t);
-            if !state_at(self.system, method, step, t, &mut state) {
+            if !state_at(method, step.t1)(self.system, t, &mut state) {
                 // tried before the step was accepted: a method that had a value once has it again
                 state.fill(f64::NAN);
             }
@@ -49,24 +46,17 @@ impl Leg<'_> {
         self.count_turns(method, step, step.t1);
     }
 
-    /// Looks at the counted angles at both ends of a step; returns a bound of the turn of their
-    /// markers within it, rad.
-    pub(super) fn turn_within(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
-        let Counting {
-            from, next, state, ..
-        } = &mut self.counting;
-        state.resize(method.y().len(), 0.0);
+    /// Returns a bound of the turn of the markers of counted angles within a step, rad.
+    fn turn_within(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
         let mut acceleration = self.system.spin(method.ydot());
-        if state_at(self.system, method, step, step.t0, state) {
-            self.system.look_at_turns(step.t0, state, from);
+        let mut rate = method.y().to_vec();
+        if (method.interpolate_rate(self.system, step.t0, &mut rate)).is_ok() {
+            acceleration = acceleration.max(self.system.spin(&rate));
         }
-        if (method.interpolate_rate(self.system, step.t0, state)).is_ok() {
-            acceleration = acceleration.max(self.system.spin(state));
-        }
-        self.system.look_at_turns(step.t1, method.y(), next);
-        acceleration += from.driven_acceleration.max(next.driven_acceleration);
-        // what grows and falls again within the step is at its largest near the middle
-        (from.speed.max(next.speed) + 0.25 * step.h * acceleration) * step.h
+        let ends = (step.t0, step.t1);
+        let (system, mut state_at) = (&mut *self.system, state_at(method, step.t1));
+        let free = (rate.len(), acceleration);
+        self.counting.turn_within(system, ends, free, &mut state_at)
     }
 
     /// Returns the time up to which the next step may go so that angles that decide forces keep
@@ -75,8 +65,7 @@ impl Leg<'_> {
         if !self.system.turns_decide() {
             return f64::INFINITY;
         }
-        self.system.look_at_turns(t, y, &mut self.counting.from);
-        t + self.counting.from.longest_step()
+        t + self.counting.longest_step(self.system, t, y)
     }
 
     /// Returns where a step should have ended in which angles that decide forces turn by so much
@@ -97,85 +86,30 @@ impl Leg<'_> {
     /// Begins to count the angles of a step, which is divided by how much they turn at most.
     fn begin_counting(&mut self, method: &mut dyn Method<System>, step: &Step) {
         if self.system.counts_turns() {
-            let intervals = Look::intervals(self.turn_within(method, step));
-            let place = |k: usize| step.t0 + step.h * (k as f64 / intervals as f64);
-            self.counting.ahead.clear();
-            self.counting.ahead.extend((1..intervals).rev().map(place));
+            let turn = self.turn_within(method, step);
+            self.counting.divide(turn);
         }
     }
 
     /// Counts angles up to a time in the step.
     fn count_turns(&mut self, method: &mut dyn Method<System>, step: &Step, until: f64) {
-        if !self.system.counts_turns() {
-            return;
-        }
-        while let Some(t) = self.counting.ahead.pop_if(|t| *t < until) {
-            self.counting.follow(self.system, method, step, t);
-        }
-        self.counting.follow(self.system, method, step, until);
-    }
-}
-
-/// The angles that are counted from look to look within a step.
-#[derive(Debug, Default)]
-pub(super) struct Counting {
-    /// the last look whose angles were taken over
-    from: Look,
-    /// the look that is tried
-    next: Look,
-    /// looks that are to come in the step, the latest first
-    ahead: Vec<f64>,
-    /// looks that are to be taken before one can be, the nearest last
-    halves: Vec<f64>,
-    /// the state at a look   (n)
-    state: Vec<f64>,
-}
-
-impl Counting {
-    /// Takes over the angles at a time, by as many looks on the way as that takes.
-    fn follow(
-        &mut self,
-        system: &mut System,
-        method: &mut dyn Method<System>,
-        step: &Step,
-        to: f64,
-    ) {
-        let Self {
-            from,
-            next,
-            halves,
-            state,
-            ..
-        } = self;
-        halves.clear();
-        halves.push(to);
-        while let Some(&t) = halves.last() {
-            if state_at(system, method, step, t, state) {
-                system.look_at_turns(t, state, next);
-                let interval = t - from.t;
-                if !from.leads_to(next) && interval > SHORTEST_INTERVAL * step.h {
-                    halves.push(from.t + 0.5 * interval);
-                    continue;
-                }
-                system.take_turns(next);
-                std::mem::swap(from, next);
-            }
-            halves.pop();
+        if self.system.counts_turns() {
+            let mut state_at = state_at(method, step.t1);
+            self.counting.count(self.system, until, &mut state_at);
         }
     }
 }
 
-/// Puts the state at a time of a step in place; returns false where the interpolant has no value.
-fn state_at(
-    system: &mut System,
-    method: &mut dyn Method<System>,
-    step: &Step,
-    t: f64,
-    state: &mut [f64],
-) -> bool {
-    if t >= step.t1 {
-        state.copy_from_slice(method.y());
-        return true;
+/// Returns the states of the step that a method has taken, which ends at `t1`.
+fn state_at<'m>(
+    method: &'m mut dyn Method<System>,
+    t1: f64,
+) -> impl FnMut(&mut System, f64, &mut [f64]) -> bool + 'm {
+    move |system, t, state| {
+        if t >= t1 {
+            state.copy_from_slice(method.y());
+            return true;
+        }
+        method.interpolate(system, t, state).is_ok()
     }
-    method.interpolate(system, t, state).is_ok()
 }

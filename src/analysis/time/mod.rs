@@ -5,15 +5,19 @@
 //! leg          the loop over the steps of one method; leg_rows, leg_output: its rows, its results
 //! switches     branches: held within a step, changed where they end
 //! ranks        positions where rows become dependent; better rows; why a mechanism is locked
-//! kinematics   mechanisms without freedom; continuation: their steps along a branch
+//! kinematics   mechanisms without freedom; continuation: their steps along a branch;
+//!              kinematic_sensors: what is watched on the way
+//! counting     turns of angles, within the steps of all these
 //! states       states on the way, and those between
 //! drives       motions that jump              valueless   functions that lose their value
 //! output       output times
 //! ```
 
 pub mod continuation;
+mod counting;
 pub mod drives;
 pub mod dynamics;
+mod kinematic_sensors;
 pub mod kinematics;
 mod leg;
 mod leg_output;

@@ -171,6 +171,28 @@ fn for_a_day(all: &mut Vec<Scene>) {
 /// Angles that no joint of the tree knows by itself.
 fn elsewhere(all: &mut Vec<Scene>) {
     let f = "turns";
+    // a crank, a rod and a slider: one of the hinges closes the loop
+    let crank = "PART/2, MASS=1, CM=20, IP=1,1,1\n\
+                 MARKER/20, PART=2\nMARKER/22, PART=2, QP=1,0,0\n\
+                 PART/3, MASS=1, CM=30, IP=1,1,1, QG=1,0,0\n\
+                 MARKER/30, PART=3\nMARKER/33, PART=3, QP=3,0,0\n\
+                 PART/4, MASS=1, CM=40, IP=1,1,1, QG=4,0,0\n\
+                 MARKER/40, PART=4\nMARKER/44, PART=4, REULER=90D,90D,0\n\
+                 MARKER/4, PART=1, REULER=90D,90D,0\n\
+                 JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=22\n\
+                 JOINT/3, REVOLUTE, I=33, J=40\nJOINT/4, TRANSLATIONAL, I=44, J=4\n\
+                 MOTION/1, JOINT=1, ROTATION, FUNCTION=40*TIME\n";
+    let rod = |t: f64| -((40.0 * t).sin() / 3.0).asin();
+    for steps in [1, 10] {
+        all.push(
+            scene(f, format!("hinges of a loop, {steps} outputs"), crank)
+                .steps(steps)
+                .follows("AZ(20,1)", |t| 40.0 * t, 1e-6)
+                .follows("AZ(30,22)", move |t| rod(t) - 40.0 * t, 1e-6)
+                .follows("AZ(40,22)", |t| -40.0 * t, 1e-6)
+                .follows("AZ(33,40)", rod, 1e-6),
+        );
+    }
     // a ball is carried by a spherical joint: no coordinate knows its turns
     let ball = "PART/2, MASS=1, CM=20, IP=1,1,1, WZ=50\n\
                 MARKER/20, PART=2\n\

@@ -1,0 +1,169 @@
+//! Sensors of a mechanism without freedom: they are watched along its path, and the instant at
+//! which one is triggered is located there, whatever the steps and the outputs are.
+
+use super::counting::Counting;
+use crate::analysis::system::System;
+use crate::analysis::time::continuation::Continuation;
+use crate::analysis::time::trajectory::{Ended, Trajectory};
+
+/// Part of a step of the path between looks at the sensors.
+const LOOKS_IN_STEP: f64 = 8.0;
+/// Way of the drives between looks at the sensors, rad.
+const WAY_BETWEEN_LOOKS: f64 = 0.25;
+/// Most looks at the sensors within a step.
+const MAX_LOOKS: f64 = 1e6;
+
+/// The path of a mechanism, with what is followed along it.
+#[derive(Debug, Default)]
+pub(super) struct Followed {
+    counting: Counting,
+    /// up to where sensors have been looked at
+    t: f64,
+    /// by how much they were beyond their values there, and where they are looked at next
+    /// (n_sensors)
+    before: Vec<f64>,
+    after: Vec<f64>,
+    /// how fast the mechanism moved at the end of the last step, rad per time
+    pace: f64,
+    /// distance of looks at them
+    distance: f64,
+}
+
+impl Followed {
+    /// Begins at the state of a system.
+    pub fn begin(&mut self, system: &mut System, path: &Continuation) {
+        let now = path.now();
+        self.t = now.t;
+        if system.counts_turns() {
+            self.counting.begin(system, now.t, &now.y);
+        }
+        if !system.sensors.is_empty() {
+            system.beyond_sensors(now.t, &now.y, &mut self.before);
+            self.pace = system.pace(now.t, &now.y);
+        }
+    }
+
+    /// Prepares for the step that the path has taken from time `t0`.
+    pub fn begin_step(&mut self, system: &mut System, path: &Continuation, t0: f64) {
+        let now = path.now();
+        let (h, n) = (now.t - t0, now.y.len());
+        if system.counts_turns() {
+            let ends = (t0, now.t);
+            let mut state_at = states(path);
+            let turn = (self.counting).turn_within(system, ends, (n, 0.0), &mut state_at);
+            self.counting.divide(turn);
+        }
+        if !system.sensors.is_empty() {
+            let pace = system.pace(now.t, &now.y);
+            let way = h * pace.max(std::mem::replace(&mut self.pace, pace));
+            let looks = (way / WAY_BETWEEN_LOOKS).clamp(LOOKS_IN_STEP, MAX_LOOKS);
+            self.distance = h / looks.ceil();
+        }
+    }
+
+    /// Follows the path up to a time in its last step.
+    ///
+    /// # Errors
+    /// A sensor ends the simulation on the way.
+    pub fn follow(
+        &mut self,
+        system: &mut System,
+        path: &Continuation,
+        to: f64,
+        out: &mut Trajectory,
+    ) -> Result<(), Ended> {
+        if !system.sensors.is_empty() {
+            while self.t < to {
+                let next = self.t + self.distance;
+                let next = if next < to && next > self.t { next } else { to };
+                self.watch(system, path, next, out)?;
+            }
+        }
+        self.count(system, path, to);
+        Ok(())
+    }
+
+    fn count(&mut self, system: &mut System, path: &Continuation, to: f64) {
+        if system.counts_turns() {
+            (self.counting).count(system, to, &mut states(path));
+        }
+    }
+
+    /// Looks at the sensors at a time; locates where one passes its value before it.
+    fn watch(
+        &mut self,
+        system: &mut System,
+        path: &Continuation,
+        to: f64,
+        out: &mut Trajectory,
+    ) -> Result<(), Ended> {
+        self.count(system, path, to);
+        let Ok(y) = path.within(system, to) else {
+            self.t = to;
+            return Ok(());
+        };
+        system.beyond_sensors(to, &y, &mut self.after);
+        let (mut at, mut there) = (to, y);
+        let located = system.passes_sensor(&self.before, &self.after);
+        if located {
+            // bisect down to rounding
+            let mut whole = self.t;
+            while at - whole > 4.0 * f64::EPSILON * at.abs() {
+                let middle = 0.5 * (whole + at);
+                let Ok(y) = path.within(system, middle) else {
+                    break;
+                };
+                if middle <= whole || middle >= at {
+                    break;
+                }
+                system.beyond_sensors(middle, &y, &mut self.after);
+                if system.passes_sensor(&self.before, &self.after) {
+                    (at, there) = (middle, y);
+                } else {
+                    whole = middle;
+                }
+            }
+            system.beyond_sensors(at, &there, &mut self.after);
+        }
+        std::mem::swap(&mut self.before, &mut self.after);
+        self.t = at;
+        trigger(system, (at, &there), located, out)
+    }
+}
+
+/// Does what the sensors ask for that are triggered at a state; `near`: a value within ERROR
+/// counts.
+///
+/// # Errors
+/// One of them ends the simulation.
+pub(super) fn trigger(
+    system: &mut System,
+    (t, y): (f64, &[f64]),
+    near: bool,
+    out: &mut Trajectory,
+) -> Result<(), Ended> {
+    for k in system.sense(t, y, near) {
+        let sensor = &system.scene.sensors[k];
+        let ends = sensor.halt || sensor.end_simulation;
+        if (ends || sensor.print) && out.ends_before(t) {
+            let row = system.row_of(t, y);
+            out.push(t, row);
+        }
+        out.triggered.push((t, k));
+        if ends {
+            return Err(Ended::Sensor(k));
+        }
+    }
+    Ok(())
+}
+
+/// Returns the states of the last step of a path.
+fn states(path: &Continuation) -> impl FnMut(&mut System, f64, &mut [f64]) -> bool + '_ {
+    |system, t, state| match path.within(system, t) {
+        Ok(y) => {
+            state.copy_from_slice(&y);
+            true
+        }
+        Err(_) => false,
+    }
+}
