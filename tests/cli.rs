@@ -444,7 +444,7 @@ fn a_mistake_on_the_command_line_costs_no_results() {
         (["--column", "DX(41,2x2)"], 3, "--column:1:7"),
         (["--column", "DX(41,99)"], 3, "MARKER/99 does not exist"),
         (["--method", "RADAU7"], 4, "RADAU5"),
-        (["--error", "-1"], 4, "ERROR"),
+        (["--error", "0"], 4, "--error: the permitted error"),
     ] {
         let done = run(&more);
         assert_eq!(done.code, code, "{more:?}: {}", done.err);

@@ -13,7 +13,7 @@ static SEEN: AtomicBool = AtomicBool::new(false);
 /// there are results, which must be written
 static HAS_RESULTS: AtomicBool = AtomicBool::new(false);
 
-/// How long a run without results may go on that does not see the request to stop.
+/// Time that a run without results may go on without seeing the request to stop.
 const PATIENCE: Duration = Duration::from_millis(700);
 
 /// Returns the flag that loops poll; Ctrl-C sets it once [`install`] has been called.
@@ -45,8 +45,8 @@ pub fn install() {
     });
 }
 
-/// Lets Ctrl-C set the flag from now on, as [`install`], and ends a run that has no results and does
-/// not see it.
+/// Lets Ctrl-C set the flag from now on, as [`install`], and ends a run that has no results and
+/// does not see it.
 pub fn install_for_run() {
     let _ = ctrlc::set_handler(|| {
         if STOP.swap(true, Ordering::Relaxed) {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// Parts of a whole bar.
 const LENGTH: u64 = 1000;
-/// How long a run goes on before its progress is shown.
+/// Time that a run goes on before its progress is shown.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// The longest time between two lines.
 const LONGEST_SILENCE: Duration = Duration::from_secs(60);

@@ -28,8 +28,8 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Opens the folder `dir` for the run called `base`, and tries whether a file can be made there.
-    /// A folder that does not exist is made with the first file.
+    /// Opens the folder `dir` for the run called `base`, and tries whether a file can be made
+    /// there. A folder that does not exist is made with the first file.
     ///
     /// # Errors
     /// `file_unwritable` when no file can be made there.
@@ -139,8 +139,8 @@ impl OutputFolder {
     }
 }
 
-/// Returns the files that a record lists, with the sizes that they may have; none if it is no record
-/// of this program.
+/// Returns the files that a record lists, with the sizes that they may have; none if it is no
+/// record of this program.
 fn listed(path: &Path, name: &str) -> BTreeMap<String, Vec<u64>> {
     let mut earlier: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     let value = std::fs::read(path).ok();

@@ -144,7 +144,7 @@ pub(super) fn offence(scene: &Scene, formula: usize, allowed: Allowed) -> Option
     None
 }
 
-/// How far the search has come with a formula.
+/// The progress of the search with a formula.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Visit {
     Untouched,

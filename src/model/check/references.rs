@@ -76,8 +76,9 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
 }
 
 impl Model {
-    /// Returns the mistakes in an expression that is not part of the model but reads it, as a column
-    /// of results does: what cannot be read, elements that do not exist. Places count in its text.
+    /// Returns the mistakes in an expression that is not part of the model but reads it, as a
+    /// column of results does: what cannot be read, elements that do not exist. Places count in
+    /// its text.
     pub fn check_expression(&self, text: &str) -> Vec<Diagnostic> {
         let expr = match Expr::parse(text) {
             Ok(expr) => expr,
