@@ -888,7 +888,7 @@ fn wrong_models_are_told_alike_by_verify_explain_and_run() {
             done.code == 0
                 && done
                     .out
-                    .contains("PART/2 is assembled on another branch: turned by 180 deg"),
+                    .contains("PART/2 is turned by 180 deg against the dataset"),
             "{command}: {}",
             done.out
         );

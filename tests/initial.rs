@@ -42,7 +42,7 @@ fn an_initial_condition_that_fits_with_its_numbers_exchanged_is_told() {
 }
 
 #[test]
-fn an_initial_condition_that_view_wrote_is_read_in_its_order_where_the_parts_stand_so() {
+fn an_initial_condition_that_view_wrote_has_its_velocity_first_wherever_the_parts_stand() {
     let slide = |name: &str, ic: &str| {
         let text = format!(
             "PART/2, MASS=1, CM=2, IP=1,1,1, QG=0,0,1.5\nMARKER/2, PART=2\n{name}JOINT/7, TRANSLATIONAL, I=2, J=1, IC={ic}\n"
@@ -50,18 +50,85 @@ fn an_initial_condition_that_view_wrote_is_read_in_its_order_where_the_parts_sta
         start(&text, &["DZ(2,1)", "VZ(2,1)"], Analysis::Dynamic)
     };
     let named = "!                adams_view_name='slide'\n";
-    let (found, warnings) = slide(named, "-0.2, 1.4");
-    near(&found, &[1.4, -0.2]);
-    assert!(
-        warnings
+    for (ic, found) in [
+        ("-0.2, 1.4", [1.4, -0.2]),
+        ("1.4, -0.2", [-0.2, 1.4]),
+        ("0.7, 0.1", [0.1, 0.7]),
+    ] {
+        let (values, warnings) = slide(named, ic);
+        near(&values, &found);
+        let told = warnings
             .iter()
-            .any(|w| w.contains("as Adams View writes it")),
-        "{warnings:?}"
-    );
-    // the place alone, or the name alone, is not enough
+            .filter(|w| w.contains("as Adams View writes it"));
+        assert_eq!(told.count(), 1, "{warnings:?}");
+    }
+    // a number alone is the displacement, and a zero leaves nothing to be told
+    near(&slide(named, "0.7").0, &[0.7, 0.0]);
+    let (values, warnings) = slide(named, "0, 0.7");
+    near(&values, &[0.7, 0.0]);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    // written by hand, the displacement is first
     near(&slide("", "-0.2, 1.4").0, &[-0.2, 1.4]);
-    near(&slide(named, "1.4, -0.2").0, &[1.4, -0.2]);
-    near(&slide(named, "0.7, 0.1").0, &[0.7, 0.1]);
+}
+
+#[test]
+fn a_dataset_of_view_is_written_in_the_order_in_which_it_is_read() {
+    let model = running::whole(
+        "TEST\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n\
+         ! adams_view_name='hinge'\nJOINT/1, REVOLUTE, I=2, J=1, IC=2, 30D\n\
+         ! adams_view_name='slide'\nJOINT/2, CYLINDRICAL, I=2, J=1, ICTRAN=0.1,0.2, ICROT=3,4\n\
+         JOINT/3, REVOLUTE, I=2, J=1, IC=2, 3\nEND\n",
+    );
+    let (hinge, slide, own) = (&model.joints[&1], &model.joints[&2], &model.joints[&3]);
+    assert_eq!(hinge.ic_rotation, [Some(30f64.to_radians()), Some(2.0)]);
+    assert_eq!(slide.ic_translation, [Some(0.2), Some(0.1)]);
+    assert_eq!(slide.ic_rotation, [Some(4.0), Some(3.0)]);
+    assert_eq!(own.ic_rotation, [Some(2.0), Some(3.0)]);
+    let again = running::whole(&model.to_text());
+    for (id, joint) in &model.joints {
+        let back = &again.joints[id];
+        assert_eq!(
+            (back.ic_translation, back.ic_rotation),
+            (joint.ic_translation, joint.ic_rotation)
+        );
+    }
+}
+
+#[test]
+fn a_motion_against_an_initial_condition_is_told() {
+    let text = |ic: &str| {
+        format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, REVOLUTE, I=2, J=1, IC={ic}\n\
+             MOTION/1, JOINT=1, ROTATION, FUNCTION=0.5+2*TIME\n"
+        )
+    };
+    for (ic, words) in [
+        (
+            "0.3, 2",
+            "JOINT/1 IC cannot be met: the constraints leave 5",
+        ),
+        (
+            "0.5, 3",
+            "JOINT/1 IC cannot be met: the constraints leave a velocity of 2",
+        ),
+    ] {
+        let (_, warnings) = start(&text(ic), &["AZ(2,1)"], Analysis::Dynamic);
+        assert!(
+            warnings.iter().any(|w| w.contains(words)),
+            "{ic}: {warnings:?}"
+        );
+    }
+    let (_, warnings) = start(&text("0.5, 2"), &["AZ(2,1)"], Analysis::Dynamic);
+    assert!(warnings.iter().all(|w| !w.contains("IC")), "{warnings:?}");
+}
+
+#[test]
+fn a_turn_that_an_initial_condition_asks_for_is_none_of_assembly() {
+    let text =
+        "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, REVOLUTE, I=2, J=1, IC=170D\n";
+    let (found, warnings) = start(text, &["AZ(2,1)"], Analysis::Dynamic);
+    near(&found, &[170f64.to_radians()]);
+    assert!(warnings.is_empty(), "{warnings:?}");
 }
 
 /// A four-bar of links 1, 2, 2 on a base of 2, drawn as a square with the crank up; JOINT/4 closes the loop.

@@ -302,6 +302,9 @@ impl<T: Element> Statement for Numbered<T> {
             }
             (None, false) => T::default(),
         };
+        if let (false, Some(place)) = (change, element.place_mut()) {
+            place.name.clone_from(&record.place.name);
+        }
         let mut problems = apply(self.bindings, &mut element, record);
         if !change {
             if !record.mistaken {

@@ -475,10 +475,10 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "I" (i).required();
         field "J" (j).required();
         own "IC" (Kind::Reals { min: 1, max: 2, angle: true }, put_joint_ic, joint_ic);
-        own "ICTran" (Kind::Reals { min: 1, max: 2, angle: false }, |j, v| j.ic_translation.put(v),
-            |j| if j.kind.displacements() == Displacements::Translation { None } else { j.ic_translation.written() });
-        own "ICRot" (Kind::Reals { min: 1, max: 2, angle: true }, |j, v| j.ic_rotation.put(v),
-            |j| if j.kind.displacements() == Displacements::Rotation { None } else { <Angle as Lens<_>>::get(&j.ic_rotation) });
+        own "ICTran" (Kind::Reals { min: 1, max: 2, angle: false }, put_ic_translation,
+            |j| if j.kind.displacements() == Displacements::Translation { None } else { ic_translation(j) });
+        own "ICRot" (Kind::Reals { min: 1, max: 2, angle: true }, put_ic_rotation,
+            |j| if j.kind.displacements() == Displacements::Rotation { None } else { ic_rotation(j) });
         field "PITCH" (pitch);
         field "PD" (pd);
         lens "FRICTION" (Word, friction);
@@ -546,9 +546,8 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         choice "CLOSED" (closed = true).group("ends");
         field "ORDER" (order);
         field "MATRIX" (matrix);
-        choice "CURVE_POINTS" (through_points = true).group("points");
-        own "CONTROL_POINTS" (Kind::Flag, |c, _| { c.through_points = false; Ok(()) },
-            |c| (c.matrix.is_some() && !c.through_points).then_some(Value::Flag)).group("points");
+        choice "CURVE_POINTS" (through_points = Some(true)).group("points");
+        choice "CONTROL_POINTS" (through_points = Some(false)).group("points");
         field "MINPAR" (minpar);
         field "MAXPAR" (maxpar);
         field "FUNCTION" (function);

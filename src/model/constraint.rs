@@ -233,8 +233,9 @@ pub struct Curve {
     pub order: Option<u32>,
     /// MATRIX with one row x, y, z per point
     pub matrix: Option<u32>,
-    /// CURVE_POINTS: the rows lie on the curve; otherwise they are control points
-    pub through_points: bool,
+    /// CURVE_POINTS: the rows lie on the curve; CONTROL_POINTS, and when neither is said: they are
+    /// control points
+    pub through_points: Option<bool>,
     /// FUNCTION=USER(…)
     pub function: Option<Formula>,
     /// −1 when absent

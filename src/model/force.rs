@@ -349,6 +349,57 @@ pub struct Contact {
     pub function: Option<Formula>,
 }
 
+/// An argument that the law IMPACT of a CONTACT needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MissingOfImpact {
+    /// STIFFNESS
+    Stiffness,
+    /// EXPONENT
+    Exponent,
+    /// DMAX, with DAMPING
+    Dmax,
+}
+
+impl MissingOfImpact {
+    /// Returns a usual value, in a sentence.
+    pub fn advice(self) -> &'static str {
+        match self {
+            Self::Stiffness => "STIFFNESS=1E5 is usual for steel, in N/mm",
+            Self::Exponent => {
+                "EXPONENT=2.2 is usual for steel, 1.5 for a sphere after Hertz, 1 for a linear spring"
+            }
+            Self::Dmax => "DMAX=0.1 is usual in mm: the depth at which the damping is fully there",
+        }
+    }
+}
+
+impl std::fmt::Display for MissingOfImpact {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Stiffness => "IMPACT without STIFFNESS: nothing keeps its bodies apart",
+            Self::Exponent => "IMPACT without EXPONENT: its force would be STIFFNESS at any depth",
+            Self::Dmax => {
+                "DAMPING without DMAX: it says from which depth on the damping is fully there"
+            }
+        })
+    }
+}
+
+impl Contact {
+    /// Returns what the law IMPACT needs and does not have.
+    pub fn missing(&self) -> Vec<MissingOfImpact> {
+        let needed = [
+            (self.stiffness == 0.0, MissingOfImpact::Stiffness),
+            (self.exponent == 0.0, MissingOfImpact::Exponent),
+            (
+                self.damping != 0.0 && self.dmax == 0.0,
+                MissingOfImpact::Dmax,
+            ),
+        ];
+        needed.into_iter().filter(|n| n.0).map(|n| n.1).collect()
+    }
+}
+
 impl Element for Contact {
     placed!();
     fn references(&self) -> Vec<Named> {

@@ -10,6 +10,7 @@ pub mod check;
 mod constraint;
 mod element;
 mod force;
+pub(crate) mod geometry;
 mod output;
 pub mod reference;
 mod settings;

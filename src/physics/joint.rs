@@ -438,6 +438,13 @@ impl Tie {
     }
 }
 
+impl Tie {
+    /// Returns whether it keeps all axes of its markers pointing the same way.
+    pub fn keeps_x(self) -> bool {
+        self.keeps_z() && self.rows().contains(&Dot(0, 1))
+    }
+}
+
 impl Motion {
     /// Returns the number of velocity coordinates.
     pub fn freedoms(self) -> usize {

@@ -7,7 +7,8 @@ use super::{
     RowKind, Source,
 };
 use crate::diagnostic::Diagnostic;
-use crate::model::{ElementId, ElementKind, Model, Orientation, Part};
+use crate::model::geometry::orientation;
+use crate::model::{ElementId, ElementKind, Model, Part};
 use crate::physics::joint::{Motion, Tie, quarter_x};
 use crate::space::{Frame, Mat3, Vec3, rotation};
 use std::collections::BTreeMap;
@@ -43,40 +44,6 @@ pub(super) struct NamedTie {
     pub j: u32,
     pub id: ElementId,
     pub joint: Option<u32>,
-}
-
-/// Orientation of a part or marker against its parent.
-pub(crate) fn orientation(o: &Orientation, origin: [f64; 3]) -> Result<Mat3<f64>, String> {
-    let from = |p: &Option<[f64; 3]>| p.map(|p| Vec3(p) - Vec3(origin));
-    let r = match o {
-        Orientation::Aligned => Mat3::identity(),
-        Orientation::Euler([psi, theta, phi]) => rotation::from_313(*psi, *theta, *phi),
-        Orientation::Points { z, x, use_x } => {
-            let fallback = |given: Vec3<f64>, first: usize| {
-                let axis = Vec3::<f64>::axis(first);
-                if axis.cross(given).norm() > 1e-9 * given.norm() {
-                    axis
-                } else {
-                    Vec3::axis((first + 1) % 3)
-                }
-            };
-            let frame = if *use_x {
-                let x = from(x).ok_or("USEXP needs XP")?;
-                let z = from(z).unwrap_or_else(|| fallback(x, 2));
-                // from_z_and_x with the roles of z and x exchanged: its y is x × z, ours z × x
-                rotation::from_z_and_x(x, z)
-                    .map(|m| Mat3::from_columns(m.column(2), -m.column(1), m.column(0)))
-            } else {
-                let z = from(z).unwrap_or_else(|| Vec3::axis(2));
-                let x = from(x).unwrap_or_else(|| fallback(z, 0));
-                rotation::from_z_and_x(z, x)
-            };
-            frame.ok_or(
-                "the points that should give its axes coincide with its origin or lie on one line",
-            )?
-        }
-    };
-    Ok(rotation::snapped(&r))
 }
 
 impl<'m> Compiler<'m> {

@@ -41,6 +41,8 @@ pub struct MotionStart {
     pub begun: bool,
     /// The displacement at which it stands still in place of following its function.
     pub stands_at: Option<f64>,
+    /// The first body angle where it is a body angle between markers.   [rad]
+    pub reference: f64,
 }
 
 /// The beginning of a contact on curves.
@@ -191,13 +193,18 @@ impl Configured<'_> {
         Some((Arc::new(scene), configuration))
     }
 
+    /// Returns whether a motion begins where the configuration is, and has not begun.
+    pub fn waits(&self, motion: usize) -> bool {
+        self.scene.motions[motion].held && !self.configuration.motions[motion].begun
+    }
+
     /// Returns whether a row takes what the configuration shows rather than asking anything of it.
     pub fn is_held(&self, r: usize) -> bool {
         match &self.scene.rows[r].kind {
             RowKind::Displacements(sum) => sum.held,
             RowKind::Markers {
                 motion: Some(m), ..
-            } => self.scene.motions[*m].held && !self.configuration.motions[*m].begun,
+            } => self.waits(*m),
             RowKind::Markers { motion: None, .. }
             | RowKind::Formula { .. }
             | RowKind::Cam { .. } => false,

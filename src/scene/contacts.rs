@@ -454,6 +454,10 @@ impl Builder<'_> {
             ContactLaw::Poisson => (contact.penalty, "PENALTY"),
             ContactLaw::Impact | ContactLaw::User => (contact.stiffness, "STIFFNESS"),
         };
+        let missing = (contact.law == ContactLaw::Impact).then(|| contact.missing());
+        if let Some(missing) = missing.unwrap_or_default().first() {
+            return Err(missing.to_string());
+        }
         if stiffness == 0.0 && contact.law != ContactLaw::User {
             return Err(format!(
                 "without a {what} larger than 0 nothing keeps its bodies apart"

@@ -265,7 +265,7 @@ impl Builder<'_> {
         let Some(m) = self.model.markers.get(&marker) else {
             return Frame::identity();
         };
-        let rotation = super::compile::orientation(&m.orientation, m.qp);
+        let rotation = crate::model::geometry::orientation(&m.orientation, m.qp);
         Frame {
             rotation: rotation.unwrap_or_else(|_| Mat3::identity()),
             position: Vec3(m.qp),

@@ -73,7 +73,7 @@ pub(super) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
     let points: Vec<[f64; 3]> = (numbers.chunks_exact(3))
         .map(|p| [p[0], p[1], p[2]])
         .collect();
-    let kind = if data.through_points {
+    let kind = if data.through_points == Some(true) {
         CurvePoints::OnCurve
     } else {
         CurvePoints::Control

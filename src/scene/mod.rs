@@ -327,6 +327,8 @@ pub struct SceneMotion {
     pub coordinate: Option<usize>,
     /// a row given by its rate, without ICDISP: it begins where the assembled configuration is
     pub held: bool,
+    /// the motion of another body angle between the same markers, with which its angle is read off
+    pub beside: Option<usize>,
 }
 
 /// A differential equation `ẋ = function`: of a DIFF, or a state of another element.

@@ -54,6 +54,7 @@ impl Builder<'_> {
                 state: places.first().copied(),
                 coordinate: None,
                 held: false,
+                beside: None,
             });
             drives.extend(self.drive(c, element, m, motion.driven));
         }
@@ -73,7 +74,10 @@ impl Builder<'_> {
             Driven::Markers { i, j, component } => {
                 let law = match component {
                     0..=2 => Law::Along(component),
-                    _ => Law::BodyAngle(component - 3),
+                    _ => Law::BodyAngle {
+                        angle: component - 3,
+                        beside: None,
+                    },
                 };
                 return Some(Drive {
                     motion: m,
@@ -116,6 +120,7 @@ impl Builder<'_> {
             }
         }
         for drive in drives {
+            let law = self.read_off(drives, drive);
             let id = self.scene.motions[drive.motion].id;
             let coordinate = self.scene.motions[drive.motion].coordinate;
             let begins = self.model.motions.get(&id).and_then(|m| m.ic_displacement);
@@ -128,14 +133,14 @@ impl Builder<'_> {
             );
             if let (None, Some(i), Some(j)) = (coordinate, i, j) {
                 let kind = RowKind::Markers {
-                    law: drive.law,
+                    law,
                     i,
                     j,
                     motion: Some(drive.motion),
                 };
                 c.rows.push(Row {
                     element: drive.id,
-                    equation: drive.law.name(),
+                    equation: law.name(),
                     kind,
                 });
             }
@@ -150,6 +155,31 @@ impl Builder<'_> {
                 rows,
                 coordinate,
             });
+        }
+    }
+
+    /// Returns the law of a motion; a body angle is read off with another one between the same
+    /// markers that is driven too, where that is less singular.
+    fn read_off(&mut self, drives: &[Drive], drive: &Drive) -> Law {
+        let Law::BodyAngle { angle, .. } = drive.law else {
+            return drive.law;
+        };
+        let driven = |wanted: usize| {
+            let mut all = drives.iter().filter(|d| d.markers == drive.markers);
+            let found =
+                all.find(|d| matches!(d.law, Law::BodyAngle { angle, .. } if angle == wanted));
+            found.map(|d| (wanted, d.motion))
+        };
+        let beside = match angle {
+            0 if driven(1).is_none() => driven(2),
+            1 => driven(0).or_else(|| driven(2)),
+            2 => driven(0).filter(|_| driven(1).is_some()),
+            _ => None,
+        };
+        self.scene.motions[drive.motion].beside = beside.map(|(_, motion)| motion);
+        Law::BodyAngle {
+            angle,
+            beside: beside.map(|(angle, _)| angle),
         }
     }
 

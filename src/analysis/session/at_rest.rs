@@ -11,6 +11,7 @@ use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
 use crate::numeric::Stats;
 use crate::results::{self, Event, Kind, Status};
+use crate::scene::broken::broken;
 use crate::scene::layout::Layout;
 use std::time::Instant;
 
@@ -27,8 +28,8 @@ struct Equilibria {
     stats: Stats,
     /// the method, and the stability of the last one
     method: String,
-    /// when none was found, and why
-    failed: Option<(f64, NoEquilibrium)>,
+    /// why the search ended before the last time
+    failed: Option<StopReason>,
 }
 
 impl Session {
@@ -52,7 +53,7 @@ impl Session {
         let seconds = clock.elapsed().as_secs_f64();
         // their results
         self.rows(kind, program, &found.rows);
-        let stopped = found.failed.map(|(t, why)| stop_reason(t, why));
+        let stopped = found.failed;
         // what the next simulation begins with
         let last = found.rows.last().cloned().unwrap_or(first);
         let end = last[Layout::TIME];
@@ -88,10 +89,15 @@ impl Session {
             let found = match settle_at(system, &settings, t, watch, &mut all.stats) {
                 Ok(found) => found,
                 Err(why) => {
-                    all.failed = Some((t, why));
+                    all.failed = Some(stop_reason(t, why));
                     break;
                 }
             };
+            let here = system.scene.within(&system.configuration);
+            if let Some(broken) = broken(here, &system.numbers, None) {
+                all.failed = Some(StopReason::Contact { at: t, broken });
+                break;
+            }
             self.run.log.push(Event::Static {
                 time: t,
                 iterations: found.iterations as u32,

@@ -3,10 +3,10 @@
 use super::Session;
 use crate::analysis::system::{System, external_inputs, samples};
 use crate::expr::measures::Measure;
+use crate::model::geometry::orientation;
 use crate::model::{ElementId, ElementKind, Model, Orientation};
 use crate::physics::kinematic::kinematic;
 use crate::scene::Scene;
-use crate::scene::compile::orientation;
 use crate::scene::equations::Equations;
 use crate::scene::history::{AngleId, DelayId};
 use crate::scene::layout::{Layout, State};

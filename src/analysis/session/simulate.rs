@@ -11,6 +11,7 @@ use crate::analysis::warning::{RunWarning, Warning};
 use crate::analysis::watch::Watch;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::program::Program;
+use crate::model::ElementKind;
 use crate::results::{Event, Kind, Status};
 use crate::scene::Scene;
 use crate::scene::layout::Layout;
@@ -100,6 +101,13 @@ impl Session {
         };
         if analysis == Analysis::Kinematic && mode != KINEMATIC {
             (system, _) = self.prepare(KINEMATIC, &[])?;
+        }
+        let contacts = self
+            .model
+            .active(ElementKind::Contact, &self.model.contacts);
+        let contacts: Vec<_> = contacts.map(|c| ElementKind::Contact.id(c.0)).collect();
+        if analysis == Analysis::Kinematic && !contacts.is_empty() {
+            self.warn(RunWarning::ContactsWithoutFreedom(contacts));
         }
         Ok((system, assembly, analysis))
     }

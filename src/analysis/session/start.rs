@@ -6,11 +6,10 @@ use super::shells;
 use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::start::assemble::{self, Assembly};
-use crate::analysis::start::misalignment::Exchanged;
 use crate::analysis::start::{coincident, initial_conditions, misalignment, placement, velocities};
 use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{external_inputs, samples};
-use crate::analysis::warning::{ConditionWarning, Warning};
+use crate::analysis::warning::Warning;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Model, Place};
 use crate::scene::Scene;
@@ -94,14 +93,22 @@ impl Session {
         (self.columns_program, self.account) = (None, None);
         let (scene, moved) = self.compile(mode, inputs)?;
         let mut start = Start::new(scene, mode, self.time());
-        let assembly = if self.carried.is_some() {
-            self.go_on(&mut start)?
-        } else {
+        let first = self.carried.is_none();
+        let mut assembly = if first {
             self.assemble(&mut start)?
+        } else {
+            self.go_on(&mut start)?
         };
         (start.configuration).begin_states(&start.scene, &mut start.x);
         start.begin_turns(self.carried.as_ref());
         let v = self.velocities(&mut start, moved.as_ref())?;
+        if first && (mode == DYNAMIC || mode == INITIAL_CONDITIONS) {
+            let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
+            let unmet = velocities::unmet(here, &self.model, t, (q, &v, x));
+            assembly
+                .warnings
+                .extend(unmet.into_iter().map(Warning::from));
+        }
         let system = self.system(start, v)?;
         Ok((system, assembly))
     }
@@ -160,8 +167,8 @@ impl Session {
         let joints = mode == DYNAMIC || mode == INITIAL_CONDITIONS;
         let moves = mode != KINEMATIC && mode != STATIC;
         // the dataset
-        let exchanged = if joints {
-            self.exchange(&start.scene)
+        let orders = if joints {
+            misalignment::orders(&start.scene, &self.model)
         } else {
             Vec::new()
         };
@@ -173,30 +180,22 @@ impl Session {
         }
         start.configuration.external = self.external(start.here(), start.t, &start.q, &start.x)?;
         let misaligned = misalignment::misaligned(&start.scene, &self.model);
-        // places near it; where parts are too many to be weighed, or on curves, coordinates move as
-        // little as may be
-        let placed = start.place(&self.model, joints);
         let conditions = if moves {
             initial_conditions::collect(&start.scene, &self.model)
         } else {
             Vec::new()
         };
-        let contacts = if placed && joints {
-            Vec::new()
-        } else {
-            start.approach(&conditions)
-        };
         // the rows, and what they did not let be met
-        let mut assembly = start.positions()?;
+        let (mut assembly, contacts) = start.assemble(&self.model, joints, &conditions)?;
         let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
         let warnings = &mut assembly.warnings;
         let unmet = initial_conditions::unmet(here, &conditions, &contacts, t, q, x);
         warnings.extend(unmet.into_iter().map(Warning::from));
         warnings.splice(0..0, misaligned.into_iter().map(Warning::from));
-        warnings.extend(exchanged.into_iter().map(Warning::from));
+        warnings.extend(orders.into_iter().map(Warning::from));
         let still = vec![0.0; here.layout.n_v];
         let numbers = assemble::numbers(here, t, q, &still, x);
-        let turned = misalignment::turned(here, &self.model, &numbers);
+        let turned = misalignment::turned(here, &self.model, &numbers, moves);
         let coincident = coincident::lines(here, &numbers)?;
         let of_assembly = turned.into_iter().chain(coincident);
         warnings.extend(of_assembly.map(Warning::from));
@@ -254,23 +253,6 @@ impl Session {
             system.begin_sensing();
         }
         Ok(system)
-    }
-
-    /// Exchanges the numbers of initial conditions that are to be read the other way round; returns
-    /// warnings of these and of doubtful ones.
-    fn exchange(&mut self, scene: &Scene) -> Vec<ConditionWarning> {
-        let found = misalignment::exchanged(scene, &self.model);
-        for e in found.iter().filter(|e| e.believed) {
-            if let Some(joint) = self.model.joints.get_mut(&e.joint) {
-                let given = if e.turns {
-                    &mut joint.ic_rotation
-                } else {
-                    &mut joint.ic_translation
-                };
-                given.reverse();
-            }
-        }
-        found.iter().map(Exchanged::warning).collect()
     }
 
     /// Returns the shells of contacts, read when they are first asked for.

@@ -3,8 +3,8 @@
 
 use super::carried::Carried;
 use crate::analysis::start::assemble::{self, Assembly};
-use crate::analysis::start::initial_conditions::{self, InitialCondition};
-use crate::analysis::start::placement;
+use crate::analysis::start::dataset::{self, Dataset};
+use crate::analysis::start::initial_conditions::InitialCondition;
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 use crate::scene::cams;
@@ -101,27 +101,34 @@ impl Start {
         }
     }
 
-    /// Moves positions near those of the dataset; whether the mechanism is one that is placed like
-    /// this.
-    pub fn place(&mut self, model: &Model, joints: bool) -> bool {
-        let here = self.scene.within(&self.configuration);
-        placement::settle(here, model, self.t, &mut self.q, &self.x, joints)
+    /// Assembles the dataset; returns where contacts on curves were asked to begin, too.
+    ///
+    /// # Errors
+    /// Rows that contradict each other.
+    pub fn assemble(
+        &mut self,
+        model: &Model,
+        joints: bool,
+        conditions: &[InitialCondition],
+    ) -> Result<(Assembly, Vec<cams::Start>), Vec<Diagnostic>> {
+        let drawn = Dataset {
+            scene: &self.scene,
+            model,
+            t: self.t,
+            x: &self.x,
+            joints,
+            conditions,
+        };
+        drawn.assemble(&mut self.configuration, &mut self.q)
     }
 
-    /// Moves positions towards initial conditions; where contacts on curves begin.
-    pub fn approach(&mut self, conditions: &[InitialCondition]) -> Vec<cams::Start> {
-        let (scene, configuration) = (&self.scene, &mut self.configuration);
-        let (t, q) = (self.t, &mut self.q);
-        initial_conditions::approach(scene, configuration, conditions, t, q, &self.x)
-    }
-
-    /// Puts positions onto the rows, and chooses those that take part.
+    /// Puts positions that a simulation left onto the rows, and chooses those that take part.
     ///
     /// # Errors
     /// Rows that contradict each other.
     pub fn positions(&mut self) -> Result<Assembly, Vec<Diagnostic>> {
         let (scene, configuration) = (&self.scene, &mut self.configuration);
-        assemble::positions(scene, configuration, self.t, &mut self.q, &self.x)
+        dataset::go_on(scene, configuration, self.t, &mut self.q, &self.x)
     }
 }
 

@@ -6,11 +6,11 @@
 
 use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::quantity::{length, short};
-use crate::analysis::start::nearby;
+use crate::analysis::start::{branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
 use crate::numeric::rank::Rank;
-use crate::physics::row::Law;
+use crate::physics::row::{Law, body_angles};
 use crate::scene::broken;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured};
@@ -139,7 +139,16 @@ fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[
             && here.is_held(r)
         {
             let begun = scene.motions[m].state.map_or(0.0, |s| x[s]);
-            found.push((m, law.shown(&frame(i), &frame(j)) - begun));
+            let (i, j) = (frame(i), frame(j));
+            let beside = scene.motions[m].beside;
+            let shown = match law {
+                // the angle beside it begins where it is, too
+                Law::BodyAngle { angle, .. } if beside.is_some_and(|b| here.waits(b)) => {
+                    body_angles(&i, &j)[angle]
+                }
+                _ => law.shown(&i, &j, at.row_drive(m).map(|x| x.value)),
+            };
+            found.push((m, shown - begun));
         }
     }
     for (m, offset) in found {
@@ -313,6 +322,7 @@ pub fn positions(
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
     found.warnings = hold(scene, configuration, t, q, x);
+    branch::refer(scene, configuration, t, q, x, false);
     let here = scene.within(configuration);
     let (_, gradient, _) = rows_at(here, t, q, x);
     let n = scene.layout.n_v;

@@ -60,6 +60,8 @@ pub struct InitialCondition {
     given: Given,
     value: f64,
     angle: bool,
+    /// a motion says what it is: nothing can be changed
+    driven: bool,
 }
 
 /// Returns the joints of a model that have an initial displacement or rate: number, gauge,
@@ -101,13 +103,14 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
                 && c.angular == gauge.is_angle()
                 && matches!(c.source, crate::scene::Source::Driven(_))
         });
-        if let ([Some(i), Some(j)], Some(value), false) = (markers, given[0], driven) {
+        if let ([Some(i), Some(j)], Some(value)) = (markers, given[0]) {
             conditions.push(InitialCondition {
                 element: ElementKind::Joint.id(id),
                 argument: "IC",
                 given: Given::Joint { gauge, i, j },
                 value,
                 angle: gauge.is_angle(),
+                driven,
             });
         }
     }
@@ -122,6 +125,7 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
                 given,
                 value,
                 angle: component > 2,
+                driven: false,
             });
         };
         for component in 0..3 {
@@ -258,6 +262,8 @@ pub fn approach(
     let here = scene.within(configuration);
     let still = vec![0.0; scene.layout.n_v];
     let starts = cams::starts(here, &assemble::numbers(here, t, q, &still, x));
+    let conditions: Vec<_> = conditions.iter().filter(|c| !c.driven).cloned().collect();
+    let conditions = &conditions[..];
     if conditions.is_empty() && starts.is_empty() || scene.layout.n_v == 0 {
         return starts;
     }

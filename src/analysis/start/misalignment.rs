@@ -2,21 +2,23 @@
 //! parts had to be turned round.
 
 use crate::analysis::direction::Axis;
+use crate::analysis::start::{branch, placement};
 use crate::analysis::warning::{AssemblyWarning, ConditionWarning};
+use crate::model::check::alignment::{self, Needed};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::physics::joint::Tie;
 use crate::physics::row::Law;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
-use crate::space::Vec3;
+use crate::space::{Mat3, Vec3};
+use std::f64::consts::PI;
 
 /// Offsets relative to the size of the mechanism, and angles in rad, that are worth telling: typed
 /// numbers with five digits are not.
 const WORTH_TELLING: f64 = 1e-5;
-/// A part turned by more than this against its dataset, in rad, sits on another branch than was
-/// drawn.
-const TURNED: f64 = 2.0;
+/// Turn of a part against the dataset that is told, in rad: a degree.
+const TURNED: f64 = PI / 180.0;
 
 /// All ties of a model that are switched on: name, kind, I and J.
 fn ties(model: &Model) -> Vec<(ElementId, Tie, u32, u32)> {
@@ -30,28 +32,33 @@ fn ties(model: &Model) -> Vec<(ElementId, Tie, u32, u32)> {
 
 /// Joints that do not fit as the dataset places the parts: by how much, and in which direction.
 pub fn misaligned(scene: &Scene, model: &Model) -> Vec<AssemblyWarning> {
+    let mut found = ties_apart(scene, model);
+    let axes = alignment::misaligned(model).into_iter();
+    // pins of joints are ties
+    let others = axes.filter(|m| !matches!(m.needed, Needed::UniversalPins | Needed::HookePins));
+    found.extend(others.map(AssemblyWarning::Axes));
+    found
+}
+
+/// Finds joints and primitives whose markers are apart or turned against each other.
+fn ties_apart(scene: &Scene, model: &Model) -> Vec<AssemblyWarning> {
     let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
     let mut found = Vec::new();
     for (element, tie, i, j) in ties(model) {
         let (Some(I), Some(J)) = (frame(i), frame(j)) else {
             continue;
         };
-        let (mut offset, mut turn) = (Vec3::zero(), Vec3::zero());
+        let mut offset = Vec3::zero();
         for &law in tie.rows() {
             let value = law.value(&I, &J, None);
             match law {
                 Law::Offset(k) => offset += Vec3::axis(k).times(value),
                 Law::Along(k) => offset += J.rotation.column(k).times(value),
-                Law::Dot(a, b) => {
-                    let across = I.rotation.column(a).cross(J.rotation.column(b));
-                    let sine = across.norm();
-                    if sine > 0.0 {
-                        turn += across.times(value.clamp(-1.0, 1.0).asin() / sine);
-                    }
-                }
-                _ => {}
+                Law::Dot(..) | Law::EqualDots | Law::Angle | Law::BodyAngle { .. } => {}
             }
         }
+        let missing = branch::of_tie(tie.rows(), &I, &J, 0).unwrap_or_default();
+        let turn = (missing.iter()).fold(Vec3::zero(), |sum, (axis, by)| sum - axis.times(*by));
         let axes = [(j, J.rotation), (i, I.rotation)];
         let offset = (offset.norm() > WORTH_TELLING * scene.length)
             .then(|| (offset.norm(), Axis::along(offset, &axes)));
@@ -68,105 +75,123 @@ pub fn misaligned(scene: &Scene, model: &Model) -> Vec<AssemblyWarning> {
     found
 }
 
-/// A joint whose initial condition fits the dataset better with its numbers exchanged.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Exchanged {
-    /// its number
-    pub joint: u32,
-    /// whether it is the condition of its rotation
-    pub turns: bool,
-    /// its numbers as they stand
-    pub given: [f64; 2],
-    /// where the parts stand
-    pub stands: f64,
-    /// whether it is read so
-    pub believed: bool,
-}
-
-impl Exchanged {
-    /// Makes a warning of it.
-    pub fn warning(&self) -> ConditionWarning {
-        ConditionWarning::Exchanged {
-            element: ElementKind::Joint.id(self.joint),
-            given: self.given,
-            stands: self.stands,
-            believed: self.believed,
-        }
-    }
-}
-
-/// Joints whose initial condition fits the dataset better with its numbers exchanged.
+/// Returns warnings of the order of the numbers of initial conditions.
 ///
-/// `IC = displacement, velocity` is how the statement is documented, and how it is read. Adams View
-/// writes, and Adams Solver (C++) reads, velocity and displacement: the one model that we have in
-/// all three forms has `translational_ic = -146.99, velocity_ic = -0.1815` in its View commands,
-/// `IC = -0.1815, -146.99` in the dataset that View wrote of them, and stands at -146.992, moving
-/// by -0.2, in the results. Nobody can tell by the numbers alone. But a statement that View wrote
-/// carries the name it has there, and its parts stand where View has drawn them: where both speak
-/// for it, the numbers are exchanged and that is told; where only the parts do, it is told.
-pub fn exchanged(scene: &Scene, model: &Model) -> Vec<Exchanged> {
-    let mut found = Vec::new();
-    for (&id, joint) in &model.joints {
+/// `IC = displacement, velocity` is how the statement is documented. Adams View writes, and Adams
+/// Solver (C++) reads, velocity and displacement: the one model that we have in all three forms has
+/// `translational_ic = -146.99, velocity_ic = -0.1815` in its View commands, `IC = -0.1815,
+/// -146.99` in the dataset that View wrote of them, and stands at -146.992, moving by -0.2, in the
+/// results.
+/// A statement that View wrote carries the name it has there: it is read in View's order, which is
+/// told once. Others are read as documented, and told where their parts stand at the second number.
+pub fn orders(scene: &Scene, model: &Model) -> Vec<ConditionWarning> {
+    let (mut of_view, mut doubtful) = (Vec::new(), Vec::new());
+    for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
+        let element = ElementKind::Joint.id(id);
         let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
-        let (Some(I), Some(J)) = (frame(joint.i), frame(joint.j)) else {
-            continue;
-        };
         let kinds = [
-            (Law::Along(2), joint.ic_translation, scene.length, false),
-            (Law::Angle, joint.ic_rotation, 1.0, true),
+            (Law::Along(2), joint.ic_translation, scene.length),
+            (Law::Angle, joint.ic_rotation, 1.0),
         ];
-        for (law, given, size, turns) in kinds {
-            let [Some(first), Some(second)] = given else {
+        for (law, given, size) in kinds {
+            let [Some(displacement), Some(velocity)] = given else {
+                continue;
+            };
+            if joint.place.name.is_some() {
+                if displacement != 0.0 && velocity != 0.0 {
+                    of_view.push((element, [velocity, displacement]));
+                }
+                continue;
+            }
+            let (Some(I), Some(J)) = (frame(joint.i), frame(joint.j)) else {
                 continue;
             };
             let stands = law.value(&I, &J, None);
             let off = |x: f64| (x - stands).abs();
-            if second != 0.0 && off(first) > 0.01 * size && off(second) < 0.2 * off(first) {
-                found.push(Exchanged {
-                    joint: id,
-                    turns,
-                    given: [first, second],
+            let exchanged = off(velocity) < 0.2 * off(displacement);
+            if velocity != 0.0 && off(displacement) > 0.01 * size && exchanged {
+                doubtful.push(ConditionWarning::Exchanged {
+                    element,
+                    given: [displacement, velocity],
                     stands,
-                    believed: joint.place.name.is_some(),
                 });
             }
         }
     }
-    found
+    let of_view = (!of_view.is_empty()).then_some(ConditionWarning::ViewOrder { joints: of_view });
+    of_view.into_iter().chain(doubtful).collect()
 }
 
-/// Finds what assembly has turned round: parts that stand the other way than in the dataset, joints
-/// whose axes point against each other.
-pub fn turned(scene: Configured<'_>, model: &Model, numbers: &[f64]) -> Vec<AssemblyWarning> {
+/// Returns what assembly has turned: parts by more than a degree, unless initial conditions of
+/// joints ask for it (`joints`), and ties and motions that hold at an opposite.
+pub fn turned(
+    scene: Configured<'_>,
+    model: &Model,
+    numbers: &[f64],
+    joints: bool,
+) -> Vec<AssemblyWarning> {
     let at = Equations::new(scene, numbers);
-    let mut found = Vec::new();
-    for (k, part) in scene
-        .parts
-        .iter()
-        .enumerate()
-        .filter(|p| !p.1.is_point_mass())
-    {
+    let drawn = (0..scene.motions.len()).map(|m| scene.initial_displacement(m).unwrap_or(f64::NAN));
+    let undriven = scene
+        .configuration
+        .with_motions_at(&drawn.collect::<Vec<_>>());
+    let undriven = scene.scene.within(&undriven);
+    let mut before = numbers.to_vec();
+    before[scene.layout.q()].copy_from_slice(&scene.initial_q);
+    let mut asked = before.clone();
+    if joints {
+        placement::initial_joints(&scene, model, &mut asked[scene.layout.q()]);
+    }
+    let [before, asked] = [before, asked].map(|numbers| Equations::new(undriven, &numbers));
+    let mut parts: Vec<(ElementId, f64)> = Vec::new();
+    for (k, part) in scene.parts.iter().enumerate() {
         let now = at.part(k, false).R_GM;
-        let between = part.initial.rotation.transpose() * now;
-        let trace: f64 = (0..3).map(|k| between.0[k][k]).sum();
-        let angle = (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos();
-        if angle > TURNED {
-            found.push(AssemblyWarning::OtherBranch {
-                element: part.id,
-                angle,
-            });
+        let drawn = part.initial.rotation;
+        let condition = asked.part(k, false).R_GM * before.part(k, false).R_GM.transpose();
+        let from = |then: &Mat3<f64>| branch::angle_between(then, &now);
+        let angle = from(&drawn).min(from(&(condition * drawn)));
+        if angle > TURNED && !part.is_point_mass() {
+            parts.push((part.id, angle));
         }
     }
-    for (element, _, i, j) in ties(model).into_iter().filter(|t| t.1.keeps_z()) {
+    parts.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    let turned = (!parts.is_empty()).then_some(AssemblyWarning::Turned { parts });
+    turned
+        .into_iter()
+        .chain(opposites(scene, model, &at))
+        .collect()
+}
+
+/// Returns ties whose axes point against each other, and motions of angles that hold at an
+/// opposite.
+fn opposites(
+    scene: Configured<'_>,
+    model: &Model,
+    at: &Equations<'_, f64>,
+) -> Vec<AssemblyWarning> {
+    let mut found = Vec::new();
+    for (element, tie, i, j) in ties(model).into_iter().filter(|t| t.1.keeps_z()) {
         let frame = |id: u32| scene.marker_of.get(&id).map(|&m| at.marker(m).R_GM);
-        if let (Some(I), Some(J)) = (frame(i), frame(j))
-            && I.column(2).dot(J.column(2)) < -0.5
-        {
+        let (Some(I), Some(J)) = (frame(i), frame(j)) else {
+            continue;
+        };
+        let kept: &[usize] = if tie.keeps_x() { &[2, 0] } else { &[2] };
+        let against = |&&axis: &&usize| I.column(axis).dot(J.column(axis)) < -0.5;
+        if let Some(&axis) = kept.iter().find(against) {
             found.push(AssemblyWarning::WrongWayRound {
                 element,
                 markers: [i, j],
+                axis,
             });
         }
     }
+    let turns = branch::turns(scene, at, 0).into_iter();
+    let motions = turns.filter(|t| t.element.kind == ElementKind::Motion);
+    found.extend(motions.filter(|t| t.left > branch::ON_BRANCH).map(|t| {
+        AssemblyWarning::OppositeAngle {
+            element: t.element,
+            angle: t.left,
+        }
+    }));
     found
 }

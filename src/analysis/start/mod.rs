@@ -2,7 +2,9 @@
 //! conditions.
 
 pub mod assemble;
+pub mod branch;
 pub(super) mod coincident;
+pub mod dataset;
 pub(super) mod initial_conditions;
 pub mod misalignment;
 pub mod nearby;

@@ -15,7 +15,7 @@
 use crate::analysis::start::assemble;
 use crate::model::{ElementKind, Model};
 use crate::numeric::rank::Rank;
-use crate::physics::row::Law;
+use crate::physics::row::{Drive, Law};
 use crate::scalar::{Jet, Scalar};
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
@@ -235,7 +235,7 @@ impl Distance {
         let numbers = assemble::numbers(scene, t, q, &vec![0.0; n], x);
         let here = Equations::new(scene, &numbers);
         for &(law, markers, value) in &asked.rows {
-            let row = here.marker_row(law, markers, Some(Jet::constant(value)));
+            let row = here.marker_row(law, markers, Some(Drive::of(Jet::constant(value))));
             for (v, slope) in row.gradient {
                 slopes[(residual.len(), v)] += slope;
             }
@@ -282,7 +282,7 @@ fn part_distances(
 }
 
 /// Returns the rotation vector of a rotation: axis times angle.
-fn log(R: &Mat3<f64>) -> Vec3<f64> {
+pub(super) fn log(R: &Mat3<f64>) -> Vec3<f64> {
     let [w, x, y, z] = crate::space::rotation::to_quaternion(R);
     let (sine, sign) = (
         (x * x + y * y + z * z).sqrt(),

@@ -4,6 +4,7 @@ use super::assemble::{EMPTY, directions, least_change, null_space, numbers, rank
 use super::initial_conditions::of_joints;
 use crate::analysis::direction::Direction;
 use crate::analysis::quantity::{length, short};
+use crate::analysis::warning::ConditionWarning;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Model};
 use crate::scene::Scene;
@@ -12,6 +13,9 @@ use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
 use crate::space::Mat3;
 use nalgebra::{DMatrix, DVector};
+
+/// Part of a rate by which it may be off and is met.
+const MET_TOLERANCE: f64 = 1e-6;
 
 /// Returns the error of motions that ask for a rate which a row forbids: by how much it would have
 /// to give way, and which motions there are.
@@ -100,6 +104,29 @@ pub fn velocities(
     Ok(v.iter()
         .map(|x| if x.abs() < 1e-14 * size { 0.0 } else { *x })
         .collect())
+}
+
+/// Returns warnings of the joints whose initial rate is not that of their IC.
+pub fn unmet(
+    scene: Configured<'_>,
+    model: &Model,
+    t: f64,
+    (q, v, x): (&[f64], &[f64], &[f64]),
+) -> Vec<ConditionWarning> {
+    let numbers = numbers(scene, t, q, v, x);
+    let at = Equations::new(scene, &numbers);
+    let told = joint_rates(&scene, model, &at);
+    let told = told.into_iter().filter_map(|(id, found, wanted)| {
+        let off = (found - wanted).abs();
+        (off > MET_TOLERANCE * found.abs().max(wanted.abs())).then_some(
+            ConditionWarning::UnmetRate {
+                element: ElementKind::Joint.id(id),
+                found,
+                wanted,
+            },
+        )
+    });
+    told.collect()
 }
 
 /// Returns the velocities nearest to the given ones that all rows permit   (n_v)
@@ -219,6 +246,16 @@ fn part_velocities(
             }
         }
     }
+    for (_, found, wanted) in joint_rates(scene, model, at) {
+        values.push(found);
+        targets.push((Level::Constraint, wanted));
+    }
+    (values, targets)
+}
+
+/// Returns the joints of which an initial rate is asked: number, rate, and the one that is asked.
+fn joint_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<(u32, f64, f64)> {
+    let mut found = Vec::new();
     for (id, gauge, [_, rate]) in of_joints(model) {
         let joint = &model.joints[&id];
         let markers = [joint.i, joint.j].map(|m| scene.marker_of.get(&m));
@@ -227,12 +264,12 @@ fn part_velocities(
         };
         let (i, j) = (at.marker(i), at.marker(j));
         let z = j.R_GM.column(2);
-        values.push(if gauge.is_angle() {
+        let own = if gauge.is_angle() {
             (i.w_GM - j.w_GM).dot(z)
         } else {
             (i.v_GM - j.v_GM).dot(z) + (i.p_GM - j.p_GM).dot(j.w_GM.cross(z))
-        });
-        targets.push((Level::Constraint, rate));
+        };
+        found.push((id, own, rate));
     }
-    (values, targets)
+    found
 }

@@ -22,6 +22,7 @@ pub use free::{Free, Moving};
 
 use crate::analysis::direction::Direction;
 use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::dataset::Dataset;
 use crate::analysis::start::nearby::Place;
 use crate::analysis::start::{initial_conditions, misalignment, placement, velocities};
 use crate::analysis::warning::{VerificationWarning, Warning};
@@ -285,14 +286,16 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     let mut configuration = Configuration::new(&scene);
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
-    let undecided = scene.within(&configuration);
-    let starts = if placement::settle(undecided, &model, 0.0, &mut q, &x, true) {
-        Vec::new()
-    } else {
-        initial_conditions::approach(&scene, &mut configuration, &[], 0.0, &mut q, &x)
+    let drawn = Dataset {
+        scene: &scene,
+        model: &model,
+        t: 0.0,
+        x: &x,
+        joints: true,
+        conditions: &[],
     };
-    let assembly = match assemble::positions(&scene, &mut configuration, 0.0, &mut q, &x) {
-        Ok(assembly) => assembly,
+    let (assembly, starts) = match drawn.assemble(&mut configuration, &mut q) {
+        Ok(assembled) => assembled,
         Err(contradictions) => {
             found.inconsistent = contradictions;
             return Ok(found);
@@ -300,11 +303,14 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     };
     // its freedoms there
     let scene = scene.within(&configuration);
-    if let Err(contradictions) = velocities::velocities(scene, &model, 0.0, &q, &x) {
-        found.inconsistent = contradictions;
+    match velocities::velocities(scene, &model, 0.0, &q, &x) {
+        Ok(v) => found.warn(velocities::unmet(scene, &model, 0.0, (&q, &v, &x))),
+        Err(contradictions) => found.inconsistent = contradictions,
     }
     found.warn(assembly.warnings.iter().cloned());
-    let unmet = initial_conditions::unmet(scene, &[], &starts, 0.0, &q, &x);
+    found.warn(misalignment::orders(&scene, &model));
+    let conditions = initial_conditions::collect(&scene, &model);
+    let unmet = initial_conditions::unmet(scene, &conditions, &starts, 0.0, &q, &x);
     found.warn(unmet);
     found.examine(scene, &model, &assembly, (&q, &x));
     Ok(found)
@@ -347,7 +353,7 @@ impl Verification {
         self.freedom = Some(assembly.freedom_here);
         self.freedom_nearby = Some(assembly.freedom);
         let numbers = assemble::numbers(scene, 0.0, q, &vec![0.0; scene.layout.n_v], x);
-        let turned = misalignment::turned(scene, model, &numbers);
+        let turned = misalignment::turned(scene, model, &numbers, true);
         self.warn(turned);
         explain(scene, &numbers, assembly, self);
         self.free = free::motions(scene, model, 0.0, q, x);

@@ -1,7 +1,8 @@
 //! Outline of a model as it is compiled: what carries what, the unknowns, the rows, what is
 //! left out, and how much there is to compute.
 
-use crate::analysis::start::{assemble, initial_conditions, misalignment, placement, velocities};
+use crate::analysis::start::dataset::Dataset;
+use crate::analysis::start::{assemble, misalignment, velocities};
 use crate::analysis::system::System;
 use crate::analysis::verify::start;
 use crate::analysis::warning::{AssemblyWarning, Warning};
@@ -83,14 +84,19 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     }
     let mut q = scene.initial_q.clone();
     let x = start(&scene, model, &mut q);
-    if !placement::settle(scene.within(&configuration), model, 0.0, &mut q, &x, true) {
-        initial_conditions::approach(&scene, &mut configuration, &[], 0.0, &mut q, &x);
-    }
-    let assembly = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &x)?;
+    let drawn = Dataset {
+        scene: &scene,
+        model,
+        t: 0.0,
+        x: &x,
+        joints: true,
+        conditions: &[],
+    };
+    let (assembly, _) = drawn.assemble(&mut configuration, &mut q)?;
     let here = scene.within(&configuration);
     out.warnings.extend(assembly.warnings.iter().cloned());
     let numbers = assemble::numbers(here, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
-    let turned = misalignment::turned(here, model, &numbers);
+    let turned = misalignment::turned(here, model, &numbers, true);
     out.warnings.extend(warnings(turned));
     for r in &assembly.redundant {
         let on: Vec<String> = (r.combination.iter().take(4))

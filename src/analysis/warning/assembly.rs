@@ -2,8 +2,12 @@
 
 use crate::analysis::direction::Axis;
 use crate::analysis::quantity::{length, short};
+use crate::model::check::alignment::Misalignment;
 use crate::model::{ElementId, ElementKind};
 use std::fmt;
+
+/// Turned parts that a sentence names beside the first, at most.
+const MAX_NAMED: usize = 3;
 
 /// Something that assembly made of the configuration of the dataset.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,12 +23,12 @@ pub enum AssemblyWarning {
         /// angle in rad and its axis, where that is worth telling
         turn: Option<(f64, Axis)>,
     },
-    /// a part is assembled on another branch than it is drawn
-    OtherBranch {
-        /// the part
-        element: ElementId,
-        /// angle between the two in rad
-        angle: f64,
+    /// axes are not aligned as an element needs them, as the dataset places the parts
+    Axes(Misalignment),
+    /// parts are turned against the dataset
+    Turned {
+        /// the parts and their angles in rad, largest first; at least one
+        parts: Vec<(ElementId, f64)>,
     },
     /// a joint is assembled the other way round
     WrongWayRound {
@@ -32,6 +36,15 @@ pub enum AssemblyWarning {
         element: ElementId,
         /// users' numbers of its markers I and J
         markers: [u32; 2],
+        /// the axes that point against each other: 0 x, 2 z
+        axis: usize,
+    },
+    /// motions of angles hold at another angle than they ask for
+    OppositeAngle {
+        /// the first of the motions between the same markers
+        element: ElementId,
+        /// the angle in between, in rad
+        angle: f64,
     },
     /// a force acts along the line between markers that coincide, but is zero there
     Coincident {
@@ -54,8 +67,11 @@ impl AssemblyWarning {
     pub(super) fn code(&self) -> &'static str {
         match self {
             AssemblyWarning::Misaligned { .. } => "misaligned",
-            AssemblyWarning::OtherBranch { .. } => "other_branch",
-            AssemblyWarning::WrongWayRound { .. } => "wrong_way_round",
+            AssemblyWarning::Axes(_) => "axes_not_aligned",
+            AssemblyWarning::Turned { .. } => "turned",
+            AssemblyWarning::WrongWayRound { .. } | AssemblyWarning::OppositeAngle { .. } => {
+                "wrong_way_round"
+            }
             AssemblyWarning::Coincident { .. } => "coincident",
             AssemblyWarning::HeldSum { .. } => "held_sum",
         }
@@ -64,9 +80,13 @@ impl AssemblyWarning {
     /// Returns the element that it is about.
     pub(super) fn element(&self) -> ElementId {
         match *self {
+            AssemblyWarning::Axes(ref found) => found.element,
+            AssemblyWarning::Turned { ref parts } => {
+                (parts.first()).map_or(ElementKind::Part.id(0), |first| first.0)
+            }
             AssemblyWarning::Misaligned { element, .. }
-            | AssemblyWarning::OtherBranch { element, .. }
             | AssemblyWarning::WrongWayRound { element, .. }
+            | AssemblyWarning::OppositeAngle { element, .. }
             | AssemblyWarning::Coincident { element, .. }
             | AssemblyWarning::HeldSum { element, .. } => element,
         }
@@ -90,21 +110,38 @@ impl fmt::Display for AssemblyWarning {
                     "{name}: in the dataset its markers are off by {off}; assembly moves the parts"
                 )
             }
-            AssemblyWarning::OtherBranch { angle, .. } => {
-                let angle = short(angle.to_degrees());
-                write!(
-                    f,
-                    "{name} is assembled on another branch: turned by {angle} deg against the dataset"
-                )
+            AssemblyWarning::Axes(found) => write!(f, "{name}: {found}"),
+            AssemblyWarning::Turned { parts } => {
+                let by = |angle: f64| format!("by {} deg", short(angle.to_degrees()));
+                let first = parts.first().map_or(0.0, |p| p.1);
+                write!(f, "{name} is turned {} against the dataset", by(first))?;
+                let others = parts.iter().skip(1).take(MAX_NAMED);
+                for (k, (part, angle)) in others.enumerate() {
+                    let before = if k == 0 { "; so are" } else { "," };
+                    write!(f, "{before} {part} {}", by(*angle))?;
+                }
+                match parts.len().saturating_sub(1 + MAX_NAMED) {
+                    0 => Ok(()),
+                    more => write!(f, " and {more} more"),
+                }
             }
             AssemblyWarning::WrongWayRound {
-                markers: [i, j], ..
+                markers: [i, j],
+                axis,
+                ..
             } => write!(
                 f,
                 "{name} is assembled the wrong way round: \
-                 the z axes of {} and {} point against each other",
+                 the {} axes of {} and {} point against each other",
+                ["x", "y", "z"][*axis],
                 ElementKind::Marker.id(*i),
                 ElementKind::Marker.id(*j)
+            ),
+            AssemblyWarning::OppositeAngle { angle, .. } => write!(
+                f,
+                "{name} is off by {} deg: its equation holds at that angle too, and the one that it \
+                 asks for cannot be reached",
+                short(angle.to_degrees())
             ),
             AssemblyWarning::Coincident {
                 markers: [i, j], ..

@@ -15,8 +15,20 @@ pub enum ConditionWarning {
         given: [f64; 2],
         /// where the parts stand
         stands: f64,
-        /// the numbers are read as velocity and displacement
-        believed: bool,
+    },
+    /// numbers are read as velocity and displacement, as Adams View writes them
+    ViewOrder {
+        /// the joints, with their numbers as they stand in the dataset; at least one
+        joints: Vec<(ElementId, [f64; 2])>,
+    },
+    /// assembly leaves a joint another rate
+    UnmetRate {
+        /// the joint
+        element: ElementId,
+        /// the rate that is left
+        found: f64,
+        /// the rate that was asked for
+        wanted: f64,
     },
     /// assembly leaves a quantity another value
     Unmet {
@@ -51,7 +63,11 @@ impl ConditionWarning {
     /// Returns the element that it is about.
     pub(super) fn element(&self) -> ElementId {
         match *self {
+            ConditionWarning::ViewOrder { ref joints } => {
+                (joints.first()).map_or(ElementKind::Joint.id(0), |first| first.0)
+            }
             ConditionWarning::Exchanged { element, .. }
+            | ConditionWarning::UnmetRate { element, .. }
             | ConditionWarning::Unmet { element, .. }
             | ConditionWarning::UnmetContact { element, .. } => element,
         }
@@ -62,31 +78,32 @@ impl fmt::Display for ConditionWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.element();
         match self {
-            ConditionWarning::Exchanged {
-                given,
-                stands,
-                believed,
-                ..
-            } => {
+            ConditionWarning::Exchanged { given, stands, .. } => {
                 let [first, second, stands] = [given[0], given[1], *stands].map(short);
                 write!(
                     f,
-                    "{name}: its initial condition {first}, {second} is read as "
+                    "{name}: its initial condition {first}, {second} is read as \
+                     displacement {first} and velocity {second}, but the parts stand at {stands}; \
+                     Adams View writes velocity, displacement: exchange the two if that is meant"
+                )
+            }
+            ConditionWarning::ViewOrder { joints } => {
+                let [first, second] = joints.first().map_or([0.0; 2], |j| j.1).map(short);
+                write!(
+                    f,
+                    "{name}: its initial condition {first}, {second} is read as \
+                     velocity {first} and displacement {second}, as Adams View writes it"
                 )?;
-                if *believed {
-                    write!(
-                        f,
-                        "velocity {first} and displacement {second}, as Adams View writes it: \
-                         the parts stand at {stands}"
-                    )
-                } else {
-                    write!(
-                        f,
-                        "displacement {first} and velocity {second}, but the parts stand at {stands}; \
-                         Adams View writes velocity, displacement: exchange the two if that is meant"
-                    )
+                match joints.len() - joints.len().min(1) {
+                    0 => Ok(()),
+                    1 => write!(f, "; so is that of {}", joints[1].0),
+                    more => write!(f, "; so are those of {} and {} more", joints[1].0, more - 1),
                 }
             }
+            ConditionWarning::UnmetRate { found, wanted, .. } => write!(
+                f,
+                "{name} IC cannot be met: the constraints leave a velocity of {found:.6e} instead of {wanted:.6e}"
+            ),
             ConditionWarning::Unmet {
                 argument,
                 found,

@@ -2,7 +2,7 @@
 
 use crate::analysis::quantity::place;
 use crate::diagnostic::Diagnostic;
-use crate::model::ElementKind;
+use crate::model::{ElementId, ElementKind};
 use crate::results::{Quantity, RankChange, RowChange};
 use crate::scene::equations::Unsupported;
 use std::fmt;
@@ -12,6 +12,8 @@ use std::fmt;
 pub enum RunWarning {
     /// a dynamic simulation of a mechanism without freedom
     NoFreedom,
+    /// contacts push in a run in which nothing can give way
+    ContactsWithoutFreedom(Vec<ElementId>),
     /// a simulation would end before it begins
     NothingToSimulate {
         /// text of the command
@@ -64,6 +66,7 @@ impl RunWarning {
     pub(super) fn code(&self) -> &'static str {
         match self {
             RunWarning::NoFreedom => "freedom",
+            RunWarning::ContactsWithoutFreedom(_) => "no_effect",
             RunWarning::NothingToSimulate { .. } => "nothing_to_simulate",
             RunWarning::MotionJumps { .. } => "motion_jumps",
             RunWarning::MethodReplaced(_) => "method",
@@ -82,6 +85,9 @@ impl RunWarning {
                 Some(ElementKind::Motion.id(*motion).to_string())
             }
             RunWarning::MethodReplaced(d) => d.element.clone(),
+            RunWarning::ContactsWithoutFreedom(contacts) => {
+                contacts.first().map(ToString::to_string)
+            }
             RunWarning::EmptyColumn(unsupported) => Some(unsupported.asked_by.clone()),
             RunWarning::Gap { column, .. } => Some(column.clone()),
             RunWarning::NoFreedom
@@ -98,6 +104,14 @@ impl fmt::Display for RunWarning {
         match self {
             RunWarning::NoFreedom => {
                 f.write_str("the mechanism has no freedom: it is moved by its motions alone")
+            }
+            RunWarning::ContactsWithoutFreedom(contacts) => {
+                let names: Vec<String> = contacts.iter().map(ToString::to_string).collect();
+                write!(
+                    f,
+                    "{}: in a kinematic run a contact pushes and moves nothing; motions go on through what is in their way",
+                    names.join(", ")
+                )
             }
             RunWarning::NothingToSimulate { command, now } => write!(
                 f,

@@ -2,12 +2,45 @@
 
 use super::*;
 
+/// Returns displacement and velocity in the order of a statement, and back: a statement that Adams
+/// View wrote carries the name it has there, and has the velocity first.
+fn in_order(joint: &Joint, mut pair: [Option<f64>; 2]) -> [Option<f64>; 2] {
+    if joint.place.name.is_some() && pair.iter().all(Option::is_some) {
+        pair.reverse();
+    }
+    pair
+}
+
+/// ICTRAN: displacement and velocity along z.
+pub fn put_ic_translation(joint: &mut Joint, value: Value) -> Done {
+    joint.ic_translation.put(value)?;
+    joint.ic_translation = in_order(joint, joint.ic_translation);
+    Ok(())
+}
+
+/// See [`put_ic_translation`].
+pub fn ic_translation(joint: &Joint) -> Option<Value> {
+    in_order(joint, joint.ic_translation).written()
+}
+
+/// ICROT: angle and rate about z.
+pub fn put_ic_rotation(joint: &mut Joint, value: Value) -> Done {
+    joint.ic_rotation.put(value)?;
+    joint.ic_rotation = in_order(joint, joint.ic_rotation);
+    Ok(())
+}
+
+/// See [`put_ic_rotation`].
+pub fn ic_rotation(joint: &Joint) -> Option<Value> {
+    <Angle as Lens<_>>::get(&in_order(joint, joint.ic_rotation))
+}
+
 /// IC means the angle of a REVOLUTE, the distance of all others.
 pub fn put_joint_ic(joint: &mut Joint, value: Value) -> Done {
     match joint.kind.displacements() {
-        Displacements::Rotation => joint.ic_rotation.put(value),
+        Displacements::Rotation => put_ic_rotation(joint, value),
         Displacements::Translation | Displacements::Both | Displacements::None => {
-            joint.ic_translation.put(value)
+            put_ic_translation(joint, value)
         }
     }
 }
@@ -15,8 +48,8 @@ pub fn put_joint_ic(joint: &mut Joint, value: Value) -> Done {
 /// See [`put_joint_ic`].
 pub fn joint_ic(joint: &Joint) -> Option<Value> {
     match joint.kind.displacements() {
-        Displacements::Rotation => <Angle as Lens<_>>::get(&joint.ic_rotation),
-        Displacements::Translation => joint.ic_translation.written(),
+        Displacements::Rotation => ic_rotation(joint),
+        Displacements::Translation => ic_translation(joint),
         Displacements::Both | Displacements::None => None,
     }
 }

@@ -294,6 +294,22 @@ products are the integrals of x y dm with positive sign; a tensor with negated p
         explanation: "X, and Z of a family of curves, must grow from each to the next.",
     },
     Code {
+        name: "control_points",
+        summary: "a CURVE that does not say what the rows of its MATRIX are",
+        explanation: "\
+Without CURVE_POINTS they are control points of a B-spline, which passes near them, not through them. Say CURVE_POINTS or
+CONTROL_POINTS.",
+    },
+    Code {
+        name: "axes_not_aligned",
+        summary: "axes of two markers are not aligned as their element needs them",
+        explanation: "\
+Pins of a UNIVERSAL (z and z) and of a HOOKE (x of I, y of J) cross at 90 degrees. A RACKPIN has the pinion as I, turning about z,
+and the rack as J, with x along that axis. A SCREW, a torsion spring and a rotational SFORCE have both z axes along the axis of
+the rotation. CV of a GEAR has z along the common velocity of both bodies where they mesh. The message says how far off they are as
+the dataset places the parts.",
+    },
+    Code {
         name: "open_ends",
         summary: "a CLOSED curve whose ends differ",
         explanation: "The last point of a closed curve is its first one again.",

@@ -98,11 +98,12 @@ The constraints leave no room for what an IC or EXACT asks, or the two numbers o
 exchanged: Adams View writes velocity, displacement.",
     },
     Code {
-        name: "other_branch",
-        summary: "a part or a joint is assembled the other way round than it is drawn",
+        name: "turned",
+        summary: "assembly turns parts by more than a degree against the dataset",
         explanation: "\
-Position equations have several solutions: a linkage may close on either side. Assembly ended on another one than the dataset shows.
-Place the parts nearer to where they should be, or give EXACT coordinates.",
+Joints, primitives and motions hold only where these parts are turned by the angles in the message. Position equations may have
+several solutions: a linkage closes on either side. If it is not the one that is meant, place the parts nearer to where they should
+be, or give EXACT coordinates.",
     },
     Code {
         name: "held_sum",
@@ -128,8 +129,8 @@ begin to hold. The run goes on; reactions may jump there.",
     },
     Code {
         name: "wrong_way_round",
-        summary: "a joint is assembled with its z axes pointing against each other",
-        explanation: "The joint holds either way. Turn one of its markers by 180 degrees, or the parts, if the other way is meant.",
+        summary: "a joint is assembled with axes that point against each other, or a motion at an opposite angle",
+        explanation: "Its equations hold either way. Turn one of its markers by 180 degrees, or the parts, if the other way is meant.",
     },
     Code {
         name: "nothing_to_simulate",

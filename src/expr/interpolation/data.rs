@@ -157,6 +157,9 @@ pub enum CurvePoints {
     Control,
 }
 
+/// Distance of the ends of a closed curve, as a part of its size, at which they meet.
+pub const CLOSING_TOLERANCE: f64 = 1e-9;
+
 /// A curve in space over a parameter from −1 to 1; outside it has no value.
 ///
 /// A curve through its points is a cubic spline over the length of the polygon of the points,
@@ -194,10 +197,20 @@ impl Curve {
                 points.len()
             )));
         }
-        if closed && first != last {
+        let gap = |a: &[f64; 3], b: &[f64; 3]| {
+            let squares = (0..3).map(|k| (a[k] - b[k]).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let size = points.iter().map(|p| gap(p, first)).fold(0.0, f64::max);
+        if closed && gap(first, last) > CLOSING_TOLERANCE * size {
             return Err(UnfitData(
                 "the last point of a closed curve must repeat the first".to_string(),
             ));
+        }
+        // its ends differ by rounding, at most
+        let mut points = points.to_vec();
+        if let (true, [first, .., last]) = (closed, &mut points[..]) {
+            *last = *first;
         }
         let mut lengths = vec![0.0];
         for pair in points.windows(2) {

@@ -6,7 +6,7 @@ mod bindings;
 mod data;
 
 pub use bindings::{Bindings, Bound};
-pub use data::{Curve, CurvePoints, Spline, Surface};
+pub use data::{CLOSING_TOLERANCE, Curve, CurvePoints, Spline, Surface};
 
 use super::ast::Dialect;
 use super::functions::Continuity;

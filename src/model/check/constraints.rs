@@ -143,3 +143,27 @@ fn undriven(out: &mut Out, who: Who, (joint, kind): (u32, JointKind), why: Uncle
         }
     }
 }
+
+/// Tells once of initial conditions that are read in the order of Adams View.
+pub(super) fn initial_conditions_say_what_is_first(model: &Model, out: &mut Out) {
+    let pairs = |j: &Joint| {
+        let both = |pair: [Option<f64>; 2]| pair.iter().all(|x| x.is_some_and(|x| x != 0.0));
+        [j.ic_translation, j.ic_rotation]
+            .into_iter()
+            .find(|&pair| both(pair))
+    };
+    let named = model.joints.iter().filter(|(_, j)| j.place.name.is_some());
+    let mut found = named.filter_map(|(&id, j)| Some((id, j, pairs(j)?)));
+    if let Some((id, joint, [Some(displacement), Some(velocity)])) = found.next() {
+        let message = format!(
+            "its initial condition {velocity}, {displacement} is read as velocity {velocity} and \
+             displacement {displacement}, as Adams View writes it"
+        );
+        let who = (ElementKind::Joint.id(id), &joint.place);
+        warn(out, "initial_condition", who, message);
+        advise(
+            out,
+            "it carries View's name; without adams_view_name the displacement is first",
+        );
+    }
+}

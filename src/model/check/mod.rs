@@ -5,10 +5,13 @@
 //! geometry in motion (freedom, redundancy, lock-up) belong to the analyses; here stands what the
 //! statements themselves contradict.
 
+pub(crate) mod alignment;
 mod angles;
 mod bodies;
 mod constraints;
+mod contacts;
 mod couplings;
+mod curves;
 mod forces;
 mod output;
 mod references;
@@ -56,10 +59,16 @@ pub const RULES: &[Rule] = &[
         "systems have their arrays",
         systems::systems_have_their_arrays,
     ),
-    ("curves have points", systems::curves_have_points),
+    ("curves have points", curves::curves_have_points),
     ("forces have data", forces::forces_have_data),
+    ("contacts have their law", contacts::contacts_have_their_law),
+    ("axes are aligned", alignment::axes_are_aligned),
     ("requests ask something", output::requests_ask_something),
     ("units are known", output::units_are_known),
+    (
+        "initial conditions say what is first",
+        constraints::initial_conditions_say_what_is_first,
+    ),
     ("functions can be read", references::functions_can_be_read),
 ];
 

@@ -1,4 +1,4 @@
-//! Data and system elements: splines, arrays, curves, and the arrays that systems fill and read.
+//! Data and system elements: splines, arrays, and the arrays that systems fill and read.
 
 use super::*;
 
@@ -138,51 +138,6 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
                 "unfit_value",
                 who,
                 "the last number of DENOMINATOR, its highest power, is zero".into(),
-            );
-        }
-    }
-}
-
-pub(super) fn curves_have_points(model: &Model, out: &mut Out) {
-    for (&id, c) in &model.curves {
-        let who = (ElementKind::Curve.id(id), &c.place);
-        if c.matrix.is_none() && c.function.is_none() {
-            error(
-                out,
-                "missing_argument",
-                who,
-                "a CURVE needs MATRIX, or FUNCTION = USER(…)".into(),
-            );
-        }
-        let Some(points) = c.matrix.and_then(|m| model.matrices.get(&m)) else {
-            continue;
-        };
-        if points.file.is_some() {
-            continue;
-        }
-        if points.columns != 3 {
-            let message = format!(
-                "its MATRIX has {} columns; a point has three",
-                points.columns
-            );
-            error(out, "wrong_count", who, message);
-            continue;
-        }
-        if points.rows < 4 {
-            error(
-                out,
-                "few_points",
-                who,
-                format!("{} points; a curve needs four or more", points.rows),
-            );
-        }
-        let all = points.by_rows().unwrap_or_default();
-        if c.closed && c.through_points && all.len() >= 6 && all[..3] != all[all.len() - 3..] {
-            error(
-                out,
-                "open_ends",
-                who,
-                "CLOSED, but the first and last point differ".into(),
             );
         }
     }

@@ -218,10 +218,14 @@ impl<S: Scalar> Equations<'_, S> {
         let Some((action, p_I, p_J)) = self.element(element) else {
             return self.complain(asked_by, Lack::ActiveElement(element));
         };
-        let action = if jflag == 1 {
-            action.reaction(p_I, p_J)
-        } else {
+        let mut forces = self.scene.forces.iter().filter(|f| f.id == element);
+        let action = if jflag != 1 {
             action
+        } else if forces.any(|f| f.reaction.is_none()) {
+            // nothing feels the reaction of an action-only force
+            Action::zero()
+        } else {
+            action.reaction(p_I, p_J)
         };
         self.component(&action, comp, rm, asked_by)
     }

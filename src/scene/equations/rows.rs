@@ -2,7 +2,7 @@
 
 use super::Equations;
 use crate::physics::action::Action;
-use crate::physics::row::Law;
+use crate::physics::row::{Drive, Law};
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::scene::{CoordinateSum, Displacement, Row, RowKind, Source, Sum};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
@@ -12,12 +12,22 @@ impl<S: Scalar> Equations<'_, S> {
     pub fn row(&self, r: usize) -> RowValue<S> {
         match &self.scene.rows[r].kind {
             RowKind::Markers { law, i, j, motion } => {
-                let drive = motion.map(|m| self.driven[m]);
+                let drive = motion.map(|m| self.row_drive(m));
                 self.marker_row(*law, (*i, *j), drive)
             }
             RowKind::Displacements(sum) => self.sum_row(sum, self.configuration.sums[r]),
             RowKind::Formula { formula, .. } => self.formula_row(*formula),
             RowKind::Cam { cam, component } => self.cam_row(*cam, *component),
+        }
+    }
+
+    /// Returns what the law of a motion reads: the motion itself, and the one beside it.
+    pub fn row_drive(&self, m: usize) -> Drive<Jet<S>> {
+        let beside = self.scene.motions[m].beside;
+        Drive {
+            value: self.driven[m],
+            beside: beside.map_or_else(Jet::zero, |b| self.driven[b]),
+            reference: self.configuration.motions[m].reference,
         }
     }
 
@@ -27,16 +37,18 @@ impl<S: Scalar> Equations<'_, S> {
         &self,
         law: Law,
         (i, j): (usize, usize),
-        drive: Option<Jet<S>>,
+        drive: Option<Drive<Jet<S>>>,
     ) -> RowValue<S> {
         let (I, J) = (self.marker(i), self.marker(j));
         // gradient: duals along the twists of I (0–5: rotation, translation) and J (6–11)
         let seeded = law.value(
             &seed::<12, S>(&I, 0),
             &seed::<12, S>(&J, 6),
-            drive.map(|d| Dual {
-                re: d.value,
-                eps: [S::zero(); 12],
+            drive.map(|d| {
+                d.map(|x| Dual {
+                    re: x.value,
+                    eps: [S::zero(); 12],
+                })
             }),
         );
         let actions = vec![(i, twist(&seeded, 0)), (j, twist(&seeded, 6))];
@@ -53,7 +65,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// The gradient of what acts with a unit multiplier, by places.
-    pub(super) fn gradient_of(&self, actions: &[(usize, Action<S>)]) -> Vec<(usize, S)> {
+    pub fn gradient_of(&self, actions: &[(usize, Action<S>)]) -> Vec<(usize, S)> {
         let mut gradient: Vec<(usize, S)> = Vec::new();
         for (m, action) in actions {
             self.gradient(*m, action, &mut gradient);

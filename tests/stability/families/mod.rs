@@ -1,5 +1,6 @@
 //! The scenes, a file a family: each has a closed form, a law, or a reason for which it must stop.
 
+mod angles;
 mod circular;
 mod friction;
 mod gravity;
@@ -40,6 +41,7 @@ pub fn all() -> Vec<Scene> {
         large::large(),
         circular::circular(),
         rest::rest(),
+        angles::angles(),
     ]
     .into_iter()
     .flatten()

@@ -1,0 +1,123 @@
+//! The first configuration: that of the dataset, moved to initial conditions and onto the rows.
+//!
+//! Parts are placed near where they are drawn, then the rows are closed. Where that fails, or ends
+//! at an opposite of what orientation rows ask for, the turns that they ask for are made first
+//! (`branch.rs`), and the rest again from there. The first outcome stands where none of these is
+//! better.
+
+use crate::analysis::start::assemble::{self, Assembly};
+use crate::analysis::start::branch;
+use crate::analysis::start::initial_conditions::{self, InitialCondition};
+use crate::analysis::start::placement;
+use crate::diagnostic::Diagnostic;
+use crate::model::Model;
+use crate::scene::Scene;
+use crate::scene::cams;
+use crate::scene::configuration::Configuration;
+
+/// A dataset that is to be assembled.
+#[derive(Clone, Copy)]
+pub struct Dataset<'a> {
+    /// the scene
+    pub scene: &'a Scene,
+    /// the model that it was made of
+    pub model: &'a Model,
+    /// time
+    pub t: f64,
+    /// states   (n_x)
+    pub x: &'a [f64],
+    /// whether initial conditions of joints count
+    pub joints: bool,
+    /// initial conditions
+    pub conditions: &'a [InitialCondition],
+}
+
+/// An assembled dataset, and where contacts on curves were asked to begin.
+type Assembled = Result<(Assembly, Vec<cams::Start>), Vec<Diagnostic>>;
+
+impl Dataset<'_> {
+    /// Moves `q` from where it is drawn to where the dataset is assembled.
+    ///
+    /// # Errors
+    /// Rows that contradict each other.
+    pub fn assemble(&self, configuration: &mut Configuration, q: &mut [f64]) -> Assembled {
+        let (scene, t, x) = (self.scene, self.t, self.x);
+        branch::refer(scene, configuration, t, q, x, true);
+        let drawn = (configuration.clone(), q.to_vec());
+        let first = self.near(configuration, q, true);
+        let right = |configuration: &Configuration, q: &[f64]| {
+            !branch::is_opposite(scene, configuration, &drawn.0, t, q, x)
+        };
+        if first.is_ok() && right(configuration, q) {
+            return first;
+        }
+        for normal in 0..branch::NORMALS {
+            let (mut turned, mut there) = drawn.clone();
+            if !branch::turn(scene, &mut turned, t, &mut there, x, normal) {
+                continue;
+            }
+            // placed near the drawing, or else where the turns have led
+            for placed in [true, false] {
+                let (mut other, mut p) = (turned.clone(), there.clone());
+                let second = self.near(&mut other, &mut p, placed);
+                if second.is_ok() && right(&other, &p) {
+                    *configuration = other;
+                    q.copy_from_slice(&p);
+                    return second;
+                }
+            }
+        }
+        first
+    }
+
+    /// Moves `q` onto the rows, from where it is, or from the place nearest to the drawing.
+    fn near(&self, configuration: &mut Configuration, q: &mut [f64], placed: bool) -> Assembled {
+        let Self { scene, t, x, .. } = *self;
+        let here = scene.within(configuration);
+        let placed = placed && placement::settle(here, self.model, t, q, x, self.joints);
+        // where parts are too many to be weighed, or on curves, coordinates move as little as may
+        // be
+        let starts = if placed && self.joints {
+            Vec::new()
+        } else {
+            initial_conditions::approach(scene, configuration, self.conditions, t, q, x)
+        };
+        let assembly = assemble::positions(scene, configuration, t, q, x)?;
+        Ok((assembly, starts))
+    }
+}
+
+/// Moves `q` from where a simulation left it onto rows that may have changed, and chooses those
+/// that take part.
+///
+/// # Errors
+/// Rows that contradict each other.
+pub fn go_on(
+    scene: &Scene,
+    configuration: &mut Configuration,
+    t: f64,
+    q: &mut [f64],
+    x: &[f64],
+) -> Result<Assembly, Vec<Diagnostic>> {
+    branch::refer(scene, configuration, t, q, x, false);
+    let left = (configuration.clone(), q.to_vec());
+    let first = assemble::positions(scene, configuration, t, q, x);
+    // rows that held where it was left have been followed to there
+    let followed = matches!(&first, Ok(assembly) if assembly.iterations == 0);
+    if followed || first.is_ok() && !branch::is_opposite(scene, configuration, &left.0, t, q, x) {
+        return first;
+    }
+    for normal in 0..branch::NORMALS {
+        let (mut other, mut p) = left.clone();
+        if !branch::turn(scene, &mut other, t, &mut p, x, normal) {
+            continue;
+        }
+        let second = assemble::positions(scene, &mut other, t, &mut p, x);
+        if second.is_ok() && !branch::is_opposite(scene, &other, &left.0, t, &p, x) {
+            *configuration = other;
+            q.copy_from_slice(&p);
+            return second;
+        }
+    }
+    first
+}
