@@ -185,7 +185,7 @@ impl Bdf {
                 worst_index(all.copied()) % self.next.y.len().max(1),
             )));
         }
-        self.weights.see(&self.next.y);
+        self.weights.see(t, &self.next.y);
         self.corrector.forget();
         // a first step of order 1: its error h² ÿ/2 is a guess from the time scale y/ẏ
         let typical = self.weights.typical();
@@ -509,7 +509,7 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                         // a step that the limit cut short says little against the one proposed
                         self.past.h = self.past.h.max(proposed);
                     }
-                    self.weights.see(&self.next.y);
+                    self.weights.see(t1, &self.next.y);
                     (self.t0, self.can_undo) = (t0, true);
                     return Ok(attempts.accepted(h, t1, order, &mut self.stats));
                 }

@@ -168,7 +168,7 @@ impl Hht {
                 worst_index(all.copied()) % y.len().max(1),
             )));
         }
-        self.weights.see(&now.y);
+        self.weights.see(t, &now.y);
         self.corrector.forget();
         self.control.reset();
         now.a.copy_from_slice(&now.ydot);
@@ -316,7 +316,7 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                     } else {
                         grown
                     };
-                    self.weights.see(&self.next.y);
+                    self.weights.see(t1, &self.next.y);
                     self.can_undo = true;
                     return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }

@@ -326,6 +326,8 @@ pub struct Stats {
     /// accepted steps with an error estimate above the permitted one that rounding explains (see
     /// [`noise`])
     pub below_rounding: usize,
+    /// accepted steps that stability, not accuracy, held short
+    pub stability_limited: usize,
 }
 
 /// The contract of a method for problems of type `P`.

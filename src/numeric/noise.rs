@@ -4,6 +4,7 @@
 //! ```text
 //! δ = min over probes of ‖f(t, y + ε r ⊙ s) − f(t, y)‖      ε: unit roundoff, s: random signs  (1)
 //! error estimate ≈ C h δ                                     whatever the method               (2)
+//! δ = min over j of |Δ³ f(t + j τ, y + j τ f)| / √20         τ = h/64                          (3)
 //! ```
 //!
 //! with ‖·‖ relative to magnitudes, and r = |y|, or for an angle no less than a part of a turn: its
@@ -13,8 +14,13 @@
 //!
 //! In long chains of links accelerations magnify roundings a hundred thousand times. An estimate of
 //! a size that (2) explains says nothing of the step: a shorter one would be no better, only more
-//! expensive. A rate that loses digits by itself, between large numbers that are not unknowns, is
-//! not recognized.
+//! expensive.
+//!
+//! A rate may lose digits by itself, between large numbers that are not unknowns (a heavy body on a
+//! light one, masses 1e9 : 1), and repeat the same roundings wherever (1) probes. Third differences
+//! along the motion (3) show it. They cost four evaluations, and contain a small part of an error
+//! of truncation whose two estimates are alike, as those of rounding are; only there they count.
+//! Since roundings come in patches, the largest of the last measurements counts.
 //!
 //! The smallest of three probes counts: where a state lies within rounding of a jump of the rates,
 //! a probe across it measures the jump. That all three cross it is unlikely, and [`LARGEST_NOISE`]
@@ -29,18 +35,44 @@ use super::{Ode, Stats};
 /// C of (2): the weights of the stages in an error estimate have a root sum of squares of about 2,
 /// and the smallest of three probes underestimates the largest rounding in a sample.
 const ESTIMATE_PER_ROUNDING: f64 = 3.0;
+/// C of (2) for (3): the smaller of two differences underestimates, and roundings come in patches.
+const ESTIMATE_PER_DIFFERENCE: f64 = 20.0;
+/// Factor of an earlier measurement of (3) with each further one.
+const FADING: f64 = 0.9;
 /// Part of the upper bound of a magnitude (half a turn, for an angle) that is taken for r of (1).
 const ROUNDED_SHARE_OF_BOUND: f64 = 0.25;
 /// Relative error above which nothing is taken for rounding.
-pub const LARGEST_NOISE: f64 = 5e-9;
+pub const LARGEST_NOISE: f64 = 1e-6;
+/// The same where only (1) has been measured.
+const LARGEST_PROBED: f64 = 5e-9;
+/// τ of (3), as a part of the step.
+const STRIDE: f64 = 1.0 / 64.0;
+/// Weights of the rates in the two third differences of (3), over √20: they keep the size of
+/// independent roundings.
+const DIFFERENCES: [[f64; 2]; 5] = {
+    const UNIT: f64 = 0.22360679774997896;
+    [
+        [-UNIT, 0.0],
+        [3.0 * UNIT, -UNIT],
+        [-3.0 * UNIT, 3.0 * UNIT],
+        [UNIT, -3.0 * UNIT],
+        [0.0, UNIT],
+    ]
+};
 /// Probes of (1) per measurement.
 const PROBES: u64 = 3;
 
 /// The rounding of a rate, as measured last.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Noise {
     /// time of the measurement, in s, and δ of (1) there
     known: Option<(f64, f64)>,
+    /// time of the last measurement of (3), in s
+    differenced: Option<f64>,
+    /// δ of (3): the largest of the last measurements
+    largest: f64,
+    /// the two third differences of (3)   (n each)
+    differences: [Vec<f64>; 2],
 }
 
 /// A state at which the rounding of the rate is measured.
@@ -57,32 +89,90 @@ pub struct Probed<'a> {
 }
 
 impl Noise {
-    /// Forgets the last measurement.
+    /// Creates room for `n` unknowns; nothing is measured.
+    pub fn new(n: usize) -> Self {
+        Noise {
+            known: None,
+            differenced: None,
+            largest: 0.0,
+            differences: [vec![0.0; n], vec![0.0; n]],
+        }
+    }
+
+    /// Forgets the last measurements.
     pub fn forget(&mut self) {
-        self.known = None;
+        (self.known, self.differenced, self.largest) = (None, None, 0.0);
     }
 
     /// Returns the part of a relative error estimate that rounding explains (2), for a step of
-    /// length `h`; measured once for each time.
+    /// length `h`; measured once for each time. `alike`: its two estimates are.
     ///
     /// `room`: for an argument and its rate   (n each)
     pub fn of_step<P: Ode + ?Sized>(
         &mut self,
         problem: &mut P,
         at: Probed,
-        h: f64,
-        room: [&mut [f64]; 2],
+        (h, alike): (f64, bool),
+        [probe, rate]: [&mut [f64]; 2],
         stats: &mut Stats,
     ) -> f64 {
         let size = match self.known {
             Some((t, size)) if t == at.t => size,
             _ => {
-                let size = measure(problem, at, room, stats);
+                let size = measure(problem, at, [probe, rate], stats);
                 self.known = Some((at.t, size));
                 size
             }
         };
-        (ESTIMATE_PER_ROUNDING * h * size).min(LARGEST_NOISE)
+        let probed = (ESTIMATE_PER_ROUNDING * h * size).min(LARGEST_PROBED);
+        if !alike {
+            return probed;
+        }
+        if self.differenced != Some(at.t) {
+            let size = self.difference(problem, at, h, [probe, rate], stats);
+            self.largest = size.max(FADING * self.largest);
+            self.differenced = Some(at.t);
+        }
+        (ESTIMATE_PER_DIFFERENCE * h * self.largest)
+            .min(LARGEST_NOISE)
+            .max(probed)
+    }
+
+    /// Measures δ of (3); 0 where a rate has no value.
+    fn difference<P: Ode + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        at: Probed,
+        h: f64,
+        [argument, rate]: [&mut [f64]; 2],
+        stats: &mut Stats,
+    ) -> f64 {
+        let [one, other] = &mut self.differences;
+        let tau = STRIDE * h;
+        for (j, [a, b]) in DIFFERENCES.into_iter().enumerate() {
+            let rate: &[f64] = if j == 0 {
+                one.fill(0.0);
+                other.fill(0.0);
+                at.f
+            } else {
+                let s = j as f64 * tau;
+                for ((x, y), f) in argument.iter_mut().zip(at.y).zip(at.f) {
+                    *x = y + s * f;
+                }
+                stats.evaluations += 1;
+                if problem.rate(at.t + s, argument, rate).is_err() {
+                    return 0.0;
+                }
+                rate
+            };
+            for ((one, other), f) in one.iter_mut().zip(other.iter_mut()).zip(rate) {
+                *one += a * f;
+                *other += b * f;
+            }
+        }
+        let both = one.iter().zip(other.iter()).zip(at.weights.magnitude());
+        let size = worst(both.map(|((a, b), m)| a.abs().min(b.abs()) / m));
+        if size.is_finite() { size } else { 0.0 }
     }
 }
 

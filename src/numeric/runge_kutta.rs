@@ -18,7 +18,9 @@
 //!
 //! *Stiffness*: when `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` lies beyond 6.1, the edge of the
 //! stability region, in most of the recent steps, stability holds the step down. [`Method::stiff`]
-//! says so, and the integration goes on.
+//! says so, and the integration goes on. There the interpolant (4), whose further stages magnify
+//! what is left of fast modes by `(h λ)³`, is compared with the rate in the middle of the step; it
+//! has no value where they do not fit.
 //!
 //! *Rounding*: the part of an error that rounding explains (`noise.rs`) shortens no step, since a
 //! shorter one would be no better. It is measured where an error is too large, and where the two
@@ -41,6 +43,10 @@ const ORDER: usize = 8;
 const ERROR_SCALE: f64 = 20.0;
 /// `h |λ|` at the edge of the stability region.
 const STABILITY_EDGE: f64 = 6.1;
+/// `h |λ|` from which on the interpolant is compared with the rate.
+const DENSE_EDGE: f64 = 2.0;
+/// Error of the interpolant there, at most, in units of that permitted in a step.
+const DENSE_TOLERANCE: f64 = 1.0;
 /// Steps beyond the edge from which on the problem is called stiff.
 const STIFF_STEPS: u32 = 15;
 /// Steps within the edge, in a row, after which those beyond it are forgotten.
@@ -86,6 +92,8 @@ pub struct Dop853 {
     beyond_edge: u32,
     /// steps in a row within that edge
     within_edge: u32,
+    /// h |λ| of the last accepted step
+    h_lambda: f64,
     /// solution at t0   (n)
     y0: Vec<f64>,
     /// rate at t0, which is k₁   (n)
@@ -169,7 +177,7 @@ impl Dop853 {
             options: options.clone(),
             weights: Weights::new(n, options),
             control: Pi::new(8.0, 0.02, 0.85, 1.0 / 3.0, 6.0),
-            noise: Noise::default(),
+            noise: Noise::new(n),
             noisy: false,
             stats: Stats::default(),
             t0: 0.0,
@@ -181,6 +189,7 @@ impl Dop853 {
             first: true,
             beyond_edge: 0,
             within_edge: 0,
+            h_lambda: 0.0,
             y0: zeros(),
             f0: zeros(),
             y1: zeros(),
@@ -198,7 +207,7 @@ impl Dop853 {
         self.t0 = t;
         self.advanced = false;
         self.y0.copy_from_slice(y);
-        self.weights.see(y);
+        self.weights.see(t, y);
         self.control.reset();
         self.noise.forget();
         (self.calm, self.first) = (false, true);
@@ -326,15 +335,17 @@ impl Dop853 {
         let suspect = error > 1.0 || error > SUSPECT_ERROR && alike;
         if suspect && error < scale * noise::LARGEST_NOISE {
             // the rest is measured against rounding, where that is more than the request
-            let explained = self.rounding(problem, h) * ERROR_SCALE / self.weights.tolerance();
+            let explained =
+                self.rounding(problem, (h, alike)) * ERROR_SCALE / self.weights.tolerance();
             self.noisy = error > 1.0 && explained > 1.0;
             error = (error - explained).max(REMAINING_SHARE * error) / explained.max(1.0);
         }
         Ok(error)
     }
 
-    /// Returns the relative error estimate that rounding explains.
-    fn rounding<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> f64 {
+    /// Returns the relative error estimate that rounding explains, for a step of some length whose
+    /// estimates are alike or not.
+    fn rounding<P: Ode + ?Sized>(&mut self, problem: &mut P, step: (f64, bool)) -> f64 {
         // k₂ and k₃ have done their work
         let [k2, k3, ..] = &mut self.k;
         let at = Probed {
@@ -344,7 +355,7 @@ impl Dop853 {
             weights: &self.weights,
         };
         self.noise
-            .of_step(problem, at, h, [k2, k3], &mut self.stats)
+            .of_step(problem, at, step, [k2, k3], &mut self.stats)
     }
 
     /// Returns the error (3) of the step just attempted without the part that projection removes;
@@ -425,7 +436,7 @@ impl Dop853 {
         self.placed = 0;
         self.t1 = t1;
         self.advanced = true;
-        self.weights.see(&self.y1);
+        self.weights.see(t1, &self.y1);
         self.watch_stiffness();
         self.stats.below_rounding += usize::from(self.noisy);
     }
@@ -440,7 +451,12 @@ impl Dop853 {
             rates += df * df;
             states += dy * dy;
         }
-        if states > 0.0 && self.h * self.h * rates > STABILITY_EDGE * STABILITY_EDGE * states {
+        self.h_lambda = if states > 0.0 {
+            self.h * (rates / states).sqrt()
+        } else {
+            0.0
+        };
+        if self.h_lambda > STABILITY_EDGE {
             self.beyond_edge += 1;
             self.within_edge = 0;
         } else {
@@ -449,6 +465,7 @@ impl Dop853 {
                 self.beyond_edge = 0;
             }
         }
+        self.stats.stability_limited += usize::from(self.beyond_edge >= STIFF_STEPS);
     }
 
     /// Returns the unknown with the largest error estimate e₃.
@@ -512,7 +529,60 @@ impl Dop853 {
             k9 93.40532418362432, k10 -37.45832313645163, k11 104.0996495089623, k12 29.8402934266605, k13 -43.53345659001114,
             k14 96.32455395918828, k15 -39.17726167561544, k16 -149.72683625798564));
         self.dense_ready = true;
+        if self.h_lambda > DENSE_EDGE {
+            self.check_dense(problem)?;
+        }
         Ok(())
+    }
+
+    /// Compares the slope of (4) in the middle of the step with the rate there: the difference is
+    /// about λ times the error of the interpolant.
+    ///
+    /// # Errors
+    /// The interpolant is off by more than a step may be: a step has to end where a value is
+    /// wanted.
+    fn check_dense<P: Ode + ?Sized>(&mut self, problem: &mut P) -> Result<(), Failure> {
+        const MIDDLE: f64 = 0.5;
+        let n = self.y0.len();
+        // k₂ and k₃ have done their work
+        let (mut y, mut slope) = (
+            std::mem::take(&mut self.k[0]),
+            std::mem::take(&mut self.k[1]),
+        );
+        for i in 0..n {
+            (y[i], slope[i]) = self.dense_at(i, MIDDLE);
+        }
+        self.stats.evaluations += 1;
+        let evaluated = problem.rate(self.t0 + MIDDLE * self.h, &y, &mut self.stage);
+        let defects = self.stage.iter().zip(&slope).zip(self.weights.magnitude());
+        let worst = worst(defects.map(|((f, slope), m)| (self.h * f - slope) / m));
+        (self.k[0], self.k[1]) = (y, slope);
+        evaluated?;
+        if worst <= DENSE_TOLERANCE * self.h_lambda * self.weights.tolerance() {
+            return Ok(());
+        }
+        self.dense_ready = false;
+        Err(Failure {
+            what: 0,
+            recoverable: true,
+        })
+    }
+
+    /// Returns value and slope, per step, of (4) for unknown `i` at the part `s` of the step.
+    fn dense_at(&self, i: usize, s: f64) -> (f64, f64) {
+        // Horner's rule; the factors alternate between θ and 1 − θ
+        let (mut p, mut slope) = (0.0, 0.0);
+        for (j, r) in self.dense.iter().enumerate().rev() {
+            p += r[i];
+            let (factor, sign) = if j % 2 == 0 {
+                (s, 1.0)
+            } else {
+                (1.0 - s, -1.0)
+            };
+            slope = slope * factor + p * sign;
+            p *= factor;
+        }
+        (self.y0[i] + p, slope)
     }
 }
 
@@ -615,19 +685,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
         self.prepare_dense(problem)?;
         let s = (t - self.t0) / self.h;
         for (i, rate) in ydot.iter_mut().enumerate() {
-            // value and slope of (4) by Horner's rule; the factors alternate between θ and 1 − θ
-            let (mut p, mut slope) = (0.0, 0.0);
-            for (j, r) in self.dense.iter().enumerate().rev() {
-                p += r[i];
-                let (factor, sign) = if j % 2 == 0 {
-                    (s, 1.0)
-                } else {
-                    (1.0 - s, -1.0)
-                };
-                slope = slope * factor + p * sign;
-                p *= factor;
-            }
-            *rate = slope / self.h;
+            *rate = self.dense_at(i, s).1 / self.h;
         }
         Ok(())
     }

@@ -7,6 +7,7 @@
 mod at_rest;
 mod carried;
 pub mod columns;
+mod growth;
 mod outcome;
 mod over_time;
 pub mod script;

@@ -1,19 +1,19 @@
 //! A simulation over time: from its settings to its results and its place in the record.
 
+use super::growth::{self, Growth};
 use super::outcome::counts;
 use super::simulate::Span;
 use super::{Analysis, Session};
 use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::options::{self, Options};
-use crate::analysis::time::trajectory::{Ended, Trajectory};
+use crate::analysis::time::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::time::{dynamics, kinematics};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::ElementKind;
-use crate::numeric;
 use crate::results::{self, Event, Kind, Status};
 use std::time::Instant;
 
@@ -48,11 +48,13 @@ impl Session {
         self.note_sensors(system, &trajectory);
         let stopped = self.stop_reason(system, &trajectory);
         self.drift(system, &first, &trajectory.rows);
+        self.warn_of_growth(growth::of(system, &first, &trajectory));
         // what the next simulation begins with
         let last = trajectory.rows.last().cloned().unwrap_or(first);
         self.keep(system, last);
         // the record
         self.warn_of_rounding(&trajectory, settings.error);
+        self.warn_of_stability(&trajectory);
         self.run.record.error = Some(settings.error);
         let simulation = results::Simulation {
             end: trajectory.t.last().copied().unwrap_or(span.start),
@@ -156,7 +158,27 @@ impl Session {
             });
         }
     }
+
+    /// Warns where the motion grows without bound.
+    fn warn_of_growth(&mut self, growth: Option<Growth>) {
+        if let Some(Growth { factor, fed_by }) = growth {
+            self.warn(RunWarning::EnergyGrows { factor, fed_by });
+        }
+    }
+
+    /// Warns where stability, not the error asked for, set the steps of an explicit method.
+    fn warn_of_stability(&mut self, trajectory: &Trajectory) {
+        let (limited, steps) = (trajectory.stats.stability_limited, trajectory.stats.steps);
+        if limited >= TOLD_STEPS && limited as f64 > TOLD_SHARE * steps as f64 {
+            self.warn(RunWarning::StabilityLimited { limited, steps });
+        }
+    }
 }
+
+/// Part of the steps, from which on those that stability held short are told.
+const TOLD_SHARE: f64 = 0.25;
+/// The least number of them that is told.
+const TOLD_STEPS: usize = 200;
 
 /// Returns whether a mechanism without freedom has states all the same: these go on by integration,
 /// which keeps positions on the rows as well.
@@ -165,20 +187,27 @@ fn is_integrated(system: &System) -> bool {
     l.n_x > 0 || l.n_q > 0 && system.external.remembers() || !system.samples.is_empty()
 }
 
+/// Most changes of method that a record names.
+const MOST_CHANGES: usize = 4;
+
 /// Writes the methods that worked: "DOP853, then RADAU5 from 0.3, where …".
 fn methods(trajectory: &Trajectory) -> String {
     let mut text = String::new();
-    for (k, (t, name)) in trajectory.methods.iter().enumerate() {
-        if k > 0 {
-            let why = if numeric::is_implicit(&trajectory.methods[k - 1].1) {
-                "the motion stays where a function changes its branch"
-            } else {
-                "steps were limited by stiffness"
-            };
-            text += &format!(", then {name} from {t}, where {why}");
-        } else {
-            text += name;
-        }
+    for (t, name, why) in trajectory.methods.iter().take(1 + MOST_CHANGES) {
+        let why = match why {
+            Takeover::Begins => {
+                text += name;
+                continue;
+            }
+            Takeover::Stiff => "steps were limited by stiffness",
+            Takeover::Eased => "branches changed",
+            Takeover::Slides => "the motion stays where a function changes its branch",
+            Takeover::Fails => "the method before could not go on",
+        };
+        text += &format!(", then {name} from {t}, where {why}");
+    }
+    if let Some(more @ 1..) = trajectory.methods.len().checked_sub(1 + MOST_CHANGES) {
+        text += &format!(", then {more} more changes");
     }
     text
 }

@@ -8,7 +8,7 @@
 //! ode          ẏ = f(t, y), projection; jacobian: its derivatives
 //! implicit     F(t, y, ẏ) = 0
 //! external_inputs, sensors, samples     numbers that programs read but do not compute
-//! pulses, time_events, tunnelling, singular_step     how long a step may be
+//! pulses, peaks, time_events, tunnelling, singular_step     how long a step may be
 //! ```
 
 mod algebraic_loops;
@@ -17,6 +17,7 @@ pub mod external_inputs;
 pub mod implicit;
 mod jacobian;
 mod ode;
+pub(super) mod peaks;
 mod pulses;
 mod recorded;
 mod recording;
@@ -42,6 +43,7 @@ use crate::scene::{Coordinate, Scene, Source};
 use branches::Branches;
 use external_inputs::{ExternalInputs, Hook};
 use implicit::Implicit;
+use peaks::Peaks;
 use pulses::Pulses;
 use recorded::Recorded;
 use samples::{Held, Samples};
@@ -73,6 +75,8 @@ pub struct System {
     pub samples: Samples,
     /// smooth pulses of functions of time
     pulses: Pulses,
+    /// narrow peaks of functions
+    pub(super) peaks: Peaks,
     /// breaks at times that are fixed beforehand
     pub(super) time_events: TimeEvents,
     /// instants near which rows were dependent in the present step
@@ -123,6 +127,7 @@ impl System {
             sensors: Sensors::new(here).map_err(complaints)?,
             samples: Samples::new(here).map_err(complaints)?,
             pulses: Pulses::new(here)?,
+            peaks: Peaks::new(here)?,
             time_events: TimeEvents::new(here).map_err(complaints)?,
             singular_steps: SingularSteps::default(),
             precision: 1e-6,
@@ -252,6 +257,27 @@ impl System {
     /// Returns the times at which steps have to end, lest a pulse passes unseen.
     pub fn landings(&mut self, start: f64, end: f64) -> Vec<f64> {
         self.pulses.landings(&mut self.time_events, start, end)
+    }
+
+    /// Looks at narrow peaks at the end of a step; their slopes are those over a time `delta`.
+    pub(super) fn look_at_peaks(&mut self, t: f64, y: &[f64], ydot: &[f64], delta: f64) {
+        if self.peaks.is_empty() {
+            return;
+        }
+        let mut later = std::mem::take(&mut self.stage);
+        later.clear();
+        later.extend(y.iter().zip(ydot).map(|(y, f)| y + delta * f));
+        self.set(t + delta, &later);
+        self.peaks.see_later(&self.numbers);
+        self.stage = later;
+        self.set(t, y);
+        self.peaks.see_end(&self.numbers, delta);
+    }
+
+    /// Returns the `k`-th logarithm of the narrow peaks at a state.
+    pub(super) fn peak_at(&mut self, t: f64, y: &[f64], k: usize) -> f64 {
+        self.set(t, y);
+        self.peaks.eval(&self.numbers)[k]
     }
 
     /// Returns whether rows have nearly been dependent since this was last asked.

@@ -6,7 +6,7 @@
 use crate::analysis::system::System;
 use crate::analysis::time::leg::{Finished, Leg, Limits};
 use crate::analysis::time::options::Options;
-use crate::analysis::time::trajectory::{Ended, Trajectory};
+use crate::analysis::time::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{self, Method, Ode, Reason, Stop};
 use crate::scene::layout::Layout;
@@ -14,6 +14,97 @@ use std::collections::BTreeMap;
 
 /// Restarts with other rows before something is wrong.
 const MAX_ROW_RESTARTS: usize = 10_000;
+/// Returns to the explicit method, at most.
+const MAX_RETURNS: usize = 100;
+/// Steps of an explicit method after which stiffness is not what it found at once.
+const STEPS_WITHOUT_STIFFNESS: usize = 60;
+
+/// The method that works, and what decides on the next one.
+struct Course<'a> {
+    options: &'a Options,
+    name: String,
+    /// why it works
+    why: Takeover,
+    /// restarts with other rows so far
+    restarts: usize,
+    /// changes of branches after which the explicit method tries again; zero: never
+    patience: usize,
+    /// returns to it so far
+    returns: usize,
+}
+
+impl<'a> Course<'a> {
+    fn new(options: &'a Options) -> Self {
+        Course {
+            options,
+            name: options.first_name(),
+            why: Takeover::Begins,
+            restarts: 0,
+            patience: 0,
+            returns: 0,
+        }
+    }
+
+    /// Returns whether stiffness may change the method.
+    fn may_change(&self) -> bool {
+        self.options.is_auto() && self.name == "DOP853"
+    }
+
+    /// Returns after how many changes of branches the explicit method tries again; zero: never.
+    ///
+    /// A body that touches is stiff while it does. Where the explicit method finds the same
+    /// stiffness at once, it is let try half as often.
+    fn returns_after(&self) -> usize {
+        if self.name == "RADAU5" && self.returns < MAX_RETURNS {
+            self.patience
+        } else {
+            0
+        }
+    }
+
+    /// Chooses the next method after one that has not come to the end.
+    ///
+    /// # Errors
+    /// The reason why there is none.
+    fn go_on(&mut self, finished: Finished, method: &dyn Method<System>) -> Result<(), Ended> {
+        (self.name, self.why) = match finished {
+            Finished::Ended(Ended::Stop(stop)) if self.may_fail(stop.reason) => {
+                ("RADAU5".into(), Takeover::Fails)
+            }
+            Finished::Ended(why) => return Err(why),
+            Finished::Rows(_) => {
+                self.restarts += 1;
+                if self.restarts > MAX_ROW_RESTARTS {
+                    return Err(gave_up(method.t()));
+                }
+                return Ok(());
+            }
+            Finished::Stiff => {
+                self.patience = if method.stats().steps > STEPS_WITHOUT_STIFFNESS {
+                    1
+                } else {
+                    (2 * self.patience).max(1)
+                };
+                ("RADAU5".into(), Takeover::Stiff)
+            }
+            Finished::Eased => {
+                self.returns += 1;
+                ("DOP853".into(), Takeover::Eased)
+            }
+            Finished::Slides => ("RADAU5".into(), Takeover::Slides),
+        };
+        Ok(())
+    }
+
+    /// Returns whether another method may succeed where this one did not.
+    fn may_fail(&self, reason: Reason) -> bool {
+        let cannot = matches!(
+            reason,
+            Reason::ErrorTest(_) | Reason::Newton(_) | Reason::Singular(_) | Reason::Stalled(_)
+        );
+        cannot && numeric::is_implicit(&self.name)
+    }
+}
 
 /// Integrates from the state in `system.numbers` through all `outputs` (ascending, after the
 /// state's time).
@@ -40,19 +131,19 @@ pub fn integrate(
     }
     let mut outputs = outputs.to_vec();
     let landings = system.landings(t0, end);
-    let mut name = options.first_name();
+    let mut course = Course::new(options);
     let mut t = t0;
-    let mut restarts = 0;
     loop {
         // the method, and its state: that of an implicit one has multipliers, found anew
         let attempted = out.stats.steps + out.stats.rejected;
         let max_steps = options.max_steps.saturating_sub(attempted);
-        let Some(mut method) = options.new_method(&name, system, max_steps) else {
+        let limited = (end - t0, max_steps);
+        let Some(mut method) = options.new_method(&course.name, system, limited) else {
             out.ended = Some(gave_up(t));
             return out;
         };
-        out.begin_method(t, &name);
-        let implicit = numeric::is_implicit(&name);
+        out.begin_method(t, &course.name, course.why);
+        let implicit = numeric::is_implicit(&course.name);
         y.resize(n.max(system.implicit_size()), 0.0);
         let state = if implicit { &y[..] } else { &y[..n] };
         // steps, as far as it goes
@@ -61,7 +152,8 @@ pub fn integrate(
             end,
             landings: &landings,
             max_steps,
-            may_change: options.is_auto() && name == "DOP853",
+            may_change: course.may_change(),
+            returns_after: course.returns_after(),
             may_slide: !implicit,
         };
         let mut leg = Leg::new(system, watch, limits, (&mut out, &mut outputs), state.len());
@@ -69,25 +161,17 @@ pub fn integrate(
         out.add_cost(method.stats());
         system.branches_mut().release();
         // another method, or other rows
+        let Err(finished) = finished else {
+            return out;
+        };
         y.truncate(n);
-        match finished {
-            Ok(()) => return out,
-            Err(Finished::Ended(why)) => {
-                end_there(system, method.as_ref(), why, t0, &mut out);
-                return out;
-            }
-            Err(Finished::Rows(state)) => {
-                restarts += 1;
-                if restarts > MAX_ROW_RESTARTS {
-                    out.ended = Some(gave_up(method.t()));
-                    return out;
-                }
-                y.copy_from_slice(&state[..n]);
-            }
-            Err(Finished::Stiff | Finished::Slides) => {
-                y.copy_from_slice(&method.y()[..n]);
-                name = "RADAU5".into();
-            }
+        y.copy_from_slice(match &finished {
+            Finished::Rows(state) => &state[..n],
+            _ => &method.y()[..n],
+        });
+        if let Err(why) = course.go_on(finished, method.as_ref()) {
+            end_there(system, method.as_ref(), why, t0, &mut out);
+            return out;
         }
         t = method.t();
     }

@@ -11,7 +11,7 @@ use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::kinematic_sensors::{Followed, trigger};
 use crate::analysis::time::options::Options;
 use crate::analysis::time::ranks;
-use crate::analysis::time::trajectory::{Ended, Trajectory};
+use crate::analysis::time::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{Failure, Reason, Stop};
 use crate::scene::layout::Layout;
@@ -30,7 +30,7 @@ pub fn trace(
     let Some(&end) = outputs.last() else {
         return out;
     };
-    out.begin_method(t, "KINEMATIC");
+    out.begin_method(t, "KINEMATIC", Takeover::Begins);
     system.begin_sensing();
     if !system.scene.rows.is_empty() {
         out.weak.push(Some(system.numbers.clone()));

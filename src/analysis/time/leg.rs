@@ -12,6 +12,7 @@
 use crate::analysis::system::System;
 use crate::analysis::system::external_inputs;
 use crate::analysis::time::counting::Counting;
+use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
 use crate::analysis::time::switches::{Switches, Verdict};
 use crate::analysis::time::trajectory::{Ended, Trajectory};
@@ -19,10 +20,16 @@ use crate::analysis::watch::Watch;
 use crate::numeric::{Method, Reason, Step, Stop};
 use crate::scene::broken::Broken;
 
-/// Attempted steps after which a run must have come further by [`STALLED_PART`].
-const STALLED_STEPS: usize = 20_000;
+/// Attempted steps after which a run must have come further by [`STALLED_PART`], at most and at
+/// least.
+const STALLED_STEPS: [usize; 2] = [20_000, 500];
+/// The same for large models, as operations of evaluations of the rate: some seconds.
+const STALLED_OPERATIONS: usize = 300_000_000;
 /// Part of the duration, see [`STALLED_STEPS`]: a run that does not come further would not end.
 const STALLED_PART: f64 = 1e-8;
+/// Steps that are left, at least, where another method takes over: it starts with short steps, and
+/// each costs several of an explicit one.
+const STEPS_WORTH_A_CHANGE: f64 = 100.0;
 /// Shortest way that is looked ahead for pulses, bodies and the past, as a part of the time left.
 const LEAST_HORIZON: f64 = 1e-6;
 /// The same for delays that shrink to nothing.
@@ -34,6 +41,8 @@ pub(super) enum Finished {
     Ended(Ended),
     /// another method would do better from here
     Stiff,
+    /// branches have changed: what was stiff may be so no longer
+    Eased,
     /// the motion stays where a branch changes, which the method does not know how to do
     Slides,
     /// other rows are to be kept from here, or the state has been put onto all of them
@@ -58,6 +67,8 @@ pub(super) struct Limits<'a> {
     pub max_steps: usize,
     /// whether another method may take over where stability limits the steps
     pub may_change: bool,
+    /// changes of branches after which the method before may try again; zero: never
+    pub returns_after: usize,
     /// whether the method can follow a motion that stays where a branch changes
     pub may_slide: bool,
 }
@@ -81,6 +92,14 @@ pub(super) struct Leg<'a> {
     pub(super) counting: Counting,
     /// attempted steps, and the time, when the run last came further
     progressed: (usize, f64),
+    /// attempted steps after which it must have come further
+    stalled_steps: usize,
+    /// changes of branches so far
+    changes: usize,
+    /// the narrow peak that is being crossed
+    pub(super) peak: Option<Peak>,
+    /// how often in a row the step was repeated because of peaks
+    pub(super) repeated: usize,
 }
 
 /// The decision about a step that was taken.
@@ -116,6 +135,8 @@ impl<'a> Leg<'a> {
         size: usize,
     ) -> Self {
         let has_rows = !system.scene.rows.is_empty();
+        let [most, least] = STALLED_STEPS;
+        let affordable = STALLED_OPERATIONS / system.operations().max(1);
         Self {
             switches: Switches::new(system, size, limits.end - limits.start),
             landing: limits.end,
@@ -123,6 +144,10 @@ impl<'a> Leg<'a> {
             before: vec![0.0; if has_rows { size } else { 0 }],
             counting: Counting::default(),
             progressed: (0, limits.start),
+            stalled_steps: affordable.clamp(least, most),
+            changes: 0,
+            peak: None,
+            repeated: 0,
             system,
             watch,
             limits,
@@ -151,8 +176,13 @@ impl<'a> Leg<'a> {
             self.keep_rows(method, &step, violated)?;
             if switched && step.t1 < self.limits.end {
                 self.begin_anew(method, &step, anew, stepsize)?;
+                self.changes += 1;
+                if self.changes == self.limits.returns_after && !self.switches.slide() {
+                    return Err(Finished::Eased);
+                }
             }
-            if self.limits.may_change && method.stiff() && method.t() < self.limits.end {
+            let left = (self.limits.end - method.t()) / step.h;
+            if self.limits.may_change && method.stiff() && left > STEPS_WORTH_A_CHANGE {
                 return Err(Finished::Stiff);
             }
         }
@@ -165,6 +195,7 @@ impl<'a> Leg<'a> {
         self.switches.start(self.system, t, y);
         method.start(self.system, t, y)?;
         self.look_ahead(method)?;
+        self.begin_peaks(method);
         self.system.take_weak();
         self.progressed = (attempted(method), method.t());
         Ok(())
@@ -172,7 +203,7 @@ impl<'a> Leg<'a> {
 
     /// Ends a run that comes no further, that the caller ends, or that slides where it must not.
     fn check(&mut self, method: &dyn Method<System>) -> Result<(), Finished> {
-        if attempted(method) > self.progressed.0 + STALLED_STEPS {
+        if attempted(method) > self.progressed.0 + self.stalled_steps {
             let duration = self.limits.end - self.limits.start;
             if method.t() - self.progressed.1 < STALLED_PART * duration {
                 let (t, h) = (method.t(), 0.0);
@@ -232,7 +263,8 @@ impl<'a> Leg<'a> {
             .due()
             .min(t + unseen)
             .min(event)
-            .min(turned);
+            .min(turned)
+            .min(self.peak_horizon(t));
         if !self.system.external.remembers() {
             return due;
         }
@@ -251,8 +283,9 @@ impl<'a> Leg<'a> {
             return Ok(Judged::Undone);
         }
         self.halved = 0;
-        // angles that decide forces by the wrong turn
-        if let Some(t) = self.loses_turn(method, step) {
+        // angles that decide forces by the wrong turn, and narrow peaks
+        let lost = self.loses_turn(method, step);
+        if let Some(t) = lost.or_else(|| self.hidden_peak(method, step)) {
             method.undo();
             self.landing = t;
             return Ok(Judged::Undone);
@@ -307,6 +340,8 @@ impl<'a> Leg<'a> {
     fn accept(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
         let behind = self.system.time_events.behind(step.t1);
         let anew = behind.unwrap_or(step.t1).min(self.limits.end);
+        self.repeated = 0;
+        self.system.peaks.keep();
         self.emit(method, step, anew);
         self.watch.progress(step.t1, step.h, method.stats());
         anew
@@ -389,6 +424,7 @@ impl<'a> Leg<'a> {
         }
         method.reinitialize(self.system, anew, &state)?;
         self.look_ahead(method)?;
+        self.begin_peaks(method);
         // after the method has begun anew, which chooses a step of its own
         if let Some(h) = stepsize {
             method.propose(h);

@@ -21,6 +21,7 @@ mod kinematic_sensors;
 pub mod kinematics;
 mod leg;
 mod leg_output;
+mod leg_peaks;
 mod leg_rows;
 pub mod options;
 pub mod output;

@@ -4,6 +4,9 @@ use crate::analysis::system::System;
 use crate::numeric::{self, Method, Ode};
 use crate::scene::layout::Layout;
 
+/// Shortest step, as a part of the duration of the run: what needs a shorter one comes no further.
+const SHORTEST_STEP: f64 = 1e-18;
+
 /// Options of an integration.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -58,19 +61,19 @@ impl Options {
         }
     }
 
-    /// Returns the method of that name for a system, which may attempt `max_steps` steps, or
-    /// `None` if there is none.
+    /// Returns the method of that name for a run of a system of some duration, which may attempt
+    /// `max_steps` steps, or `None` if there is none.
     pub(super) fn new_method(
         &self,
         name: &str,
         system: &System,
-        max_steps: usize,
+        (duration, max_steps): (f64, usize),
     ) -> Option<Box<dyn Method<System>>> {
         let settings = numeric::Options {
             tolerance: self.error,
             h_initial: self.h_initial,
             h_max: self.h_max,
-            h_min: self.h_min,
+            h_min: self.h_min.max(SHORTEST_STEP * duration),
             max_order: self.max_order.unwrap_or(5),
             max_newton: self.max_newton.unwrap_or(10),
             max_steps,

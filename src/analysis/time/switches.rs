@@ -49,6 +49,8 @@ const LANDING_TOLERANCE: f64 = 0.1;
 const SHORTEST_STEP: f64 = 1e-13;
 /// Steps that are repeated because of one switch, at most.
 const MAX_REDONE: usize = 30;
+/// Halvings of one step because its interpolant has no value, at most.
+const MAX_HALVED: usize = 4;
 /// Rounds in which the branches are made to fit each other, at most.
 const MAX_SETTLING: usize = 10;
 
@@ -315,7 +317,13 @@ impl Switches {
                 self.keep();
                 return Verdict::Keep;
             }
-            // the interpolant has no value somewhere: begin anew at the end
+            // the interpolant has no value somewhere: that of a shorter step may, or begin anew at
+            // the end
+            Err(_) if self.redone < MAX_HALVED => {
+                self.redone += 1;
+                self.next.fill(0);
+                return Verdict::Redo(0.5 * (step.t0 + step.t1));
+            }
             Err(_) => {
                 self.next.fill(0);
                 return Verdict::Switched;

@@ -22,6 +22,21 @@ pub enum Ended {
     },
 }
 
+/// The reason why a method works from some time on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takeover {
+    /// it is the first one
+    Begins,
+    /// stability, not accuracy, set the steps of the one before
+    Stiff,
+    /// branches changed where it was stiff
+    Eased,
+    /// the motion stays where a function changes its branch
+    Slides,
+    /// the one before could not go on
+    Fails,
+}
+
 /// States at the output times that were reached.
 #[derive(Clone, Debug, Default)]
 pub struct Trajectory {
@@ -34,8 +49,8 @@ pub struct Trajectory {
     pub means: BTreeMap<usize, Vec<(f64, Vec<f64>)>>,
     /// what it cost
     pub stats: Stats,
-    /// the methods that worked, in order, with the time at which each took over
-    pub methods: Vec<(f64, String)>,
+    /// the methods that worked, in order, with the time at which each took over, and why
+    pub methods: Vec<(f64, String, Takeover)>,
     /// number of switches that were located
     pub events: usize,
     /// sensors that were triggered: when, and their places in the scene
@@ -66,9 +81,9 @@ impl Trajectory {
     }
 
     /// Notes that a method works from `t` on, unless it did so far.
-    pub(super) fn begin_method(&mut self, t: f64, name: &str) {
+    pub(super) fn begin_method(&mut self, t: f64, name: &str, why: Takeover) {
         if self.methods.last().is_none_or(|m| m.1 != name) {
-            self.methods.push((t, name.to_string()));
+            self.methods.push((t, name.to_string(), why));
         }
     }
 
@@ -82,5 +97,6 @@ impl Trajectory {
         sum.factorizations += more.factorizations;
         sum.newton_iterations += more.newton_iterations;
         sum.below_rounding += more.below_rounding;
+        sum.stability_limited += more.stability_limited;
     }
 }

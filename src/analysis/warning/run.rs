@@ -59,6 +59,20 @@ pub enum RunWarning {
         /// number of all steps
         steps: usize,
     },
+    /// the motion grows without bound
+    EnergyGrows {
+        /// energy in the end over that of the first quarter
+        factor: f64,
+        /// the force with the largest power
+        fed_by: Option<ElementId>,
+    },
+    /// stability, not accuracy, sets the steps of an explicit method
+    StabilityLimited {
+        /// number of such steps
+        limited: usize,
+        /// number of all steps
+        steps: usize,
+    },
 }
 
 impl RunWarning {
@@ -75,6 +89,8 @@ impl RunWarning {
             RunWarning::Rank(_) => "rank_change",
             RunWarning::Unstable { .. } => "unstable_equilibrium",
             RunWarning::BelowRounding { .. } => "below_rounding",
+            RunWarning::StabilityLimited { .. } => "stiff",
+            RunWarning::EnergyGrows { .. } => "energy_grows",
         }
     }
 
@@ -90,11 +106,13 @@ impl RunWarning {
             }
             RunWarning::EmptyColumn(unsupported) => Some(unsupported.asked_by.clone()),
             RunWarning::Gap { column, .. } => Some(column.clone()),
+            RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(|id| id.to_string()),
             RunWarning::NoFreedom
             | RunWarning::NothingToSimulate { .. }
             | RunWarning::Rank(_)
             | RunWarning::Unstable { .. }
-            | RunWarning::BelowRounding { .. } => None,
+            | RunWarning::BelowRounding { .. }
+            | RunWarning::StabilityLimited { .. } => None,
         }
     }
 }
@@ -150,6 +168,22 @@ impl fmt::Display for RunWarning {
                 f,
                 "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} \
                  steps, which are as exact as rounding permits"
+            ),
+            RunWarning::EnergyGrows { factor, fed_by } => {
+                write!(
+                    f,
+                    "the motion grows without bound: its energy is {factor:.1e} times that of the \
+                     first quarter of the run"
+                )?;
+                match fed_by {
+                    Some(id) => write!(f, "; {id} feeds it: is the sign of its damping right?"),
+                    None => Ok(()),
+                }
+            }
+            RunWarning::StabilityLimited { limited, steps } => write!(
+                f,
+                "the model is stiff: in {limited} of {steps} steps stability, not the error asked \
+                 for, kept an explicit method short; RADAU5 or AUTO takes longer ones"
             ),
         }
     }

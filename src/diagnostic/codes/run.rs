@@ -123,6 +123,20 @@ begin to hold. The run goes on; reactions may jump there.",
         explanation: "The steps so far are as exact as rounding permits. A larger ERROR takes fewer steps for the same digits.",
     },
     Code {
+        name: "energy_grows",
+        summary: "the motion grows without bound",
+        explanation: "\
+Its kinetic energy grows exponentially from quarter to quarter of the run, beyond all energy that there was. The named force does the
+most work in the end: a damper or a controller whose force has the direction of the velocity it reads.",
+    },
+    Code {
+        name: "stiff",
+        summary: "stability, not accuracy, sets the steps of an explicit method",
+        explanation: "\
+A fast motion that has died away still keeps the steps of an explicit method short. The results are as exact as was asked for.
+RADAU5, BDF and HHT take steps as long as the slow motion permits; AUTO changes to RADAU5 where that pays.",
+    },
+    Code {
         name: "unknown_constraint",
         summary: "a constraint that a routine computes, or whose curve is not in the dataset",
         explanation: "`cognate verify` counts its equations, but cannot tell which motions it forbids: the freedom from the rank is without it.",

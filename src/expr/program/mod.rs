@@ -34,6 +34,7 @@ mod machine;
 mod node;
 mod operation;
 mod order;
+mod peaks;
 mod record;
 mod replay;
 mod run;

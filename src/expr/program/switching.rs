@@ -122,7 +122,7 @@ impl Builder {
     }
 
     /// Returns which of the first `n` nodes some values need.
-    fn needed(&self, values: &[Value], n: usize) -> Vec<bool> {
+    pub(super) fn needed(&self, values: &[Value], n: usize) -> Vec<bool> {
         let mut needed = vec![false; n];
         for v in values {
             needed[v.index()] = true;

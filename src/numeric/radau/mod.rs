@@ -223,7 +223,7 @@ impl Radau {
         self.begin.t = t;
         self.advanced = false;
         self.begin.y.copy_from_slice(y);
-        self.weights.see(y);
+        self.weights.see(t, y);
         (self.control.first, self.control.calm) = (true, false);
         self.freshness = Freshness {
             here: false,
@@ -564,7 +564,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
                     (self.freshness.here, self.freshness.stale) = (false, !keep);
                     self.end.t = t1;
                     self.advanced = true;
-                    self.weights.see(&self.end.y);
+                    self.weights.see(t1, &self.end.y);
                     return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }
                 Err(rejection) => {

@@ -50,5 +50,59 @@ pub fn short_forces() -> Vec<Scene> {
                 .follows("VX(20,1)", |t| if t > 0.5 { 1.0 } else { 0.0 }, 1e-5),
         );
     }
+    all.extend(on_a_way());
+    all
+}
+
+/// Forces on a short part of the way: work of one half on a mass of one that passes at speed one.
+fn on_a_way() -> Vec<Scene> {
+    let f = "short forces";
+    let mut all = Vec::new();
+    for width in [1e-3, 1e-6, 1e-9] {
+        for (name, force) in [
+            (
+                "bell",
+                format!(
+                    "EXP(-((DX(20,1)-0.4)/{width:e})**2)/{width:e}/{:?}",
+                    2.0 * PI.sqrt()
+                ),
+            ),
+            (
+                "pair of TANH",
+                format!(
+                    "(TANH((DX(20,1)-0.4)/{width:e}+1)-TANH((DX(20,1)-0.4)/{width:e}-1))/{:e}",
+                    8.0 * width
+                ),
+            ),
+            (
+                "wall by IF",
+                format!("IF(ABS(DX(20,1)-0.4)-{width:e}: {:e},0,0)", 0.25 / width),
+            ),
+            (
+                "parabola by MAX",
+                format!("MAX(0,1-((DX(20,1)-0.4)/{width:e})**2)*{:e}", 0.375 / width),
+            ),
+        ] {
+            for method in ["AUTO", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+                let text = slider(1.0, 0.0, 1.0) + &push(&force);
+                let error = if matches!(method, "HHT" | "NEWMARK") {
+                    1e-5
+                } else {
+                    1e-6
+                };
+                all.push(
+                    scene(f, format!("a {name} of {width:e} on the way"), text)
+                        .method(method)
+                        .error(error)
+                        .steps(1)
+                        .follows(
+                            "VX(20,1)",
+                            |t| if t > 0.5 { 2f64.sqrt() } else { 1.0 },
+                            100.0 * error,
+                        ),
+                );
+            }
+        }
+    }
     all
 }

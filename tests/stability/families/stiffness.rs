@@ -67,5 +67,46 @@ pub fn stiffness() -> Vec<Scene> {
             ),
         );
     }
+    for error in [1e-2, 1e-3, 1e-4, 1e-6, 1e-8] {
+        // a ball that bounces and settles on a stiff plane: the spring carries its weight
+        let text = "PART/2, MASS=1, CM=20, QG=0,0,0.06\nMARKER/20, PART=2\nJOINT/1, TRANSLATIONAL, I=20, J=1\n\
+                    SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=1, FUNCTION=IMPACT(DZ(20,1),VZ(20,1),0.05,1E8,1.5,2000,1E-4)\n\
+                    ACCGRAV/KGRAV=-10\n";
+        all.push(
+            scene(f, format!("ball that settles, request {error:e}"), text)
+                .end(2.0)
+                .error(error)
+                .follows(
+                    "IF(TIME-1.9: 0,0,DZ(20,1))",
+                    |t| {
+                        if t > 1.9 {
+                            0.05 - 1e-7f64.powf(2.0 / 3.0)
+                        } else {
+                            0.0
+                        }
+                    },
+                    0.05 * error,
+                ),
+        );
+    }
+    for error in [1e-1, 1e-3, 1e-6] {
+        // by an explicit method: a fast transient, then a slow swing
+        let text = format!(
+            "{}BUSHING/1, I=20, J=11, K=0,0,40, C=0,0,1E6\nSFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=11, FUNCTION=1E6*SIN(TIME)\n",
+            slider(1.0, 0.0, 0.0)
+        );
+        all.push(
+            scene(
+                f,
+                format!("damper 1e6 by an explicit method at {error:e}"),
+                text,
+            )
+            .method("DOP853")
+            .error(error)
+            .end(0.1)
+            .tells("the model is stiff")
+            .follows("DX(20,1)", |t| 1.0 - t.cos(), 10.0 * error),
+        );
+    }
     all
 }

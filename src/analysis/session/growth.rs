@@ -1,0 +1,82 @@
+//! Motions that grow without bound, and the force that feeds them: a damper of the wrong sign, a
+//! controller that overshoots further each time.
+//!
+//! ```text
+//! K₁, K₂, K₃, K₄      largest kinetic energy in each quarter of the time
+//! Kₙ₊₁ > 50 Kₙ        it grows exponentially all the way, and
+//! K₄ > 10⁶ E₁         beyond all energy that there was in the first quarter
+//! ```
+//!
+//! What falls or is driven grows as a power of time: from one quarter to the next by 16 at most if
+//! its speed does as t². The force that feeds it has the largest power in the end.
+
+use crate::analysis::system::System;
+use crate::analysis::time::trajectory::Trajectory;
+use crate::model::ElementId;
+use crate::scene::equations::Equations;
+use crate::scene::forces::ForceElement;
+use crate::scene::layout::Layout;
+use crate::space::MarkerState;
+
+/// Growth of the kinetic energy from one quarter of the time to the next.
+const GROWTH_PER_QUARTER: f64 = 50.0;
+/// Kinetic energy in the last quarter over all energy in the first.
+const BEYOND_ALL: f64 = 1e6;
+/// States looked at, at most.
+const LOOKS: usize = 80;
+
+/// A motion that grows without bound.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Growth {
+    /// largest kinetic energy in the end over all energy in the first quarter
+    pub factor: f64,
+    /// the force with the largest power in the end
+    pub fed_by: Option<ElementId>,
+}
+
+/// Returns how the motion of a simulation grows, if it does so without bound.
+pub(super) fn of(system: &System, first: &[f64], trajectory: &Trajectory) -> Option<Growth> {
+    let last = trajectory.rows.last()?;
+    if system.scene.forces.is_empty() {
+        return None;
+    }
+    let scene = system.configured();
+    let (t0, t1) = (first[Layout::TIME], last[Layout::TIME]);
+    let mut largest = [0.0_f64; 4];
+    let mut energy = 0.0_f64;
+    let stride = trajectory.rows.len().div_ceil(LOOKS);
+    let looked = trajectory.rows.iter().rev().step_by(stride);
+    for row in looked.map(Vec::as_slice).chain([first]) {
+        let part = 4.0 * (row[Layout::TIME] - t0) / (t1 - t0);
+        let quarter = (part.ceil() as usize).clamp(1, 4) - 1;
+        let [kinetic, potential] = Equations::new(scene, row).energy();
+        largest[quarter] = largest[quarter].max(kinetic);
+        if quarter == 0 {
+            energy = energy.max(kinetic).max(potential.abs());
+        }
+    }
+    let grows = |w: &[f64]| w[1] > GROWTH_PER_QUARTER * w[0];
+    if !largest.windows(2).all(grows) || largest[3] <= BEYOND_ALL * energy {
+        return None;
+    }
+    let at = Equations::new(scene, last);
+    let powers = scene.forces.iter().map(|f| (power(f, &at), f.id));
+    let fed_by = powers
+        .filter(|(power, _)| *power > 0.0)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    Some(Growth {
+        factor: largest[3] / energy,
+        fed_by: fed_by.map(|(_, id)| id),
+    })
+}
+
+/// Returns the power of a force, and of its reaction on J.
+fn power(force: &ForceElement, at: &Equations<'_, f64>) -> f64 {
+    let action = force.action(at);
+    let i = at.marker(force.i);
+    let reacts = force.reaction.is_some();
+    let j = force.j.filter(|_| reacts);
+    let j = j.map_or_else(MarkerState::ground, |j| at.marker(j));
+    let velocity = i.v_GM - j.v_GM - j.w_GM.cross(i.p_GM - j.p_GM);
+    action.force.dot(velocity) + action.torque.dot(i.w_GM - j.w_GM)
+}

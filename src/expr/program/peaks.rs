@@ -1,0 +1,173 @@
+//! Where a program may have a narrow peak: factors that are large only near a maximum of their
+//! logarithm.
+//!
+//! ```text
+//! EXP(a)               a               COSH(a), TANH(a)    −2 |a|
+//! x**n, n < 0, n ≥ 8   n ln |x|        ATAN(a)             −ln(1 + a²)
+//! b/x                  −ln |x|         products            the sum of those of the factors
+//! ```
+//!
+//! TANH and ATAN are steep there: the difference of two of them is a pulse. While the logarithm
+//! changes by one the factor changes by a factor of e, so the logarithm is a scale for steps,
+//! however narrow the peak is in time or on the way.
+
+use super::builder::Builder;
+use super::node::{Node, Value};
+use super::operation::{BinaryOp, UnaryOp};
+use std::collections::BTreeSet;
+
+/// Nodes of a product that are looked at, at most.
+const MOST_FACTORS: usize = 64;
+/// Exponent from which on a power counts as narrow.
+const NARROW_POWER: f64 = 8.0;
+
+/// Values whose course in time shows the narrow peaks of a program.
+#[derive(Debug, Default)]
+pub(crate) struct Peaks {
+    /// logarithms: a factor peaks where one has a maximum
+    pub logarithms: Vec<Value>,
+    /// angles whose sines and cosines these are made of
+    pub angles: Vec<Value>,
+}
+
+impl Builder {
+    /// Returns the logarithms of the narrow factors of some outputs, each once, and the angles that
+    /// they are made of.
+    pub(crate) fn peaks(&mut self, outputs: &[Value]) -> Peaks {
+        let nodes = self.nodes_below(outputs);
+        let mut logarithms = BTreeSet::new();
+        for k in nodes {
+            let node = self.nodes[k];
+            let own = self.logarithm(node);
+            let all = [own, self.log_of_product(node)];
+            for log in all.into_iter().flatten() {
+                if !self.inputs_of(&[log]).is_empty() {
+                    logarithms.insert(log);
+                }
+            }
+        }
+        let logarithms: Vec<Value> = logarithms.into_iter().collect();
+        let below = self.nodes_below(&logarithms).into_iter();
+        let turned = below.filter_map(|k| match self.nodes[k] {
+            Node::Unary(UnaryOp::Sin | UnaryOp::Cos | UnaryOp::Tan, x) => Some(x),
+            _ => None,
+        });
+        let angles: BTreeSet<Value> = turned.collect();
+        Peaks {
+            logarithms,
+            angles: angles.into_iter().collect(),
+        }
+    }
+
+    /// Returns the logarithm of the size of a narrow factor, up to what does not matter.
+    fn logarithm(&mut self, node: Node) -> Option<Value> {
+        match node {
+            Node::Unary(UnaryOp::Exp, a) => Some(a),
+            Node::Unary(UnaryOp::Cosh | UnaryOp::Tanh, a) => {
+                let size = self.unary(UnaryOp::Abs, a);
+                Some(self.times(-2.0, size))
+            }
+            Node::Unary(UnaryOp::Atan, a) => {
+                let square = self.binary(BinaryOp::Mul, a, a);
+                let one = self.constant(1.0);
+                let sum = self.binary(BinaryOp::Add, one, square);
+                Some(self.log_of_size(-1.0, sum))
+            }
+            Node::Whole(x, n) => self.log_of_power(x, f64::from(n)),
+            Node::Binary(BinaryOp::Pow, x, n) => {
+                let n = self.constant_of(n)?;
+                self.log_of_power(x, n)
+            }
+            Node::Binary(BinaryOp::Div, _, x) => self.log_of_power(x, -1.0),
+            _ => None,
+        }
+    }
+
+    /// Returns the logarithm of a product of narrow factors, if there are several.
+    fn log_of_product(&mut self, node: Node) -> Option<Value> {
+        let (mut sum, mut factors) = (None, 0);
+        let mut open = vec![node];
+        for _ in 0..MOST_FACTORS {
+            let Some(node) = open.pop() else { break };
+            let log = match node {
+                Node::Unary(UnaryOp::Neg, x) => {
+                    open.push(self.nodes[x.index()]);
+                    continue;
+                }
+                Node::Binary(BinaryOp::Mul, a, b) => {
+                    open.extend([a, b].map(|v| self.nodes[v.index()]));
+                    continue;
+                }
+                Node::Binary(BinaryOp::Div, a, b) => {
+                    open.push(self.nodes[a.index()]);
+                    Some(self.log_of_size(-1.0, b))
+                }
+                Node::Unary(UnaryOp::Exp, a) => Some(a),
+                Node::Whole(x, n) => Some(self.log_of_size(f64::from(n), x)),
+                _ => None,
+            };
+            let Some(log) = log else { continue };
+            factors += 1;
+            sum = Some(match sum {
+                Some(sum) => self.binary(BinaryOp::Add, sum, log),
+                None => log,
+            });
+        }
+        sum.filter(|_| factors > 1 && open.is_empty())
+    }
+
+    /// Returns `n ln |x|` if a power is narrow.
+    fn log_of_power(&mut self, x: Value, n: f64) -> Option<Value> {
+        (n < 0.0 || n >= NARROW_POWER).then(|| self.log_of_size(n, x))
+    }
+
+    fn log_of_size(&mut self, n: f64, x: Value) -> Value {
+        let size = self.unary(UnaryOp::Abs, x);
+        let log = self.unary(UnaryOp::Ln, size);
+        self.times(n, log)
+    }
+
+    fn times(&mut self, n: f64, x: Value) -> Value {
+        let n = self.constant(n);
+        self.binary(BinaryOp::Mul, n, x)
+    }
+
+    /// Returns the places of the nodes that some values need, ascending.
+    fn nodes_below(&self, values: &[Value]) -> Vec<usize> {
+        let needed = self.needed(values, self.nodes.len());
+        (0..needed.len()).filter(|&k| needed[k]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::program::{Folding, Input, Program, Work};
+
+    /// The logarithms of what `f` records over one input, as a program.
+    fn logs(f: impl FnOnce(&mut Builder, Value) -> Value) -> Program {
+        let mut builder = Builder::new(Folding::Strict);
+        let x = builder.input(Input::Slot(0));
+        let value = f(&mut builder, x);
+        let peaks = builder.peaks(&[value]);
+        builder.finish_with_inputs(&peaks.logarithms, &[Input::Slot(0)])
+    }
+
+    #[test]
+    fn a_bell_shows_its_exponent_and_a_wide_power_nothing() {
+        let bell = logs(|b, x| {
+            let square = b.powi(x, 2);
+            let down = b.unary(UnaryOp::Neg, square);
+            b.unary(UnaryOp::Exp, down)
+        });
+        assert_eq!(bell.value(&[3.0], &mut Work::default()), -9.0);
+        assert_eq!(logs(|b, x| b.powi(x, 3)).n_outputs(), 0);
+        let narrow = logs(|b, x| b.powi(x, 100));
+        assert_eq!(
+            narrow.value(&[2.0], &mut Work::default()),
+            100.0 * 2f64.ln()
+        );
+        let steep = logs(|b, x| b.unary(UnaryOp::Tanh, x));
+        assert_eq!(steep.value(&[-4.0], &mut Work::default()), -8.0);
+    }
+}
