@@ -187,7 +187,7 @@ fn pulse(kind: usize, x: &str, x0: f64, w: f64) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), cases: 60, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_random_pulse_gives_its_impulse_in_time_and_on_a_way(

@@ -23,7 +23,7 @@
 //! Since roundings come in patches, the largest of the last measurements counts.
 //!
 //! The smallest of three probes counts: where a state lies within rounding of a jump of the rates,
-//! a probe across it measures the jump. That all three cross it is unlikely, and [`LARGEST_NOISE`]
+//! a probe across it measures the jump. That all three cross it is unlikely, and [`largest`]
 //! bounds the harm.
 //!
 //! Source: Moré & Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), for the
@@ -42,7 +42,7 @@ const FADING: f64 = 0.9;
 /// Part of the upper bound of a magnitude (half a turn, for an angle) that is taken for r of (1).
 const ROUNDED_SHARE_OF_BOUND: f64 = 0.25;
 /// Relative error above which nothing is taken for rounding.
-pub const LARGEST_NOISE: f64 = 1e-6;
+const LARGEST_NOISE: f64 = 1e-6;
 /// The same where only (1) has been measured.
 const LARGEST_PROBED: f64 = 5e-9;
 /// τ of (3), as a part of the step.
@@ -86,6 +86,12 @@ pub struct Probed<'a> {
     pub f: &'a [f64],
     /// magnitudes of the unknowns
     pub weights: &'a Weights,
+}
+
+/// Returns the relative error above which nothing is taken for rounding; `alike`: the two estimates
+/// of the step are.
+pub fn largest(alike: bool) -> f64 {
+    if alike { LARGEST_NOISE } else { LARGEST_PROBED }
 }
 
 impl Noise {

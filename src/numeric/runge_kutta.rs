@@ -333,7 +333,8 @@ impl Dop853 {
         }
         let alike = worst3 < ALIKE_RATIO * worst5;
         let suspect = error > 1.0 || error > SUSPECT_ERROR && alike;
-        if suspect && error < scale * noise::LARGEST_NOISE {
+        let largest = noise::largest(alike);
+        if suspect && error < scale * largest {
             // the rest is measured against rounding, where that is more than the request
             let explained =
                 self.rounding(problem, (h, alike)) * ERROR_SCALE / self.weights.tolerance();

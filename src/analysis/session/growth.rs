@@ -7,8 +7,8 @@
 //! K₄ > 10⁶ E₁         beyond all energy that there was in the first quarter
 //! ```
 //!
-//! What falls or is driven grows as a power of time: from one quarter to the next by 16 at most if
-//! its speed does as t². The force that feeds it has the largest power in the end.
+//! A body that falls or is driven grows as a power of time: from one quarter to the next by 16 at
+//! most if its speed does as t². The force that feeds it has the largest power in the end.
 
 use crate::analysis::system::System;
 use crate::analysis::time::trajectory::Trajectory;

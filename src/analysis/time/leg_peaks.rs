@@ -163,7 +163,8 @@ impl Leg<'_> {
             }
             Ok::<f64, Failure>(lowest)
         };
-        let most = (summit - step.t0).max(step.t1 - summit);
+        // inside the step whatever its rounding
+        let most = 0.99 * (summit - step.t0).max(step.t1 - summit);
         let mut width = most;
         for _ in 0..HALVINGS {
             if fall(width)? <= 1.0 {
