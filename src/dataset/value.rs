@@ -282,37 +282,17 @@ impl Field for f64 {
     }
 }
 
-impl Field for [f64; 3] {
+impl<const N: usize> Field for [f64; N] {
     const KIND: Kind = Kind::Reals {
-        min: 3,
-        max: 3,
+        min: N,
+        max: N,
         angle: false,
     };
     fn put(&mut self, value: Value) -> Result<(), String> {
         let Value::Reals(xs) = value else {
             return mismatch();
         };
-        for (slot, x) in self.iter_mut().zip(xs) {
-            *slot = x.value();
-        }
-        Ok(())
-    }
-    fn written(&self) -> Option<Value> {
-        self.iter().any(|x| x.to_bits() != 0).then(|| numbers(self))
-    }
-}
-
-impl Field for [f64; 6] {
-    const KIND: Kind = Kind::Reals {
-        min: 6,
-        max: 6,
-        angle: false,
-    };
-    fn put(&mut self, value: Value) -> Result<(), String> {
-        let Value::Reals(xs) = value else {
-            return mismatch();
-        };
-        *self = [0.0; 6];
+        *self = [0.0; N];
         for (slot, x) in self.iter_mut().zip(xs) {
             *slot = x.value();
         }

@@ -1,11 +1,11 @@
 //! The last passes of compilation: what drives, what is counted; and the finished [`Scene`].
 
+use super::asker::Asker;
 use super::compile::{Compiler, NamedTie};
 use super::contacts::Shell;
 use super::coordinate_sums::{self, Draws, Reading};
 use super::equations::Unsupported;
 use super::external_inputs::HookName;
-use super::functions::Owner;
 use super::history::AngleId;
 use super::left_out::LeftOut;
 use super::loops::{self, Key};
@@ -109,7 +109,7 @@ impl Scene {
         b.cams(&mut c);
         b.general(&mut c);
         for (name, text) in &options.extra {
-            let f = b.compiled(&mut c, &Owner::asked(name), text);
+            let f = b.compiled(&mut c, &Asker::Column(name.as_str().into()), text);
             b.scene.extra.push(f);
         }
         b.counted();
@@ -284,8 +284,9 @@ impl<'m> Builder<'m> {
             Key::Value(d) => equations[*d][0],
         };
         if let Err(unsolvable) = loops::find(&mut self.scene, &guess) {
-            let error =
-                |u: Unsupported| Diagnostic::error("loop", u.lack.to_string()).element(u.asked_by);
+            let error = |u: Unsupported| {
+                Diagnostic::error("loop", u.lack.to_string()).element(u.asked_by.to_string())
+            };
             c.errors.extend(unsolvable.into_iter().map(error));
         }
     }

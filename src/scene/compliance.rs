@@ -1,9 +1,9 @@
 //! FIELD, BEAM and NFORCE of a model as force elements of the scene.
 
+use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
 use super::forces::{ForceElement, ForceLaw};
-use super::functions::Owner;
 use crate::diagnostic::Diagnostic;
 use crate::model::{BeamFormulation, ElementKind};
 use crate::physics::beam::Section;
@@ -21,7 +21,7 @@ impl Builder<'_> {
             let name = ElementKind::Field.id(id);
             if let Some(user) = &f.function {
                 // a closure computes the force and torque on I, in the axes of J
-                let all = self.user(c, &Owner::of(name, "FUNCTION"), user, 6, &[]);
+                let all = self.user(c, &Asker::argument(name, "FUNCTION"), user, 6, &[]);
                 let formulas = std::array::from_fn(|k| Some(all[k]));
                 let rm = c.marker(f.j, name);
                 let law = ForceLaw::Vector { rm, formulas };

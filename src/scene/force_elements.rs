@@ -6,10 +6,10 @@
 //! another sort is an arm here that the compiler asks for.
 
 use super::LinkIx;
+use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
 use super::forces::{ForceElement, ForceLaw, laws_of_two_markers};
-use super::functions::Owner;
 use crate::model::{ById, COMPONENTS, Element, ElementId, ElementKind, VectorForce};
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -74,7 +74,7 @@ impl Builder<'_> {
         let model = self.model;
         for (id, f) in model.active(ElementKind::Sforce, &model.sforces) {
             let id = ElementKind::Sforce.id(id);
-            let formula = self.formula(c, &Owner::of(id, "FUNCTION"), &f.function);
+            let formula = self.formula(c, &Asker::argument(id, "FUNCTION"), &f.function);
             let (Some(i), Some(j)) = (c.marker(f.i, id), c.marker(f.j, id)) else {
                 continue;
             };
@@ -133,7 +133,7 @@ impl Builder<'_> {
     fn vector(&mut self, c: &mut Compiler, id: ElementId, f: &VectorForce, places: Range<usize>) {
         let mut formulas = [None; 6];
         if let Some(user) = &f.user {
-            let owner = Owner::of(id, "FUNCTION");
+            let owner = Asker::argument(id, "FUNCTION");
             let all = self.user(c, &owner, user, places.len(), &[]);
             for (place, formula) in places.zip(all) {
                 formulas[place] = Some(formula);
@@ -141,7 +141,7 @@ impl Builder<'_> {
         }
         for (k, part) in f.force.iter().chain(&f.torque).enumerate() {
             if let Some(part) = part {
-                let owner = Owner::of(id, COMPONENTS[k]);
+                let owner = Asker::argument(id, COMPONENTS[k]);
                 formulas[k] = Some(self.formula(c, &owner, part));
             }
         }

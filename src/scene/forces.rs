@@ -12,6 +12,7 @@ use crate::physics::friction::{Friction, Slip};
 use crate::physics::nodal_force::NodalForce;
 use crate::physics::spring_damper::SpringDamper;
 use crate::scalar::Scalar;
+use crate::scene::asker::Asker;
 use crate::space::{MarkerState, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -202,11 +203,11 @@ impl ForceElement {
     /// The joint's reaction on I as far as friction in it depends on it: unknowns, as it depends on
     /// the friction in turn.
     fn pressing<S: Scalar>(&self, at: &Equations<'_, S>, law: &Friction, joint: u32) -> Action<S> {
-        let name = self.id.to_string();
+        let asker = Asker::Element(self.id);
         let part = |first: u32, needed: bool| {
             Vec3([0, 1, 2].map(|k| {
                 if needed {
-                    at.measure(Measure::Joint, [joint, 0, first + k, 0], &name)
+                    at.measure(Measure::Joint, [joint, 0, first + k, 0], &asker)
                 } else {
                     S::zero()
                 }

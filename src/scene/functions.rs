@@ -2,49 +2,21 @@
 //! user's compute.
 
 use super::Formula;
+use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook};
 use super::history::DelayId;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
-use crate::model::{ElementId, ElementKind, Formula as ModelFormula, RequestKind, Text};
-use std::fmt;
-
-/// Whose function a formula is, and its name in messages.
-#[derive(Clone, Debug)]
-pub(super) struct Owner {
-    /// `None`: it is asked for beside those of the model
-    pub element: Option<ElementId>,
-    /// "SFORCE/3 FUNCTION"
-    pub name: String,
-}
-
-impl Owner {
-    /// Returns the owner of a function of an element; `part` is its argument, or which of several
-    /// equations it is.
-    pub fn of(element: ElementId, part: impl fmt::Display) -> Self {
-        Self {
-            element: Some(element),
-            name: format!("{element} {part}"),
-        }
-    }
-
-    /// Returns the owner of an expression asked for beside those of the model.
-    pub fn asked(name: &str) -> Self {
-        Self {
-            element: None,
-            name: name.to_string(),
-        }
-    }
-}
+use crate::model::{ElementKind, Formula as ModelFormula, RequestKind, Text};
 
 impl Builder<'_> {
     /// Compiles an expression; its index in the scene's formulas.
     pub(super) fn formula(
         &mut self,
         c: &mut Compiler,
-        owner: &Owner,
+        owner: &Asker,
         formula: &ModelFormula,
     ) -> usize {
         match formula {
@@ -54,10 +26,9 @@ impl Builder<'_> {
     }
 
     /// A formula that has been compiled; its index.
-    fn push(&mut self, owner: &Owner, text: &str, program: Program, delayed: Vec<usize>) -> usize {
+    fn push(&mut self, owner: &Asker, text: &str, program: Program, delayed: Vec<usize>) -> usize {
         self.scene.formulas.push(Formula {
-            element: owner.element,
-            name: owner.name.clone(),
+            owner: owner.clone(),
             text: text.to_string(),
             program,
             gradient: None,
@@ -66,11 +37,11 @@ impl Builder<'_> {
         self.scene.formulas.len() - 1
     }
 
-    pub(super) fn compiled(&mut self, c: &mut Compiler, owner: &Owner, text: &Text) -> usize {
+    pub(super) fn compiled(&mut self, c: &mut Compiler, owner: &Asker, text: &Text) -> usize {
         let compiled = match super::formula::compile(text, &self.bindings) {
             Ok(compiled) => compiled,
             Err(mut d) => {
-                d.element = Some(owner.name.clone());
+                d.element = Some(owner.to_string());
                 if d.code == "unknown_element" {
                     c.errors.append(&mut self.unusable);
                 }
@@ -87,7 +58,7 @@ impl Builder<'_> {
             .collect();
         for programs in compiled.delays {
             let id = DelayId {
-                owner: owner.name.clone(),
+                owner: owner.to_string(),
                 expression: programs[0].to_string(),
             };
             let [expression, delay, history] =
@@ -114,7 +85,7 @@ impl Builder<'_> {
     pub(super) fn user(
         &mut self,
         c: &mut Compiler,
-        owner: &Owner,
+        owner: &Asker,
         formula: &ModelFormula,
         n: usize,
         reads: &[String],
@@ -126,7 +97,7 @@ impl Builder<'_> {
     pub(super) fn user_reading(
         &mut self,
         c: &mut Compiler,
-        owner: &Owner,
+        owner: &Asker,
         formula: &ModelFormula,
         n: usize,
         reads: &[String],
@@ -138,14 +109,14 @@ impl Builder<'_> {
         if self.zero_user {
             return vec![self.compiled(c, owner, &"0".into()); n];
         }
-        let known = owner.element.and_then(|element| {
+        let known = owner.owner().and_then(|element| {
             let mut hooks = self.hooks.iter();
             let closure = hooks.position(|h| h.stands_for(element, formula));
             closure.map(|closure| (element, closure))
         });
         let Some((element, closure)) = known else {
             let message = "USER needs a routine that is not part of the dataset";
-            c.errors.push(Diagnostic::error("user_routine", message).element(&owner.name).help(
+            c.errors.push(Diagnostic::error("user_routine", message).element(owner.to_string()).help(
                 "register a closure for it through the library, switch the element off, or take what USER would compute as zero (--zero-user)",
             ));
             return vec![usize::MAX; n];
@@ -173,7 +144,7 @@ impl Builder<'_> {
     }
 
     /// A number from outside as a formula.
-    pub(super) fn supplied_formula(&mut self, owner: &Owner, text: &str, place: usize) -> usize {
+    pub(super) fn supplied_formula(&mut self, owner: &Asker, text: &str, place: usize) -> usize {
         let mut recorder = Recorder::new(Folding::Strict);
         let value = recorder.input(Input::Delayed(0));
         self.push(owner, text, recorder.finish(&[value]), vec![place])
@@ -190,7 +161,7 @@ impl Builder<'_> {
             };
             // one that nobody computes harms nobody
             let before = c.errors.len();
-            let owner = Owner::of(ElementKind::Request.id(id), "FUNCTION");
+            let owner = Asker::argument(ElementKind::Request.id(id), "FUNCTION");
             let all = self.user(c, &owner, user, 8, &[]);
             if c.errors.len() == before {
                 self.scene.requests.insert(id, all);

@@ -14,11 +14,11 @@
 //! what acts on the part of its I marker, about that marker, and is read as FX(I, J) … with J the
 //! other marker that e reads.
 
+use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
 use super::configuration::Configuration;
 use super::equations::Equations;
-use super::functions::Owner;
 use super::reads::{Allowed, offence};
 use super::{ConstraintElement, Entry, Row, RowKind, Scene};
 use crate::diagnostic::Diagnostic;
@@ -33,7 +33,7 @@ impl Builder<'_> {
         let model = self.model;
         for (id, gcon) in model.active(ElementKind::Gcon, &model.general_constraints) {
             let name = ElementKind::Gcon.id(id);
-            let formula = self.formula(c, &Owner::of(name, "FUNCTION"), &gcon.function);
+            let formula = self.formula(c, &Asker::argument(name, "FUNCTION"), &gcon.function);
             if formula >= self.scene.formulas.len() {
                 continue;
             }

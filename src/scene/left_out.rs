@@ -316,7 +316,8 @@ impl Builder<'_> {
                         "reads {} of {what}, which is left out: zero",
                         measure.name()
                     );
-                    let warning = Diagnostic::warning("reads_zero", what).element(&formula.name);
+                    let warning =
+                        Diagnostic::warning("reads_zero", what).element(formula.owner.to_string());
                     if !told.contains(&warning) {
                         told.push(warning);
                     }

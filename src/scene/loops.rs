@@ -17,6 +17,7 @@ use super::equations::{Equations, Lack, Unsupported};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder, Folding, Input, Program, Sym, Value};
 use crate::scalar::Scalar;
+use crate::scene::asker::Asker;
 use std::cell::RefCell;
 
 /// The quantity that an unknown of the loops stands for.
@@ -37,8 +38,8 @@ pub enum Key {
 pub struct Unknown {
     /// what it is
     pub key: Key,
-    /// the element it belongs to, for messages
-    pub name: String,
+    /// who asks for it before it is known, for messages
+    pub asker: Asker,
     /// where Newton's iteration begins
     pub guess: f64,
 }
@@ -95,14 +96,14 @@ pub(super) fn find(
 }
 
 fn unknown(scene: &Scene, key: Key, guesses: &dyn Fn(&Key) -> f64) -> Unknown {
-    let name = match key {
-        Key::Formula(f) => scene.formulas[f].name.clone(),
-        Key::Measure(m, ids) => super::reads::input_name(Input::Measure(m, ids)),
-        Key::Rate(d) | Key::Value(d) => scene.differentials[d].id.to_string(),
+    let asker = match key {
+        Key::Formula(f) => scene.formulas[f].owner.clone(),
+        Key::Measure(m, ids) => Asker::Input(Input::Measure(m, ids)),
+        Key::Rate(d) | Key::Value(d) => Asker::Equation(scene.differentials[d].id),
     };
     Unknown {
         key,
-        name,
+        asker,
         guess: guesses(&key),
     }
 }
@@ -169,7 +170,7 @@ fn linear(scene: Configured<'_>) -> Result<bool, Vec<Unsupported>> {
         let zero = |s: &Sym<'_>| matches!(s, Sym::Constant(c) if *c == 0.0);
         let column = jacobian.iter().all(|row| zero(&row[k]));
         if jacobian[k].iter().all(zero) || column {
-            lost.push(Unsupported::new(&u.name, Lack::LoopEquation));
+            lost.push(Unsupported::new(u.asker.clone(), Lack::LoopEquation));
         }
     }
     if !lost.is_empty() {

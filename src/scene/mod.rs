@@ -6,6 +6,7 @@
 //! before it starts.
 
 pub mod articulated;
+pub mod asker;
 pub mod broken;
 pub mod build;
 pub mod cams;
@@ -46,6 +47,7 @@ use crate::expr::program::Program;
 use crate::model::{ElementId, ElementKind, Level};
 use crate::physics::coupler::Gauge;
 use crate::physics::row::Law;
+use crate::scene::asker::Asker;
 use crate::space::{Frame, Mat3, Vec3};
 use forces::ForceElement;
 use history::AngleId;
@@ -286,10 +288,8 @@ pub struct CountedAngle {
 /// An expression of the model, compiled.
 #[derive(Clone, Debug)]
 pub struct Formula {
-    /// the element it belongs to; `None`: it is asked for beside those of the model
-    pub element: Option<ElementId>,
-    /// where it stands: "SFORCE/3 FUNCTION"
-    pub name: String,
+    /// whose it is
+    pub owner: Asker,
     /// its text, for messages
     pub text: String,
     /// its code; asks for its inputs by [`Input`](crate::expr::program::Input)

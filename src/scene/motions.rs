@@ -1,9 +1,9 @@
 //! MOTIONs: which coordinate of the forest each drives, or which row it is, and what their
 //! functions may read.
 
+use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
-use super::functions::Owner;
 use super::reads::{Allowed, offence};
 use super::unknown::{MotionState, UnknownId};
 use super::{ConstraintElement, Row, RowKind, SceneMotion, Source};
@@ -28,7 +28,7 @@ impl Builder<'_> {
         let mut drives = Vec::new();
         for (id, motion) in model.active(ElementKind::Motion, &model.motions) {
             let element = ElementKind::Motion.id(id);
-            let owner = Owner::of(element, "FUNCTION");
+            let owner = Asker::argument(element, "FUNCTION");
             // a closure yields the value and its first two derivatives
             let formula = match &motion.function {
                 user @ ModelFormula::User { .. } => self.user(c, &owner, user, 3, &[])[0],

@@ -13,10 +13,10 @@
 //! So circles through inputs and outputs, derivatives, statics and messages are those of all
 //! formulas.
 
+use super::asker::{Asker, Part};
 use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, SceneSampler, SceneSensor};
-use super::functions::Owner;
 use super::unknown::{DifferentialId, UnknownId};
 use super::{Entry, Formula, SceneDifferential};
 use crate::expr::measures::Measure;
@@ -57,7 +57,7 @@ impl Builder<'_> {
     pub(super) fn systems(&mut self, c: &mut Compiler, changing: &BTreeSet<u32>) {
         let model = self.model;
         for (id, variable) in model.active(ElementKind::Variable, &model.variables) {
-            let owner = Owner::of(ElementKind::Variable.id(id), "FUNCTION");
+            let owner = Asker::argument(ElementKind::Variable.id(id), "FUNCTION");
             let f = match variable.function.constant() {
                 Some(_) if changing.contains(&id) => {
                     let place = self.supply(ExternalInput::Constant(id));
@@ -70,7 +70,7 @@ impl Builder<'_> {
         self.input_arrays(c);
         for (id, d) in model.active(ElementKind::Diff, &model.differentials) {
             let name = ElementKind::Diff.id(id);
-            let formula = self.formula(c, &Owner::of(name, "FUNCTION"), &d.function);
+            let formula = self.formula(c, &Asker::argument(name, "FUNCTION"), &d.function);
             self.scene.differentials.push(SceneDifferential {
                 id: DifferentialId::diff(id),
                 state: None,
@@ -182,9 +182,9 @@ impl Builder<'_> {
                 continue;
             }
             let name = ElementKind::Sensor.id(id);
-            let formula = self.formula(c, &Owner::of(name, "FUNCTION"), &s.function);
-            let evaluate =
-                (s.evaluate.as_ref()).map(|e| self.formula(c, &Owner::of(name, "EVALUATE"), e));
+            let formula = self.formula(c, &Asker::argument(name, "FUNCTION"), &s.function);
+            let evaluate = (s.evaluate.as_ref())
+                .map(|e| self.formula(c, &Asker::argument(name, "EVALUATE"), e));
             let index = self.scene.sensors.len();
             self.supply(ExternalInput::Sensor(index));
             self.scene.sensors.push(SceneSensor {
@@ -248,15 +248,14 @@ impl Builder<'_> {
     }
 
     /// `Σ factor · entry` as a formula.
-    fn sum(&mut self, owner: Owner, terms: &[Term]) -> usize {
+    fn sum(&mut self, owner: Asker, terms: &[Term]) -> usize {
         let program = sum(terms);
         let shown = terms
             .iter()
             .map(|(f, array, k)| format!("{f:+}*ARYVAL({array},{k})"));
         let text = shown.collect();
         self.scene.formulas.push(Formula {
-            element: owner.element,
-            name: owner.name,
+            owner,
             text,
             program,
             gradient: None,
@@ -382,7 +381,7 @@ impl Builder<'_> {
         for (i, &value) in initial.iter().enumerate() {
             let mut terms = row(&a, i, s.x);
             terms.extend(row(&b, i, u));
-            let owner = Owner::of(id, format_args!("state {}", i + 1));
+            let owner = Asker::Function(id, Part::State(i + 1));
             let rate = self.sum(owner, &terms);
             let start = Start {
                 value,
@@ -395,7 +394,7 @@ impl Builder<'_> {
         for i in 0..outputs {
             let mut terms = row(&cc, i, s.x);
             terms.extend(row(&d, i, u));
-            let owner = Owner::of(id, format_args!("output {}", i + 1));
+            let owner = Asker::Function(id, Part::Output(i + 1));
             values.push(Entry::Formula(self.sum(owner, &terms)));
         }
         match s.y {
@@ -433,7 +432,7 @@ impl Builder<'_> {
                 terms.push((1.0 / an, s.u, 1));
                 terms
             };
-            let owner = Owner::of(id, format_args!("state {}", i + 1));
+            let owner = Asker::Function(id, Part::State(i + 1));
             let rate = self.sum(owner, &terms);
             let start = Start {
                 value: 0.0,
@@ -450,7 +449,7 @@ impl Builder<'_> {
         if through != 0.0 {
             terms.push((through, s.u, 1));
         }
-        let y = Entry::Formula(self.sum(Owner::of(id, "output"), &terms));
+        let y = Entry::Formula(self.sum(Asker::Function(id, Part::OnlyOutput), &terms));
         self.filled(s.y, false, vec![y])
     }
 
@@ -490,7 +489,14 @@ impl Builder<'_> {
         let reads: Vec<String> = array(s.x, s.ns).chain(array(s.u, m)).collect();
         let n = s.ns + s.no + s.nd;
         let said = c.errors.len();
-        let results = self.user_reading(c, &Owner::of(id, "FUNCTION"), function, n, &reads, &held);
+        let results = self.user_reading(
+            c,
+            &Asker::argument(id, "FUNCTION"),
+            function,
+            n,
+            &reads,
+            &held,
+        );
         if s.nd > 0 && c.errors.len() == said {
             self.sampler(c, id, s, &held, &results[s.ns + s.no..])?;
         }
@@ -528,7 +534,7 @@ impl Builder<'_> {
             return Ok(Vec::new());
         }
         let sampler = self.scene.samplers.len();
-        let owner = |k: usize| Owner::of(id, format_args!("discrete state {}", k + 1));
+        let owner = |k: usize| Asker::Function(id, Part::DiscreteState(k + 1));
         let places: Vec<usize> = (0..s.nd)
             .map(|k| self.supply(ExternalInput::Sample(sampler, k)))
             .collect();
@@ -555,7 +561,7 @@ impl Builder<'_> {
         let Some(period) = &s.sample_period else {
             return Err("its discrete states need a SAMPLE_PERIOD".into());
         };
-        let period = self.formula(c, &Owner::of(id, "SAMPLE_PERIOD"), period);
+        let period = self.formula(c, &Asker::argument(id, "SAMPLE_PERIOD"), period);
         let place = |f: &usize| self.scene.formulas[*f].delayed[0];
         let (states, results) = (place(&held[0]), place(&results[0]));
         let initial = self.initial(s.icd, s.nd)?;

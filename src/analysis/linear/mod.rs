@@ -222,7 +222,7 @@ fn undetermined(system: &System, k: usize) -> Vec<Diagnostic> {
         .scene
         .loops
         .get(k)
-        .map_or_else(String::new, |u| u.name.clone());
+        .map_or_else(String::new, |u| u.asker.to_string());
     vec![Diagnostic::error("loop", "nothing determines it in this state").element(name)]
 }
 

@@ -293,7 +293,7 @@ fn cause(system: &System, reason: Reason) -> (Cause, String) {
         (Some(name), _) => name.clone(),
         (None, loops) => loops
             .and_then(|k| scene.loops.get(k))
-            .map_or_else(|| format!("unknown {k}"), |u| u.name.clone()),
+            .map_or_else(|| format!("unknown {k}"), |u| u.asker.to_string()),
     };
     match reason {
         Reason::Evaluation(f) if f.what >= names.len() => (Cause::Loop, unknown(f.what)),

@@ -14,6 +14,7 @@ use crate::expr::program::Program;
 use crate::model::ElementKind;
 use crate::results::{Event, Kind, Status};
 use crate::scene::Scene;
+use crate::scene::asker::Asker;
 use crate::scene::layout::Layout;
 
 /// Velocities times links of the largest scene that is searched for free directions without mass
@@ -187,7 +188,8 @@ impl Session {
         }
         let (program, complaints) = self.columns.program(system.configured());
         for complaint in complaints {
-            if self.options.columns.contains(&complaint.asked_by) {
+            let wanted = |text: &str| self.options.columns.iter().any(|column| column == text);
+            if matches!(&complaint.asked_by, Asker::Column(text) if wanted(text)) {
                 let refused = Diagnostic {
                     severity: Severity::Error,
                     ..complaint.warning()

@@ -235,7 +235,7 @@ impl Session {
         system.numbers[Layout::TIME] = t;
         system.numbers[l.y()].copy_from_slice(&y);
         if let Err(k) = system.resolve() {
-            let name = system.scene.loops[k].name.clone();
+            let name = system.scene.loops[k].asker.to_string();
             let what = "it depends on itself, and no value solves that";
             return Err(vec![
                 Diagnostic::error("loop", what)

@@ -169,7 +169,7 @@ impl StopReason {
         let name = match self {
             StopReason::Interrupted | StopReason::Sensor { .. } => "",
             StopReason::Contact { broken, .. } => return vec![broken.element.to_string()],
-            StopReason::Function { lost, .. } => &lost.function,
+            StopReason::Function { lost, .. } => return vec![lost.function.to_string()],
             StopReason::Locked { lock, .. } => &lock.row,
             StopReason::Method { worst, .. } => worst,
             StopReason::NoEquilibrium { imbalance, .. } => imbalance.name(),

@@ -101,12 +101,12 @@ impl Implicit {
         (outside, switching): (&ExternalInputs, Option<&Switching>),
     ) -> Result<Self, Vec<Diagnostic>> {
         if !scene.loops.is_empty() {
-            let loops = scene.loops.iter().map(|u| u.name.as_str());
+            let loops: Vec<String> = scene.loops.iter().map(|u| u.asker.to_string()).collect();
             return Err(vec![Diagnostic::error(
                 "implicit_loop",
                 format!(
                     "{} reads accelerations or forces that depend on it: methods for implicit equations do not solve that",
-                    loops.collect::<Vec<_>>().join(", ")
+                    loops.join(", ")
                 ),
             )
             .help("leave the method to the program, or ask for RADAU5")]);

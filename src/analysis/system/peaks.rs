@@ -151,7 +151,7 @@ impl Peaks {
 /// Returns whether a formula acts on the mechanism.
 fn acts(scene: &Scene, f: usize) -> bool {
     let asks = [ElementKind::Request, ElementKind::Sensor];
-    let element = scene.formulas[f].element;
+    let element = scene.formulas[f].owner.owner();
     element.is_some_and(|e| !asks.contains(&e.kind))
 }
 

@@ -108,7 +108,7 @@ impl Pulses {
 /// Returns true if a formula reads time itself and acts on the mechanism.
 fn acts(scene: &Scene, f: usize) -> bool {
     let asks = [ElementKind::Request, ElementKind::Sensor];
-    let element = scene.formulas[f].element;
+    let element = scene.formulas[f].owner.owner();
     let acts = element.is_some_and(|e| !asks.contains(&e.kind));
     acts && scene.formulas[f].program.inputs().contains(&Input::Time)
 }

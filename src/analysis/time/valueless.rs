@@ -11,6 +11,7 @@ use crate::expr::ast::{Ast, BinaryOp, Callee, Node, NodeIx};
 use crate::expr::functions::Function;
 use crate::expr::program::{Input, Work};
 use crate::expr::walk;
+use crate::scene::asker::Asker;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
@@ -27,7 +28,7 @@ const VANISHING_DIVISOR: f64 = 1e-8;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Valueless {
     /// "SFORCE/1 FUNCTION"
-    pub function: String,
+    pub function: Asker,
     /// the way in which it loses its value
     pub loss: Loss,
 }
@@ -100,7 +101,7 @@ fn pole(scene: Configured<'_>, now: &[f64], then: &[f64]) -> Option<Valueless> {
         let values = [&at_now, &at_then].map(|at| {
             let host = |input: Input| match input {
                 Input::Delayed(_) | Input::Slot(_) => None,
-                _ => Some(at.input(input, &f.name)),
+                _ => Some(at.input(input, &f.owner)),
             };
             walk::values(expr.ast(), &host).ok()
         });
@@ -115,7 +116,7 @@ fn pole(scene: Configured<'_>, now: &[f64], then: &[f64]) -> Option<Valueless> {
             }
         })?;
         Some(Valueless {
-            function: f.name.clone(),
+            function: f.owner.clone(),
             loss: Loss::Pole {
                 operation: expr.ast().written(ix),
                 value: here[ix as usize].unwrap_or(f64::NAN),
@@ -149,7 +150,7 @@ fn there(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
         {
             return None;
         }
-        let values: Vec<f64> = inputs.iter().map(|&i| at.input(i, &f.name)).collect();
+        let values: Vec<f64> = inputs.iter().map(|&i| at.input(i, &f.owner)).collect();
         // what it reads has no value: that is the one to blame
         if !values.iter().all(|x| x.is_finite()) {
             return None;
@@ -171,7 +172,7 @@ fn there(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
             _ => Loss::NotFinite,
         };
         Some(Valueless {
-            function: f.name.clone(),
+            function: f.owner.clone(),
             loss,
         })
     })

@@ -104,7 +104,7 @@ impl RunWarning {
             RunWarning::ContactsWithoutFreedom(contacts) => {
                 contacts.first().map(ToString::to_string)
             }
-            RunWarning::EmptyColumn(unsupported) => Some(unsupported.asked_by.clone()),
+            RunWarning::EmptyColumn(unsupported) => Some(unsupported.asked_by.to_string()),
             RunWarning::Gap { column, .. } => Some(column.clone()),
             RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(|id| id.to_string()),
             RunWarning::NoFreedom

@@ -15,6 +15,7 @@ use crate::expr::measures::{Family, Measure};
 use crate::expr::program::{Input, Work};
 use crate::scalar::{Jet, Scalar};
 use crate::scene::Entry;
+use crate::scene::asker::Asker;
 
 /// The quantities that move while a formula is differentiated in time.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -30,10 +31,7 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn algebraic_rate(&self, d: usize) -> S {
         let equation = &self.scene.differentials[d];
         if self.rates_open.borrow().contains(&d) {
-            return self.complain(
-                &format!("DIF1({})", equation.id.element.number),
-                Lack::OwnValue,
-            );
+            return self.complain(&Asker::Rate(equation.id.element.number), Lack::OwnValue);
         }
         self.rates_open.borrow_mut().push(d);
         let along = self.moved(equation.formula, Moving::Others(d));
@@ -50,7 +48,7 @@ impl<S: Scalar> Equations<'_, S> {
             let inputs: Vec<Jet<S>> = inputs
                 .map(|&input| match self.written_as(input) {
                     Some(formula) => read.get(&formula).copied().unwrap_or_else(nothing),
-                    None => self.moved_input(input, moving, &f.name),
+                    None => self.moved_input(input, moving, &f.owner),
                 })
                 .collect();
             let mut out = [Jet::zero()];
@@ -60,7 +58,7 @@ impl<S: Scalar> Equations<'_, S> {
         found.unwrap_or_else(nothing)
     }
 
-    fn moved_input(&self, input: Input, moving: Moving, asked_by: &str) -> Jet<S> {
+    fn moved_input(&self, input: Input, moving: Moving, asked_by: &Asker) -> Jet<S> {
         match input {
             Input::Time => at_rate(self.t, if own(moving) { S::zero() } else { S::one() }),
             Input::Mode => Jet::constant(self.scene.mode),
@@ -91,7 +89,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     fn moved_measure(
         &self,
-        asked_by: &str,
+        asked_by: &Asker,
         measure: Measure,
         ids: [u32; 4],
         moving: Moving,

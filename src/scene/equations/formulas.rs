@@ -55,8 +55,8 @@ impl<S: Scalar> Equations<'_, S> {
             return value;
         }
         if self.open.borrow().is_open[f] {
-            let name = &self.scene.formulas[f].name;
-            return self.too_early(Key::Formula(f), name, Lack::OwnValue);
+            let owner = &self.scene.formulas[f].owner;
+            return self.too_early(Key::Formula(f), owner, Lack::OwnValue);
         }
         let mut path = vec![self.descend(f)];
         while let Some(here) = path.last_mut() {
@@ -113,7 +113,7 @@ impl<S: Scalar> Equations<'_, S> {
     fn input_of(&self, formula: &Formula, input: Input) -> S {
         match input {
             Input::Delayed(k) => self.delayed(formula.delayed.get(k as usize).copied()),
-            other => self.input(other, &formula.name),
+            other => self.input(other, &formula.owner),
         }
     }
 

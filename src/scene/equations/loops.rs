@@ -2,6 +2,7 @@
 
 use super::{Equations, Lack};
 use crate::scalar::Scalar;
+use crate::scene::asker::Asker;
 use crate::scene::loops::Key;
 
 impl<S: Scalar> Equations<'_, S> {
@@ -18,7 +19,7 @@ impl<S: Scalar> Equations<'_, S> {
         let k = self.scene.loops.iter().position(|u| u.key == key)?;
         match self.loops.get(k) {
             Some(&value) => Some(value),
-            None => Some(self.complain(&self.scene.loops[k].name, Lack::OutsideLoop)),
+            None => Some(self.complain(&self.scene.loops[k].asker, Lack::OutsideLoop)),
         }
     }
 
@@ -28,7 +29,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// Something is asked for that depends on who asks.
-    pub(super) fn too_early(&self, key: Key, asked_by: &str, lack: Lack) -> S {
+    pub(super) fn too_early(&self, key: Key, asked_by: &Asker, lack: Lack) -> S {
         if !self.discovering {
             return self.complain(asked_by, lack);
         }
@@ -60,7 +61,7 @@ impl<S: Scalar> Equations<'_, S> {
         let keys = self.scene.loops.iter().zip(&self.loops);
         keys.map(|(unknown, &z)| match unknown.key {
             Key::Formula(f) => self.evaluate(f) - z,
-            Key::Measure(m, ids) => self.measure_itself(m, ids, &unknown.name) - z,
+            Key::Measure(m, ids) => self.measure_itself(m, ids, &unknown.asker) - z,
             Key::Rate(d) | Key::Value(d) => self.formula(self.scene.differentials[d].formula),
         })
         .collect()

@@ -7,18 +7,19 @@ use crate::model::ElementKind;
 use crate::physics::kinematic;
 use crate::scalar::Scalar;
 use crate::scene::Entry;
+use crate::scene::asker::Asker;
 use crate::scene::history::AngleId;
 use crate::scene::loops::Key;
 
 impl<S: Scalar> Equations<'_, S> {
     /// Value of a measure.
-    pub fn measure(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+    pub fn measure(&self, measure: Measure, ids: [u32; 4], asked_by: &Asker) -> S {
         self.unknown(Key::Measure(measure, ids))
             .unwrap_or_else(|| self.measure_itself(measure, ids, asked_by))
     }
 
     /// Evaluates a measure, also where a load reads it.
-    pub(super) fn measure_itself(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+    pub(super) fn measure_itself(&self, measure: Measure, ids: [u32; 4], asked_by: &Asker) -> S {
         if self.scene.gone(measure, &ids).is_some() {
             return S::zero();
         }
@@ -59,7 +60,7 @@ impl<S: Scalar> Equations<'_, S> {
         self.displacement(&variable.displacement).value
     }
 
-    pub(super) fn system(&self, measure: Measure, [id, k, ..]: [u32; 4], asked_by: &str) -> S {
+    pub(super) fn system(&self, measure: Measure, [id, k, ..]: [u32; 4], asked_by: &Asker) -> S {
         let scene = self.scene;
         match measure {
             Measure::Varval => match scene.variables.get(&id) {

@@ -38,6 +38,7 @@ use crate::expr::program::Input;
 use crate::model::{ElementId, Level};
 use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
+use crate::scene::asker::Asker;
 use crate::space::MarkerState;
 use formulas::Opened;
 use std::cell::{Cell, OnceCell, RefCell};
@@ -135,8 +136,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     /// Notes what could not be supplied; its value is NaN.
-    fn complain(&self, asked_by: &str, lack: Lack) -> S {
-        let what = Unsupported::new(asked_by, lack);
+    fn complain(&self, asked_by: &Asker, lack: Lack) -> S {
+        let what = Unsupported::new(asked_by.clone(), lack);
         let mut complaints = self.complaints.borrow_mut();
         if !complaints.contains(&what) {
             complaints.push(what);
@@ -281,7 +282,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     /// Supplies what a formula asks for: the one door between the language and the scene.
-    pub fn input(&self, input: Input, asked_by: &str) -> S {
+    pub fn input(&self, input: Input, asked_by: &Asker) -> S {
         match input {
             Input::Time => self.t,
             Input::Mode => S::constant(self.scene.mode),

@@ -7,6 +7,7 @@ use crate::expr::signature;
 use crate::model::{ElementId, ElementKind};
 use crate::physics::action::Action;
 use crate::scalar::Scalar;
+use crate::scene::asker::Asker;
 use crate::scene::loops::Key;
 use crate::scene::sweep::Wrench;
 use crate::scene::{ConstraintElement, Source};
@@ -148,7 +149,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// NFORCE(id, at, comp, rm): the action on one of its markers, I or J.
-    fn nodal_force(&self, [id, at, comp, rm]: [u32; 4], asked_by: &str) -> S {
+    fn nodal_force(&self, [id, at, comp, rm]: [u32; 4], asked_by: &Asker) -> S {
         let scene = self.scene;
         let element = ElementKind::Nforce.id(id);
         let number = |m: usize| scene.markers[m].id;
@@ -173,7 +174,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// FRICTION(id, index), in the axes of the joint's J marker.
-    fn friction(&self, id: u32, index: u32, asked_by: &str) -> S {
+    fn friction(&self, id: u32, index: u32, asked_by: &Asker) -> S {
         let scene = self.scene;
         let element = ElementKind::Friction.id(id);
         let found = scene.forces.iter().find(|f| f.id == element);
@@ -195,7 +196,7 @@ impl<S: Scalar> Equations<'_, S> {
         &self,
         measure: Measure,
         [id, jflag, comp, rm]: [u32; 4],
-        asked_by: &str,
+        asked_by: &Asker,
     ) -> S {
         // what is switched off exerts nothing
         let element = element_of(measure, id);
@@ -231,7 +232,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// Component 1–8 of an action, resolved in marker `rm`.
-    pub(super) fn component(&self, action: &Action<S>, comp: u32, rm: u32, asked_by: &str) -> S {
+    pub(super) fn component(&self, action: &Action<S>, comp: u32, rm: u32, asked_by: &Asker) -> S {
         let axes = if rm == 0 {
             Mat3::identity()
         } else {
@@ -255,7 +256,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 
     /// FM … TZ: all that acts between two markers.
-    pub(super) fn generic_force(&self, measure: Measure, ids: [u32; 4], asked_by: &str) -> S {
+    pub(super) fn generic_force(&self, measure: Measure, ids: [u32; 4], asked_by: &Asker) -> S {
         use Measure as M;
         let [i, j, k, _] = ids;
         if self.solving.get() && self.carries_reaction(i, j) {

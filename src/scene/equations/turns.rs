@@ -5,6 +5,7 @@ use super::rows::moving;
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
 use crate::scalar::{Jet, Scalar};
+use crate::scene::asker::Asker;
 use crate::scene::history::AngleId;
 use crate::scene::{CoordinateSum, Source};
 
@@ -79,7 +80,8 @@ impl<S: Scalar> Equations<'_, S> {
                 let asks = Input::Measure(measure, ids);
                 let mut formulas = self.scene.formulas.iter();
                 let asked_by = formulas.find(|f| f.program.inputs().contains(&asks));
-                self.measure(measure, ids, asked_by.map_or(measure.name(), |f| &f.name))
+                let equations = Asker::Measure(measure);
+                self.measure(measure, ids, asked_by.map_or(&equations, |f| &f.owner))
             }
             AngleId::Gauge { .. } => {
                 let jet = self.angle_in_time(angle);
@@ -105,6 +107,10 @@ impl<S: Scalar> Equations<'_, S> {
     /// AX, AY or AZ of one marker against another, with its turns.
     pub fn angle_between(&self, measure: Measure, i: usize, j: Option<usize>) -> S {
         let id = |m: usize| self.scene.markers[m].id;
-        self.measure(measure, [id(i), j.map_or(0, id), 0, 0], measure.name())
+        self.measure(
+            measure,
+            [id(i), j.map_or(0, id), 0, 0],
+            &Asker::Measure(measure),
+        )
     }
 }

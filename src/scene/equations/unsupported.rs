@@ -4,13 +4,14 @@
 use crate::diagnostic::Diagnostic;
 use crate::expr::measures::{Measure, orientation_components};
 use crate::model::{ElementId, ElementKind};
+use crate::scene::asker::Asker;
 use std::fmt;
 
 /// A number that somebody asks for and that the equations cannot supply.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unsupported {
-    /// who asks: "VARIABLE/7 FUNCTION", or the text of a column
-    pub asked_by: String,
+    /// who asks
+    pub asked_by: Asker,
     /// what is lacking
     pub lack: Lack,
 }
@@ -151,7 +152,7 @@ impl fmt::Display for Unsupported {
 
 impl Unsupported {
     /// Says so of an element or a function.
-    pub fn new(asked_by: impl Into<String>, lack: Lack) -> Self {
+    pub fn new(asked_by: impl Into<Asker>, lack: Lack) -> Self {
         Self {
             asked_by: asked_by.into(),
             lack,
@@ -160,11 +161,11 @@ impl Unsupported {
 
     /// Makes an error of it, about the function that asks.
     pub fn error(&self) -> Diagnostic {
-        Diagnostic::error("unsupported", self.lack.to_string()).element(&self.asked_by)
+        Diagnostic::error("unsupported", self.lack.to_string()).element(self.asked_by.to_string())
     }
 
     /// Makes a warning of it: the column that asks is empty.
     pub fn warning(&self) -> Diagnostic {
-        Diagnostic::warning("unavailable", self.lack.to_string()).element(&self.asked_by)
+        Diagnostic::warning("unavailable", self.lack.to_string()).element(self.asked_by.to_string())
     }
 }

@@ -1,0 +1,95 @@
+//! Whoever asks the equations for a value: functions of the model, columns, elements.
+
+use super::reads::input_name;
+use super::unknown::DifferentialId;
+use crate::expr::measures::Measure;
+use crate::expr::program::Input;
+use crate::model::ElementId;
+use std::fmt;
+use std::sync::Arc;
+
+/// Whoever asks for a value. Prints as users know it: `SFORCE/3 FUNCTION`, `LSE/1 state 2`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Asker {
+    /// a function of an element
+    Function(ElementId, Part),
+    /// an element
+    Element(ElementId),
+    /// an expression asked for beside those of the model, by its text
+    Column(Arc<str>),
+    /// the equations themselves, for a measure
+    Measure(Measure),
+    /// an algebraic loop through an input
+    Input(Input),
+    /// an algebraic loop through an implicit equation
+    Equation(DifferentialId),
+    /// DIF1 of the DIFF with this number
+    Rate(u32),
+}
+
+/// The function of an element that asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// that of an argument
+    Argument(&'static str),
+    /// the rate of a state, from 1
+    State(usize),
+    /// an output, from 1
+    Output(usize),
+    /// the only output
+    OnlyOutput,
+    /// the next value of a discrete state, from 1
+    DiscreteState(usize),
+}
+
+impl Asker {
+    /// Creates the name of the function of an argument.
+    pub fn argument(element: ElementId, argument: &'static str) -> Self {
+        Self::Function(element, Part::Argument(argument))
+    }
+
+    /// Returns the element whose function asks; `None` for others.
+    pub fn owner(&self) -> Option<ElementId> {
+        match self {
+            Self::Function(element, _) => Some(*element),
+            Self::Element(_)
+            | Self::Column(_)
+            | Self::Measure(_)
+            | Self::Input(_)
+            | Self::Equation(_)
+            | Self::Rate(_) => None,
+        }
+    }
+}
+
+impl From<ElementId> for Asker {
+    fn from(element: ElementId) -> Self {
+        Self::Element(element)
+    }
+}
+
+impl fmt::Display for Asker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Function(element, part) => write!(f, "{element} {part}"),
+            Self::Element(element) => element.fmt(f),
+            Self::Column(text) => f.write_str(text),
+            Self::Measure(measure) => f.write_str(measure.name()),
+            Self::Input(input) => f.write_str(&input_name(*input)),
+            Self::Equation(id) => id.fmt(f),
+            Self::Rate(number) => write!(f, "DIF1({number})"),
+        }
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Argument(argument) => f.write_str(argument),
+            Self::State(number) => write!(f, "state {number}"),
+            Self::Output(number) => write!(f, "output {number}"),
+            Self::OnlyOutput => f.write_str("output"),
+            Self::DiscreteState(number) => write!(f, "discrete state {number}"),
+        }
+    }
+}
