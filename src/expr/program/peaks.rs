@@ -118,7 +118,7 @@ impl Builder {
 
     /// Returns `n ln |x|` if a power is narrow.
     fn log_of_power(&mut self, x: Value, n: f64) -> Option<Value> {
-        (n < 0.0 || n >= NARROW_POWER).then(|| self.log_of_size(n, x))
+        (!(0.0..NARROW_POWER).contains(&n)).then(|| self.log_of_size(n, x))
     }
 
     fn log_of_size(&mut self, n: f64, x: Value) -> Value {
