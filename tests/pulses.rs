@@ -38,7 +38,7 @@ fn a_pulse_gives_its_momentum_however_long_the_run() {
             10.0,
             1.0,
         ),
-        ("1/COSH((TIME-3)/0.01)**2", 10.0, 0.02),
+        ("1/COSH((TIME-3)/0.02)**2", 10.0, 0.04),
     ] {
         for (method, error) in [
             ("AUTO", 1e-6),
