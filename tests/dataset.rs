@@ -726,7 +726,7 @@ fn a_command_file_may_answer_the_old_prompts() {
     let s = script("model.adm\n\nSTOP\n");
     assert_eq!(
         (s.model.as_deref(), s.output.as_deref()),
-        (Some("model.adm"), None)
+        (Some("model.adm"), Some("model"))
     );
 }
 

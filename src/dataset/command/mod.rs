@@ -201,22 +201,38 @@ impl Script {
     }
 
     /// The dataset that the file names, beside the command file, with the ending `.adm` where none
-    /// is given; a file whose name differs in small and capital letters alone is taken where there
-    /// is no other, as the systems do on which such files are written.
+    /// is given. A path that does not exist here is that of another machine: the file of this name
+    /// beside the command file is meant. A file whose name differs in small and capital letters
+    /// alone is taken where there is no other, as the systems do on which such files are written.
     pub fn model_file(&self) -> Option<PathBuf> {
         let name = self.model.as_deref()?;
-        let mut name = PathBuf::from(name);
-        if !name
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("adm"))
-        {
-            let mut with_ending = name.into_os_string();
-            with_ending.push(".adm");
-            name = PathBuf::from(with_ending);
-        }
         let folder = self.path.as_deref().and_then(Path::parent);
-        Some(existing(folder.map_or(name.clone(), |f| f.join(name))))
+        let beside = |name: &str| {
+            let name = with_ending(name);
+            existing(folder.map_or(name.clone(), |f| f.join(&name)))
+        };
+        let named = beside(name);
+        let moved = beside(last_component(name));
+        Some(if !named.exists() && moved.exists() {
+            moved
+        } else {
+            named
+        })
     }
+}
+
+/// Returns the name of a dataset with its ending.
+fn with_ending(name: &str) -> PathBuf {
+    let path = PathBuf::from(name);
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("adm") => path,
+        _ => PathBuf::from(format!("{name}.adm")),
+    }
+}
+
+/// Returns the last component of a path of any system: "test" of "C:\dir\test".
+fn last_component(name: &str) -> &str {
+    name.rsplit(['/', '\\']).next().unwrap_or(name)
 }
 
 /// The file, or the one beside it whose name has other capital letters.
@@ -282,16 +298,43 @@ fn of_source(source: &Source) -> Result<Script, Errors> {
         };
         (script.model, script.output) = (answer(0), answer(1));
         script.answered = script.model.is_some();
+        // no answer to the second prompt: results are named like the dataset
+        let blank = spans
+            .get(1)
+            .is_some_and(|s| source.slice(*s).trim().is_empty());
+        if blank && let Some(model) = &script.model {
+            let name = last_component(model);
+            let ending = name.len().saturating_sub(4);
+            let has_ending = (name.get(ending..)).is_some_and(|e| e.eq_ignore_ascii_case(".adm"));
+            let stem = name.get(..ending).filter(|_| has_ending).unwrap_or(name);
+            script.output = Some(stem.to_owned());
+        }
         // The answers are no commands: blanked, so that all places stay.
         for span in spans {
             body.text
                 .replace_range(span.start..span.end, &" ".repeat(span.end - span.start));
         }
     }
+    end_at_stop(&mut body.text);
     let mut out = Vec::new();
     let syntax = syntax::script(&body, &mut out);
     take_steps(&body, &syntax, &mut script, &mut out);
     finish(script, out)
+}
+
+/// Leaves out what follows a line that says STOP: notes and whatever else, which need not be
+/// commands.
+fn end_at_stop(text: &mut String) {
+    let (mut at, mut continued) = (0, false);
+    for line in text.split_inclusive('\n') {
+        at += line.len();
+        let command = line.split('!').next().unwrap_or_default().trim();
+        if command.eq_ignore_ascii_case("STOP") && !continued {
+            text.truncate(at);
+            return;
+        }
+        continued = command.ends_with('&');
+    }
 }
 
 fn finish(mut script: Script, mut out: Vec<Diagnostic>) -> Result<Script, Errors> {
