@@ -2,16 +2,20 @@
 
 use super::render::{self, Sources};
 use super::{Exit, Failure, Outcome, complain, remark, say};
-use crate::dataset::command::Script;
+use crate::analysis::session::{Analysis, Options, Session};
+use crate::dataset::command::{Command, Script, Simulate};
 use crate::dataset::{self, Errors, Reading};
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::model::{ElementKind, Model};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Find what is wrong with datasets and command files
 ///
-/// All mistakes of all files at once, each with its place, its element and advice. Exit code 3 when
-/// there is an error; warnings alone are no failure.
+/// All mistakes of all files at once, each with its place, its element and advice. A model without
+/// mistakes is assembled as a run would do it, and what that refuses or doubts is told; nothing is
+/// solved. Exit code 3 when a file has an error, 4 when the model does; warnings alone are no
+/// failure.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -30,14 +34,18 @@ pub struct Args {
 pub fn run(args: &Args) -> Outcome {
     let mut all = Vec::new();
     let mut sources = Sources::default();
+    let mut model_fails = false;
     for file in &args.files {
         let ending = file.extension().map(|e| e.to_ascii_lowercase());
         match ending.as_deref().and_then(std::ffi::OsStr::to_str) {
-            Some("acf") => all.extend(check_script(file)),
+            Some("acf") => all.extend(check_script(file, &mut sources, &mut model_fails)),
             _ => match dataset::read(file) {
                 Ok(reading) => {
                     add(&mut sources, &reading);
+                    let begun = assembled(&reading, reading.model.clone(), file, None);
+                    model_fails |= begun.iter().any(is_error);
                     all.extend(reading.diagnostics);
+                    all.extend(begun);
                 }
                 Err(errors) => all.extend(errors.0),
             },
@@ -59,35 +67,119 @@ pub fn run(args: &Args) -> Outcome {
             number(args.files.len(), "file")
         ));
     }
-    Ok(if errors > 0 { Exit::Input } else { Exit::Done })
+    Ok(match (errors, model_fails) {
+        (0, _) => Exit::Done,
+        (_, true) => Exit::Model,
+        (_, false) => Exit::Input,
+    })
+}
+
+fn is_error(d: &Diagnostic) -> bool {
+    d.severity == Severity::Error
+}
+
+/// Time up to which motions are looked at where no command says when the run ends.
+const HORIZON: f64 = 10.0;
+
+/// Reasons why a model is not solved, or not as it is meant, that are no mistakes in it.
+const NOT_SOLVED_HERE: [&str; 6] = [
+    "unsupported",
+    "user_routine",
+    "curve_data",
+    "skipped",
+    "creeping_friction",
+    "approximate",
+];
+
+/// Finds what a run would refuse or doubt before its first step, of a model as commands leave it
+/// before their first simulation; nothing where the dataset has mistakes.
+fn assembled(
+    reading: &Reading,
+    model: Model,
+    file: &Path,
+    simulate: Option<&Simulate>,
+) -> Vec<Diagnostic> {
+    if reading.failed() {
+        return Vec::new();
+    }
+    let (analysis, end) = match simulate.map(|s| s.resolved(0.0)) {
+        Some(Ok((analysis, end, _))) => (analysis, end),
+        Some(Err(d)) => return vec![d],
+        None => (Analysis::Transient, HORIZON),
+    };
+    let begin = |options: Options| {
+        let mut session = Session::new(model.clone(), "check", options);
+        session.folders = file.parent().map(Path::to_path_buf).into_iter().collect();
+        session.preview(analysis, end)
+    };
+    let mut found = begin(Options::default());
+    let ours = |d: &Diagnostic| NOT_SOLVED_HERE.contains(&d.code);
+    if found.iter().any(|d| is_error(d) && ours(d)) {
+        // told, and left out to see the rest
+        let unsolved = ElementKind::ALL.iter().copied().filter(|k| k.is_unsolved());
+        let rest = begin(Options {
+            zero_user: true,
+            skip: unsolved.collect(),
+            ..Options::default()
+        });
+        found.retain(|d| ours(d) || is_error(d));
+        let new = rest.into_iter().filter(|d| !ours(d));
+        found.extend(new);
+    }
+    for d in found.iter_mut().filter(|d| ours(d)) {
+        d.severity = Severity::Note;
+    }
+    // where something cannot be, that comes before what is doubted
+    let doubts = model.doubts();
+    if found.iter().any(is_error) {
+        found.extend(doubts);
+    } else {
+        found.splice(0..0, doubts);
+    }
+    found.dedup();
+    (found.into_iter().map(|d| reading.dataset.locate(d))).collect()
 }
 
 /// Checks a command file, and the effect of its commands on the model it names.
-fn check_script(file: &Path) -> Vec<Diagnostic> {
+fn check_script(file: &Path, sources: &mut Sources, model_fails: &mut bool) -> Vec<Diagnostic> {
     let script = match Script::read(file) {
         Ok(script) => script,
         Err(errors) => return errors.0,
     };
     let mut all = script.diagnostics.clone();
-    let Some(model) = script.model_file() else {
+    let Some(path) = script.model_file() else {
         return all;
     };
-    match dataset::read(&model) {
-        Ok(reading) => {
-            let mut model = reading.model;
-            for step in &script.steps {
-                let Err(errors) = model.apply(&step.command) else {
-                    continue;
-                };
-                all.extend(errors.0.into_iter().map(|d| Diagnostic {
-                    file: Some(file.display().to_string()),
-                    line: step.line,
-                    column: 1,
-                    ..d
-                }));
-            }
+    let reading = match dataset::read(&path) {
+        Ok(reading) => reading,
+        Err(errors) => {
+            all.extend(errors.0);
+            return all;
         }
-        Err(errors) => all.extend(errors.0),
+    };
+    add(sources, &reading);
+    let mut model = reading.model.clone();
+    let mut begun = false;
+    for step in &script.steps {
+        if let Command::Simulate(simulate) = &step.command
+            && !std::mem::replace(&mut begun, true)
+        {
+            let found = assembled(&reading, model.clone(), &path, Some(simulate));
+            *model_fails |= found.iter().any(is_error);
+            all.extend(found);
+        }
+        let Err(errors) = model.apply(&step.command) else {
+            continue;
+        };
+        all.extend(errors.0.into_iter().map(|d| Diagnostic {
+            file: Some(file.display().to_string()),
+            line: step.line,
+            column: 1,
+            ..d
+        }));
+    }
+    if reading.failed() {
+        all.extend(reading.diagnostics);
     }
     all
 }

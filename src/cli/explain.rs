@@ -102,6 +102,7 @@ fn as_json(o: &Outline) -> Value {
         "unknowns": unknowns,
         "prescribed": o.prescribed,
         "rows": o.rows,
+        "inputs": o.inputs,
         "left_out": o.left_out,
         "operations": { "rate": o.operations.0, "projection": o.operations.1 },
         "elimination": o.elimination,
@@ -135,6 +136,7 @@ fn as_text(o: &Outline) -> String {
     list("unknowns", &unknowns);
     list("prescribed", &o.prescribed);
     list("rows", &o.rows);
+    list("inputs that routines compute, zero here", &o.inputs);
     list("left out", &o.left_out);
     let warnings: Vec<String> = o.warnings.iter().map(ToString::to_string).collect();
     list("warnings", &warnings);

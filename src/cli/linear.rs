@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> Outcome {
     interrupt::install();
     let commands = run::has_commands(&args.model);
     let (reading, base, steps) = if commands {
-        let job = run::script(&args.model)?;
+        let job = run::script(&args.model, None)?;
         (job.reading, job.base, job.steps)
     } else {
         (run::read(&args.model)?, run::stem(&args.model), Vec::new())

@@ -79,7 +79,16 @@ pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> St
 
 /// Codes that a model can have hundreds of, one for each element of a family, all with the same
 /// remedy.
-const ALIKE: [&str; 4] = ["unsupported", "user_routine", "curve_data", "skipped"];
+const ALIKE: [&str; 8] = [
+    "unsupported",
+    "user_routine",
+    "curve_data",
+    "skipped",
+    "approximate",
+    "misaligned",
+    "impossible_inertia",
+    "superseded",
+];
 /// Number of these that are shown in full.
 const FIRST_ALIKE: usize = 3;
 /// Number of further elements that are listed by name.
@@ -118,8 +127,7 @@ fn group<'a>(d: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
         Severity::Note => Level::NOTE,
     };
     let message = d
-        .element
-        .as_ref()
+        .named()
         .map_or_else(|| d.message.clone(), |e| format!("{e}: {}", d.message));
     let place = excerpt(d, sources);
     let title = match (&place, &d.file) {
@@ -262,7 +270,7 @@ pub fn as_json(diagnostics: &[Diagnostic]) -> Value {
         };
         json!({
             "code": d.code, "severity": severity, "message": d.message, "file": d.file, "line": d.line, "column": d.column,
-            "start": d.span.map(|s| s.start), "end": d.span.map(|s| s.end), "element": d.element, "help": d.help,
+            "start": d.span.map(|s| s.start), "end": d.span.map(|s| s.end), "element": d.element, "name": d.name, "help": d.help,
             "marks": d.marks.iter().map(|(s, what)| json!({ "start": s.start, "end": s.end, "what": what })).collect::<Vec<_>>(),
         })
     };

@@ -22,12 +22,15 @@ use std::time::Instant;
 #[command(after_help = "\
 Examples:
   cognate run pendulum.acf
+  cognate run Controls_Plant_1.msg plant.adm
   cognate run pendulum.adm --end 2 --steps 200 --column 'DX(12,21)'
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
     /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
     /// dataset (.adm)
     model: PathBuf,
+    /// Dataset that the commands are for, where it is not the one that they name
+    dataset: Option<PathBuf>,
     /// Permitted local error of the integration, relative to the magnitude of each unknown
     #[arg(long, value_name = "E")]
     error: Option<f64>,
@@ -111,11 +114,11 @@ pub fn run(args: &Args) -> Outcome {
         base,
         steps,
     } = if is_command {
-        script(&args.model)?
+        script(&args.model, args.dataset.as_deref())?
     } else {
         alone(args)?
     };
-    remark_on_warnings(args, &reading);
+    let doubts = remark_on_warnings(args, &reading);
     let (model, dataset) = (reading.model, reading.dataset);
     check_columns(args, &model, &steps)?;
     let full = model.settings.contains_key(&SettingsStatement::Results);
@@ -167,7 +170,13 @@ pub fn run(args: &Args) -> Outcome {
         {
             d.file = Some(commands.clone());
         }
-        return Err(Failure::in_model(&dataset, diagnostics));
+        // what is doubted may be why
+        let said = doubts.into_iter().chain(diagnostics);
+        let all = said.chain(session.model.doubts()).collect();
+        return Err(Failure::in_model(&dataset, all));
+    }
+    if status != Status::Completed {
+        super::complain_in_files(&doubts);
     }
     if status != Status::Completed && (args.quiet || args.json) {
         remark(&session.run.record.stop_reason);
@@ -175,16 +184,19 @@ pub fn run(args: &Args) -> Outcome {
     Ok(exit(status))
 }
 
-/// Remarks on the number of warnings about a dataset.
-fn remark_on_warnings(args: &Args, reading: &Reading) {
+/// Remarks on the number of warnings about a dataset; returns them.
+fn remark_on_warnings(args: &Args, reading: &Reading) -> Vec<Diagnostic> {
     let is_warning = |d: &&Diagnostic| d.severity == Severity::Warning;
-    let warnings = reading.diagnostics.iter().filter(is_warning).count();
+    let doubts: Vec<Diagnostic> =
+        (reading.diagnostics.iter().filter(is_warning).cloned()).collect();
+    let warnings = doubts.len();
     if !args.quiet && warnings > 0 {
         remark(format!(
             "{warnings} warning{} in the dataset: cognate check tells more",
             if warnings == 1 { "" } else { "s" }
         ));
     }
+    doubts
 }
 
 /// Checks the columns that the command line asks for, before anything is solved or written.
@@ -279,6 +291,10 @@ pub(super) fn exit(status: Status) -> Exit {
 
 /// Prepares a dataset with one simulation given by options.
 fn alone(args: &Args) -> Result<Job, Failure> {
+    if args.dataset.is_some() {
+        let what = "a second file is the dataset of a command file (.acf) or of a log (.msg)";
+        return Err(Failure::usage(what));
+    }
     let reading = read(&args.model)?;
     let kind = match args.kind.unwrap_or(KindName::Transient) {
         KindName::Dynamic => SimulationKind::Dynamic,
@@ -341,16 +357,16 @@ pub(super) fn has_commands(path: &Path) -> bool {
 }
 
 /// Reads a command file and the dataset it names, or the commands that a log echoes and the dataset
-/// beside it.
-pub(super) fn script(path: &Path) -> Result<Job, Failure> {
+/// beside it; `dataset`: this one instead.
+pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure> {
     let failed = |e: crate::dataset::Errors| Failure::in_files(Exit::Input, e.0);
     if path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("msg"))
     {
         let script = Script::from_message_log(path).map_err(failed)?;
-        let file = script
-            .model_file()
+        let file = (dataset.map(Path::to_path_buf))
+            .or_else(|| script.model_file())
             .unwrap_or_else(|| path.with_extension("adm"));
         return Ok(Job {
             reading: read(&file)?,
@@ -359,7 +375,8 @@ pub(super) fn script(path: &Path) -> Result<Job, Failure> {
         });
     }
     let script = Script::read(path).map_err(failed)?;
-    let Some(file) = script.model_file() else {
+    let file = dataset.map(Path::to_path_buf);
+    let Some(file) = file.or_else(|| script.model_file()) else {
         if let Some(Step {
             command: Command::Reload(Some(name)),
             ..

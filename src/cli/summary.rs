@@ -121,7 +121,7 @@ fn warnings(all: &[Warning]) -> Vec<String> {
         *count += 1;
         *count <= ALIKE
     };
-    let shown = all.iter().filter(few).map(|w| w.sentence.clone());
+    let shown = all.iter().filter(few).map(Warning::named);
     let mut shown: Vec<String> = shown.collect();
     let hidden = all.len() - shown.len();
     if hidden > 0 {
@@ -169,6 +169,7 @@ mod tests {
             code,
             sentence: format!("{element}: {what}"),
             element: Some(element),
+            name: None,
         };
         let left_out = |k| warning("skipped", format!("CONTACT/{k}"), "is left out");
         let mut all: Vec<Warning> = (0..50).map(left_out).collect();

@@ -22,7 +22,7 @@ use crate::diagnostic::{Diagnostic, Severity, Span};
 use crate::model::{ElementKind, MarkerOwner, Model};
 use read::Table;
 use row::Record;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::Path;
 use syntax::{Item, Source, Syntax};
@@ -54,7 +54,10 @@ impl Dataset {
         };
         let mut records = self.records.iter().flatten();
         match records.find(|r| r.element().eq_ignore_ascii_case(element)) {
-            Some(record) => self.source.locate(d, record.head),
+            Some(record) => Diagnostic {
+                name: record.place.name.clone(),
+                ..self.source.locate(d, record.head)
+            },
             None => d,
         }
     }
@@ -171,12 +174,17 @@ pub fn read_source(source: Source) -> Reading {
         if excused && d.code != "unknown_element" {
             continue;
         }
-        out.push(Diagnostic {
-            file: source.file.clone(),
-            span: source.word_at(d.line, d.column),
-            ..d
-        });
+        let mut settings = records.iter().flatten().filter(|r| r.id.is_none());
+        match settings.find(|r| d.line == 0 && d.element.as_ref() == Some(&r.element())) {
+            Some(record) => out.push(source.locate(d, record.head)),
+            None => out.push(Diagnostic {
+                file: source.file.clone(),
+                span: source.word_at(d.line, d.column),
+                ..d
+            }),
+        }
     }
+    name_elements(&records, out);
     out.sort_by_key(|d| (d.line, d.column));
     reading.dataset = Dataset {
         source,
@@ -184,6 +192,19 @@ pub fn read_source(source: Source) -> Reading {
         records,
     };
     reading
+}
+
+/// Gives the elements that diagnostics are about the names that stand above their statements.
+fn name_elements(records: &[Option<Record>], out: &mut [Diagnostic]) {
+    if out.is_empty() {
+        return;
+    }
+    let named = records.iter().flatten().filter(|r| r.place.name.is_some());
+    let names: BTreeMap<String, &Record> = named.map(|r| (r.element(), r)).collect();
+    for d in out.iter_mut().filter(|d| d.name.is_none()) {
+        let record = d.element.as_ref().and_then(|e| names.get(e));
+        d.name = record.and_then(|r| r.place.name.clone());
+    }
 }
 
 /// The first line is a title, whatever it holds: one that holds a statement is a mistake, for the

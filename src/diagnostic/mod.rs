@@ -54,6 +54,8 @@ pub struct Diagnostic {
     pub column: usize,
     /// the element concerned, for example `SFORCE/3`
     pub element: Option<String>,
+    /// the name that the file gives the element
+    pub name: Option<String>,
     /// further places of the same text, and what stands there
     pub marks: Vec<(Span, String)>,
     /// reasons and advice, one sentence each
@@ -72,6 +74,7 @@ impl Diagnostic {
             line: 0,
             column: 0,
             element: None,
+            name: None,
             marks: Vec::new(),
             help: Vec::new(),
         }
@@ -101,6 +104,14 @@ impl Diagnostic {
         self.help.push(advice.into());
         self
     }
+    /// Returns the element concerned as its file names it: "JOINT/47 'hinge'".
+    pub fn named(&self) -> Option<String> {
+        let element = self.element.as_ref()?;
+        Some(match &self.name {
+            Some(name) => format!("{element} '{name}'"),
+            None => element.clone(),
+        })
+    }
     /// Sets the element concerned.
     pub fn element(mut self, element: impl Into<String>) -> Self {
         self.element = Some(element.into());
@@ -116,7 +127,7 @@ impl fmt::Display for Diagnostic {
         if self.line > 0 {
             write!(f, "{}:{}: ", self.line, self.column)?;
         }
-        if let Some(element) = &self.element {
+        if let Some(element) = self.named() {
             write!(f, "{element}: ")?;
         }
         let severity = match self.severity {

@@ -128,8 +128,23 @@ pub struct Warning {
     pub code: &'static str,
     /// the element or column that it is about
     pub element: Option<String>,
+    /// the name that the dataset gives that element
+    pub name: Option<String>,
     /// all of it in a sentence
     pub sentence: String,
+}
+
+impl Warning {
+    /// Returns the sentence, with the name of the element where the dataset gives one: "JOINT/47
+    /// 'hinge': …".
+    pub fn named(&self) -> String {
+        let after = |element: &String| self.sentence.strip_prefix(element.as_str());
+        let rest = self.element.as_ref().and_then(after);
+        match (&self.element, &self.name, rest) {
+            (Some(element), Some(name), Some(rest)) => format!("{element} '{name}'{rest}"),
+            _ => self.sentence.clone(),
+        }
+    }
 }
 
 /// A jump of what a MOTION prescribes.

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// The splines of a model, for the expressions that name them; what is wrong with those that cannot
 /// be used.
-pub(super) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
+pub(crate) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
     let mut bindings = Bindings::default();
     let mut errors = Vec::new();
     for (&id, s) in &model.splines {

@@ -21,7 +21,7 @@ pub mod external_inputs;
 mod force_elements;
 pub mod forces;
 pub mod forest;
-mod formula;
+pub(crate) mod formula;
 mod frictions;
 mod functions;
 mod general;

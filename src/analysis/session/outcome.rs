@@ -9,7 +9,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::time::{ranks, valueless};
 use crate::analysis::warning::{RunWarning, Warning};
-use crate::model::Model;
+use crate::model::{ElementId, Model};
 use crate::numeric::{Reason, Stop};
 use crate::results::{self, Counts, Event, Kind, RowChange, Status};
 use crate::scene::equations::row_name;
@@ -155,7 +155,10 @@ impl Session {
 
     /// Adds a warning to the record and the log, unless it has been given before.
     pub(in crate::analysis) fn warn(&mut self, what: impl Into<Warning>) {
-        let warning = what.into().record();
+        let mut warning = what.into().record();
+        let element = warning.element.as_deref().and_then(|e| e.split(' ').next());
+        let element = element.and_then(|e| e.parse::<ElementId>().ok());
+        warning.name = element.and_then(|id| self.model.element(id)?.place().name.clone());
         if !self.run.record.warnings.contains(&warning) {
             self.run.log.push(Event::Warning(warning.sentence.clone()));
             self.run.record.warnings.push(warning);

@@ -49,6 +49,7 @@ impl Session {
         let stopped = self.stop_reason(system, &trajectory);
         self.drift(system, &first, &trajectory.rows);
         self.warn_of_growth(growth::of(system, &first, &trajectory));
+        self.warn_of_splines(system, &trajectory.rows);
         // what the next simulation begins with
         let last = trajectory.rows.last().cloned().unwrap_or(first);
         self.keep(system, last);

@@ -80,7 +80,10 @@ impl Session {
     }
 
     /// Brings the model into its state; which analysis moves it, as its freedom says.
-    fn begin(&mut self, asked: Analysis) -> Result<(System, Assembly, Analysis), Vec<Diagnostic>> {
+    pub(super) fn begin(
+        &mut self,
+        asked: Analysis,
+    ) -> Result<(System, Assembly, Analysis), Vec<Diagnostic>> {
         let mode = match asked {
             Analysis::Kinematic => KINEMATIC,
             Analysis::InitialConditions => INITIAL_CONDITIONS,
@@ -114,7 +117,11 @@ impl Session {
     }
 
     /// Checks that nothing moves without mass when dynamics begins.
-    fn check_masses(&self, system: &System, analysis: Analysis) -> Result<(), Vec<Diagnostic>> {
+    pub(super) fn check_masses(
+        &self,
+        system: &System,
+        analysis: Analysis,
+    ) -> Result<(), Vec<Diagnostic>> {
         let begins = analysis == Analysis::Dynamic && self.carried.is_none();
         if !begins || !is_searched_for_masses(&system.scene) {
             return Ok(());
@@ -136,7 +143,7 @@ impl Session {
     }
 
     /// Checks that motions do not jump, or notes where they do when somebody insists.
-    fn check_drives(
+    pub(super) fn check_drives(
         &mut self,
         system: &System,
         analysis: Analysis,

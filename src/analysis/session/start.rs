@@ -3,12 +3,14 @@
 
 use super::carried::{has_new_unknowns, moved};
 use super::shells;
+use super::spline_range::{SplineCall, spline_calls};
 use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::{coincident, initial_conditions, misalignment, placement, velocities};
 use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{external_inputs, samples};
+use crate::analysis::verify::culprit::blamed;
 use crate::analysis::warning::Warning;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Formula, Model, Place};
@@ -122,9 +124,11 @@ impl Session {
         inputs: &[u32],
     ) -> Result<(Arc<Scene>, Option<Model>), Vec<Diagnostic>> {
         let hooks = self.hooks.iter().map(external_inputs::Hook::as_name);
+        let mut extra = self.columns.extra.clone();
+        extra.extend(spline_calls(&self.model).iter().map(SplineCall::extra));
         let mut options = build::Options {
             mode,
-            extra: self.columns.extra.clone(),
+            extra,
             variables: self.options.full,
             skip: self.options.skip.clone(),
             hooks: hooks.collect(),
@@ -186,7 +190,8 @@ impl Session {
             Vec::new()
         };
         // the rows, and what they did not let be met
-        let (mut assembly, contacts) = start.assemble(&self.model, joints, &conditions)?;
+        let (mut assembly, contacts) = (start.assemble(&self.model, joints, &conditions))
+            .map_err(|said| blamed(&self.model, said))?;
         let (here, t, q, x) = (start.here(), start.t, &start.q, &start.x);
         let warnings = &mut assembly.warnings;
         let unmet = initial_conditions::unmet(here, &conditions, &contacts, t, q, x);
@@ -217,6 +222,7 @@ impl Session {
         }
         let given = moved.filter(|_| !at_rest).unwrap_or(&self.model);
         velocities::velocities(start.here(), given, start.t, &start.q, &start.x)
+            .map_err(|said| blamed(given, said))
     }
 
     /// Records the programs and puts the system into its state, with past, samples and sensors.

@@ -29,6 +29,9 @@ pub(super) const EMPTY: f64 = 1e-9;
 /// Residual of a row that holds, at most, as a part of its scale.
 pub const CLOSED: f64 = 1e-10;
 
+/// Residual, relative to its scale and to the worst of all, below which a row is not told.
+const LEAST_GAP: f64 = 1e-4;
+
 /// A dependent row, and those that it depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Redundant {
@@ -350,6 +353,12 @@ fn contradictions(scene: Configured<'_>, g: &DVector<f64>, numbers: &[f64]) -> V
         .filter(|&r| relative(&scene, r, g[r]) > CLOSED || !g[r].is_finite())
         .collect();
     bad.sort_by(|&a, &b| relative(&scene, b, g[b]).total_cmp(&relative(&scene, a, g[a])));
+    // beside the worst, what rounding leaves open is no contradiction
+    let worst = bad.first().map_or(0.0, |&r| relative(&scene, r, g[r]));
+    bad.retain(|&r| {
+        let size = relative(&scene, r, g[r]);
+        size >= LEAST_GAP * worst || !size.is_finite()
+    });
     let at = Equations::new(scene, numbers);
     bad.into_iter()
         .take(20)

@@ -11,6 +11,7 @@ use crate::expr::ast::{Ast, BinaryOp, Callee, Node, NodeIx};
 use crate::expr::functions::Function;
 use crate::expr::program::{Input, Work};
 use crate::expr::walk;
+use crate::model::ElementId;
 use crate::scene::asker::Asker;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
@@ -83,7 +84,9 @@ pub fn find(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
         }
         then
     };
-    let lost = LATER.iter().find_map(|&later| there(scene, &then(later)));
+    let lost = LATER
+        .iter()
+        .find_map(|&later| there(scene, &then(later), |_| true));
     // where the rates grow as well, time alone tells more
     lost.or_else(|| {
         let mut passed = numbers.to_vec();
@@ -140,9 +143,16 @@ fn divisor(ast: &Ast, ix: NodeIx, values: &[Option<f64>]) -> Option<f64> {
     }
 }
 
-fn there(scene: Configured<'_>, numbers: &[f64]) -> Option<Valueless> {
+/// Finds the first function that has no value at these numbers, among those whose elements are
+/// `asked` for.
+pub fn there(
+    scene: Configured<'_>,
+    numbers: &[f64],
+    asked: impl Fn(Option<ElementId>) -> bool,
+) -> Option<Valueless> {
     let at = Equations::new(scene, numbers);
-    scene.formulas.iter().find_map(|f| {
+    let formulas = scene.formulas.iter().filter(|f| asked(f.owner.owner()));
+    formulas.into_iter().find_map(|f| {
         let inputs = f.program.inputs();
         if inputs
             .iter()

@@ -12,6 +12,8 @@
 
 mod advice;
 mod axes;
+pub(in crate::analysis) mod culprit;
+pub(in crate::analysis) mod driving;
 mod free;
 pub(crate) mod massless;
 pub mod outline;
@@ -297,7 +299,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     let (assembly, starts) = match drawn.assemble(&mut configuration, &mut q) {
         Ok(assembled) => assembled,
         Err(contradictions) => {
-            found.inconsistent = contradictions;
+            found.inconsistent = culprit::traced(&model, contradictions);
             return Ok(found);
         }
     };
@@ -305,7 +307,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     let scene = scene.within(&configuration);
     match velocities::velocities(scene, &model, 0.0, &q, &x) {
         Ok(v) => found.warn(velocities::unmet(scene, &model, 0.0, (&q, &v, &x))),
-        Err(contradictions) => found.inconsistent = contradictions,
+        Err(contradictions) => found.inconsistent = culprit::traced(&model, contradictions),
     }
     found.warn(assembly.warnings.iter().cloned());
     found.warn(misalignment::orders(&scene, &model));

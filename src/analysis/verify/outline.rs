@@ -4,10 +4,11 @@
 use crate::analysis::start::dataset::Dataset;
 use crate::analysis::start::{assemble, misalignment, velocities};
 use crate::analysis::system::System;
-use crate::analysis::verify::start;
+use crate::analysis::verify::culprit::blamed;
+use crate::analysis::verify::{stand_still, start};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
-use crate::model::{ElementKind, Family, Model};
+use crate::model::{ElementKind, Family, Formula, Model};
 use crate::scene::build::Options;
 use crate::scene::configuration::Configuration;
 use crate::scene::equations::row_name;
@@ -40,6 +41,8 @@ pub struct Outline {
     pub prescribed: Vec<String>,
     /// rows that close loops
     pub rows: Vec<String>,
+    /// functions that routines compute, which the results depend on: "SFORCE/1 FUNCTION"
+    pub inputs: Vec<String>,
     /// rows that depend on others, elements that are switched off or not solved
     pub left_out: Vec<String>,
     /// operations of one evaluation of the rates, and of one projection onto the rows
@@ -64,14 +67,21 @@ pub(in crate::analysis) fn pushing() -> BTreeSet<ElementKind> {
 /// # Errors
 /// Mistakes that keep the model from being solved.
 pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
+    let mut model = model.clone();
+    let mut taken_for_granted = Vec::new();
+    let inputs = inputs(&model);
+    stand_still(&mut model, &mut taken_for_granted);
+    let model = &model;
     let options = Options {
         mode: 4,
         skip: pushing(),
+        zero_user: true,
         ..Options::default()
     };
     let scene = Scene::compile(model, &options)?;
     let mut configuration = Configuration::new(&scene);
     let mut out = Outline {
+        inputs,
         warnings: warnings(misalignment::misaligned(&scene, model)),
         ..Outline::default()
     };
@@ -92,7 +102,8 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         joints: true,
         conditions: &[],
     };
-    let (assembly, _) = drawn.assemble(&mut configuration, &mut q)?;
+    let (assembly, _) =
+        (drawn.assemble(&mut configuration, &mut q)).map_err(|said| blamed(model, said))?;
     let here = scene.within(&configuration);
     out.warnings.extend(assembly.warnings.iter().cloned());
     let numbers = assemble::numbers(here, 0.0, &q, &vec![0.0; scene.layout.n_v], &x);
@@ -119,15 +130,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         .into_iter()
         .zip(q.into_iter().chain(v).chain(x))
         .collect();
-    out.prescribed = (scene.coordinates.iter())
-        .filter_map(|c| match c.source {
-            Source::Driven(m) => {
-                let motion = ElementKind::Motion.id(scene.motions[m].id);
-                Some(format!("{} by {motion}", c.id))
-            }
-            Source::Free { .. } => None,
-        })
-        .collect();
+    out.prescribed = prescribed(&scene);
     let system = System::new(scene, configuration)?;
     out.operations = (
         system.operations(),
@@ -140,6 +143,30 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         "mass matrix"
     };
     Ok(out)
+}
+
+/// Returns the coordinates that motions prescribe, and which motion does.
+fn prescribed(scene: &Scene) -> Vec<String> {
+    let driven = scene.coordinates.iter().filter_map(|c| match c.source {
+        Source::Driven(m) => {
+            let motion = ElementKind::Motion.id(scene.motions[m].id);
+            Some(format!("{} by {motion}", c.id))
+        }
+        Source::Free { .. } => None,
+    });
+    driven.collect()
+}
+
+/// Returns the functions of a model that routines compute.
+fn inputs(model: &Model) -> Vec<String> {
+    let formulas = model.formulas().into_iter();
+    let computed = formulas.filter(|f| {
+        matches!(f.formula, Formula::User { .. })
+            && f.element.kind.family() != Family::Output
+            && model.is_active(f.element)
+    });
+    let names = computed.map(|f| format!("{} {}", f.element, f.argument));
+    names.collect()
 }
 
 /// Returns the carrier of each part, in the order of the links.

@@ -63,6 +63,21 @@ pub enum AssemblyWarning {
 }
 
 impl AssemblyWarning {
+    /// Writes a distance and an angle with their directions: "2 mm along ground X and 3 deg about
+    /// Z of MARKER/7".
+    pub(in crate::analysis) fn apart(
+        offset: &Option<(f64, Axis)>,
+        unit: &str,
+        turn: &Option<(f64, Axis)>,
+    ) -> String {
+        let offset =
+            (offset.as_ref()).map(|(by, axis)| format!("{} along {axis}", length(*by, unit)));
+        let turn = (turn.as_ref())
+            .map(|(angle, axis)| format!("{} deg about {axis}", short(angle.to_degrees())));
+        let off: Vec<String> = offset.into_iter().chain(turn).collect();
+        off.join(" and ")
+    }
+
     /// Returns its stable short name.
     pub(super) fn code(&self) -> &'static str {
         match self {
@@ -100,11 +115,7 @@ impl fmt::Display for AssemblyWarning {
             AssemblyWarning::Misaligned {
                 offset, unit, turn, ..
             } => {
-                let offset = offset.map(|(by, axis)| format!("{} along {axis}", length(by, unit)));
-                let turn = turn
-                    .map(|(angle, axis)| format!("{} deg about {axis}", short(angle.to_degrees())));
-                let off: Vec<String> = offset.into_iter().chain(turn).collect();
-                let off = off.join(" and ");
+                let off = Self::apart(offset, unit, turn);
                 write!(
                     f,
                     "{name}: in the dataset its markers are off by {off}; assembly moves the parts"

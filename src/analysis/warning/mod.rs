@@ -66,6 +66,7 @@ impl Warning {
         results::Warning {
             code: self.code(),
             element: self.element(),
+            name: None,
             sentence: self.to_string(),
         }
     }

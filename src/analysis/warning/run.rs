@@ -1,6 +1,6 @@
 //! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
 
-use crate::analysis::quantity::place;
+use crate::analysis::quantity::{place, short};
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, ElementKind};
 use crate::results::{Quantity, RankChange, RowChange};
@@ -50,6 +50,19 @@ pub enum RunWarning {
         /// number of directions in which it leaves
         directions: usize,
     },
+    /// a spline is read where it has no data
+    OutsideData {
+        /// whose function reads it
+        element: ElementId,
+        /// user's number of the SPLINE
+        spline: u32,
+        /// first and last X of its data
+        range: [f64; 2],
+        /// X farthest from the data
+        value: f64,
+        /// the first time outside
+        since: f64,
+    },
     /// a smaller error is asked for than rounding permits
     BelowRounding {
         /// the error
@@ -88,6 +101,7 @@ impl RunWarning {
             RunWarning::Gap { .. } => "no_finite_value",
             RunWarning::Rank(_) => "rank_change",
             RunWarning::Unstable { .. } => "unstable_equilibrium",
+            RunWarning::OutsideData { .. } => "outside_data",
             RunWarning::BelowRounding { .. } => "below_rounding",
             RunWarning::StabilityLimited { .. } => "stiff",
             RunWarning::EnergyGrows { .. } => "energy_grows",
@@ -107,6 +121,7 @@ impl RunWarning {
             RunWarning::EmptyColumn(unsupported) => Some(unsupported.asked_by.to_string()),
             RunWarning::Gap { column, .. } => Some(column.clone()),
             RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(|id| id.to_string()),
+            RunWarning::OutsideData { element, .. } => Some(element.to_string()),
             RunWarning::NoFreedom
             | RunWarning::NothingToSimulate { .. }
             | RunWarning::Rank(_)
@@ -160,6 +175,13 @@ impl fmt::Display for RunWarning {
                     "the equilibrium at time {at} is unstable in {directions} direction{plural}"
                 )
             }
+            RunWarning::OutsideData {
+                element,
+                spline,
+                range,
+                value,
+                since,
+            } => outside_data((*element, *spline), *range, (*value, *since), f),
             RunWarning::BelowRounding {
                 error,
                 below,
@@ -201,6 +223,23 @@ pub fn jumps(quantity: Quantity, all: &[(f64, f64)]) -> String {
     }
     let (what, times) = (quantity.word(), times.join(", "));
     format!("the {what} it prescribes jumps at time {times}")
+}
+
+/// Writes which function reads which spline outside its data: at which value, since when.
+fn outside_data(
+    (element, spline): (ElementId, u32),
+    [first, last]: [f64; 2],
+    (value, since): (f64, f64),
+    f: &mut fmt::Formatter<'_>,
+) -> fmt::Result {
+    write!(
+        f,
+        "{element} reads {} at {} from time {} on, but its data reach from {first} to {last}: \
+         beyond them it is extrapolated",
+        ElementKind::Spline.id(spline),
+        short(value),
+        short(since)
+    )
 }
 
 /// Writes when and where the rank of the constraints changes.

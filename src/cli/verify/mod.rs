@@ -3,7 +3,7 @@
 mod text;
 
 use super::run::{has_commands, read, script};
-use super::{Exit, Failure, Outcome, complain, remark, say};
+use super::{Exit, Failure, Outcome, complain_in_files, remark, say};
 use crate::analysis::verify::{Verification, verify};
 use crate::dataset::Dataset;
 use crate::dataset::command::Command;
@@ -43,7 +43,8 @@ pub fn run(args: &Args) -> Outcome {
     if found.inconsistent.is_empty() {
         return Ok(Exit::Done);
     }
-    complain(&found.inconsistent, &super::render::Sources::default());
+    let located = found.inconsistent.into_iter().map(|d| dataset.locate(d));
+    complain_in_files(&located.collect::<Vec<_>>());
     Ok(Exit::Model)
 }
 
@@ -57,7 +58,7 @@ pub fn model_of(path: &Path) -> Result<(Model, Dataset), Failure> {
         let reading = read(path)?;
         return Ok((reading.model, reading.dataset));
     }
-    let job = script(path)?;
+    let job = script(path, None)?;
     let mut model = job.reading.model;
     for step in &job.steps {
         match &step.command {

@@ -284,6 +284,59 @@ products are the integrals of x y dm with positive sign; a tensor with negated p
         explanation: "CV stands where the pitch circles touch, its z axis along the common velocity there.",
     },
     Code {
+        name: "no_units",
+        summary: "the dataset names no units",
+        explanation: "\
+Without UNITS a force is a mass times an acceleration (UCF = 1): right for kg, m, s, N; a thousand times wrong for kg, mm, s, N.
+
+    UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND
+    UNITS/SYSTEM=MKS",
+    },
+    Code {
+        name: "unlikely_magnitude",
+        summary: "a number that cannot be meant in these units",
+        explanation: "\
+A gravity of 9.81 where lengths are millimetres, moments of inertia in kg m² among millimetres, a stiffness on which a mass
+oscillates faster than any step: the message says the number and what it means.",
+    },
+    Code {
+        name: "negative_stiffness",
+        summary: "a spring that pushes away from its free position",
+        explanation: "K, KT, KMATRIX and STIFFNESS are positive: the force is against the displacement without a sign of theirs.",
+    },
+    Code {
+        name: "negative_damping",
+        summary: "a damper that feeds energy",
+        explanation: "\
+C, CT, CMATRIX, DAMPING and friction coefficients are positive. In a FUNCTION the force is against the rate by its sign:
+
+    SFORCE/1, TRANSLATION, I=21, J=31, FUNCTION=-20*(DM(21,31)-300)-1.5*VR(21,31)",
+    },
+    Code {
+        name: "nothing_holds",
+        summary: "a part that falls for ever",
+        explanation: "\
+No constraint, force or contact leads from the part to ground, and there is gravity. A part with an initial velocity is taken
+as thrown and not doubted.",
+    },
+    Code {
+        name: "forgotten_joint",
+        summary: "two markers on each other that nothing uses",
+        explanation: "\
+Markers of two parts lie on each other, no element uses them, and nothing ties the two parts: what is left where a JOINT
+was deleted, or is still to be written.",
+    },
+    Code {
+        name: "stands_twice",
+        summary: "two joints that are one",
+        explanation: "They are of the same type, between the same parts, at the same place: the second holds nothing, and reactions are not unique.",
+    },
+    Code {
+        name: "superseded",
+        summary: "arguments of former releases that do nothing",
+        explanation: "JOINT once took MU_STAT_ROT, MU_DYN_ROT and others. They are kept when the dataset is written, and not computed; FRICTION is.",
+    },
+    Code {
         name: "few_points",
         summary: "fewer points than a cubic spline needs",
         explanation: "AKISPL, CUBSPL and CURVE need at least four.",

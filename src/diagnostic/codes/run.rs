@@ -118,6 +118,13 @@ At the named position a row follows from others, or no longer does: a linkage pa
 begin to hold. The run goes on; reactions may jump there.",
     },
     Code {
+        name: "outside_data",
+        summary: "a spline is read outside its data",
+        explanation: "\
+Beyond its first and last X a spline is extrapolated: by a parabola, which grows fast, or by a straight line with
+LINEAR_EXTRAPOLATE. Neither was measured. Give data as far as the mechanism goes.",
+    },
+    Code {
         name: "below_rounding",
         summary: "the error that is asked for is smaller than what rounding leaves",
         explanation: "The steps so far are as exact as rounding permits. A larger ERROR takes fewer steps for the same digits.",

@@ -9,12 +9,17 @@ pub(crate) mod alignment;
 mod angles;
 mod bodies;
 mod constraints;
+mod constraints_twice;
 mod contacts;
 mod couplings;
 mod curves;
 mod forces;
+mod held;
+mod magnitudes;
 mod output;
 mod references;
+mod signs;
+mod superseded;
 mod systems;
 
 use super::*;
@@ -69,7 +74,33 @@ pub const RULES: &[Rule] = &[
         "initial conditions say what is first",
         constraints::initial_conditions_say_what_is_first,
     ),
+    ("gravity is plausible", magnitudes::gravity_is_plausible),
+    ("inertia fits its part", magnitudes::inertia_fits_its_part),
+    (
+        "springs have their length",
+        magnitudes::springs_have_their_length,
+    ),
+    (
+        "stiffness can be resolved",
+        magnitudes::stiffness_can_be_resolved,
+    ),
+    ("laws resist", signs::laws_resist),
+    ("contacts resist", signs::contacts_resist),
+    ("shapes have sizes", signs::shapes_have_sizes),
     ("functions can be read", references::functions_can_be_read),
+];
+
+/// All doubts about the mechanism that a model without mistakes makes: joints that stand twice or
+/// not at all, parts that nothing holds.
+pub const DOUBTS: &[Rule] = &[
+    ("parts are held", held::parts_are_held),
+    ("torques have an axis", held::torques_have_an_axis),
+    ("joints are not forgotten", held::joints_are_not_forgotten),
+    (
+        "joints have no old friction",
+        superseded::joints_have_no_old_friction,
+    ),
+    ("joints stand once", constraints_twice::joints_stand_once),
 ];
 
 impl Model {
@@ -87,6 +118,17 @@ impl Model {
         let mut out = Vec::new();
         for (_, rule) in RULES {
             rule(self, &mut out);
+        }
+        out.sort_by_key(|d| (d.line, d.column));
+        out
+    }
+
+    /// Doubts about the mechanism as a whole, of a model without mistakes, in the order of the
+    /// elements' lines.
+    pub fn doubts(&self) -> Vec<Diagnostic> {
+        let mut out = Vec::new();
+        for (_, doubt) in DOUBTS {
+            doubt(self, &mut out);
         }
         out.sort_by_key(|d| (d.line, d.column));
         out

@@ -160,7 +160,7 @@ impl Known {
 }
 
 /// The elements an expression names: byte and element. Zeros that stand for ground are left out.
-fn named(expr: &Expr) -> Vec<(usize, ElementId)> {
+pub(super) fn named(expr: &Expr) -> Vec<(usize, ElementId)> {
     let ast = expr.ast();
     let mut all = Vec::new();
     for node in &ast.nodes {

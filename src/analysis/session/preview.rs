@@ -1,0 +1,104 @@
+//! Reasons that keep a simulation from beginning, and its warnings: all that can be found before
+//! its first step.
+
+use super::{Analysis, Session};
+use crate::analysis::time::valueless::{self, Loss};
+use crate::analysis::verify::driving::driving;
+use crate::analysis::warning::{AssemblyWarning, Warning};
+use crate::diagnostic::Diagnostic;
+use crate::model::{ElementId, ElementKind, Family, Model};
+
+/// Misalignment of a joint as drawn, relative to the mechanism or in rad, that numbers typed with
+/// four digits make.
+const TYPED_DIGITS: f64 = 1e-3;
+
+/// Returns whether a warning is about markers that are off by the rounding of typed numbers.
+fn is_rounding(warning: &Warning, mechanism: f64) -> bool {
+    match warning {
+        Warning::Assembly(AssemblyWarning::Misaligned { offset, turn, .. }) => {
+            let [offset, turn] = [offset, turn].map(|off| off.as_ref().map_or(0.0, |(by, _)| *by));
+            offset < TYPED_DIGITS * mechanism && turn < TYPED_DIGITS
+        }
+        Warning::Assembly(_)
+        | Warning::Scene(_)
+        | Warning::Condition(_)
+        | Warning::Run(_)
+        | Warning::Verification(_) => false,
+    }
+}
+
+/// Warns of a model with weights or forces that names no units.
+fn without_units(model: &Model) -> Option<Diagnostic> {
+    let forces = ElementKind::of(Family::Force);
+    let pushed = forces
+        .into_iter()
+        .any(|kind| !model.numbers(kind).is_empty());
+    let what =
+        "there is no UNITS: a force is a mass times an acceleration, in whatever units these are";
+    (model.units.is_none() && (pushed || model.gravity != [0.0; 3])).then(|| {
+        Diagnostic::warning("no_units", what)
+            .element("UNITS")
+            .help("UNITS/SYSTEM=MKS says that they go together; in UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND they do not")
+    })
+}
+
+impl Session {
+    /// Brings the model into its first state and returns what is wrong with it, and what is
+    /// doubtful; motions are looked at until `end`.
+    pub fn preview(&mut self, analysis: Analysis, end: f64) -> Vec<Diagnostic> {
+        let mut found = match self.previewed(analysis, end) {
+            Ok(found) | Err(found) => found,
+        };
+        let warned = self.run.record.warnings.iter().map(|w| {
+            // a diagnostic begins with its element
+            let element = w.element.clone().unwrap_or_default();
+            let what = w.sentence.strip_prefix(&element).unwrap_or(&w.sentence);
+            let what = what.trim_start_matches([':', ' ']);
+            Diagnostic {
+                element: w.element.clone(),
+                ..Diagnostic::warning(w.code, what)
+            }
+        });
+        found.extend(warned);
+        found.extend(without_units(&self.model));
+        found
+    }
+
+    fn previewed(
+        &mut self,
+        analysis: Analysis,
+        end: f64,
+    ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        self.check_method()?;
+        self.check_settings()?;
+        let (system, assembly, analysis) = self.begin(analysis)?;
+        let (told, length) = (assembly.warnings.iter(), system.scene.length);
+        for warning in told.filter(|w| !is_rounding(w, length)) {
+            self.warn(warning.clone());
+        }
+        for warning in &system.scene.warnings {
+            self.warn(Warning::Scene(warning.clone()));
+        }
+        let mut found = Vec::new();
+        for outcome in [
+            self.check_masses(&system, analysis),
+            self.check_drives(&system, analysis, end),
+        ] {
+            found.extend(outcome.err().into_iter().flatten());
+        }
+        let of_model = |element: Option<ElementId>| {
+            element.is_some_and(|id| id.kind.family() != Family::Output)
+        };
+        let lost = valueless::there(system.configured(), &system.numbers, of_model);
+        found.extend(lost.map(|lost| {
+            let what = match lost.loss {
+                Loss::Domain(why) => why,
+                Loss::NotFinite | Loss::Pole { .. } => "it has no finite value at the start".into(),
+            };
+            Diagnostic::error("domain", what).element(lost.function.to_string())
+        }));
+        self.warn_of_splines(&system, std::slice::from_ref(&system.numbers));
+        found.extend(driving(&system.scene, &self.model));
+        Ok(found)
+    }
+}

@@ -1,0 +1,130 @@
+//! Splines that are read outside their data, where what they yield is extrapolated: their arguments
+//! are evaluated at the rows of results.
+
+use super::Session;
+use crate::analysis::system::System;
+use crate::analysis::warning::RunWarning;
+use crate::expr::ast::{Callee, Node};
+use crate::expr::interpolation::Interpolation;
+use crate::expr::program::Work;
+use crate::model::{ElementId, ElementKind, Family, Formula, Model, Text};
+use crate::scene::layout::Layout;
+use crate::scene::programs::record_with_complaints;
+
+/// Distance outside the data, relative to their range, that rounding makes.
+const ROUNDING: f64 = 1e-9;
+
+/// A call that reads a spline of the dataset.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SplineCall {
+    /// whose function it is
+    element: ElementId,
+    /// user's number of the SPLINE
+    spline: u32,
+    /// its first argument
+    at: Text,
+    /// first and last X of the data
+    range: [f64; 2],
+}
+
+impl SplineCall {
+    /// Returns the argument as an expression to be compiled with a scene, and its name.
+    pub fn extra(&self) -> (String, Text) {
+        let name = format!("{} {}", self.element, ElementKind::Spline.id(self.spline));
+        (name, self.at.clone())
+    }
+}
+
+/// Collects the calls of splines in the functions that move the model, each argument once.
+pub(super) fn spline_calls(model: &Model) -> Vec<SplineCall> {
+    let mut all: Vec<SplineCall> = Vec::new();
+    if model.splines.is_empty() {
+        return all;
+    }
+    for owned in model.formulas() {
+        let moves = owned.element.kind.family() != Family::Output && model.is_active(owned.element);
+        let Formula::Expression { text, .. } = owned.formula else {
+            continue;
+        };
+        let Some(ast) = text.ast().ok().filter(|_| moves) else {
+            continue;
+        };
+        for node in &ast.nodes {
+            let Node::Call {
+                callee:
+                    Callee::Interpolation(
+                        Interpolation::Akispl | Interpolation::Cubspl | Interpolation::Interp,
+                    ),
+                args,
+            } = node
+            else {
+                continue;
+            };
+            let [x, _, id, ..] = args[..] else { continue };
+            let Node::Number { literal, .. } = *ast.node(id) else {
+                continue;
+            };
+            let data = model.splines.get(&(literal as u32));
+            let ends = data.and_then(|s| Some([*s.x.first()?, *s.x.last()?]));
+            let Some(range) = ends else { continue };
+            let call = SplineCall {
+                element: owned.element,
+                spline: literal as u32,
+                at: Text::from(ast.written(x)),
+                range,
+            };
+            let past = call
+                .at
+                .expression()
+                .is_ok_and(|e| e.needs_history().is_empty());
+            if past && !all.contains(&call) {
+                all.push(call);
+            }
+        }
+    }
+    all
+}
+
+impl Session {
+    /// Warns of splines that are read outside their data at any of these rows of numbers.
+    pub(super) fn warn_of_splines(&mut self, system: &System, rows: &[Vec<f64>]) {
+        let calls = spline_calls(&self.model);
+        let first = self.columns.extra.len();
+        let formulas = system.scene.extra.get(first..first + calls.len());
+        let Some(formulas) = formulas.filter(|f| !f.is_empty()) else {
+            return;
+        };
+        let (program, _) = record_with_complaints(system.configured(), |at| {
+            formulas.iter().map(|&f| at.formula(f)).collect()
+        });
+        let mut work = Work::default();
+        let mut values = vec![0.0; calls.len()];
+        // the first time outside, and the value that is farthest from the data
+        let mut outside: Vec<Option<(f64, f64)>> = vec![None; calls.len()];
+        for row in rows {
+            program.run(row, &mut work, &mut values);
+            for ((call, &value), seen) in calls.iter().zip(&values).zip(&mut outside) {
+                let beyond = |x: f64| (call.range[0] - x).max(x - call.range[1]);
+                if beyond(value) > ROUNDING * (call.range[1] - call.range[0]) {
+                    let (since, worst) = seen.unwrap_or((row[Layout::TIME], value));
+                    let worst = if beyond(value) > beyond(worst) {
+                        value
+                    } else {
+                        worst
+                    };
+                    *seen = Some((since, worst));
+                }
+            }
+        }
+        for (call, seen) in calls.into_iter().zip(outside) {
+            let Some((since, value)) = seen else { continue };
+            self.warn(RunWarning::OutsideData {
+                element: call.element,
+                spline: call.spline,
+                range: call.range,
+                value,
+                since,
+            });
+        }
+    }
+}

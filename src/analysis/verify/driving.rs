@@ -1,0 +1,278 @@
+//! Forces that grow with the rate which they should damp, or the displacement which they should
+//! undo, seen by moving one end of each a little.
+//!
+//! ```text
+//! c = −∂F/∂ṡ, k = −∂F/∂s     s: displacement of the body of I along the direction of F on it
+//! ```
+//!
+//! Damping is doubted where it is negative at some sample and positive at none: an oscillator that
+//! excites itself damps far from rest, a force that is switched on later does at some time.
+//! Stiffness is doubted where it is the same negative number everywhere: attractions grow with
+//! nearness, and are not linear.
+
+use crate::diagnostic::Diagnostic;
+use crate::expr::interpolation::Bindings;
+use crate::expr::measures::Measure;
+use crate::expr::program::Input;
+use crate::expr::walk::Host;
+use crate::model::{COMPONENTS, ElementId, ElementKind, Formula, Model};
+use crate::physics::kinematic::kinematic_of;
+use crate::scene::{Scene, formula};
+use crate::space::{MarkerState, Mat3, Vec3};
+
+/// Rates at which slopes are taken, in lengths of the mechanism or radians over a unit of time.
+const RATES: [f64; 4] = [-1.0, -0.01, 0.01, 1.0];
+/// Displacements there, in lengths of the mechanism or radians.
+const DISPLACEMENTS: [f64; 5] = [-0.3, -0.05, 0.0, 0.05, 0.3];
+/// Times there.
+const TIMES: [f64; 2] = [0.0, 1.0];
+/// Slope, relative to the force, below which it is rounding.
+const LEAST_SLOPE: f64 = 1e-9;
+/// VARIABLEs that read each other are followed so far.
+const DEEPEST: usize = 8;
+
+/// A component of a force: whose, its function, and how its body of I is moved.
+struct Component<'m> {
+    id: ElementId,
+    argument: &'static str,
+    function: &'m Formula,
+    /// direction in ground of the force or torque on I
+    along: Vec3<f64>,
+    turns: bool,
+    i: u32,
+}
+
+/// Returns the rotation by an angle about a unit vector.
+fn about(axis: Vec3<f64>, angle: f64) -> Mat3<f64> {
+    let K = Mat3::cross_matrix(axis);
+    Mat3::identity() + K.times(angle.sin()) + (K * K).times(1.0 - angle.cos())
+}
+
+/// Finds the forces that feed energy into the motion of their I marker.
+pub(in crate::analysis) fn driving(scene: &Scene, model: &Model) -> Vec<Diagnostic> {
+    let (bindings, _) = formula::bindings(model);
+    let components = components(scene, model);
+    let found = components.iter().filter_map(|c| {
+        let [rate, place, force] = if c.turns {
+            ["angular velocity", "angle", "torque"]
+        } else {
+            ["velocity", "displacement", "force"]
+        };
+        let slopes = Slopes::of(scene, model, &bindings, c)?;
+        if let Some(slope) = slopes.along_displacement() {
+            let what = format!(
+                "{}: the {force} on {} grows with its {place}, by {slope:.4} for each unit: a spring that pushes away",
+                c.argument,
+                ElementKind::Marker.id(c.i)
+            );
+            let d = Diagnostic::warning("negative_stiffness", what).element(c.id);
+            return Some(d.help("a spring is against the displacement: in a force on I, -K*(DM(I, J) - length)"));
+        }
+        let slope = slopes.along_rate()?;
+        let what = format!(
+            "{}: the {force} on {} grows with its {rate}, by {slope:.4} for each unit: it feeds energy instead of taking it",
+            c.argument,
+            ElementKind::Marker.id(c.i)
+        );
+        let d = Diagnostic::warning("negative_damping", what).element(c.id);
+        Some(d.help("damping is against the rate: in a force on I, -C*VR(I, J)"))
+    });
+    found.collect()
+}
+
+/// Collects the components of all forces that expressions give.
+fn components<'m>(scene: &Scene, model: &'m Model) -> Vec<Component<'m>> {
+    let frame = |id: u32| scene.marker_of.get(&id).map(|&m| scene.drawn(m));
+    let mut all = Vec::new();
+    for (id, s) in model.active(ElementKind::Sforce, &model.sforces) {
+        let (Some(i), Some(j)) = (frame(s.i), frame(s.j)) else {
+            continue;
+        };
+        let line = i.position - j.position;
+        let along = if s.rotational || s.action_only {
+            j.rotation.column(2)
+        } else if line.norm() > 0.0 {
+            line.times(1.0 / line.norm())
+        } else {
+            continue;
+        };
+        all.push(Component {
+            id: ElementKind::Sforce.id(id),
+            argument: "FUNCTION",
+            function: &s.function,
+            along,
+            turns: s.rotational,
+            i: s.i,
+        });
+    }
+    let vectors = [
+        (ElementKind::Vforce, &model.vforces),
+        (ElementKind::Vtorque, &model.vtorques),
+        (ElementKind::Gforce, &model.gforces),
+    ];
+    for (kind, list) in vectors {
+        for (id, f) in model.active(kind, list) {
+            let axes =
+                f.rm.and_then(frame)
+                    .map_or(Mat3::identity(), |f| f.rotation);
+            let given = f.force.iter().chain(&f.torque).enumerate();
+            all.extend(given.filter_map(|(k, function)| {
+                Some(Component {
+                    id: kind.id(id),
+                    argument: COMPONENTS[k],
+                    function: function.as_ref()?,
+                    along: axes.column(k % 3),
+                    turns: k >= 3,
+                    i: f.i,
+                })
+            }));
+        }
+    }
+    all
+}
+
+/// Values of a component at samples: by time, by displacement, by rate.
+struct Slopes {
+    values: Vec<Vec<f64>>,
+    /// size of a unit of displacements and rates
+    one: f64,
+}
+
+impl Slopes {
+    /// Evaluates a component at all samples; `None` where it has no value at one.
+    fn of(scene: &Scene, model: &Model, bindings: &Bindings, c: &Component<'_>) -> Option<Self> {
+        let Formula::Expression { text, .. } = c.function else {
+            return None;
+        };
+        let expr = text.expression().ok()?;
+        let one = if c.turns { 1.0 } else { scene.length };
+        let mut values = Vec::new();
+        for time in TIMES {
+            for displacement in DISPLACEMENTS {
+                let at = |rate: f64| {
+                    let moved = Moved {
+                        scene,
+                        model,
+                        bindings,
+                        component: c,
+                        displacement: displacement * one,
+                        rate: rate * one,
+                        time,
+                        depth: 0,
+                    };
+                    expr.eval_with(&moved).ok().filter(|x| x.is_finite())
+                };
+                values.push(RATES.into_iter().map(at).collect::<Option<Vec<f64>>>()?);
+            }
+        }
+        Some(Self { values, one })
+    }
+
+    /// Returns the largest slope along the rate, where none is negative.
+    fn along_rate(&self) -> Option<f64> {
+        let mut largest: Option<f64> = None;
+        for values in &self.values {
+            for (pair, rates) in values.windows(2).zip(RATES.windows(2)) {
+                let change = pair[1] - pair[0];
+                let least = LEAST_SLOPE * pair[0].abs().max(pair[1].abs());
+                if change < -least {
+                    return None;
+                }
+                if change > least {
+                    let slope = change / ((rates[1] - rates[0]) * self.one);
+                    largest = Some(largest.map_or(slope, |l: f64| l.max(slope)));
+                }
+            }
+        }
+        largest
+    }
+
+    /// Returns the slope along the displacement at rest, where it is the same and positive
+    /// everywhere.
+    fn along_displacement(&self) -> Option<f64> {
+        let mut same: Option<f64> = None;
+        for at_time in self.values.chunks(DISPLACEMENTS.len()) {
+            for (pair, places) in at_time.windows(2).zip(DISPLACEMENTS.windows(2)) {
+                // between the two smallest rates
+                let at_rest = |values: &[f64]| 0.5 * (values[1] + values[2]);
+                let change = at_rest(&pair[1]) - at_rest(&pair[0]);
+                let slope = change / ((places[1] - places[0]) * self.one);
+                let scale = at_rest(&pair[0]).abs() / self.one;
+                let known = *same.get_or_insert(slope);
+                if slope <= 1e-6 * scale || (slope - known).abs() > 1e-6 * (slope.abs() + scale) {
+                    return None;
+                }
+            }
+        }
+        same
+    }
+}
+
+/// The model with the body of I moved along the direction of a force; everything else as drawn, at
+/// rest.
+struct Moved<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    bindings: &'a Bindings,
+    component: &'a Component<'a>,
+    displacement: f64,
+    rate: f64,
+    time: f64,
+    depth: usize,
+}
+
+impl Moved<'_> {
+    fn marker(&self, id: u32) -> Option<MarkerState<f64>> {
+        let c = self.component;
+        let &m = self.scene.marker_of.get(&id)?;
+        let drawn = self.scene.drawn(m);
+        let mut state = MarkerState::ground();
+        (state.R_GM, state.p_GM) = (drawn.rotation, drawn.position);
+        if self.model.body_of(id) == self.model.body_of(c.i) {
+            if c.turns {
+                let centre = self.scene.drawn(*self.scene.marker_of.get(&c.i)?).position;
+                let turn = about(c.along, self.displacement);
+                state.R_GM = turn * state.R_GM;
+                state.p_GM = centre + turn.apply(state.p_GM - centre);
+                state.w_GM = c.along.times(self.rate);
+                state.v_GM = state.w_GM.cross(state.p_GM - centre);
+            } else {
+                state.p_GM += c.along.times(self.displacement);
+                state.v_GM = c.along.times(self.rate);
+            }
+        }
+        Some(state)
+    }
+
+    /// The value of a VARIABLE there.
+    fn variable(&self, id: u32) -> Option<f64> {
+        let Formula::Expression { text, .. } = &self.model.variables.get(&id)?.function else {
+            return None;
+        };
+        if self.depth == DEEPEST {
+            return None;
+        }
+        let deeper = Moved {
+            depth: self.depth + 1,
+            ..*self
+        };
+        text.expression().ok()?.eval_with(&deeper).ok()
+    }
+}
+
+impl Host for Moved<'_> {
+    fn input(&self, input: Input) -> Option<f64> {
+        match input {
+            Input::Time => Some(self.time),
+            Input::Mode => Some(4.0),
+            Input::Measure(Measure::Varval, [id, ..]) => self.variable(id),
+            Input::Measure(measure, arguments) => {
+                kinematic_of(measure, arguments, |id| self.marker(id))
+            }
+            Input::Delayed(_) | Input::Slot(_) => None,
+        }
+    }
+    fn bindings(&self) -> Option<&Bindings> {
+        Some(self.bindings)
+    }
+}

@@ -1,0 +1,316 @@
+//! Parts that nothing holds, and joints that seem to be forgotten: where two markers of different
+//! parts lie on each other, or a torque turns two parts about no axis.
+
+use super::*;
+use crate::model::geometry::marker_frame;
+use crate::space::{Frame, Vec3};
+use std::collections::BTreeSet;
+
+/// Distance of markers on each other, at most, relative to that of the farthest marker from the
+/// origin of ground.
+const TOUCHING: f64 = 1e-6;
+
+/// Markers that nothing names, at most, in a model that leaves none lying about; a tenth of many.
+const MOST_UNNAMED: usize = 4;
+
+/// Bodies in groups that are tied together, by constraints, forces or contacts.
+struct Groups(BTreeMap<ElementId, ElementId>);
+
+impl Groups {
+    /// The representative of the group of a body.
+    fn of(&self, mut body: ElementId) -> ElementId {
+        while let Some(&next) = self.0.get(&body).filter(|&&next| next != body) {
+            body = next;
+        }
+        body
+    }
+
+    fn tie(&mut self, bodies: &[ElementId]) {
+        for pair in bodies.windows(2) {
+            let (a, b) = (self.of(pair[0]), self.of(pair[1]));
+            self.0.insert(a, b);
+        }
+    }
+}
+
+/// The bodies between which an element acts: those of all the markers that it names, directly, by
+/// joints and shapes, or in its functions.
+fn bodies_of(model: &Model, element: &dyn Element) -> Vec<ElementId> {
+    let mut markers = Vec::new();
+    for (_, target) in element.references() {
+        match target.kind {
+            ElementKind::Marker => markers.push(target.number),
+            _ => {
+                let named = model.element(target).map(|e| e.references());
+                let named = named.into_iter().flatten();
+                markers.extend(
+                    (named.filter(|n| n.1.kind == ElementKind::Marker)).map(|n| n.1.number),
+                );
+            }
+        }
+    }
+    for (_, formula) in element.formulas() {
+        markers.extend(markers_in(formula));
+    }
+    let mut bodies: Vec<ElementId> = markers
+        .into_iter()
+        .filter_map(|m| model.body_of(m))
+        .collect();
+    bodies.sort();
+    bodies.dedup();
+    bodies
+}
+
+/// The markers that an expression names.
+fn markers_in(formula: &Formula) -> Vec<u32> {
+    let Formula::Expression { text, .. } = formula else {
+        return Vec::new();
+    };
+    let Ok(expr) = text.expression() else {
+        return Vec::new();
+    };
+    let named = super::references::named(&expr).into_iter();
+    let markers = named.filter(|(_, id)| id.kind == ElementKind::Marker);
+    markers.map(|(_, id)| id.number).collect()
+}
+
+/// Returns whether all elements that could hold a part are known, and none is kept as text.
+fn is_fully_known(model: &Model) -> bool {
+    !model.others.keys().any(|id| id.kind.is_unsolved())
+}
+
+pub(super) fn parts_are_held(model: &Model, out: &mut Out) {
+    if model.gravity == [0.0; 3] || !is_fully_known(model) {
+        return;
+    }
+    let Some(ground) = model.bodies().find(|b| b.1.ground).map(|b| b.0) else {
+        return;
+    };
+    let mut groups = Groups(model.bodies().map(|(id, _)| (id, id)).collect());
+    for (id, element) in model.elements() {
+        let acts = matches!(id.kind.family(), Family::Constraint | Family::Force);
+        if !acts || !model.is_active(id) {
+            continue;
+        }
+        let mut bodies = bodies_of(model, element);
+        // a force without reaction comes from outside
+        let from_outside = match id.kind {
+            ElementKind::Sforce => model.sforces.get(&id.number).is_some_and(|s| s.action_only),
+            _ => bodies.len() == 1,
+        };
+        bodies.extend(from_outside.then_some(ground));
+        groups.tie(&bodies);
+    }
+    let loose = |(id, part): &(ElementId, &Part)| {
+        let thrown = part.velocity.iter().flatten().any(|&v| v != 0.0);
+        !part.ground && model.is_active(*id) && !thrown && groups.of(*id) != groups.of(ground)
+    };
+    let mut told = BTreeMap::new();
+    for (id, part) in model.bodies().filter(loose) {
+        let first = *told.entry(groups.of(id)).or_insert(id);
+        if first == id {
+            let message = "nothing holds it: no joint, force or contact ties it to ground, and it falls for ever";
+            warn(out, "nothing_holds", (id, &part.place), message.into());
+            advise(
+                out,
+                "a joint ties it to a part; a velocity in VX, VY or VZ says that it is thrown",
+            );
+        }
+    }
+}
+
+/// A torque about z of J between two parts, by SFORCE or SPRINGDAMPER, turns them about the axis of
+/// a joint between the two.
+pub(super) fn torques_have_an_axis(model: &Model, out: &mut Out) {
+    if !is_fully_known(model) {
+        return;
+    }
+    let (mut tied, mut turnless) = (BTreeSet::new(), BTreeMap::new());
+    for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
+        let holds = matches!(joint.kind, JointKind::Fixed | JointKind::Translational);
+        let ends = [model.body_of(joint.i), model.body_of(joint.j)];
+        if let ([Some(a), Some(b)], true) = (ends, holds) {
+            turnless.insert([a.min(b), a.max(b)], ElementKind::Joint.id(id));
+        }
+    }
+    for (id, element) in model.elements() {
+        if id.kind.family() == Family::Constraint && model.is_active(id) {
+            let bodies = bodies_of(model, element);
+            for (k, &a) in bodies.iter().enumerate() {
+                tied.extend(bodies[k + 1..].iter().map(|&b| [a, b]));
+            }
+        }
+    }
+    let torques = model.active(ElementKind::Sforce, &model.sforces);
+    let torques = torques.filter(|(_, s)| s.rotational && !s.action_only);
+    let torques = torques.map(|(id, s)| (ElementKind::Sforce.id(id), &s.place, [s.i, s.j]));
+    let springs = model.active(ElementKind::SpringDamper, &model.spring_dampers);
+    let springs = springs.filter(|(_, s)| s.rotational);
+    let springs = springs.map(|(id, s)| (ElementKind::SpringDamper.id(id), &s.place, [s.i, s.j]));
+    for (id, place, [i, j]) in torques.chain(springs) {
+        let (Some(a), Some(b)) = (model.body_of(i), model.body_of(j)) else {
+            continue;
+        };
+        let pair = [a.min(b), a.max(b)];
+        if let Some(joint) = turnless.get(&pair) {
+            let message = format!(
+                "it turns nothing: {joint} keeps {a} and {b} from turning against each other"
+            );
+            warn(out, "no_effect", (id, place), message);
+            continue;
+        }
+        // along a drive train, torques go from part to part beside the bearings
+        let grounded = pair
+            .iter()
+            .any(|&b| model.body(b).is_some_and(|b| b.ground));
+        if a == b || tied.contains(&pair) || !grounded {
+            continue;
+        }
+        let message = format!(
+            "it turns {a} against {b} about z of {}, but no joint between the two has such an axis: one may be missing",
+            ElementKind::Marker.id(j)
+        );
+        warn(out, "forgotten_joint", (id, place), message);
+    }
+}
+
+pub(super) fn joints_are_not_forgotten(model: &Model, out: &mut Out) {
+    if !is_fully_known(model) {
+        return;
+    }
+    let uses = Uses::of(model);
+    // a model that leaves many markers unused leaves them on each other
+    let unnamed = model.markers.keys().filter(|m| !uses.named.contains(m));
+    if unnamed.count() > MOST_UNNAMED.max(model.markers.len() / 10) {
+        return;
+    }
+    let both = uses.pairs(model, |a, b| a && b);
+    let one = || uses.pairs(model, |a, b| a || b);
+    let pairs = if both.is_empty() { one() } else { both };
+    let [(here, there)] = pairs[..] else { return };
+    let Some((id, part)) = uses.part_of(model, here) else {
+        return;
+    };
+    let Some(other) = model.body_of(there) else {
+        return;
+    };
+    let message = format!(
+        "{} of it lies on {} of {other}, where no joint ties the two: one may be missing",
+        ElementKind::Marker.id(here),
+        ElementKind::Marker.id(there)
+    );
+    warn(out, "forgotten_joint", (id, &part.place), message);
+    advise(
+        out,
+        format!("a JOINT with I = {here}, J = {there} would tie them"),
+    );
+}
+
+/// The markers and bodies that elements other than outputs use.
+struct Uses {
+    /// markers that anything names
+    named: BTreeSet<u32>,
+    /// markers that constraints or forces name as their ends
+    ends: BTreeSet<u32>,
+    /// places in ground of those that constraints name
+    joints: Vec<Vec3<f64>>,
+    /// pairs of bodies between which something acts
+    tied: BTreeSet<[ElementId; 2]>,
+}
+
+impl Uses {
+    fn of(model: &Model) -> Self {
+        let (mut named, mut ends) = (BTreeSet::new(), BTreeSet::new());
+        let mut joints = Vec::new();
+        let mut tied = BTreeSet::new();
+        for (id, element) in model.elements() {
+            if id.kind.family() == Family::Output && id.kind != ElementKind::Graphics {
+                continue;
+            }
+            let own = element.references().into_iter().map(|r| r.1);
+            let own = own.filter(|t| t.kind == ElementKind::Marker);
+            let mut own: Vec<u32> = own.map(|t| t.number).collect();
+            own.extend(element.formulas().iter().flat_map(|f| markers_in(f.1)));
+            let acts = matches!(id.kind.family(), Family::Constraint | Family::Force);
+            if acts {
+                ends.extend(&own);
+            }
+            if id.kind.family() == Family::Constraint {
+                let places = own
+                    .iter()
+                    .filter_map(|&m| Some(marker_frame(model, m)?.position));
+                joints.extend(places);
+            }
+            if acts {
+                let bodies = bodies_of(model, element);
+                for (k, &a) in bodies.iter().enumerate() {
+                    tied.extend(bodies[k + 1..].iter().map(|&b| [a, b]));
+                }
+            }
+            named.extend(own);
+        }
+        Self {
+            named,
+            ends,
+            joints,
+            tied,
+        }
+    }
+
+    /// Pairs of markers on each other, or on the same z axis, that no constraint or force names, of
+    /// two bodies that nothing ties to each other, where no joint stands; the marker on ground
+    /// second. `chosen`: by whether nothing at all names the first and the second of a pair.
+    fn pairs(&self, model: &Model, chosen: impl Fn(bool, bool) -> bool) -> Vec<(u32, u32)> {
+        let idle = model.markers.keys().filter(|m| !self.ends.contains(m));
+        let idle: Vec<(u32, ElementId, Frame<f64>)> = idle
+            .filter_map(|&m| Some((m, model.body_of(m)?, marker_frame(model, m)?)))
+            .collect();
+        let far = idle
+            .iter()
+            .fold(0.0, |far: f64, m| far.max(m.2.position.norm()));
+        let on = |a: Vec3<f64>, b: Vec3<f64>| (a - b).norm() <= TOUCHING * far;
+        let moves = |id: ElementId| model.body(id).is_some_and(|b| !b.ground);
+        let neighbours = |id: ElementId| self.tied.iter().filter(|t| t.contains(&id)).count();
+        let joined = |id: ElementId| !moves(id) || neighbours(id) > 0;
+        // what is tied to several others has its place; markers there may be for measuring
+        let hangs = |id: ElementId| moves(id) && neighbours(id) == 1;
+        let unnamed = |m: u32| !self.named.contains(&m);
+        let mut found = Vec::new();
+        for (k, a) in idle.iter().enumerate() {
+            for b in &idle[k + 1..] {
+                let on_axis = || {
+                    let (z, w) = (a.2.rotation.column(2), b.2.rotation.column(2));
+                    let between = a.2.position - b.2.position;
+                    let turned = z.0[2].abs() < 1.0 - TOUCHING;
+                    turned
+                        && z.cross(w).norm() < TOUCHING
+                        && z.cross(between).norm() <= TOUCHING * far
+                };
+                let meet = on(a.2.position, b.2.position) || on_axis();
+                if far == 0.0
+                    || !meet
+                    || !chosen(unnamed(a.0), unnamed(b.0))
+                    || self.joints.iter().any(|&j| on(j, a.2.position))
+                {
+                    continue;
+                }
+                let mut bodies = [a.1, b.1];
+                bodies.sort();
+                let strangers = bodies[0] != bodies[1]
+                    && bodies.iter().all(|&b| joined(b))
+                    && bodies.iter().any(|&b| hangs(b))
+                    && !self.tied.contains(&bodies);
+                if strangers {
+                    found.push(if moves(a.1) { (a.0, b.0) } else { (b.0, a.0) });
+                }
+            }
+        }
+        found
+    }
+
+    /// The body of a marker.
+    fn part_of<'m>(&self, model: &'m Model, marker: u32) -> Option<(ElementId, &'m Part)> {
+        let id = model.body_of(marker)?;
+        Some((id, model.body(id)?))
+    }
+}
