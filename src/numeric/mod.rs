@@ -73,12 +73,18 @@ pub trait Ode {
         false
     }
     /// Returns a better length, in s, for a step that was attempted from `t` with length `h`, or
-    /// `None`. `gap`: the part of a step within which the method does not evaluate.
+    /// `None`. `gap`: the part of a step within which the method does not evaluate; `failed`: an
+    /// iteration for the step did not converge.
     ///
     /// Where `f` is a quotient of numbers that vanish together at an instant, evaluations should
     /// keep away from that instant.
-    fn place_step(&mut self, _t: f64, _h: f64, _gap: [f64; 2]) -> Option<f64> {
+    fn place_step(&mut self, _t: f64, _h: f64, _gap: [f64; 2], _failed: bool) -> Option<f64> {
         None
+    }
+    /// Returns whether rates evaluated in the present step are noisy because invariants are nearly
+    /// dependent: an iteration cannot converge further than they permit.
+    fn is_noisy(&self) -> bool {
+        false
     }
     /// Evaluates `jacobian[i + n·j] = ∂fᵢ/∂yⱼ` (by columns) and `dfdt[i] = ∂fᵢ/∂t`. Explicit
     /// methods never call it.

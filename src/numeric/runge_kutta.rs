@@ -394,7 +394,7 @@ impl Dop853 {
     ) -> Result<f64, Trouble> {
         let evaluation = |f: Failure| Trouble::Reason(Reason::Evaluation(f), f.recoverable);
         let error = self.attempt(problem, h).map_err(evaluation)?;
-        let better = problem.place_step(self.t0, h, STAGE_GAP);
+        let better = problem.place_step(self.t0, h, STAGE_GAP, false);
         if let Some(better) = better.filter(|_| self.placed < MOST_PLACINGS) {
             return Err(Trouble::Place(better));
         }

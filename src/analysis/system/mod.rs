@@ -285,6 +285,17 @@ impl System {
         self.singular_steps.take_weak()
     }
 
+    /// Returns whether rows have nearly been dependent since that was last taken note of.
+    pub fn is_weak(&self) -> bool {
+        self.singular_steps.is_weak()
+    }
+
+    /// Returns the largest violation in position of a row that takes part, at all numbers of a
+    /// state, relative to what counts as one.
+    pub fn worst_gap(&mut self, numbers: &[f64]) -> f64 {
+        self.recorded.rows.worst_gap(numbers)
+    }
+
     /// Returns whether rows that are left out have to be watched: they say something that changes.
     pub fn watches_rows(&self) -> bool {
         self.recorded.rows.has_left_out()
@@ -437,7 +448,7 @@ impl System {
     pub fn row(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut y = y.to_vec();
         let kept = y.clone();
-        if Ode::project(self, t, &mut y).is_err() {
+        if self.put_on_rows(t, &mut y).is_err() {
             y = kept;
         }
         self.row_of(t, &y)

@@ -31,6 +31,11 @@ const MAX_PROJECTIONS: usize = 8;
 const PROJECTED: f64 = 1e-11;
 /// The same where rows have nearly been dependent: the last digits along them are noise.
 const PROJECTED_WEAKLY: f64 = 1e-9;
+/// Change of velocities, over the permitted local error, beyond which putting a state onto rows
+/// that have nearly been dependent is no correction but a jump: it would take energy away.
+const JUMP: f64 = 100.0;
+/// Least and largest such change, as parts of the largest velocity.
+const JUMP_BOUNDS: [f64; 2] = [1e-6, 0.05];
 /// Change at the first iteration, at most, of a state that was on the rows.
 const ON_ROWS: f64 = 10.0 * ROUNDING;
 
@@ -47,7 +52,7 @@ impl System {
             let mut stage = std::mem::take(&mut self.stage);
             stage.clear();
             stage.extend_from_slice(y);
-            if self.project(t, &mut stage).is_ok() {
+            if self.put_on_rows(t, &mut stage).is_ok() {
                 self.set(t, &stage);
                 self.recorded.run_rate(&self.numbers);
             }
@@ -60,6 +65,40 @@ impl System {
     fn worst_violation(&mut self) -> f64 {
         let v = &self.numbers[self.scene.layout.v()];
         self.recorded.rows.worst_violation(&self.numbers, v)
+    }
+
+    /// Puts a state onto the rows that take part, by least changes; returns whether it changed.
+    ///
+    /// # Errors
+    /// No state on the rows is near.
+    pub fn put_on_rows(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        let changed = self.mover.normalize(self.scene.layout.state_mut(y).q);
+        if self.recorded.rows.clean {
+            self.set(t, y);
+            if self.worst_violation() <= ROUNDING {
+                return Ok(changed);
+            }
+        }
+        // taken out, as loops and closures are solved for on the way
+        let Some(mut projection) = self.recorded.rows.projection.take() else {
+            return Ok(changed);
+        };
+        let outcome = self.iterate_onto_rows(&mut projection, t, y);
+        self.recorded.rows.projection = Some(projection);
+        outcome
+    }
+
+    /// Returns whether a velocity changes between two states by more than a projection may.
+    fn jumped(&self, from: &[f64], to: &[f64]) -> bool {
+        let l = self.scene.layout;
+        let scales = &self.recorded.rows.scales;
+        let (from, to) = (l.state(from).v, l.state(to).v);
+        let speeds = from.iter().zip(scales).map(|(v, s)| v.abs() * s);
+        let largest = speeds.fold(0.0, f64::max);
+        let permitted = (JUMP * self.precision).clamp(JUMP_BOUNDS[0], JUMP_BOUNDS[1]) * largest;
+        let changes = from.iter().zip(to).zip(scales);
+        let mut sizes = changes.map(|((a, b), s)| (b - a).abs() * s);
+        sizes.any(|size| size > permitted)
     }
 
     /// Iterates least changes until a state is on the rows.
@@ -143,19 +182,19 @@ impl Ode for System {
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
-        let changed = self.mover.normalize(self.scene.layout.state_mut(y).q);
-        if self.recorded.rows.clean {
-            self.set(t, y);
-            if self.worst_violation() <= ROUNDING {
-                return Ok(changed);
-            }
+        if !self.recorded.rows.were_weak {
+            return self.put_on_rows(t, y);
         }
-        // taken out, as loops and closures are solved for on the way
-        let Some(mut projection) = self.recorded.rows.projection.take() else {
-            return Ok(changed);
-        };
-        let outcome = self.iterate_onto_rows(&mut projection, t, y);
-        self.recorded.rows.projection = Some(projection);
+        let mut before = std::mem::take(&mut self.stage);
+        before.clear();
+        before.extend_from_slice(y);
+        let outcome = self.put_on_rows(t, y);
+        let jumped = self.jumped(&before, y);
+        self.stage = before;
+        if jumped {
+            let (what, recoverable) = (0, true);
+            return Err(Failure { what, recoverable });
+        }
         outcome
     }
 
@@ -189,9 +228,16 @@ impl Ode for System {
         true
     }
 
-    fn place_step(&mut self, t: f64, h: f64, gap: [f64; 2]) -> Option<f64> {
-        let harmful = (ROUNDING_OF_RATES / self.precision).min(NEAR_SINGULAR_PIVOT);
+    fn place_step(&mut self, t: f64, h: f64, gap: [f64; 2], failed: bool) -> Option<f64> {
+        let harmful = match failed {
+            true => NEAR_SINGULAR_PIVOT,
+            false => (ROUNDING_OF_RATES / self.precision).min(NEAR_SINGULAR_PIVOT),
+        };
         self.singular_steps.place(t, h, gap, harmful)
+    }
+
+    fn is_noisy(&self) -> bool {
+        self.is_weak()
     }
 
     fn jacobian(

@@ -29,8 +29,8 @@ pub(super) struct Rows {
     /// rows that are left out and may not follow from the others wherever the mechanism goes, and
     /// their values   (n_left_out)
     left_out: Option<(Vec<usize>, Recording)>,
-    /// what divides each velocity where velocities are compared   (n_v)
-    scales: Vec<f64>,
+    /// what multiplies each velocity where velocities are compared   (n_v)
+    pub(super) scales: Vec<f64>,
     /// places in x of contacts on curves   (n_contacts)
     pub contacts: Vec<usize>,
     /// the last state that was to be projected was on the rows
@@ -69,6 +69,15 @@ impl Rows {
         let slow = 1.0 / speeds.fold(1.0, f64::max);
         let pairs = violations.chunks_exact(2);
         worst(pairs.flat_map(|p| [p[0], p[1] * slow]))
+    }
+
+    /// Returns the largest violation of a row in position at some numbers, relative to what counts
+    /// as one.
+    pub fn worst_gap(&mut self, numbers: &[f64]) -> f64 {
+        let Some(violation) = &mut self.violation else {
+            return 0.0;
+        };
+        worst(violation.run(numbers).chunks_exact(2).map(|p| p[0]))
     }
 
     /// Returns whether rows that are left out say something that changes.

@@ -35,6 +35,11 @@ impl SingularSteps {
         self.seen.push((t, strength.max(0.0).sqrt()));
     }
 
+    /// Returns whether an evaluation had weak rows since [`SingularSteps::take_weak`].
+    pub fn is_weak(&self) -> bool {
+        self.weak
+    }
+
     /// Returns whether an evaluation had weak rows since this was last asked.
     pub fn take_weak(&mut self) -> bool {
         std::mem::take(&mut self.weak)

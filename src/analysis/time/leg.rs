@@ -1,7 +1,7 @@
 //! The loop over the steps of one method.
 //!
 //! ```text
-//! step → rows that were left out still hold? → switched? → outputs on the interpolant
+//! step → rows that were left out still hold? same branch? → switched? → outputs on the interpolant
 //!      → samples, memory, sensors → other rows? → begin anew where something changed
 //! ```
 //!
@@ -14,6 +14,7 @@ use crate::analysis::system::external_inputs;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
+use crate::analysis::time::ranks::Sides;
 use crate::analysis::time::switches::{Switches, Verdict};
 use crate::analysis::time::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
@@ -90,6 +91,8 @@ pub(super) struct Leg<'a> {
     pub(super) before: Vec<f64>,
     /// angles whose turns are counted
     pub(super) counting: Counting,
+    /// what tells branches of loops from each other; `None`: not needed so far
+    pub(super) sides: Option<Sides>,
     /// attempted steps, and the time, when the run last came further
     progressed: (usize, f64),
     /// attempted steps after which it must have come further
@@ -143,6 +146,7 @@ impl<'a> Leg<'a> {
             halved: 0,
             before: vec![0.0; if has_rows { size } else { 0 }],
             counting: Counting::default(),
+            sides: None,
             progressed: (0, limits.start),
             stalled_steps: affordable.clamp(least, most),
             changes: 0,
@@ -280,6 +284,12 @@ impl<'a> Leg<'a> {
         if self.shortens(violated, step) {
             method.undo();
             self.halve(step)?;
+            return Ok(Judged::Undone);
+        }
+        // branches that only come near each other
+        if self.leaves_branch(method, step) {
+            method.undo();
+            self.go_nearer(step)?;
             return Ok(Judged::Undone);
         }
         self.halved = 0;

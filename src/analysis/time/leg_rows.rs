@@ -3,7 +3,8 @@
 
 use crate::analysis::system::System;
 use crate::analysis::time::leg::{Finished, Leg};
-use crate::analysis::time::ranks;
+use crate::analysis::time::ranks::{self, Sides};
+use crate::analysis::time::states::Node;
 use crate::numeric::{Failure, Method, Reason, Step, Stop};
 use crate::scene::layout::Layout;
 
@@ -14,6 +15,8 @@ const FOLLOWS_TOLERANCE: f64 = 1e-8;
 const STEP_TOLERANCE: f64 = 1e-6;
 /// Halvings of a step because of rows that are left out, in a row.
 const MAX_HALVINGS: usize = 40;
+/// Time to a position where rows are dependent, as a part of the duration, that counts as none.
+const STANDING_TIME: f64 = 1e-6;
 /// Velocities of the largest mechanism all of whose states are kept to find positions where rows
 /// become dependent.
 const SMALL_MECHANISM: usize = 30;
@@ -35,6 +38,54 @@ impl Leg<'_> {
         violated.is_some_and(|(_, size)| size > STEP_TOLERANCE)
             && step.t1 - step.t0 > 1e-12 * self.limits.end.abs().max(step.t1.abs())
             && self.halved < MAX_HALVINGS
+    }
+
+    /// Returns whether a step leads to another branch that only comes near the present one, or to
+    /// a position where branches meet, from which rounding would choose one. Methods
+    /// that evaluate rates notice where rows are nearly dependent; after a step of another method
+    /// it is always looked for.
+    pub(super) fn leaves_branch(&mut self, method: &dyn Method<System>, step: &Step) -> bool {
+        let near = !self.limits.may_slide || self.system.is_weak();
+        if self.before.is_empty() || !near {
+            return false;
+        }
+        if self.sides.is_none() {
+            self.sides = Sides::new(self.system.configured());
+        }
+        let Some(mut sides) = self.sides.take() else {
+            return false;
+        };
+        let n = self.system.scene.layout.n_y();
+        let node = |t: f64, y: &[f64]| Node {
+            t,
+            y: y[..n].to_vec(),
+        };
+        let ends = [node(step.t0, &self.before), node(step.t1, method.y())];
+        let [from, to] = [0, 1].map(|k| {
+            let numbers = self.system.numbers_at(ends[k].t, &ends[k].y);
+            sides.look(&numbers)
+        });
+        let turned = Sides::turned(&from, &to);
+        let patience = STANDING_TIME * (self.limits.end - self.limits.start);
+        let leaves = match turned.is_empty() {
+            true => sides.stands([&from, &to], [step.t0, step.t1], patience),
+            false => !sides.meet(self.system, (&turned, &from), [&ends[0], &ends[1]]),
+        };
+        self.sides = Some(sides);
+        leaves
+    }
+
+    /// Makes the next step half as long as one that has left its branch.
+    pub(super) fn go_nearer(&mut self, step: &Step) -> Result<(), Finished> {
+        if self.halved >= MAX_HALVINGS {
+            let (what, recoverable) = (0, false);
+            let reason = Reason::Projection(Failure { what, recoverable });
+            let (t, h) = (step.t0, step.t1 - step.t0);
+            return Err(Stop { reason, t, h }.into());
+        }
+        self.halved += 1;
+        self.landing = step.t0 + 0.5 * (step.t1 - step.t0);
+        Ok(())
     }
 
     /// Makes the next step half as long as the one that was undone, or begins with better rows.

@@ -56,6 +56,13 @@ const E: [f64; 3] = [
 ];
 /// θ of (4).
 const BETWEEN_NODES: f64 = 0.85;
+/// Permitted value of the error estimate of a step that has not converged where rates are noisy: a
+/// request of 1e-7.
+const NOISY_TOLERANCE: f64 = 1.3e-7;
+/// Widest part of a step without evaluations.
+const STAGE_GAP: [f64; 2] = [collocation::C[0], collocation::C[1]];
+/// Most changes of the length of one step that [`Ode::place_step`] asks for.
+const MOST_PLACINGS: usize = 4;
 /// Growth of the step, as a factor, up to which the factors of the matrices are kept.
 const KEEP_STEP: f64 = 1.2;
 /// Part of |q|/h against which the error of the rate of q may always be measured.
@@ -119,6 +126,10 @@ pub struct Radau {
     end: Point,
     /// whether `end` is the state, or `begin`
     advanced: bool,
+    /// changes of the length of the present step
+    placing: Placing,
+    /// the present step need not be better than noise
+    eased: bool,
     /// length of the next step
     control: StepControl,
     /// 1/(tolerance · magnitude) for this step   (n)
@@ -202,6 +213,8 @@ impl Radau {
             begin: point(),
             end: point(),
             advanced: false,
+            placing: Placing::default(),
+            eased: false,
             control: StepControl::new(),
             scale: zeros(),
             stages: Stages::new(n),
@@ -294,12 +307,17 @@ impl Radau {
     /// Sets the errors that the unknowns are permitted in a step of length `h`.
     fn set_scale(&mut self, h: f64) {
         let magnitudes = self.weights.magnitude();
+        let tolerance = if self.eased {
+            self.tolerance.max(NOISY_TOLERANCE)
+        } else {
+            self.tolerance
+        };
         for ((scale, m), f) in self.scale.iter_mut().zip(magnitudes).zip(&self.begin.f) {
             let reached = (h * f).abs();
-            *scale = 1.0 / (self.tolerance * if reached > *m { reached } else { *m });
+            *scale = 1.0 / (tolerance * if reached > *m { reached } else { *m });
         }
         for (i, j) in self.weights.rates() {
-            let most = h / (RATE_SHARE_OF_POSITION * self.tolerance * magnitudes[j]);
+            let most = h / (RATE_SHARE_OF_POSITION * tolerance * magnitudes[j]);
             self.scale[i] = self.scale[i].min(most);
         }
     }
@@ -419,7 +437,17 @@ impl Radau {
         self.set_scale(h);
         self.polynomial
             .extrapolate(self.begin.t, h, &mut self.stages);
-        let iterations = self.solve_stages(problem, h)?;
+        let solved = self.solve_stages(problem, h);
+        let better = problem.place_step(self.begin.t, h, STAGE_GAP, solved.is_err());
+        if let Some(better) = better.filter(|_| self.placing.count < MOST_PLACINGS) {
+            self.placing.better = Some(better);
+            return Err(eased(better / h));
+        }
+        if solved.is_err() && !self.eased && problem.is_noisy() {
+            self.eased = true;
+            return Err(eased(1.0));
+        }
+        let iterations = solved?;
 
         // error
         let error = self.estimate(problem, h).map_err(failed_stage)?;
@@ -499,6 +527,36 @@ impl Radau {
     }
 }
 
+/// Changes of the length of a step for [`Ode::place_step`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Placing {
+    /// how many there were
+    count: usize,
+    /// the length that the problem asks for now
+    better: Option<f64>,
+    /// the length that it was asked with at first, which the next step has, in s
+    wanted: f64,
+}
+
+impl Placing {
+    /// Takes the length that the problem asks for in place of `h`.
+    fn take(&mut self, h: f64) -> f64 {
+        self.count += 1;
+        self.wanted = self.wanted.max(h);
+        self.better.take().unwrap_or(h)
+    }
+}
+
+/// Repeats an attempt with a length that is `factor` as long, or with the permitted error of a step
+/// whose rates are noisy.
+fn eased(factor: f64) -> Rejection {
+    Rejection {
+        reason: Reason::Newton(0),
+        recoverable: true,
+        factor,
+    }
+}
+
 /// Rejects an attempt in which the problem could not be evaluated.
 fn failed_stage(failure: Failure) -> Rejection {
     Rejection {
@@ -546,6 +604,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
         }
         let mut attempts = Attempts::new(self.begin.t, t_limit, &self.options);
         self.control.calm = false;
+        (self.placing, self.eased) = (Placing::default(), false);
         loop {
             let proposed = self.control.h_next.min(self.options.h_max);
             let too_fast = || control::too_fast(&self.begin.f, &self.weights);
@@ -561,11 +620,18 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
                     let allowed = self.convergence.allowed;
                     self.control
                         .accept(error, iterations, allowed, proposed, keep);
+                    self.control.h_next = self.control.h_next.max(self.placing.wanted);
                     (self.freshness.here, self.freshness.stale) = (false, !keep);
                     self.end.t = t1;
                     self.advanced = true;
+                    self.stats.below_rounding += usize::from(self.eased);
                     self.weights.see(t1, &self.end.y);
                     return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
+                }
+                Err(_) if self.placing.better.is_some() => {
+                    self.control.h_next = self.placing.take(h);
+                    attempts.repeat(&mut self.stats);
+                    continue;
                 }
                 Err(rejection) => {
                     attempts.reject(rejection, h, &mut self.stats)?;

@@ -15,7 +15,6 @@ use super::select;
 use crate::analysis::system::System;
 use crate::analysis::time::states::{Cubic, Node};
 use crate::expr::program::{Program, Work};
-use crate::numeric::Ode;
 use crate::scene::configuration::Configured;
 use crate::scene::mover::Mover;
 use crate::scene::programs::{record, weights};
@@ -31,7 +30,10 @@ const MAX_EIGENVALUES: usize = 60;
 const NEARLY_REAL: f64 = 0.5;
 /// Iterations for the eigenvalues of a loop.
 const MAX_SCHUR: usize = 1000;
-/// Failures to find a state, in a row, after which there is none.
+/// Violation of a row, relative to what counts as one, beyond which there is no state.
+const GAP: f64 = 1e-12;
+/// Failures to find a state after which there is none: one very near the position may be hard to
+/// find, but within a gap between branches all are.
 const MAX_FAILURES: u32 = 3;
 /// States looked at in search of the position at which branches meet, at most.
 const MAX_LOOKS: usize = 60;
@@ -129,6 +131,17 @@ impl Sides {
         (0..from.0.len()).filter(turned).collect()
     }
 
+    /// Returns whether a motion through two states comes to stand at a position where rows are
+    /// dependent: where it goes from there is up to rounding. `moments`: when it is at the two;
+    /// `patience`: a time that is short.
+    pub fn stands(&self, [from, to]: [&Side; 2], moments: [f64; 2], patience: f64) -> bool {
+        (0..self.loops.len()).any(|k| {
+            let [before, after] = [from, to].map(|side| self.margin(&[k], side));
+            let falls = (before - after) / (moments[1] - moments[0]);
+            after < DEPENDENT_THERE && before > after && after < falls * patience
+        })
+    }
+
     /// Returns the least that any row of some loops determines beyond the others of its loop, over
     /// its usual length: zero where rows are dependent.
     fn margin(&self, loops: &[usize], side: &Side) -> f64 {
@@ -178,15 +191,17 @@ impl Sides {
             let t = a.t + part.clamp(0.02, 0.98) * width;
             let mut y = a.y.clone();
             Cubic::new(&mover, l, [&a, &b]).at(&mover, t, &mut y);
-            if system.project(t, &mut y).is_err() {
+            let found = system.put_on_rows(t, &mut y).is_ok();
+            let numbers = system.numbers_at(t, &y);
+            // where rows are dependent the least change may be none, within a gap too
+            if !found || system.worst_gap(&numbers) > GAP {
                 failed += 1;
                 if failed > MAX_FAILURES {
                     return false;
                 }
                 continue;
             }
-            failed = 0;
-            let side = self.look(&system.numbers_at(t, &y));
+            let side = self.look(&numbers);
             let margin = self.margin(loops, &side);
             if loops.iter().any(|&k| has_turned(&from.0[k], &side.0[k])) {
                 (b, margins[1]) = (Node { t, y }, margin);
