@@ -88,6 +88,11 @@ impl System {
         outcome
     }
 
+    /// Lets the next projection depend on nothing that was projected before.
+    pub fn project_anew(&mut self) {
+        self.recorded.rows.clean = false;
+    }
+
     /// Returns whether a velocity changes between two states by more than a projection may.
     fn jumped(&self, from: &[f64], to: &[f64]) -> bool {
         let l = self.scene.layout;

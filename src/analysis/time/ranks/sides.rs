@@ -191,6 +191,7 @@ impl Sides {
             let t = a.t + part.clamp(0.02, 0.98) * width;
             let mut y = a.y.clone();
             Cubic::new(&mover, l, [&a, &b]).at(&mover, t, &mut y);
+            system.project_anew();
             let found = system.put_on_rows(t, &mut y).is_ok();
             let numbers = system.numbers_at(t, &y);
             // where rows are dependent the least change may be none, within a gap too
