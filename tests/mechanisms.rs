@@ -281,21 +281,16 @@ fn rank_agrees_with_exact_arithmetic_where_geometry_is_rational() {
         let configuration = Configuration::new(&scene);
         let configured = scene.within(&configuration);
         let (_, gradient, _) = assemble::rows_at(configured, 0.0, &scene.initial_q, &[]);
-        let rows: Vec<BTreeMap<usize, Fraction>> = (0..gradient.nrows())
-            .map(|r| {
-                (0..gradient.ncols())
-                    .map(|c| {
-                        let x = Fraction::of(gradient[(r, c)]);
-                        let row = &scene.rows[r].element;
-                        (
-                            c,
-                            x.unwrap_or_else(|| panic!("{}: {row}: {}", m.name, gradient[(r, c)])),
-                        )
-                    })
-                    .filter(|e| e.1.0 != 0)
-                    .collect()
-            })
-            .collect();
+        let exact = |(r, entries): (usize, Vec<(usize, f64)>)| {
+            let row = &scene.rows[r].element;
+            let entries = entries.into_iter().map(|(c, x)| {
+                let exact = Fraction::of(x);
+                (c, exact.unwrap_or_else(|| panic!("{}: {row}: {x}", m.name)))
+            });
+            entries.filter(|e| e.1.0 != 0).collect()
+        };
+        let rows: Vec<BTreeMap<usize, Fraction>> =
+            gradient.into_iter().enumerate().map(exact).collect();
         let (_, freedom, redundant) = m.counts();
         let (n_rows, n) = (rows.len(), scene.layout.n_v);
         let rank = exact_rank(rows);

@@ -12,6 +12,15 @@ pub(in crate::analysis) fn length(value: f64, unit: &str) -> String {
     }
 }
 
+/// Writes the size of a length with its unit, or of an angle, given in rad, in degrees.
+pub(in crate::analysis) fn amount(value: f64, is_length: bool, unit: &str) -> String {
+    if is_length {
+        length(value, unit)
+    } else {
+        format!("{} deg", short(value.abs().to_degrees()))
+    }
+}
+
 /// Writes a number with four digits, without zeros that say nothing.
 pub(in crate::analysis) fn short(x: f64) -> String {
     if x == 0.0 {

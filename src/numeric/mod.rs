@@ -16,6 +16,7 @@
 //! magnitude it has had so far (see [`control::Weights`]).
 
 pub mod bdf;
+pub mod connected;
 pub mod control;
 pub mod corrector;
 pub mod dense;

@@ -63,7 +63,6 @@ impl Rank {
     /// Decides the rank of the matrix with the given `rows`, each of length `n`.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a [f64]>, n: usize, tolerance: f64) -> Self {
         let mut l: Vec<Vec<f64>> = rows.into_iter().map(<[f64]>::to_vec).collect();
-        let m = l.len();
         let mut length: Vec<f64> = l.iter().map(|row| norm(row)).collect();
         let longest = length
             .iter()
@@ -78,20 +77,40 @@ impl Rank {
                 *d = 1.0;
             }
         }
+        let leading = l.len();
+        Self::decide(l, length, leading, n, tolerance)
+    }
 
+    /// Decides the rank of rows that have been scaled by what counts as one in each, so that a
+    /// short row determines little: parts of rows and `tolerance` are absolute. Only the first
+    /// `leading` rows may be chosen; the others are told as dependent, with their remainders.
+    pub fn scaled(rows: Vec<Vec<f64>>, leading: usize, n: usize, tolerance: f64) -> Self {
+        let length = vec![1.0; rows.len()];
+        Self::decide(rows, length, leading, n, tolerance)
+    }
+
+    /// Chooses rows, one per pivot, among the first `leading`.
+    fn decide(
+        mut l: Vec<Vec<f64>>,
+        length: Vec<f64>,
+        leading: usize,
+        n: usize,
+        tolerance: f64,
+    ) -> Self {
+        let m = l.len();
         let mut remaining: Vec<usize> = (0..m).collect();
         let (mut chosen, mut reflections) = (Vec::new(), Vec::new());
         let (mut kept, mut dropped) = (1.0f64, 0.0f64);
         while !remaining.is_empty() {
             let k = chosen.len();
             let part = |i: &usize| norm(&l[*i][k.min(n)..]);
-            let largest = remaining.iter().map(part).fold(0.0, f64::max);
+            let open = || remaining.iter().take_while(|i| **i < leading);
+            let largest = open().map(part).fold(0.0, f64::max);
             if k == n || largest <= tolerance {
                 dropped = largest;
                 break;
             }
-            let at = remaining
-                .iter()
+            let at = open()
                 .position(|i| part(i) >= PREFERENCE_FOR_EARLIER * largest)
                 .unwrap_or(0);
             let pivot = remaining.remove(at);

@@ -2,6 +2,7 @@
 
 use super::asker::Asker;
 use super::compile::{Compiler, NamedTie};
+use super::configuration::{ALIGNMENT, LARGEST_ALIGNMENT};
 use super::contacts::Shell;
 use super::coordinate_sums::{self, Draws, Reading};
 use super::equations::Unsupported;
@@ -198,6 +199,11 @@ impl<'m> Builder<'m> {
     /// Gravity and arrays of numbers.
     fn data(&mut self) {
         self.scene.gravity = Vec3(self.model.gravity);
+        let asked = self.model.initial_conditions.numbers.get("ERROR").copied();
+        self.scene.alignment = asked
+            .filter(|e| *e > 0.0)
+            .unwrap_or(ALIGNMENT)
+            .min(LARGEST_ALIGNMENT);
         if let Some(units) = &self.model.units {
             self.scene.length_unit = units.length.to_ascii_lowercase();
         }

@@ -11,12 +11,21 @@ use crate::physics::row::Law;
 use std::ops::Deref;
 use std::sync::Arc;
 
+/// IC/ERROR where a dataset has none: twenty times the rounding of six digits, as the errors of
+/// several markers add up in a loop; rad, and parts of the size of a loop.
+pub const ALIGNMENT: f64 = 1e-4;
+/// The largest IC/ERROR that is obeyed: what is off by more is no misalignment.
+pub const LARGEST_ALIGNMENT: f64 = 0.01;
+
 /// Decisions about a scene, made by assembly, by sessions and by systems.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Configuration {
     /// True of each row that takes part; a row that depends on others does not. Assembly chooses,
     /// and systems choose again where the rank changes.   (n_rows)
     pub active: Vec<bool>,
+    /// Rows that depend on others but for a misalignment within tolerance; none of them takes
+    /// part. Chosen before assembly.   (ascending)
+    pub loose: Vec<LooseRow>,
     /// The value that each sum of displacements keeps; zero for rows that are no sums. Assembly
     /// adds what the configuration shows where the sum is held.   (n_rows)   [rad, length]
     pub sums: Vec<f64>,
@@ -30,6 +39,28 @@ pub struct Configuration {
     pub external: Vec<f64>,
     /// The way in which accelerations and multipliers are found. A system chooses.
     pub elimination: Elimination,
+}
+
+/// A row of a joint that is left out because it would follow from others if axes were aligned
+/// exactly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LooseRow {
+    /// its index
+    pub row: usize,
+    /// Deviation from what follows from the others.   [rad, length]
+    pub off: f64,
+    /// Largest deviation that is permitted.   [rad, length]
+    pub limit: f64,
+}
+
+impl LooseRow {
+    /// Returns a row of which nothing is measured yet.
+    pub fn new(row: usize) -> Self {
+        Self {
+            row,
+            ..Self::default()
+        }
+    }
 }
 
 /// The beginning of a MOTION.
@@ -88,6 +119,7 @@ impl Configuration {
         };
         Self {
             active: vec![true; scene.rows.len()],
+            loose: Vec::new(),
             sums: scene.rows.iter().map(constant).collect(),
             motions: vec![MotionStart::default(); scene.motions.len()],
             contacts: vec![ContactStart::default(); scene.cams.len()],
@@ -108,6 +140,11 @@ impl Configuration {
             }
         }
         there
+    }
+
+    /// Returns whether a row is left out as one that depends on others within tolerance.
+    pub fn is_loose(&self, row: usize) -> bool {
+        self.loose.binary_search_by_key(&row, |l| l.row).is_ok()
     }
 
     /// Returns the rows that take part, in their order.
@@ -190,6 +227,7 @@ impl Configured<'_> {
         configuration.sums.splice(element.rows.clone(), constants);
         scene.rows.splice(element.rows.clone(), rows);
         configuration.active = vec![true; scene.rows.len()];
+        configuration.loose.clear();
         Some((Arc::new(scene), configuration))
     }
 

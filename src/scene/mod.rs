@@ -453,6 +453,9 @@ pub struct Scene {
     pub length: f64,
     /// distance over which constraints are spread: an arm for comparing torques with forces
     pub span: f64,
+    /// misalignment up to which rows that depend on others are left out: IC/ERROR, in rad, and as
+    /// a part of the size of a loop
+    pub alignment: f64,
     /// the unit of lengths, for messages: "meter"; empty when the model says none
     pub length_unit: String,
 }

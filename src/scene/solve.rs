@@ -14,6 +14,7 @@
 use super::articulated::ArticulatedFactor;
 use super::configuration::Elimination;
 use crate::scalar::Scalar;
+use std::collections::BTreeSet;
 
 /// `M = Lᵀ D L` of a forest.
 pub struct MassFactor<S> {
@@ -279,7 +280,8 @@ pub struct Solution<S> {
 pub const NEAR_SINGULAR_PIVOT: f64 = 0.03;
 
 /// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ`
-/// in the given order; what depends on earlier rows gets the value zero. `reference`: what each
+/// in the given order; what depends on earlier rows gets the value zero. Only places that are not
+/// known to be zero are visited. `reference`: what each
 /// pivot is compared with; empty: its own diagonal.
 pub fn solve_symmetric<S: Scalar>(
     mut a: Vec<Vec<S>>,
@@ -291,28 +293,37 @@ pub fn solve_symmetric<S: Scalar>(
     let diagonal = (0..n).map(|i| a[i][i]).collect();
     let mut inverse = vec![S::zero(); n];
     let mut dependent = Vec::with_capacity(n);
+    // places of L that are not zero: columns by rows, rows by columns
+    let mut across: Vec<Vec<usize>> = vec![Vec::new(); n];
+    let mut down: Vec<Vec<usize>> = vec![Vec::new(); n];
     // a[i][k] holds L_ik D_k until row i is finished, then L_ik
     for i in 0..n {
         let start = a[i][i];
-        for k in 0..i {
+        let filled = (0..i).filter(|&k| !a[i][k].is_known_zero());
+        let mut open: BTreeSet<usize> = filled.collect();
+        while let Some(k) = open.pop_first() {
             let mut s = a[i][k];
-            for (&l_i, &l_k) in a[i][..k].iter().zip(&a[k]) {
-                if !l_i.is_known_zero() && !l_k.is_known_zero() {
-                    s -= l_i * l_k;
-                }
+            for &j in across[i]
+                .iter()
+                .filter(|j| across[k].binary_search(j).is_ok())
+            {
+                s -= a[i][j] * a[k][j];
             }
             a[i][k] = s;
+            if !s.is_known_zero() {
+                open.extend(down[k].iter().copied());
+                across[i].push(k);
+            }
         }
         let mut d = start;
-        for k in 0..i {
-            if a[i][k].is_known_zero() {
-                continue;
-            }
+        for &k in &across[i] {
             let l = a[i][k] * inverse[k];
             d -= l * a[i][k];
             b[i] = b[i] - l * b[k];
             a[i][k] = l;
         }
+        across[i].retain(|&k| !a[i][k].is_known_zero());
+        across[i].iter().for_each(|&k| down[k].push(i));
         let tiny = d.le(start.scale(RANK_TOLERANCE));
         let part = match reference.get(i) {
             Some(&usual) => d.scale(1.0 / usual),
@@ -324,10 +335,8 @@ pub fn solve_symmetric<S: Scalar>(
     }
     for i in (0..n).rev() {
         let mut x = b[i] * inverse[i];
-        for k in i + 1..n {
-            if !a[k][i].is_known_zero() {
-                x -= a[k][i] * b[k];
-            }
+        for &k in &down[i] {
+            x -= a[k][i] * b[k];
         }
         b[i] = S::choose(dependent[i], S::zero, || x);
     }

@@ -178,7 +178,7 @@ impl Small {
                 g[(k, v)] += x;
             }
         }
-        let z = assemble::null_space(&g, n);
+        let z = assemble::null_space(&g);
         let velocity = record(scene, |at| {
             let rate = |r: &usize| {
                 let row = at.row(*r);

@@ -4,6 +4,7 @@
 use super::Session;
 use super::stop_reason::{Cause, StopReason};
 use crate::analysis::session::columns;
+use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::analysis::time::trajectory::{Ended, Trajectory};
@@ -144,6 +145,15 @@ impl Session {
                 change: RowChange::Restored,
                 rows: vec![row_name(&scene.rows[row])],
                 place: Vec::new(),
+            });
+        }
+        for &(at, row, off) in &trajectory.beyond {
+            self.warn(RunWarning::BeyondTolerance {
+                at,
+                row: row_name(&scene.rows[row]),
+                off,
+                is_length: alignment::is_length(scene, row),
+                unit: scene.length_unit.clone(),
             });
         }
         told.sort_by(|a, b| a.time.total_cmp(&b.time));

@@ -37,7 +37,13 @@ impl Session {
         let i = &self.model.integrator;
         let positive = |x: f64| x > 0.0 && !x.is_nan();
         let whole = |k: Option<u32>| k.map(f64::from);
+        let initial = &self.model.initial_conditions.numbers;
         let given = [
+            (
+                "IC",
+                "ERROR",
+                initial.get("ERROR").copied().filter(|e| !positive(*e)),
+            ),
             (
                 "--error",
                 "the permitted error",

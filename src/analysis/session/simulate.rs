@@ -95,7 +95,12 @@ impl Session {
             Analysis::Transient if assembly.freedom > 0 => Analysis::Dynamic,
             Analysis::Transient => Analysis::Kinematic,
             Analysis::Dynamic if assembly.freedom == 0 => {
-                self.warn(RunWarning::NoFreedom);
+                let scene = &system.scene;
+                if !scene.motions.is_empty() {
+                    self.warn(RunWarning::NoFreedom);
+                } else if !scene.parts.is_empty() {
+                    self.warn(RunWarning::Held);
+                }
                 Analysis::Kinematic
             }
             Analysis::Kinematic if assembly.freedom > 0 => {

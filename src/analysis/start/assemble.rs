@@ -6,9 +6,10 @@
 
 use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::quantity::{length, short};
-use crate::analysis::start::{branch, nearby};
+use crate::analysis::start::{alignment, branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
+use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::numeric::rank::Rank;
 use crate::physics::row::{Law, body_angles};
 use crate::scene::broken;
@@ -159,30 +160,51 @@ fn begin_motions(scene: &Scene, configuration: &mut Configuration, t: f64, q: &[
     }
 }
 
-/// Evaluates values, gradients and drifts of all rows at an instant: g (m), G (m × n_v), ġ₀ (m).
+/// Evaluates values, gradients and drifts of all rows at an instant: g (m), rows of G (m × n_v),
+/// ġ₀ (m); zero for those that are left out within tolerance.
 pub fn rows_at(
     scene: Configured<'_>,
     t: f64,
     q: &[f64],
     x: &[f64],
-) -> (DVector<f64>, DMatrix<f64>, DVector<f64>) {
+) -> (DVector<f64>, Vec<SparseRow>, DVector<f64>) {
     let l = scene.layout;
     let at = Equations::new(scene, &numbers(scene, t, q, &vec![0.0; l.n_v], x));
     let m = scene.rows.len();
-    let (mut g, mut gradient, mut drift) = (
-        DVector::zeros(m),
-        DMatrix::zeros(m, l.n_v),
-        DVector::zeros(m),
-    );
-    for r in 0..m {
+    let (mut g, mut gradient, mut drift) =
+        (DVector::zeros(m), vec![Vec::new(); m], DVector::zeros(m));
+    for r in (0..m).filter(|&r| !scene.configuration.is_loose(r)) {
         let row = at.row(r);
         g[r] = row.value;
         drift[r] = row.drift;
-        for (v, x) in row.gradient {
-            gradient[(r, v)] += x;
-        }
+        gradient[r] = merged(row.gradient);
     }
     (g, gradient, drift)
+}
+
+/// Adds up what stands in a row for the same velocity.
+pub(super) fn merged(entries: Vec<(usize, f64)>) -> SparseRow {
+    let mut row: SparseRow = Vec::with_capacity(entries.len());
+    for (v, x) in entries {
+        match row.last_mut() {
+            Some(last) if last.0 == v => last.1 += x,
+            _ => row.push((v, x)),
+        }
+    }
+    row
+}
+
+/// Returns the parts of a matrix that can be treated apart; one that hangs together is one part
+/// with all of its columns.
+pub(super) fn parts(rows: &[SparseRow], n: usize) -> Vec<Block> {
+    let parts = connected(rows, n);
+    if parts.iter().filter(|p| !p.columns.is_empty()).count() > 1 {
+        return parts;
+    }
+    vec![Block {
+        rows: (0..rows.len()).collect(),
+        columns: (0..n).collect(),
+    }]
 }
 
 /// Returns a row's residual as a part of its scale, to be compared with [`CLOSED`].
@@ -191,27 +213,55 @@ fn relative(scene: &Scene, r: usize, value: f64) -> f64 {
 }
 
 /// Returns the rows of a matrix, columns scaled by √w.
-pub(in crate::analysis) fn scaled_rows(a: &DMatrix<f64>, w: &[f64]) -> Vec<Vec<f64>> {
-    let row = |r: usize| (0..w.len()).map(|v| a[(r, v)] * w[v].sqrt()).collect();
-    (0..a.nrows()).map(row).collect()
+pub(in crate::analysis) fn scaled_rows(a: &[SparseRow], w: &[f64]) -> Vec<Vec<f64>> {
+    let row = |row: &SparseRow| {
+        let mut dense = vec![0.0; w.len()];
+        for &(v, x) in row {
+            dense[v] = x * w[v].sqrt();
+        }
+        dense
+    };
+    a.iter().map(row).collect()
 }
 
-/// Decides which rows depend on others, columns scaled by √w.
-pub(super) fn rank_of(a: &DMatrix<f64>, w: &[f64]) -> Rank {
-    let rows = scaled_rows(a, w);
-    Rank::of(rows.iter().map(Vec::as_slice), w.len(), 1e-9)
+/// Returns the rows of a part of a matrix, columns scaled by √w.
+pub(super) fn scaled_part(part: &Block, a: &[SparseRow], w: &[f64]) -> Vec<Vec<f64>> {
+    let scale: Vec<f64> = part.columns.iter().map(|&v| w[v].sqrt()).collect();
+    let row = |&r: &usize| {
+        let mut dense = part.dense(&a[r]);
+        dense.iter_mut().zip(&scale).for_each(|(x, s)| *x *= s);
+        dense
+    };
+    part.rows.iter().map(row).collect()
+}
+
+/// Decides which rows depend on others.
+pub(super) fn rank_of(a: &DMatrix<f64>) -> Rank {
+    let rows = a.row_iter().map(|r| r.iter().copied().collect());
+    let rows: Vec<Vec<f64>> = rows.collect();
+    Rank::of(rows.iter().map(Vec::as_slice), a.ncols(), 1e-9)
 }
 
 /// Returns the shortest solution of `A x = b` in the metric W, rows counting by their direction;
-/// where they contradict, the best.
+/// where they contradict, the best. Parts that share no velocity are solved apart.
 pub(in crate::analysis) fn least_change(
-    a: &DMatrix<f64>,
+    a: &[SparseRow],
     w: &[f64],
     b: &DVector<f64>,
 ) -> DVector<f64> {
-    let mut x = vec![0.0; w.len()];
-    rank_of(a, w).least_norm(b.as_slice(), &mut x);
-    DVector::from_iterator(w.len(), x.iter().zip(w).map(|(x, w)| x * w.sqrt()))
+    let mut change = DVector::zeros(w.len());
+    for part in parts(a, w.len()) {
+        let rows = scaled_part(&part, a, w);
+        let n = part.columns.len();
+        let rank = Rank::of(rows.iter().map(Vec::as_slice), n, 1e-9);
+        let right: Vec<f64> = part.rows.iter().map(|&r| b[r]).collect();
+        let mut x = vec![0.0; n];
+        rank.least_norm(&right, &mut x);
+        for (&v, x) in part.columns.iter().zip(x) {
+            change[v] = x * w[v].sqrt();
+        }
+    }
+    change
 }
 
 /// The result of [`close`].
@@ -249,7 +299,7 @@ pub(in crate::analysis) fn close(
         let (mut g, mut gradient, drift) = rows_at(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| ignored(configured, r)) {
             g[r] = 0.0;
-            gradient.row_mut(r).fill(0.0);
+            gradient[r].clear();
         }
         (g, gradient, drift)
     };
@@ -327,6 +377,10 @@ pub fn positions(
     found.warnings = hold(scene, configuration, t, q, x);
     branch::refer(scene, configuration, t, q, x, false);
     let here = scene.within(configuration);
+    let aligned = alignment::told(here);
+    found
+        .warnings
+        .extend(aligned.into_iter().map(Warning::from));
     let (_, gradient, _) = rows_at(here, t, q, x);
     let n = scene.layout.n_v;
     let (independent, dependent) = rank(scene, &gradient, &[]);
@@ -343,7 +397,11 @@ pub fn positions(
         found.place = Some(around.q);
     }
     found.dependent = dependent;
-    configuration.active = (0..scene.rows.len()).map(|r| active.contains(&r)).collect();
+    for rows in [&mut found.redundant, &mut found.dependent] {
+        alignment::explain(here, &reached, &active, rows);
+    }
+    configuration.active = vec![false; scene.rows.len()];
+    active.iter().for_each(|&r| configuration.active[r] = true);
     Ok(found)
 }
 
@@ -407,60 +465,57 @@ fn gap(scene: &Scene, at: &Equations<'_, f64>, r: usize, g: f64) -> String {
 /// translations before rotations before sums. Rows in `first` come before all others.
 pub fn rank(
     scene: &Scene,
-    gradient: &DMatrix<f64>,
+    gradient: &[SparseRow],
     first: &[usize],
 ) -> (Vec<usize>, Vec<Redundant>) {
     let w = &weights(scene)[..];
-    let mut order: Vec<usize> = (0..scene.rows.len()).collect();
+    let mut preferred = vec![false; scene.rows.len()];
+    first.iter().for_each(|&r| preferred[r] = true);
     let kind = |r: usize| match &scene.rows[r].kind {
         RowKind::Markers { law, .. } => u8::from(!law.is_length()),
         RowKind::Displacements(_) | RowKind::Formula { .. } | RowKind::Cam { .. } => 2,
     };
-    order.sort_by_key(|&r| (!first.contains(&r), kind(r), r));
-    let all = scaled_rows(gradient, w);
+    let order = |&r: &usize| (!preferred[r], kind(r), r);
     let longest = w.iter().map(|w| w.sqrt()).fold(0.0, f64::max);
-    let rows: Vec<Vec<f64>> = order
-        .iter()
-        .map(|&r| {
+    let (mut independent, mut redundant) = (Vec::new(), Vec::new());
+    for mut part in parts(gradient, w.len()) {
+        part.rows.sort_by_key(order);
+        let mut rows = scaled_part(&part, gradient, w);
+        for (row, &r) in rows.iter_mut().zip(&part.rows) {
             // a row that moves nothing there says nothing about what its direction is
-            let size = all[r].iter().map(|x| x * x).sum::<f64>().sqrt();
-            let empty = size <= EMPTY * scene.row_scale(r).min(longest);
-            if empty {
-                vec![0.0; w.len()]
-            } else {
-                all[r].clone()
+            let size = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if size <= EMPTY * scene.row_scale(r).min(longest) {
+                row.fill(0.0);
             }
-        })
-        .collect();
-    let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), DEPENDENT);
-    let mut independent: Vec<usize> = rank.independent().into_iter().map(|k| order[k]).collect();
-    independent.sort_unstable();
-    let redundant = rank
-        .dependent()
-        .into_iter()
-        .map(|d| {
+        }
+        let n = part.columns.len();
+        let rank = Rank::of(rows.iter().map(Vec::as_slice), n, DEPENDENT);
+        independent.extend(rank.independent().into_iter().map(|k| part.rows[k]));
+        redundant.extend(rank.dependent().into_iter().map(|d| {
             let mut combination: Vec<(usize, f64)> = d
                 .combination
                 .into_iter()
-                .map(|(k, f)| (order[k], f))
+                .map(|(k, f)| (part.rows[k], f))
                 .filter(|c| c.1.abs() > 1e-6)
                 .collect();
             combination.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
-            let row = order[d.row];
+            let row = part.rows[d.row];
             let name = row_name(&scene.rows[row]);
             Redundant {
                 row,
                 name,
                 combination,
             }
-        })
-        .collect();
+        }));
+    }
+    independent.sort_unstable();
+    redundant.sort_by_key(|d: &Redundant| order(&d.row));
     (independent, redundant)
 }
 
 /// Returns an orthonormal basis of the vectors that a matrix maps to zero, by columns.
-pub fn null_space(a: &DMatrix<f64>, n: usize) -> DMatrix<f64> {
-    directions(&rank_of(a, &vec![1.0; n]), n)
+pub fn null_space(a: &DMatrix<f64>) -> DMatrix<f64> {
+    directions(&rank_of(a), a.ncols())
 }
 
 /// Returns the directions that rows leave free, by columns.

@@ -17,7 +17,7 @@
 //! there the rows themselves are closed. It is asked for only where the rows alone have failed or
 //! have led to an opposite.
 
-use crate::analysis::start::assemble::{least_change, numbers, rows_at};
+use crate::analysis::start::assemble::{least_change, merged, numbers, rows_at};
 use crate::analysis::start::placement::log;
 use crate::model::ElementId;
 use crate::physics::action::Action;
@@ -433,7 +433,7 @@ pub fn turn(
         let (mut g, mut gradient, _) = rows_at(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| turns_or_held(configured, r)) {
             g[r] = 0.0;
-            gradient.row_mut(r).fill(0.0);
+            gradient[r].clear();
         }
         // the turns
         let at = Equations::new(configured, &here);
@@ -448,12 +448,10 @@ pub fn turn(
             })
             .collect();
         let m = g.len();
-        let mut a = gradient.insert_rows(m, wanted.len(), 0.0);
+        let mut a = gradient;
         let mut b = (-g).insert_rows(m, wanted.len(), 0.0);
         for (k, &((i, j), axis, by)) in wanted.iter().enumerate() {
-            for (v, slope) in at.gradient_of(&against(i, j, axis)) {
-                a[(m + k, v)] += slope;
-            }
+            a.push(merged(at.gradient_of(&against(i, j, axis))));
             b[m + k] = by;
         }
         // a step

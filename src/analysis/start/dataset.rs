@@ -5,6 +5,7 @@
 //! (`branch.rs`), and the rest again from there. The first outcome stands where none of these is
 //! better.
 
+use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::branch;
 use crate::analysis::start::initial_conditions::{self, InitialCondition};
@@ -73,6 +74,7 @@ impl Dataset<'_> {
     /// Moves `q` onto the rows, from where it is, or from the place nearest to the drawing.
     fn near(&self, configuration: &mut Configuration, q: &mut [f64], placed: bool) -> Assembled {
         let Self { scene, t, x, .. } = *self;
+        alignment::leave_out(scene, configuration, t, q, x)?;
         let here = scene.within(configuration);
         let placed = placed && placement::settle(here, self.model, t, q, x, self.joints);
         // where parts are too many to be weighed, or on curves, coordinates move as little as may
@@ -100,6 +102,7 @@ pub fn go_on(
     x: &[f64],
 ) -> Result<Assembly, Vec<Diagnostic>> {
     branch::refer(scene, configuration, t, q, x, false);
+    alignment::leave_out(scene, configuration, t, q, x)?;
     let left = (configuration.clone(), q.to_vec());
     let first = assemble::positions(scene, configuration, t, q, x);
     // rows that held where it was left have been followed to there

@@ -285,7 +285,7 @@ pub fn approach(
         let (mut g, mut gradient, _) = rows_at(configured, t, q, x);
         for r in (0..g.len()).filter(|&r| asked(configured, r)) {
             g[r] = 0.0;
-            gradient.row_mut(r).fill(0.0);
+            gradient[r].clear();
         }
         let at = Equations::<f64>::new(configured, &here);
         let places: Vec<(f64, Vec<(usize, f64)>)> = (starts.iter())
@@ -294,13 +294,15 @@ pub fn approach(
             .collect();
         let (off, slopes) = equations(scene, conditions, &quantities, &here, &mover);
         let (m, n) = (g.len(), conditions.len());
-        let mut a = DMatrix::zeros(m + n + places.len(), w.len());
-        a.rows_mut(0, m).copy_from(&gradient);
-        a.rows_mut(m, n).copy_from(&slopes);
-        for (k, (_, slopes)) in places.iter().enumerate() {
-            for &(v, slope) in slopes {
-                a[(m + n + k, v)] += slope;
-            }
+        let mut a = gradient;
+        for slopes in slopes.row_iter() {
+            let entries = slopes.iter().copied().enumerate();
+            a.push(entries.filter(|e| e.1 != 0.0).collect());
+        }
+        for (_, slopes) in &places {
+            let mut slopes = slopes.clone();
+            slopes.sort_by_key(|e| e.0);
+            a.push(assemble::merged(slopes));
         }
         let all = g
             .iter()

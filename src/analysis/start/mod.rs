@@ -1,6 +1,7 @@
 //! The start of every analysis: positions that satisfy all rows, velocities that fit, initial
 //! conditions.
 
+pub mod alignment;
 pub mod assemble;
 pub mod branch;
 pub(super) mod coincident;

@@ -6,9 +6,10 @@
 //! four-bar at its dead point). When no other position can be reached, what was found stands.
 
 use crate::analysis::start::assemble::{self, CLOSED, Redundant};
+use crate::numeric::connected::SparseRow;
 use crate::numeric::rank::Rank;
 use crate::scene::Scene;
-use crate::scene::configuration::Configured;
+use crate::scene::configuration::{Configuration, Configured};
 use crate::scene::equations::Equations;
 use crate::scene::mover::Mover;
 use crate::scene::programs::weights;
@@ -52,25 +53,84 @@ const STEPS: [(f64, bool); 9] = [
 ///
 /// `here`: rows that are independent at `q`; they are preferred.
 pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize]) -> Option<Around> {
-    let w = weights(&scene);
-    let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
-    let rows = assemble::scaled_rows(&gradient, &w);
-    let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), assemble::DEPENDENT);
-    let free = rank.free_directions();
-    let at = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
-    let at = Equations::new(scene, &at);
-    let values: Vec<f64> = (0..scene.motions.len())
-        .map(|m| at.prescribed(m).value)
-        .collect();
-    if free.is_empty() && values.is_empty() {
-        return None;
-    }
-    let mover = Mover::new(&scene);
-    let mut draw = Draw(1);
+    let mut around = Surroundings::new(scene, t, q, x)?;
     let mut best: Option<Around> = None;
     let mut seen = 0;
-    for (step, drives) in STEPS {
-        let motions: Vec<f64> = values
+    for step in STEPS {
+        let Some((place, there)) = around.step(step) else {
+            continue;
+        };
+        let (_, gradient, _) = assemble::rows_at(scene.within(&there), t, &place.q, x);
+        let (independent, redundant) = assemble::rank(&scene, &gradient, here);
+        if best
+            .as_ref()
+            .is_none_or(|b| b.independent.len() < independent.len())
+        {
+            best = Some(Around {
+                independent,
+                redundant,
+                q: place,
+            });
+        }
+        seen += 1;
+        if seen == 3 {
+            break;
+        }
+    }
+    best.filter(|b| b.independent.len() >= here.len())
+}
+
+/// Positions near another, along random free directions.
+pub(super) struct Surroundings<'s> {
+    scene: Configured<'s>,
+    t: f64,
+    q: &'s [f64],
+    x: &'s [f64],
+    /// metric of the velocities   (n_v)
+    w: Vec<f64>,
+    /// directions that the rows leave free, scaled by √w
+    free: Vec<SparseRow>,
+    /// displacements that the motions prescribe at `q`   (n_motions)
+    values: Vec<f64>,
+    mover: Mover,
+    draw: Draw,
+}
+
+impl<'s> Surroundings<'s> {
+    /// Finds what is free at a position; `None`: nothing is, and nothing is driven.
+    pub fn new(scene: Configured<'s>, t: f64, q: &'s [f64], x: &'s [f64]) -> Option<Self> {
+        let w = weights(&scene);
+        let (_, gradient, _) = assemble::rows_at(scene, t, q, x);
+        let free = free_directions(&gradient, &w);
+        let at = assemble::numbers(scene, t, q, &vec![0.0; scene.layout.n_v], x);
+        let at = Equations::new(scene, &at);
+        let values: Vec<f64> = (0..scene.motions.len())
+            .map(|m| at.prescribed(m).value)
+            .collect();
+        if free.is_empty() && values.is_empty() {
+            return None;
+        }
+        let mover = Mover::new(&scene);
+        let draw = Draw(1);
+        Some(Self {
+            scene,
+            t,
+            q,
+            x,
+            w,
+            free,
+            values,
+            mover,
+            draw,
+        })
+    }
+
+    /// Makes a step of this size, motions at other values or not; returns where it leads, and the
+    /// configuration there, or `None` where the rows cannot be closed.
+    pub fn step(&mut self, (step, drives): (f64, bool)) -> Option<(Place, Configuration)> {
+        let (scene, w, draw) = (self.scene, &self.w, &mut self.draw);
+        let motions: Vec<f64> = self
+            .values
             .iter()
             .enumerate()
             .map(|(m, value)| {
@@ -84,48 +144,47 @@ pub fn look(scene: Configured<'_>, t: f64, q: &[f64], x: &[f64], here: &[usize])
             })
             .collect();
         let mut change = vec![0.0; w.len()];
-        for direction in &free {
+        for direction in &self.free {
             let share = draw.next();
-            for (c, d) in change.iter_mut().zip(direction) {
-                *c += share * d;
+            for &(v, d) in direction {
+                change[v] += share * d;
             }
         }
         let longest = change.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         if longest > 0.0 {
-            for (c, w) in change.iter_mut().zip(&w) {
+            for (c, w) in change.iter_mut().zip(w) {
                 *c *= step / longest * w.sqrt();
             }
         } else if !drives {
-            continue;
+            return None;
         }
         let mut there = scene.configuration.with_motions_at(&motions);
-        let mut q1 = q.to_vec();
-        mover.displace(&mut q1, &change);
-        let closed = assemble::close(&scene, &mut there, t, &mut q1, x, |_, _| false);
-        let far = distance(&scene, &w, q, &q1);
+        let mut q1 = self.q.to_vec();
+        self.mover.displace(&mut q1, &change);
+        let closed = assemble::close(&scene, &mut there, self.t, &mut q1, self.x, |_, _| false);
+        let far = distance(&scene, w, self.q, &q1);
         let moved = far > 0.1 * step || drives && !motions.is_empty();
-        if !(closed.size <= CLOSED && moved && far < 20.0 * step) {
-            continue;
-        }
-        let (_, gradient, _) = assemble::rows_at(scene.within(&there), t, &q1, x);
-        let (independent, redundant) = assemble::rank(&scene, &gradient, here);
-        if best
-            .as_ref()
-            .is_none_or(|b| b.independent.len() < independent.len())
-        {
-            let q = Place { motions, q: q1 };
-            best = Some(Around {
-                independent,
-                redundant,
-                q,
-            });
-        }
-        seen += 1;
-        if seen == 3 {
-            break;
-        }
+        let arrived = closed.size <= CLOSED && moved && far < 20.0 * step;
+        arrived.then_some((Place { motions, q: q1 }, there))
     }
-    best.filter(|b| b.independent.len() >= here.len())
+}
+
+/// Returns the directions that rows leave free, columns scaled by √w.
+fn free_directions(gradient: &[SparseRow], w: &[f64]) -> Vec<SparseRow> {
+    let mut free = Vec::new();
+    let mut held = vec![false; w.len()];
+    for part in assemble::parts(gradient, w.len()) {
+        let rows = assemble::scaled_part(&part, gradient, w);
+        let n = part.columns.len();
+        let rank = Rank::of(rows.iter().map(Vec::as_slice), n, assemble::DEPENDENT);
+        let places = |d: Vec<f64>| part.columns.iter().copied().zip(d).collect();
+        free.extend(rank.free_directions().into_iter().map(places));
+        part.columns.iter().for_each(|&v| held[v] = true);
+    }
+    // velocities in no row
+    let alone = (0..w.len()).filter(|&v| !held[v]);
+    free.extend(alone.map(|v| vec![(v, 1.0)]));
+    free
 }
 
 /// Returns the largest difference of a coordinate, lengths relative to the mechanism.

@@ -14,6 +14,7 @@
 
 use crate::analysis::start::assemble;
 use crate::model::{ElementKind, Model};
+use crate::numeric::connected::SparseRow;
 use crate::numeric::rank::Rank;
 use crate::physics::row::{Drive, Law};
 use crate::scalar::{Jet, Scalar};
@@ -82,7 +83,7 @@ pub fn settle(
         let (mut g, mut gradient, _) = assemble::rows_at(scene, t, &here, x);
         for r in (0..g.len()).filter(|&r| scene.is_held(r)) {
             g[r] = 0.0;
-            gradient.row_mut(r).fill(0.0);
+            gradient[r].clear();
         }
         let off = (0..g.len()).fold(0.0, |m: f64, r| m.max((g[r] / scene.row_scale(r)).abs()));
         if k == 0 && off < IN_PLACE && distance.residual.amax() < IN_PLACE {
@@ -107,7 +108,7 @@ pub fn settle(
 
 /// Returns the step of Gauss and Newton, in coordinates scaled by √w: it closes the rows, and in
 /// what they leave free makes the distance least.
-fn step(w: &[f64], g: &DVector<f64>, gradient: &DMatrix<f64>, distance: Distance) -> DVector<f64> {
+fn step(w: &[f64], g: &DVector<f64>, gradient: &[SparseRow], distance: Distance) -> DVector<f64> {
     let rows = assemble::scaled_rows(gradient, w);
     let rank = Rank::of(rows.iter().map(Vec::as_slice), w.len(), 1e-9);
     let mut step = vec![0.0; w.len()];

@@ -1,16 +1,19 @@
 //! Velocities to start with: those nearest to the dataset's that satisfy the rows.
 
-use super::assemble::{EMPTY, directions, least_change, null_space, numbers, rank_of, rows_at};
+use super::assemble::{
+    DEPENDENT, EMPTY, directions, least_change, null_space, numbers, parts, rank_of, rows_at,
+};
 use super::initial_conditions::of_joints;
 use crate::analysis::direction::Direction;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::warning::ConditionWarning;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Model};
-use crate::scene::Scene;
+use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
+use crate::scene::{LinkIx, Scene, Source};
 use crate::space::Mat3;
 use nalgebra::{DMatrix, DVector};
 
@@ -47,8 +50,7 @@ fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f
 }
 
 /// Returns the velocities nearest to those of the dataset that satisfy the rows: given ones first,
-/// then
-/// the rest as small as may be   (n_v)
+/// then the rest as small as may be   (n_v)
 ///
 /// # Errors
 /// When the motions ask for velocities that the rows forbid.
@@ -64,40 +66,37 @@ pub fn velocities(
     let given = GivenVelocities::collect(scene, model, t, q, x);
     // v = v₀ + N z, with N the null space of the rows
     let w = vec![1.0; n];
-    let v0 = least_change(&gradient, &w, &(-&drift));
-    let left = &gradient * &v0 + &drift;
-    let scale = 1.0 + drift.amax().max(gradient.amax());
-    if let Some(r) = (0..left.len()).find(|&r| left[r].abs() > 1e-8 * scale) {
-        return Err(vec![prescribed_too_much(
-            scene,
-            &numbers(scene, t, q, &vec![0.0; n], x),
-            r,
-            left[r],
-        )]);
+    let firm = without_empty(scene, &gradient);
+    let mut v = least_change(&firm, &w, &(-&drift));
+    let entries = gradient.iter().flatten();
+    let largest = entries.fold(0.0, |m: f64, e| m.max(e.1.abs()));
+    let scale = 1.0 + drift.amax().max(largest);
+    for (r, row) in gradient.iter().enumerate() {
+        let left = along(row, &v) + drift[r];
+        if left.abs() > 1e-8 * scale {
+            let still = numbers(scene, t, q, &vec![0.0; n], x);
+            return Err(vec![prescribed_too_much(scene, &still, r, left)]);
+        }
     }
-    let mut v = v0;
     let levels = [&given.of_constraints, &given.of_parts, &given.rest];
-    if levels.iter().all(|(a, b)| (b - a * &v).amax() == 0.0) {
-        return Ok(v.iter().copied().collect());
-    }
-    let mut space = null_space(&gradient, n);
-    // each level as well as may be within the freedom that the levels before leave
-    for (a, b) in levels {
-        if space.ncols() == 0 || a.nrows() == 0 {
+    // what shares no velocity is looked at apart
+    let all = levels.iter().flat_map(|level| &level.rows);
+    let all: Vec<SparseRow> = gradient.iter().chain(all).cloned().collect();
+    let mut changed = false;
+    for part in parts(&all, n) {
+        let own = Part::new(&part, &firm, levels);
+        let here = DVector::from_iterator(part.columns.len(), part.columns.iter().map(|&k| v[k]));
+        if own.holds(&here) {
             continue;
         }
-        let mut reduced = a * &space;
-        // a velocity square to all that is free is not to be had: what is left of it is rounding
-        for r in 0..reduced.nrows() {
-            if reduced.row(r).norm() <= EMPTY * a.row(r).norm() {
-                reduced.row_mut(r).fill(0.0);
-            }
+        changed = true;
+        let nearest = own.nearest(here);
+        for (&k, x) in part.columns.iter().zip(nearest.iter()) {
+            v[k] = *x;
         }
-        let rank = rank_of(&reduced, &vec![1.0; space.ncols()]);
-        let mut z = vec![0.0; space.ncols()];
-        rank.least_squares((b - a * &v).as_slice(), &mut z);
-        v += &space * DVector::from_vec(z);
-        space = &space * directions(&rank, space.ncols());
+    }
+    if !changed {
+        return Ok(v.iter().copied().collect());
     }
     // without rounding dust where the dataset says zero
     let size = v.amax();
@@ -129,6 +128,88 @@ pub fn unmet(
     told.collect()
 }
 
+/// Returns `row · v`.
+fn along(row: &[(usize, f64)], v: &DVector<f64>) -> f64 {
+    row.iter().fold(0.0, |sum, &(k, x)| sum + x * v[k])
+}
+
+/// The rows and the given velocities of parts that share no velocity with any others.
+struct Part {
+    /// the rows   (m × n)
+    g: DMatrix<f64>,
+    /// what is given, the first first: matrix, right side
+    levels: [(DMatrix<f64>, DVector<f64>); 3],
+}
+
+impl Part {
+    /// Collects them: rows of `part` count through the rows of G, then through those of each level.
+    fn new(part: &Block, gradient: &[SparseRow], levels: [&Given; 3]) -> Self {
+        let n = part.columns.len();
+        let dense = |rows: &[&SparseRow]| {
+            let rows: Vec<Vec<f64>> = rows.iter().map(|row| part.dense(row)).collect();
+            DMatrix::from_fn(rows.len(), n, |i, j| rows[i][j])
+        };
+        let mut from = gradient.len();
+        let of_rows: Vec<&SparseRow> = (part.rows.iter())
+            .filter_map(|&r| gradient.get(r))
+            .collect();
+        let g = dense(&of_rows);
+        let levels = levels.map(|level| {
+            let range = from..from + level.rows.len();
+            let own: Vec<usize> = (part.rows.iter().filter(|r| range.contains(*r)))
+                .map(|r| r - from)
+                .collect();
+            from = range.end;
+            let rows: Vec<&SparseRow> = own.iter().map(|&k| &level.rows[k]).collect();
+            let right = own.iter().map(|&k| level.right[k]);
+            (dense(&rows), DVector::from_iterator(own.len(), right))
+        });
+        Self { g, levels }
+    }
+
+    /// Returns whether velocities are those that are given.
+    fn holds(&self, v: &DVector<f64>) -> bool {
+        (self.levels.iter()).all(|(a, b)| (b - a * v).amax() == 0.0)
+    }
+
+    /// Returns the velocities nearest to the given ones that the rows permit, from some that they
+    /// do.
+    fn nearest(&self, mut v: DVector<f64>) -> DVector<f64> {
+        let mut space = null_space(&self.g);
+        // each level as well as may be within the freedom that the levels before leave
+        for (a, b) in &self.levels {
+            if space.ncols() == 0 || a.nrows() == 0 {
+                continue;
+            }
+            let mut reduced = a * &space;
+            // a velocity square to all that is free is not to be had: what is left is rounding
+            for r in 0..reduced.nrows() {
+                if reduced.row(r).norm() <= EMPTY * a.row(r).norm() {
+                    reduced.row_mut(r).fill(0.0);
+                }
+            }
+            let rank = rank_of(&reduced);
+            let mut z = vec![0.0; space.ncols()];
+            rank.least_squares((b - a * &v).as_slice(), &mut z);
+            v += &space * DVector::from_vec(z);
+            space = &space * directions(&rank, space.ncols());
+        }
+        v
+    }
+}
+
+/// Returns the rows of a matrix, zeros for those that move nothing: the direction of such a row is
+/// rounding.
+fn without_empty(scene: Configured<'_>, gradient: &[SparseRow]) -> Vec<SparseRow> {
+    let filled = |(r, row): (usize, &SparseRow)| {
+        let size = row.iter().map(|e| e.1 * e.1).sum::<f64>().sqrt();
+        let empty = size <= DEPENDENT * scene.row_scale(r).min(1.0);
+        let entry = |&(v, x): &(usize, f64)| (v, if empty { 0.0 } else { x });
+        row.iter().map(entry).collect()
+    };
+    gradient.iter().enumerate().map(filled).collect()
+}
+
 /// Returns the velocities nearest to the given ones that all rows permit   (n_v)
 pub(in crate::analysis) fn nearest_velocities(
     scene: Configured<'_>,
@@ -139,20 +220,27 @@ pub(in crate::analysis) fn nearest_velocities(
 ) -> Vec<f64> {
     let (_, gradient, drift) = rows_at(scene, t, q, x);
     let given = DVector::from_column_slice(v);
-    let missing = -(&gradient * &given + drift);
-    let change = least_change(&gradient, &weights(&scene), &missing);
+    let mut missing = -drift;
+    for (r, row) in gradient.iter().enumerate() {
+        missing[r] -= along(row, &given);
+    }
+    let change = least_change(&without_empty(scene, &gradient), &weights(&scene), &missing);
     (given + change).iter().copied().collect()
 }
 
-/// Linear equations that velocities should satisfy: matrix, right side.
-type Equation = (DMatrix<f64>, DVector<f64>);
+/// Linear equations that velocities should satisfy.
+#[derive(Default)]
+struct Given {
+    rows: Vec<SparseRow>,
+    right: Vec<f64>,
+}
 
 /// Velocities that the dataset gives: those of constraints (IC of joints, VEL of contacts), which
 /// go before those of parts, and zero for all others.
 struct GivenVelocities {
-    of_constraints: Equation,
-    of_parts: Equation,
-    rest: Equation,
+    of_constraints: Given,
+    of_parts: Given,
+    rest: Given,
 }
 
 /// The origin of a velocity.
@@ -163,49 +251,103 @@ enum Level {
     Rest,
 }
 
-impl Level {
-    fn of(given: Option<f64>) -> (Self, f64) {
-        given.map_or((Self::Rest, 0.0), |x| (Self::Part, x))
-    }
-}
-
 impl GivenVelocities {
     fn collect(scene: Configured<'_>, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Self {
         let n = scene.layout.n_v;
-        // velocities are linear in v: one evaluation per coordinate, and one for motions
-        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(n + 1);
-        let mut targets: Vec<(Level, f64)> = Vec::new();
-        for k in 0..=n {
-            let mut v = vec![0.0; n];
-            if k > 0 {
-                v[k - 1] = 1.0;
-            }
-            let at = Equations::new(scene, &numbers(scene, t, q, &v, x));
-            let (values, given) = part_velocities(&scene, model, &at);
-            let origin = columns.first();
-            let column = match origin {
-                Some(zero) => values.iter().zip(zero).map(|(a, b)| a - b).collect(),
-                None => values,
-            };
-            columns.push(column);
-            targets = given;
-        }
-        let level = |level: Level| {
-            let rows: Vec<usize> = (0..targets.len())
-                .filter(|&r| targets[r].0 == level)
-                .collect();
-            let a = DMatrix::from_fn(rows.len(), n, |i, j| columns[j + 1][rows[i]]);
-            let b = DVector::from_iterator(
-                rows.len(),
-                rows.iter().map(|&r| targets[r].1 - columns[0][r]),
-            );
-            (a, b)
+        // velocities are linear in v: an evaluation for motions, and one for a coordinate of each
+        // tree
+        let (tree_of, coordinates) = trees(&scene, model);
+        let most = coordinates.iter().map(Vec::len).max().unwrap_or(0);
+        let evaluate = |v: &[f64]| {
+            let at = Equations::new(scene, &numbers(scene, t, q, v, x));
+            part_velocities(&scene, model, &at)
         };
-        Self {
-            of_constraints: level(Level::Constraint),
-            of_parts: level(Level::Part),
-            rest: level(Level::Rest),
+        let (zero, targets) = evaluate(&vec![0.0; n]);
+        let mut rows: Vec<SparseRow> = vec![Vec::new(); zero.len()];
+        for k in 0..most {
+            let mut v = vec![0.0; n];
+            for tree in &coordinates {
+                if let Some(&place) = tree.get(k) {
+                    v[place] = 1.0;
+                }
+            }
+            let (values, _) = evaluate(&v);
+            for (r, target) in targets.iter().enumerate() {
+                let tree = target.link.map(|link| &coordinates[tree_of[link]]);
+                if let Some(&place) = tree.and_then(|tree| tree.get(k)) {
+                    rows[r].push((place, values[r] - zero[r]));
+                }
+            }
         }
+        let mut found = Self {
+            of_constraints: Given::default(),
+            of_parts: Given::default(),
+            rest: Given::default(),
+        };
+        for ((mut row, target), zero) in rows.into_iter().zip(targets).zip(zero) {
+            row.retain(|e| e.1 != 0.0);
+            let level = match target.level {
+                Level::Constraint => &mut found.of_constraints,
+                Level::Part => &mut found.of_parts,
+                Level::Rest => &mut found.rest,
+            };
+            level.rows.push(row);
+            level.right.push(target.value - zero);
+        }
+        found
+    }
+}
+
+/// Finds what moves together: trees of links, those joined whose velocities are given against each
+/// other. Returns the tree of each link, and the places in v of the coordinates of each tree.
+fn trees(scene: &Scene, model: &Model) -> (Vec<usize>, Vec<Vec<usize>>) {
+    let n = scene.links.len();
+    let join = |a: usize, b: usize| vec![(a, 1.0), (b, 1.0)];
+    let mut ties: Vec<SparseRow> = (0..n)
+        .map(|k| join(k, scene.links[k].parent.unwrap_or(k)))
+        .collect();
+    if !scene.cams.is_empty() {
+        ties.extend((1..n).map(|k| join(k - 1, k)));
+    }
+    for (id, ..) in of_joints(model) {
+        let joint = &model.joints[&id];
+        let link = |m: u32| scene.markers[*scene.marker_of.get(&m)?].link;
+        if let (Some(i), Some(j)) = (link(joint.i), link(joint.j)) {
+            ties.push(join(i, j));
+        }
+    }
+    let mut tree_of = vec![0; n];
+    let trees = connected(&ties, n);
+    for (tree, links) in trees.iter().enumerate() {
+        links.columns.iter().for_each(|&link| tree_of[link] = tree);
+    }
+    let mut coordinates = vec![Vec::new(); trees.len()];
+    for c in &scene.coordinates {
+        if let Source::Free { v, .. } = c.source {
+            coordinates[tree_of[c.link]].push(v);
+        }
+    }
+    (tree_of, coordinates)
+}
+
+/// A velocity component of a part, or against another one: where its value comes from.
+struct Target {
+    level: Level,
+    value: f64,
+    /// a link of the tree that it depends on; `None`: it depends on none
+    link: LinkIx,
+}
+
+impl Target {
+    fn of_part(given: Option<f64>, link: LinkIx) -> Self {
+        let level = given.map_or(Level::Rest, |_| Level::Part);
+        let value = given.unwrap_or(0.0);
+        Self { level, value, link }
+    }
+
+    fn of_constraint(value: f64, link: LinkIx) -> Self {
+        let level = Level::Constraint;
+        Self { level, value, link }
     }
 }
 
@@ -215,7 +357,7 @@ fn part_velocities(
     scene: &Scene,
     model: &Model,
     at: &Equations<'_, f64>,
-) -> (Vec<f64>, Vec<(Level, f64)>) {
+) -> (Vec<f64>, Vec<Target>) {
     let mut values = Vec::new();
     let mut targets = Vec::new();
     for part in &scene.parts {
@@ -231,24 +373,31 @@ fn part_velocities(
         let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
         for k in 0..3 {
             values.push(axes_v.column(k).dot(cm.v_GM));
-            targets.push(Level::of(data.velocity[k]));
+            targets.push(Target::of_part(data.velocity[k], part.link));
         }
         for k in 0..3 {
             values.push(axes_w.column(k).dot(cm.w_GM));
-            targets.push(Level::of(data.angular_velocity[k]));
+            targets.push(Target::of_part(data.angular_velocity[k], part.link));
         }
     }
     for (c, cam) in scene.cams.iter().enumerate() {
         for (k, along) in at.cam_speeds(c).into_iter().enumerate() {
             if let Some(given) = cam.velocity[k] {
                 values.push(along);
-                targets.push((Level::Constraint, given));
+                // with contacts all links are one tree
+                let link = (!scene.links.is_empty()).then_some(0);
+                targets.push(Target::of_constraint(given, link));
             }
         }
     }
-    for (_, found, wanted) in joint_rates(scene, model, at) {
+    for (id, found, wanted) in joint_rates(scene, model, at) {
+        let joint = &model.joints[&id];
+        let link = |m: u32| scene.markers[*scene.marker_of.get(&m)?].link;
         values.push(found);
-        targets.push((Level::Constraint, wanted));
+        targets.push(Target::of_constraint(
+            wanted,
+            link(joint.i).or_else(|| link(joint.j)),
+        ));
     }
     (values, targets)
 }

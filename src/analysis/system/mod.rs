@@ -308,8 +308,19 @@ impl System {
             return None;
         }
         self.set(t, y);
-        let rows = &mut self.recorded.rows;
-        rows.worst_left_out(&self.scene, &self.numbers)
+        let scene = self.scene.within(&self.configuration);
+        self.recorded.rows.worst_left_out(scene, &self.numbers)
+    }
+
+    /// Returns the row among those left out within tolerance that is farthest beyond its limit at
+    /// a state, and its value.   [rad, length]
+    pub fn worst_loose(&mut self, t: f64, y: &[f64]) -> Option<(usize, f64)> {
+        if self.configuration.loose.is_empty() {
+            return None;
+        }
+        self.set(t, y);
+        let scene = self.scene.within(&self.configuration);
+        self.recorded.rows.worst_loose(scene, &self.numbers)
     }
 
     /// Returns whether there are angles whose turns are counted from step to step.

@@ -86,14 +86,37 @@ impl Rows {
     }
 
     /// Returns the row among those left out that is violated most at some numbers, and by how much,
-    /// relative to what counts as one.
-    pub fn worst_left_out(&mut self, scene: &Scene, numbers: &[f64]) -> Option<(usize, f64)> {
+    /// relative to what counts as one; but for those that are left out within tolerance.
+    pub fn worst_left_out(
+        &mut self,
+        scene: Configured<'_>,
+        numbers: &[f64],
+    ) -> Option<(usize, f64)> {
         let (rows, recording) = self.left_out.as_mut()?;
         let values = recording.run(numbers);
         rows.iter()
             .zip(values)
+            .filter(|(r, _)| !scene.configuration.is_loose(**r))
             .map(|(&r, &value)| (r, (value / scene.row_scale(r)).abs()))
             .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Returns the row among those left out within tolerance that is farthest beyond its limit at
+    /// some numbers, and its value; `None`: none is.
+    pub fn worst_loose(&mut self, scene: Configured<'_>, numbers: &[f64]) -> Option<(usize, f64)> {
+        let loose = &scene.configuration.loose;
+        if loose.is_empty() {
+            return None;
+        }
+        let (rows, recording) = self.left_out.as_mut()?;
+        let values = recording.run(numbers);
+        let off = |(&r, &value): (&usize, &f64)| {
+            let k = loose.binary_search_by_key(&r, |l| l.row).ok()?;
+            Some((r, value, (value / loose[k].limit).abs()))
+        };
+        let all = rows.iter().zip(values).filter_map(off);
+        let worst = all.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        (worst.2 > 1.0 || worst.2.is_nan()).then_some((worst.0, worst.1))
     }
 }
 

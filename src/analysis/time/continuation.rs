@@ -554,7 +554,9 @@ fn read_by_rows(system: &System, values: &[f64]) -> Vec<bool> {
         let mut other = displacements.clone();
         other[m] += DISPLACEMENT;
         let moved = rows(&other);
-        let change = (moved.0 - &still.0).amax().max((moved.1 - &still.1).amax());
+        let slopes = moved.1.iter().flatten().zip(still.1.iter().flatten());
+        let turned = slopes.map(|(a, b)| (a.1 - b.1).abs()).fold(0.0, f64::max);
+        let change = (moved.0 - &still.0).amax().max(turned);
         change.is_nan() || change > UNREAD * DISPLACEMENT
     };
     (0..displacements.len()).map(read).collect()

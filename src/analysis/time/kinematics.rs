@@ -109,6 +109,9 @@ impl Tracer<'_> {
         }
         let now = self.path.now();
         (self.followed).begin_step(self.system, self.path, t);
+        if let Some(beyond) = self.system.worst_loose(now.t, &now.y) {
+            self.out.note_beyond(now.t, beyond);
+        }
         let most = ranks::states_kept(self.system.scene.layout.n_v);
         if (self.out.weak.len() as f64) < most && !self.system.scene.rows.is_empty() {
             let numbers = self.system.numbers_at(now.t, &now.y);

@@ -108,6 +108,9 @@ impl Leg<'_> {
         step: &Step,
         violated: Option<(usize, f64)>,
     ) -> Result<(), Finished> {
+        if let Some(beyond) = self.system.worst_loose(step.t1, method.y()) {
+            self.out.note_beyond(step.t1, beyond);
+        }
         if self.before.is_empty() {
             return Ok(());
         }

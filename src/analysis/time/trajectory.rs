@@ -64,6 +64,9 @@ pub struct Trajectory {
     /// rows that were left out and no longer followed from the others: when each was restored, and
     /// its index
     pub restored: Vec<(f64, usize)>,
+    /// rows left out within tolerance that went beyond it: when each was farthest off, its index,
+    /// and its value
+    pub beyond: Vec<(f64, usize, f64)>,
     /// `None`: all output times were reached
     pub ended: Option<Ended>,
 }
@@ -73,6 +76,15 @@ impl Trajectory {
     pub(super) fn push(&mut self, t: f64, row: Vec<f64>) {
         self.t.push(t);
         self.rows.push(row);
+    }
+
+    /// Notes that a row left out within tolerance is off by more.
+    pub(super) fn note_beyond(&mut self, t: f64, (row, value): (usize, f64)) {
+        match self.beyond.iter_mut().find(|b| b.1 == row) {
+            Some(known) if known.2.abs() < value.abs() => (known.0, known.2) = (t, value),
+            Some(_) => {}
+            None => self.beyond.push((t, row, value)),
+        }
     }
 
     /// Returns whether the last state is earlier than `t`, or there is none.

@@ -1,7 +1,7 @@
 //! Warnings of assembly: how the parts of a dataset fit together, before and after.
 
 use crate::analysis::direction::Axis;
-use crate::analysis::quantity::{length, short};
+use crate::analysis::quantity::{amount, length, short};
 use crate::model::check::alignment::Misalignment;
 use crate::model::{ElementId, ElementKind};
 use std::fmt;
@@ -53,6 +53,21 @@ pub enum AssemblyWarning {
         /// users' numbers of its markers I and J
         markers: [u32; 2],
     },
+    /// an equation would follow from others if axes were aligned exactly, and is left out
+    LeftOut {
+        /// the joint
+        element: ElementId,
+        /// the equation that is off most
+        equation: String,
+        /// by how much, in rad or as a length
+        off: f64,
+        /// how much is permitted, likewise
+        limit: f64,
+        /// whether these are lengths
+        is_length: bool,
+        /// unit of lengths
+        unit: String,
+    },
     /// displacements do not sum up to zero where they are assembled
     HeldSum {
         /// the COUPLER or GEAR
@@ -88,6 +103,7 @@ impl AssemblyWarning {
                 "wrong_way_round"
             }
             AssemblyWarning::Coincident { .. } => "coincident",
+            AssemblyWarning::LeftOut { .. } => "redundant",
             AssemblyWarning::HeldSum { .. } => "held_sum",
         }
     }
@@ -103,6 +119,7 @@ impl AssemblyWarning {
             | AssemblyWarning::WrongWayRound { element, .. }
             | AssemblyWarning::OppositeAngle { element, .. }
             | AssemblyWarning::Coincident { element, .. }
+            | AssemblyWarning::LeftOut { element, .. }
             | AssemblyWarning::HeldSum { element, .. } => element,
         }
     }
@@ -163,6 +180,21 @@ impl fmt::Display for AssemblyWarning {
                 ElementKind::Marker.id(*i),
                 ElementKind::Marker.id(*j)
             ),
+            AssemblyWarning::LeftOut {
+                equation,
+                off,
+                limit,
+                is_length,
+                unit,
+                ..
+            } => {
+                let [off, limit] = [off, limit].map(|x| amount(*x, *is_length, unit));
+                write!(
+                    f,
+                    "{name}: {equation} is redundant but for a misalignment of {off}, and is left out \
+                     (IC/ERROR permits {limit})"
+                )
+            }
             AssemblyWarning::HeldSum { sum, .. } => write!(
                 f,
                 "{name}: its displacements sum up to {sum:.6e} where they are assembled; \

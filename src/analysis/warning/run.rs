@@ -1,6 +1,6 @@
 //! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
 
-use crate::analysis::quantity::{place, short};
+use crate::analysis::quantity::{amount, place, short};
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, ElementKind};
 use crate::results::{Quantity, RankChange, RowChange};
@@ -10,10 +10,25 @@ use std::fmt;
 /// Something that a simulation met.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunWarning {
-    /// a dynamic simulation of a mechanism without freedom
+    /// a dynamic simulation of a mechanism that motions move alone
     NoFreedom,
     /// contacts push in a run in which nothing can give way
     ContactsWithoutFreedom(Vec<ElementId>),
+    /// a dynamic simulation of parts that nothing moves: their constraints hold them
+    Held,
+    /// a row that was left out as redundant within tolerance went beyond it
+    BeyondTolerance {
+        /// when it was farthest off
+        at: f64,
+        /// "JOINT/4 Zi.Xj"
+        row: String,
+        /// how far, in rad or as a length
+        off: f64,
+        /// whether that is a length
+        is_length: bool,
+        /// unit of lengths
+        unit: String,
+    },
     /// a simulation would end before it begins
     NothingToSimulate {
         /// text of the command
@@ -92,7 +107,8 @@ impl RunWarning {
     /// Returns its stable short name.
     pub(super) fn code(&self) -> &'static str {
         match self {
-            RunWarning::NoFreedom => "freedom",
+            RunWarning::NoFreedom | RunWarning::Held => "freedom",
+            RunWarning::BeyondTolerance { .. } => "redundant",
             RunWarning::ContactsWithoutFreedom(_) => "no_effect",
             RunWarning::NothingToSimulate { .. } => "nothing_to_simulate",
             RunWarning::MotionJumps { .. } => "motion_jumps",
@@ -122,7 +138,9 @@ impl RunWarning {
             RunWarning::Gap { column, .. } => Some(column.clone()),
             RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(|id| id.to_string()),
             RunWarning::OutsideData { element, .. } => Some(element.to_string()),
+            RunWarning::BeyondTolerance { row, .. } => Some(row.clone()),
             RunWarning::NoFreedom
+            | RunWarning::Held
             | RunWarning::NothingToSimulate { .. }
             | RunWarning::Rank(_)
             | RunWarning::Unstable { .. }
@@ -138,14 +156,22 @@ impl fmt::Display for RunWarning {
             RunWarning::NoFreedom => {
                 f.write_str("the mechanism has no freedom: it is moved by its motions alone")
             }
-            RunWarning::ContactsWithoutFreedom(contacts) => {
-                let names: Vec<String> = contacts.iter().map(ToString::to_string).collect();
-                write!(
-                    f,
-                    "{}: in a kinematic run a contact pushes and moves nothing; motions go on through what is in their way",
-                    names.join(", ")
-                )
+            RunWarning::ContactsWithoutFreedom(contacts) => idle_contacts(contacts, f),
+            RunWarning::Held => {
+                f.write_str("no part can move: the constraints hold all of them where they are")
             }
+            RunWarning::BeyondTolerance {
+                at,
+                row,
+                off,
+                is_length,
+                unit,
+            } => write!(
+                f,
+                "{row} was left out as redundant, but is off by {} at time {at:.9}: \
+                 more than IC/ERROR permits",
+                amount(*off, *is_length, unit)
+            ),
             RunWarning::NothingToSimulate { command, now } => write!(
                 f,
                 "{command}: the clock shows {now} already, there is nothing to simulate"
@@ -191,17 +217,7 @@ impl fmt::Display for RunWarning {
                 "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} \
                  steps, which are as exact as rounding permits"
             ),
-            RunWarning::EnergyGrows { factor, fed_by } => {
-                write!(
-                    f,
-                    "the motion grows without bound: its energy is {factor:.1e} times that of the \
-                     first quarter of the run"
-                )?;
-                match fed_by {
-                    Some(id) => write!(f, "; {id} feeds it: is the sign of its damping right?"),
-                    None => Ok(()),
-                }
-            }
+            RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, *fed_by, f),
             RunWarning::StabilityLimited { limited, steps } => write!(
                 f,
                 "the model is stiff: in {limited} of {steps} steps stability, not the error asked \
@@ -240,6 +256,29 @@ fn outside_data(
         short(value),
         short(since)
     )
+}
+
+/// Writes which contacts push in a run in which nothing can give way.
+fn idle_contacts(contacts: &[ElementId], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let names: Vec<String> = contacts.iter().map(ToString::to_string).collect();
+    write!(
+        f,
+        "{}: in a kinematic run a contact pushes and moves nothing; motions go on through what is in their way",
+        names.join(", ")
+    )
+}
+
+/// Writes by how much the energy of a motion grows, and what feeds it.
+fn growth(factor: f64, fed_by: Option<ElementId>, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    write!(
+        f,
+        "the motion grows without bound: its energy is {factor:.1e} times that of the first quarter \
+         of the run"
+    )?;
+    match fed_by {
+        Some(id) => write!(f, "; {id} feeds it: is the sign of its damping right?"),
+        None => Ok(()),
+    }
 }
 
 /// Writes when and where the rank of the constraints changes.

@@ -149,6 +149,16 @@ RADAU5, BDF and HHT take steps as long as the slow motion permits; AUTO changes 
         explanation: "`cognate verify` counts its equations, but cannot tell which motions it forbids: the freedom from the rank is without it.",
     },
     Code {
+        name: "redundant",
+        summary: "an equation of a joint would follow from others if the axes of the model were aligned exactly",
+        explanation: "\
+Four parallel axes make a four-bar that moves; tilted by any angle, however small, they make a structure. Axes in files are rounded, so an
+equation that depends on others but for IC/ERROR (in rad, and as a part of the size of its loop; 1e-4 when nobody says) is left out, and
+told with how far it is off. One that is off by more and locks its loop is refused by name. Give the axes all their digits to be rid of it.
+
+    IC/ERROR=1E-6",
+    },
+    Code {
         name: "wrong_way_round",
         summary: "a joint is assembled with axes that point against each other, or a motion at an opposite angle",
         explanation: "Its equations hold either way. Turn one of its markers by 180 degrees, or the parts, if the other way is meant.",
