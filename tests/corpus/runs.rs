@@ -627,7 +627,7 @@ fn a_planar_robot_is_put_together_as_in_adams_with_its_initial_condition_as_view
     let model = Model::read(folder.join("Fkinev1.adm")).unwrap();
     assert_eq!(
         model.joints[&20].ic_translation,
-        [Some(-0.1815), Some(-146.9925875)]
+        [Some(-146.9925875), Some(-0.1815)]
     );
     let (session, values) = at_the_start(model, &["DZ(3,4,4)", "VZ(3,4,4,4)"], true);
     let warnings = &session.run.record.warned();

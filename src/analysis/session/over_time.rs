@@ -203,7 +203,6 @@ fn methods(trajectory: &Trajectory) -> String {
             Takeover::Stiff => "steps were limited by stiffness",
             Takeover::Eased => "branches changed",
             Takeover::Slides => "the motion stays where a function changes its branch",
-            Takeover::Fails => "the method before could not go on",
         };
         text += &format!(", then {name} from {t}, where {why}");
     }

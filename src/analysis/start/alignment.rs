@@ -50,6 +50,8 @@ const MAX_ITERATIONS: usize = 60;
 const ARRIVED: f64 = 1e-10;
 /// Longest change of a coordinate in one iteration.
 const LONGEST_STEP: f64 = 0.5;
+/// Way by which motions are moved to look nearby, in rad or parts of the length of the scene.
+const DRIVEN: f64 = 0.05;
 /// Places nearby at which rows are measured, and the steps that lead there, the first first.
 const PLACES: usize = 2;
 const STEPS: [(f64, bool); 5] = [
@@ -369,6 +371,7 @@ impl<'s> Search<'s> {
     /// Measures how far each of some rows is from following from the others, here and nearby.
     fn measure(&self, configuration: &Configuration, q: &[f64], nearly: &[usize]) -> Vec<Misfit> {
         let mut found = self.misfits(configuration, q, nearly);
+        self.measure_driven(configuration, q, nearly, &mut found);
         let here = self.scene.within(configuration);
         let Some(mut around) = Surroundings::new(here, self.t, q, self.x) else {
             return found;
@@ -389,6 +392,57 @@ impl<'s> Search<'s> {
             }
         }
         found
+    }
+
+    /// Measures rows where the motions stand a little further or less far, if that can be reached:
+    /// a driven loop near its dead point is no misalignment.
+    fn measure_driven(
+        &self,
+        configuration: &Configuration,
+        q: &[f64],
+        nearly: &[usize],
+        found: &mut [Misfit],
+    ) {
+        let here = self.scene.within(configuration);
+        let numbers = assemble::numbers(here, self.t, q, &vec![0.0; self.unit.len()], self.x);
+        let at = Equations::new(here, &numbers);
+        let prescribed: Vec<f64> = (0..self.scene.motions.len())
+            .map(|m| at.prescribed(m).value)
+            .collect();
+        if prescribed.is_empty() {
+            return;
+        }
+        for way in [DRIVEN, -DRIVEN] {
+            let mut there = configuration.clone();
+            for (m, motion) in there.motions.iter_mut().enumerate() {
+                motion.stands_at = Some(prescribed[m] + way * self.unit_of_motion(m));
+            }
+            let mut q = q.to_vec();
+            let held = |scene: Configured<'_>, r: usize| scene.is_held(r);
+            let closed = assemble::close(self.scene, &mut there, self.t, &mut q, self.x, held);
+            if closed.size.is_nan() || closed.size > CLOSED {
+                continue;
+            }
+            let nearby = self.misfits(&there, &q, nearly);
+            for (here, nearby) in found.iter_mut().zip(nearby) {
+                let growth = (nearby.gap - here.gap).abs() / DRIVEN;
+                here.off = here.off.max(nearby.off - nearby.gap).max(growth);
+            }
+            return;
+        }
+    }
+
+    /// Returns what counts as one in the displacement of a motion: rad, or the length of the scene.
+    fn unit_of_motion(&self, m: usize) -> f64 {
+        let scene = self.scene;
+        let is_angle = match scene.motions[m].coordinate {
+            Some(c) => scene.coordinates[c].angular,
+            None => scene.rows.iter().enumerate().any(|(r, row)| {
+                let own = matches!(row.kind, RowKind::Markers { motion: Some(of), .. } if of == m);
+                own && !is_length(scene, r)
+            }),
+        };
+        if is_angle { 1.0 } else { scene.length }
     }
 
     /// Measures gaps of some rows, and what they determine beyond the others, at one place.
@@ -429,7 +483,9 @@ impl<'s> Search<'s> {
         q: &[f64],
         beyond: &[Misfit],
     ) -> Vec<Diagnostic> {
-        if beyond.is_empty() {
+        // a driven loop near its dead point has such rows, too: assembly and the run find those that
+        // cannot be satisfied
+        if beyond.is_empty() || !self.scene.motions.is_empty() {
             return Vec::new();
         }
         let rows = self.rows(configuration, q);

@@ -68,9 +68,6 @@ impl<'a> Course<'a> {
     /// The reason why there is none.
     fn go_on(&mut self, finished: Finished, method: &dyn Method<System>) -> Result<(), Ended> {
         (self.name, self.why) = match finished {
-            Finished::Ended(Ended::Stop(stop)) if self.may_fail(stop.reason) => {
-                ("RADAU5".into(), Takeover::Fails)
-            }
             Finished::Ended(why) => return Err(why),
             Finished::Rows(_) => {
                 self.restarts += 1;
@@ -94,15 +91,6 @@ impl<'a> Course<'a> {
             Finished::Slides => ("RADAU5".into(), Takeover::Slides),
         };
         Ok(())
-    }
-
-    /// Returns whether another method may succeed where this one did not.
-    fn may_fail(&self, reason: Reason) -> bool {
-        let cannot = matches!(
-            reason,
-            Reason::ErrorTest(_) | Reason::Newton(_) | Reason::Singular(_) | Reason::Stalled(_)
-        );
-        cannot && numeric::is_implicit(&self.name)
     }
 }
 

@@ -33,8 +33,6 @@ pub enum Takeover {
     Eased,
     /// the motion stays where a function changes its branch
     Slides,
-    /// the one before could not go on
-    Fails,
 }
 
 /// States at the output times that were reached.
