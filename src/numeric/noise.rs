@@ -43,6 +43,9 @@ const FADING: f64 = 0.9;
 const ROUNDED_SHARE_OF_BOUND: f64 = 0.25;
 /// Relative error above which nothing is taken for rounding.
 const LARGEST_NOISE: f64 = 1e-6;
+/// The same over the permitted error: what does not repeat may also be a curve through data, whose
+/// third derivative jumps at each point, and that must not cost more than a digit and a half.
+const NOISE_PER_TOLERANCE: f64 = 30.0;
 /// The same where only (1) has been measured.
 const LARGEST_PROBED: f64 = 5e-9;
 /// τ of (3), as a part of the step.
@@ -89,9 +92,13 @@ pub struct Probed<'a> {
 }
 
 /// Returns the relative error above which nothing is taken for rounding; `alike`: the two estimates
-/// of the step are.
-pub fn largest(alike: bool) -> f64 {
-    if alike { LARGEST_NOISE } else { LARGEST_PROBED }
+/// of the step are, `tolerance`: the relative error that is permitted.
+pub fn largest(alike: bool, tolerance: f64) -> f64 {
+    if alike {
+        (NOISE_PER_TOLERANCE * tolerance).clamp(LARGEST_PROBED, LARGEST_NOISE)
+    } else {
+        LARGEST_PROBED
+    }
 }
 
 impl Noise {
@@ -134,13 +141,14 @@ impl Noise {
         if !alike {
             return probed;
         }
+        let tolerance = at.weights.tolerance();
         if self.differenced != Some(at.t) {
             let size = self.difference(problem, at, h, [probe, rate], stats);
             self.largest = size.max(FADING * self.largest);
             self.differenced = Some(at.t);
         }
         (ESTIMATE_PER_DIFFERENCE * h * self.largest)
-            .min(LARGEST_NOISE)
+            .min(largest(alike, tolerance))
             .max(probed)
     }
 

@@ -333,7 +333,7 @@ impl Dop853 {
         }
         let alike = worst3 < ALIKE_RATIO * worst5;
         let suspect = error > 1.0 || error > SUSPECT_ERROR && alike;
-        let largest = noise::largest(alike);
+        let largest = noise::largest(alike, self.weights.tolerance());
         if suspect && error < scale * largest {
             // the rest is measured against rounding, where that is more than the request
             let explained =
