@@ -614,7 +614,7 @@ fn what_is_wrong_with_curves_is_said() {
         )
     };
     let (code, what) = refused(&beside(1.0, &line, ""));
-    assert_eq!(code, "curve_left");
+    assert_eq!(code, "curve_left", "{what}");
     assert!(
         what.contains("CVCV/1") && what.contains("CURVE/2") && what.contains("first point (-0.1"),
         "{what}"

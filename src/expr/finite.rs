@@ -84,8 +84,8 @@ fn of_call(ast: &Ast, callee: Callee, args: &[NodeIx], worst: Risk) -> Risk {
             Handling::Passes => worst,
             Handling::PassesWithDomain => worst.max(Risk::NotANumber),
             Handling::LosesInfinity | Handling::Loses => {
-                // parameters that are literals were checked when the text was read; the point (0, 0)
-                // has no angle, whatever its first coordinate
+                // parameters that are literals were checked when the text was read; the point
+                // (0, 0) has no angle
                 let mut parameters = args.iter().skip(1).map(|&a| literal(ast, a));
                 let fixed = match f {
                     Function::Atan2 => parameters.any(|x| x.is_some_and(|x| x != 0.0)),

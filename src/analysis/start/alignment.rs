@@ -483,8 +483,8 @@ impl<'s> Search<'s> {
         q: &[f64],
         beyond: &[Misfit],
     ) -> Vec<Diagnostic> {
-        // a driven loop near its dead point has such rows, too: assembly and the run find those that
-        // cannot be satisfied
+        // a driven loop near its dead point has such rows, too: assembly and the run find those
+        // that cannot be satisfied
         if beyond.is_empty() || !self.scene.motions.is_empty() {
             return Vec::new();
         }

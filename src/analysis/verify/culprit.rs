@@ -45,6 +45,10 @@ pub(in crate::analysis) fn blamed(model: &Model, said: Vec<Diagnostic>) -> Vec<D
 
 /// The same of a model without what has no influence on its freedoms.
 pub(super) fn traced(model: &Model, said: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    // a curve that is left, or that has no tangent in common, is fault enough
+    if said.iter().any(|d| d.code != "assembly") {
+        return said;
+    }
     let mut suspects = suspects(model);
     if suspects.is_empty() {
         return said;
