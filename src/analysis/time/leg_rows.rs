@@ -69,6 +69,7 @@ impl Leg<'_> {
         let patience = STANDING_TIME * (self.limits.end - self.limits.start);
         let leaves = match turned.is_empty() {
             true => sides.stands([&from, &to], [step.t0, step.t1], patience),
+            false if !sides.can_judge(&turned) => false,
             false => !sides.meet(self.system, (&turned, &from), [&ends[0], &ends[1]]),
         };
         self.sides = Some(sides);

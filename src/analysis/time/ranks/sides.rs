@@ -25,6 +25,8 @@ use std::collections::BTreeMap;
 /// Rows of the largest loop whose eigenvalues are found; of a larger one the sign of the
 /// determinant must do.
 const MAX_EIGENVALUES: usize = 60;
+/// Rows of the largest loop in free motion of which a near miss of branches is judged.
+const MAX_JUDGED: usize = 12;
 /// Imaginary part of an eigenvalue that counts as real, over its real part: a turn of the rows by
 /// 150° is not the passage of a singular position.
 const NEARLY_REAL: f64 = 0.5;
@@ -159,6 +161,13 @@ impl Sides {
             if chosen.len() < n { 0.0 } else { least }
         };
         loops.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns true if a near miss of branches can be told from their meeting: large loops come
+    /// through several dependent positions at once.
+    pub fn can_judge(&self, loops: &[usize]) -> bool {
+        let rows = |&k: &usize| self.loops[k].rows.len();
+        loops.iter().map(rows).all(|n| n <= MAX_JUDGED)
     }
 
     /// Finds out whether two states between which loops have turned are on branches that meet:
