@@ -196,7 +196,7 @@ const PENDULUM: &str = "PART/3, MASS=0.001, CM=30, IP=1E-3,1E-3,1E-3\nMARKER/30,
 
 #[test]
 fn a_motion_of_a_body_angle_goes_through_turns() {
-    for axis in 0..3 {
+    for (axis, measure) in MEASURES.iter().enumerate() {
         for speed in [TAU, -2.5] {
             for (analysis, more) in [
                 (Analysis::Kinematic, ""),
@@ -209,7 +209,7 @@ fn a_motion_of_a_body_angle_goes_through_turns() {
                     let mut s = session(&text, &MEASURES, 1e-6);
                     go(&mut s, analysis, 4.0, steps);
                     let times = values(&s, "time").iter();
-                    for (t, found) in times.zip(values(&s, MEASURES[axis])) {
+                    for (t, found) in times.zip(values(&s, measure)) {
                         let off = found - 3.0 - speed * t;
                         assert!(
                             off.abs() < 1e-5,

@@ -53,9 +53,9 @@ pub struct EquilibriumSettings {
     pub error: Option<f64>,
     /// IMBALANCE: largest force or torque that may remain
     pub imbalance: Option<f64>,
-    /// TLIMIT: largest translation in one iteration   [length]
+    /// TLIMIT: largest translation in one iteration   \[length\]
     pub tlimit: Option<f64>,
-    /// ALIMIT: largest rotation in one iteration   [rad]
+    /// ALIMIT: largest rotation in one iteration   \[rad\]
     pub alimit: Option<f64>,
     /// MAXIT: most iterations
     pub maxit: Option<f64>,

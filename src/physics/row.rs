@@ -67,9 +67,9 @@ pub enum Law {
 pub struct Drive<S> {
     /// what its own MOTION prescribes   [rad, length]
     pub value: S,
-    /// what the MOTION of the angle beside it prescribes; zero where there is none   [rad]
+    /// what the MOTION of the angle beside it prescribes; zero where there is none   \[rad\]
     pub beside: S,
-    /// β₁ as it was assembled, on the side of the driven β₂   [rad]
+    /// β₁ as it was assembled, on the side of the driven β₂   \[rad\]
     pub reference: f64,
 }
 

@@ -39,7 +39,7 @@ pub enum Reason {
     },
     /// the planes of the two curves are inclined to each other
     NotCoplanar {
-        /// by how much   [deg]
+        /// by how much   \[deg\]
         angle: f64,
         /// the markers in whose x-y planes they lie
         markers: [ElementId; 2],
@@ -55,9 +55,9 @@ pub enum Reason {
 pub struct Ahead {
     /// speed along the curve   [length/time]
     pub speed: f64,
-    /// way at that speed until the run ends   [length]
+    /// way at that speed until the run ends   \[length\]
     pub way: f64,
-    /// end of the run   [time]
+    /// end of the run   \[time\]
     pub until: f64,
 }
 

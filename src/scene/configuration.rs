@@ -72,7 +72,7 @@ pub struct MotionStart {
     pub begun: bool,
     /// The displacement at which it stands still in place of following its function.
     pub stands_at: Option<f64>,
-    /// The first body angle where it is a body angle between markers.   [rad]
+    /// The first body angle where it is a body angle between markers.   \[rad\]
     pub reference: f64,
 }
 
@@ -88,10 +88,10 @@ pub struct ContactStart {
 /// The beginning of an angle whose turns are counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurnStart {
-    /// The angle before the first step.   [rad]
+    /// The angle before the first step.   \[rad\]
     pub angle: f64,
     /// Whole turns between the angle and the sum of coordinates that it is; `None`: the angle is
-    /// the value nearest to the one last accepted.   [rad]
+    /// the value nearest to the one last accepted.   \[rad\]
     pub offset: Option<f64>,
 }
 
@@ -153,7 +153,7 @@ impl Configuration {
         rows.filter(|(_, active)| **active).map(|(r, _)| r)
     }
 
-    /// Returns the counted angles before the first step   (n_turns)   [rad]
+    /// Returns the counted angles before the first step   (n_turns)   \[rad\]
     pub fn angles(&self) -> impl Iterator<Item = f64> {
         self.turns.iter().map(|start| start.angle)
     }

@@ -16,7 +16,7 @@ pub enum Untouchable {
         curve: ElementId,
         /// the GRAPHICS that draws it
         graphics: ElementId,
-        /// how far it leaves the x-y plane of its marker   [length]
+        /// how far it leaves the x-y plane of its marker   \[length\]
         height: f64,
     },
     /// the file of a shell cannot be used

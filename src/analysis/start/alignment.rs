@@ -14,7 +14,7 @@
 //! Four parallel axes make a planar four-bar, which moves; tilted by any angle, however small, they
 //! make a structure. Files have axes of six or seven digits. So lengths are compared with the size
 //! of a row's own loop, angles with one radian, and the tolerance is IC/ERROR. Its default here,
-//! [`TOLERANCE`], is twenty times the rounding of six digits, as the errors of several markers add
+//! `TOLERANCE`, is twenty times the rounding of six digits, as the errors of several markers add
 //! up in a loop; Adams finds redundant rows by pivots and needs no such number.
 //!
 //! A position where rows depend on each other in passing (a folded parallelogram) is no

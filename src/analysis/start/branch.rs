@@ -103,7 +103,7 @@ fn short_way(by: f64) -> f64 {
 }
 
 /// Returns the turn that the orientation rows of a tie ask for; `None` where it has none.
-/// `normal`: which of [`NORMALS`] is taken where axes are opposite.
+/// `normal`: which of `NORMALS` is taken where axes are opposite.
 pub fn of_tie(
     laws: &[Law],
     i: &Frame<f64>,

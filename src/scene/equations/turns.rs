@@ -12,7 +12,7 @@ use crate::scene::{CoordinateSum, Source};
 /// An angle whose turns are counted, and how fast it changes.
 #[derive(Clone, Copy, Debug)]
 pub struct TurnedAngle<S> {
-    /// the angle with its turns   [rad]
+    /// the angle with its turns   \[rad\]
     pub angle: S,
     /// its rate   [rad/time]
     pub rate: S,
