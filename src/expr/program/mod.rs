@@ -34,6 +34,7 @@ mod machine;
 mod node;
 mod operation;
 mod order;
+#[cfg(feature = "solver")]
 mod peaks;
 mod record;
 mod replay;
