@@ -36,7 +36,21 @@ pub struct Dataset<'a> {
 /// An assembled dataset, and where contacts on curves were asked to begin.
 type Assembled = Result<(Assembly, Vec<cams::Start>), Vec<Diagnostic>>;
 
-impl Dataset<'_> {
+impl<'a> Dataset<'a> {
+    /// Returns the dataset as it is drawn, at time 0, with the initial conditions of its joints.
+    ///
+    /// `x`: states   (n_x)
+    pub fn drawn(scene: &'a Scene, model: &'a Model, x: &'a [f64]) -> Self {
+        Self {
+            scene,
+            model,
+            t: 0.0,
+            x,
+            joints: true,
+            conditions: &[],
+        }
+    }
+
     /// Moves `q` from where it is drawn to where the dataset is assembled.
     ///
     /// # Errors

@@ -173,14 +173,7 @@ fn moved_without(model: &Model, id: ElementId) -> Option<f64> {
     let mut configuration = Configuration::new(&scene);
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
-    let drawn = Dataset {
-        scene: &scene,
-        model: &model,
-        t: 0.0,
-        x: &x,
-        joints: true,
-        conditions: &[],
-    };
+    let drawn = Dataset::drawn(&scene, &model, &x);
     drawn.assemble(&mut configuration, &mut q).ok()?;
     let here = scene.within(&configuration);
     velocities::velocities(here, &model, 0.0, &q, &x).ok()?;

@@ -288,14 +288,7 @@ pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
     let mut configuration = Configuration::new(&scene);
     let mut q = scene.initial_q.clone();
     let x = start(&scene, &model, &mut q);
-    let drawn = Dataset {
-        scene: &scene,
-        model: &model,
-        t: 0.0,
-        x: &x,
-        joints: true,
-        conditions: &[],
-    };
+    let drawn = Dataset::drawn(&scene, &model, &x);
     let (assembly, starts) = match drawn.assemble(&mut configuration, &mut q) {
         Ok(assembled) => assembled,
         Err(contradictions) => {

@@ -94,14 +94,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     }
     let mut q = scene.initial_q.clone();
     let x = start(&scene, model, &mut q);
-    let drawn = Dataset {
-        scene: &scene,
-        model,
-        t: 0.0,
-        x: &x,
-        joints: true,
-        conditions: &[],
-    };
+    let drawn = Dataset::drawn(&scene, model, &x);
     let (assembly, _) =
         (drawn.assemble(&mut configuration, &mut q)).map_err(|said| blamed(model, said))?;
     let here = scene.within(&configuration);
