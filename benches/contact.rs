@@ -1,11 +1,13 @@
 //! What stiffness does to a contact: the difference from rigid contact, ours against k and rapier's, and what each costs.
 //!
-//! `cargo bench --bench contact`. Each row is one experiment of `tests/contact_rapier.rs`; the number is the largest difference
+//! `cargo bench --bench contact`. Each row is one experiment of `tests/forces/contact_rapier.rs`; the number is the largest difference
 //! from the closed form of rigid bodies, relative to the speed or length of the experiment, then the milliseconds of the
 //! run. rapier's column is for its step of 1 ms; its error does not depend on a stiffness.
 
 #[path = "../tests/common/contacts.rs"]
 mod contacts;
+#[path = "../tests/common/running.rs"]
+mod running;
 
 use contacts::*;
 use std::time::Instant;

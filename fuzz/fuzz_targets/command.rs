@@ -3,6 +3,9 @@
 #![no_main]
 
 #[allow(dead_code)]
+#[path = "../../tests/common/meaning.rs"]
+mod meaning;
+#[allow(dead_code)]
 #[path = "../../tests/common/models.rs"]
 mod models;
 

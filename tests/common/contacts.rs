@@ -1,8 +1,7 @@
 //! Models of spheres and boxes in contact, for us and for rapier, with their closed forms.
 #![allow(dead_code)] // each program uses its own part
 
-#[path = "running.rs"]
-mod running;
+use super::running;
 
 use rapier3d_f64::prelude::*;
 pub use running::{Analysis, Session, last};

@@ -11,8 +11,7 @@ use meaning::{difference, meaning};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-#[path = "meaning.rs"]
-mod meaning;
+use super::meaning;
 
 /// Bytes as choices; zeros when they are used up.
 struct Choices<'a>(&'a [u8]);

@@ -1,0 +1,22 @@
+//! Analyses: integrators, runs against references, statics, modes, systems with states of their own. A module a claim's subject; see `tests/README.md`.
+#![cfg(feature = "solver")]
+
+#[path = "../common/counting.rs"]
+mod counting;
+#[path = "../problems/mod.rs"]
+mod problems;
+#[path = "../common/requests.rs"]
+mod requests;
+#[path = "../common/running.rs"]
+mod running;
+
+mod allocations;
+mod integrators;
+mod linear;
+mod loops;
+mod messages;
+mod methods_outside;
+mod references;
+mod saved;
+mod statics;
+mod systems;

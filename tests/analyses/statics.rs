@@ -1,0 +1,334 @@
+//! Equilibria against closed forms: rest by contact, chains, arches, springs; what is said when there is none.
+
+use crate::running;
+
+use cognate::results::Status;
+use running::{Analysis, GROUND, Session, begin, go, last, options, rest, try_to, whole};
+
+fn data(name: &str) -> String {
+    let path = format!(
+        "{}/tests/data/references/{name}",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+fn session(text: &str, columns: &[&str]) -> Session {
+    begin(whole(text), "test", options(columns, 1e-6))
+}
+
+fn reference(name: &str) -> Vec<Vec<f64>> {
+    let text = data(name);
+    let rows = text.lines().skip(1);
+    rows.map(|l| l.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect()
+}
+
+fn stable(s: &Session) {
+    let found = &s.run.record.method;
+    assert!(found.ends_with("EQUILIBRIUM, stable"), "{found}");
+}
+
+/// Why a model finds no equilibrium.
+fn cannot_rest(text: &str) -> String {
+    let mut s = session(text, &[]);
+    let status = try_to(&mut s, Analysis::Static, 0.0, 1);
+    assert_eq!(status, Status::NoEquilibrium);
+    s.run.record.stop_reason
+}
+
+#[test]
+fn a_sphere_rests_as_deep_as_its_weight_presses_it() {
+    let text = data("static_sphere.adm");
+    for row in reference("static_sphere.csv") {
+        let k = format!("{:E}", row[0]);
+        let mut s = session(&text.replace("1.0E8,", &format!("{k},")), &["DZ(2,1)"]);
+        rest(&mut s);
+        let z = last(&s, "DZ(2,1)");
+        println!("k {k}: {z} in {:?}", s.run.record.counts);
+        assert!((z - row[1]).abs() < 1e-12, "{z} against {}", row[1]);
+        stable(&s);
+    }
+}
+
+#[test]
+fn a_sphere_falls_onto_the_plane_it_did_not_touch() {
+    let text = data("static_sphere.adm");
+    let text = text.replace(
+        "MARKER/4, PART=1, QP=0.0,0.0,0.05",
+        "MARKER/4, PART=1, QP=0.0,0.0,-3",
+    );
+    let text = text.replace(
+        "MARKER/3, PART=2, QP=0.0,0.0,0.05",
+        "MARKER/3, PART=2, QP=0.0,0.0,-3",
+    );
+    let text = text.replace("PART/2,", "PART/2, QG=0,0,3,");
+    let mut s = session(&text, &["DZ(2,1)"]);
+    rest(&mut s);
+    println!("{:?}", s.run.record.counts);
+    assert!((last(&s, "DZ(2,1)") - 4.997_872_941_970_745e-2).abs() < 1e-12);
+}
+
+#[test]
+fn a_chain_hangs_as_it_should_from_a_start_like_a_v() {
+    let columns: Vec<String> = (1..20)
+        .flat_map(|k| {
+            let m = 22 + 2 * k;
+            [format!("DX({m},1)"), format!("DY({m},1)")]
+        })
+        .collect();
+    let names: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let mut s = session(&data("static_hanging_chain.adm"), &names);
+    rest(&mut s);
+    println!("{:?} {}", s.run.record.counts, s.run.record.method);
+    for row in &reference("static_hanging_chain.csv")[1..20] {
+        let m = 22 + 2 * row[0] as usize;
+        for (k, d) in ["DX", "DY"].iter().enumerate() {
+            let value = last(&s, &format!("{d}({m},1)"));
+            assert!(
+                (value - row[1 + k]).abs() < 1e-12,
+                "{d} of joint {}: {value}",
+                row[0]
+            );
+        }
+    }
+}
+
+/// Two springs of free length 1 along x meet in a mass that is pressed down: the arch snaps through.
+fn arch(load: f64) -> String {
+    format!(
+        "{GROUND}PART/2, MASS=1, CM=2, QG=0,0.3,0\nMARKER/2, PART=2\n\
+         MARKER/11, PART=1, QP=-1,0,0\nMARKER/12, PART=1, QP=1,0,0\n\
+         MARKER/3, PART=2, QP=0,0,0, REULER=0,90D,0\nMARKER/4, PART=1, QP=0,0.3,0, REULER=0,90D,0\n\
+         MARKER/5, PART=1\n\
+         JPRIM/1, INPLANE, I=2, J=5\nJPRIM/2, ORIENTATION, I=2, J=5\n\
+         SPRINGDAMPER/1, TRANSLATION, I=2, J=11, K=100, C=1, LENGTH=1.0440306508910551\n\
+         SPRINGDAMPER/2, TRANSLATION, I=2, J=12, K=100, C=1, LENGTH=1.0440306508910551\n\
+         VFORCE/1, I=2, JFLOAT=99, RM=1, FX=0\\FY=-{load}\\FZ=0\nMARKER/99, PART=1, FLOATING\n\
+         END\n"
+    )
+}
+
+#[test]
+fn an_arch_holds_a_light_load_and_snaps_through_under_a_heavy_one() {
+    let free = 1.044_030_650_891_055_f64;
+    let balance = |y: f64| {
+        let d = (1.0 + y * y).sqrt();
+        2.0 * 100.0 * (free - d) * y / d
+    };
+    for load in [0.5, 20.0] {
+        let mut s = session(&arch(load), &["DY(2,1)", "DX(2,1)"]);
+        rest(&mut s);
+        let y = last(&s, "DY(2,1)");
+        println!(
+            "{load}: y = {y} {} {:?}",
+            s.run.record.method, s.run.record.counts
+        );
+        assert!((balance(y) - load).abs() < 1e-9, "{} at {y}", balance(y));
+        assert!(last(&s, "DX(2,1)").abs() < 1e-9);
+        assert_eq!(y > 0.0, load < 1.0);
+        stable(&s);
+    }
+}
+
+fn pendulum(angle: &str) -> String {
+    format!(
+        "{GROUND}PART/2, MASS=2, CM=2, IP=0.1,0.1,0.1, REULER={angle},0,0\nMARKER/2, PART=2, QP=0,-1.5,0\n\
+         MARKER/3, PART=2\nJOINT/1, REVOLUTE, I=3, J=1\nACCGRAV/JGRAV=-9.81\nEND\n"
+    )
+}
+
+#[test]
+fn a_pendulum_comes_to_hang_and_its_joint_carries_its_weight() {
+    for angle in ["30D", "90D", "179D"] {
+        let mut s = session(
+            &pendulum(angle),
+            &["DX(2,1)", "JOINT(1,0,3,0)", "JOINT(1,0,8,0)"],
+        );
+        rest(&mut s);
+        assert!(last(&s, "DX(2,1)").abs() < 1e-12);
+        assert!((last(&s, "JOINT(1,0,3,0)") - 2.0 * 9.81).abs() < 1e-12);
+        stable(&s);
+    }
+}
+
+#[test]
+fn a_pendulum_that_stands_on_its_head_stays_and_is_said_to_be_unstable() {
+    let mut s = session(&pendulum("180D"), &["DY(2,1)"]);
+    rest(&mut s);
+    assert!((last(&s, "DY(2,1)") - 1.5).abs() < 1e-12);
+    assert!(
+        s.run.record.method.contains("unstable in 1 direction"),
+        "{}",
+        s.run.record.method
+    );
+    assert_eq!(s.run.record.warnings.len(), 1);
+}
+
+#[test]
+fn what_falls_forever_is_named_with_its_direction() {
+    let text = format!(
+        "{GROUND}PART/2, MASS=2, CM=2, IP=1,1,1\nMARKER/2, PART=2\nACCGRAV/ZGRAV=-9.81\nEND\n"
+    )
+    .replace("ZGRAV", "KGRAV");
+    let why = cannot_rest(&text);
+    assert!(
+        why.contains("force of 1.962")
+            && why.contains("PART/2")
+            && why.contains("(0.000000, 0.000000, -1.000000)"),
+        "{why}"
+    );
+}
+
+#[test]
+fn after_rest_a_simulation_begins_there() {
+    let mut s = session(&pendulum("20D"), &["DX(2,1)", "VX(2,1)"]);
+    rest(&mut s);
+    go(&mut s, Analysis::Dynamic, 1.0, 10);
+    let x = s.run.column("DX(2,1)").unwrap();
+    assert!(x[1..].iter().all(|x| x.abs() < 1e-12), "{x:?}");
+    let kinds: Vec<&str> = s.run.sequences.iter().map(|q| q.name.as_str()).collect();
+    assert_eq!(
+        kinds,
+        ["initialConditions_001", "static_001", "dynamic_001"]
+    );
+}
+
+#[test]
+fn differential_equations_come_to_rest_or_are_held() {
+    let with = |hold: &str| {
+        format!(
+            "{GROUND}PART/2, MASS=1, CM=2\nMARKER/2, PART=2\nMARKER/3, PART=1\n\
+             JPRIM/1, ORIENTATION, I=2, J=3\n\
+             DIFF/1, IC=0.5{hold}, FUNCTION=DX(2,1)-2*DIF(1)\n\
+             VFORCE/1, I=2, JFLOAT=9, RM=1, FX=1-4*DX(2,1)+DIF(1)\\FY=-DY(2,1)\\FZ=-DZ(2,1)\nMARKER/9, PART=1, FLOATING\nEND\n"
+        )
+    };
+    let mut s = session(&with(""), &["DX(2,1)", "DIF(1)"]);
+    rest(&mut s);
+    // x = 2 y, 1 = 4 x − y
+    assert!((last(&s, "DX(2,1)") - 2.0 / 7.0).abs() < 1e-12);
+    assert!((last(&s, "DIF(1)") - 1.0 / 7.0).abs() < 1e-12);
+    let mut s = session(&with(", STATIC_HOLD"), &["DX(2,1)", "DIF(1)"]);
+    rest(&mut s);
+    assert_eq!(last(&s, "DIF(1)"), 0.5);
+    assert!((last(&s, "DX(2,1)") - 1.5 / 4.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_sequence_of_equilibria_follows_a_motion() {
+    let text = pendulum("0D").replace(
+        "ACCGRAV",
+        "MARKER/7, PART=1, QP=0,0,0\nPART/3\nMARKER/8, PART=3\nMARKER/9, PART=3\nJOINT/2, TRANSLATIONAL, I=8, J=12\nMARKER/12, PART=1, REULER=90D,90D,0\nACCGRAV",
+    );
+    let text = text.replace("JOINT/1, REVOLUTE, I=3, J=1", "JOINT/1, REVOLUTE, I=3, J=9");
+    let text = text.replace("MARKER/8, PART=3\n", "MARKER/8, PART=3, REULER=90D,90D,0\n");
+    let text = text.replace(
+        "ACCGRAV",
+        "MOTION/1, JOINT=2, TRANSLATION, FUNCTION=TIME\nACCGRAV",
+    );
+    let mut s = session(&text, &["DX(2,1)", "DY(2,1)", "VX(2,1)"]);
+    go(&mut s, Analysis::Static, 2.0, 4);
+    let x = s.run.column("DX(2,1)").unwrap();
+    for (a, b) in x[1..].iter().zip([0.5, 1.0, 1.5, 2.0]) {
+        assert!((a - b).abs() < 1e-12, "{x:?}");
+    }
+    assert!(
+        s.run.column("VX(2,1)").unwrap()[1..]
+            .iter()
+            .all(|v| *v == 0.0)
+    );
+    assert_eq!(s.run.sequences[1].name, "quasiStatic_001");
+}
+
+/// The hook of a crane as datasets write it: a state that is sought makes the force. It follows at once; a state that came to rest in its own time would be too
+/// late for a spring so stiff, and the load would be thrown up and down.
+#[test]
+fn a_force_made_by_a_state_holds_a_load() {
+    let text = "HOOK\nPART/1, GROUND\nMARKER/1, PART=1\nACCGRAV/KGRAV=-9.81\n\
+                PART/2, MASS=1000, CM=2, IP=1,1,1, QG=0,0,0.5\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\n\
+                DIFF/1, IC=0, FUNCTION=IF(MODE-5: 0, -DIF(1)-1E7*(DZ(2,1)-0.2), 0)\n\
+                SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=DIF(1)\nEND\n";
+    let mut s = session(text, &["DZ(2,1)", "DIF(1)"]);
+    rest(&mut s);
+    println!("{:?}", s.run.record.counts);
+    // a weight of 9810 N on 1e7 N/m; forces are balanced to 1e-13 of those there were
+    assert!((last(&s, "DZ(2,1)") - (0.2 - 9.81e-4)).abs() < 1e-10);
+    assert!((last(&s, "DIF(1)") - 9810.0).abs() < 1e-3);
+    assert!(s.run.record.counts.steps < 60, "{:?}", s.run.record.counts);
+}
+
+/// Three arms of a rotor on stiff bushings: what lies 20 m from where it is held has its place rounded to 4e-15 m, which a stiffness of 1e9 makes a force
+/// of 4e-6 and its lever a moment of 7e-5. The heaviest arm swings down by a moment of 0.2 all the same.
+#[test]
+fn a_rotor_of_stiff_arms_swings_down() {
+    use std::fmt::Write;
+    // the bushings at the axis, and two metres away from it
+    for (radius, begin) in [(0.0, 37.0_f64), (2.0, 47.0)] {
+        let mut text = "ROTOR\nPART/1, GROUND\nMARKER/10, PART=1, REULER=90D,90D,0D\n\
+                        PART/2, MASS=50, CM=20, IP=10,10,10\nMARKER/20, PART=2\nMARKER/21, PART=2, REULER=90D,90D,0D\n\
+                        JOINT/1, REVOLUTE, I=21, J=10\nACCGRAV/KGRAV=-9.80665\n"
+            .to_string();
+        for (k, mass) in [100.0, 100.0, 100.001].into_iter().enumerate() {
+            let (s, c) = (120.0 * k as f64 + begin).to_radians().sin_cos();
+            let (p, inward) = (k + 3, radius - 20.0);
+            write!(
+                text,
+                "PART/{p}, MASS={mass}, CM={p}0, IP=1000,1000,10, QG=0,{},{}\nMARKER/{p}0, PART={p}\n\
+                 MARKER/{p}1, PART={p}, QP=0,{},{}\nMARKER/{p}2, PART=2, QP=0,{},{}\n\
+                 BUSHING/{p}, I={p}1, J={p}2, K=1E9,1E9,1E9, KT=1E8,1E8,1E8\n",
+                20.0 * c,
+                20.0 * s,
+                inward * c,
+                inward * s,
+                radius * c,
+                radius * s,
+            )
+            .unwrap();
+        }
+        let mut s = session(&(text + "END\n"), &["DZ(50)", "DY(50)"]);
+        rest(&mut s);
+        let record = &s.run.record;
+        println!("{} {:?}", record.method, record.counts);
+        assert!(record.method.contains("stable"), "{}", record.method);
+        // the heaviest arm hangs down, as well as its moment of 0.2 per radian is told from the rounding of 7e-5
+        let (z, y) = (last(&s, "DZ(50)"), last(&s, "DY(50)"));
+        assert!(z < -19.9 && y.abs() < 20.0 * 2e-3, "{y} {z}");
+        assert!(record.counts.steps < 200, "{:?}", record.counts);
+    }
+}
+
+#[test]
+fn what_integrates_a_velocity_winds_up_until_it_holds_the_load() {
+    let text = format!(
+        "{GROUND}PART/2, MASS=2, CM=2, IP=1,1,1, QG=0,0,3\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\nACCGRAV/KGRAV=-9.81\n\
+         DIFF/1, IC=0.25, FUNCTION=VZ(2,1)\nSFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=-1E4*DIF(1)\nEND\n"
+    );
+    let mut s = session(&text, &["DZ(2,1)", "DIF(1)"]);
+    rest(&mut s);
+    println!("{} {:?}", s.run.record.method, s.run.record.counts);
+    let wound = -2.0 * 9.81 / 1e4;
+    assert!((last(&s, "DIF(1)") - wound).abs() < 1e-12);
+    // it sinks by as much as it winds up
+    assert!((last(&s, "DZ(2,1)") - (3.0 + wound - 0.25)).abs() < 1e-9);
+    stable(&s);
+}
+
+#[test]
+fn of_what_moves_the_load_that_nothing_carries_is_named() {
+    // the light part is pushed against a stop it can reach; the heavy one, tied to a third, has nothing below
+    let text = format!(
+        "{GROUND}PART/2, MASS=1E-3, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\n\
+         SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION=5-1E-3*DZ(2,1)\n\
+         PART/3, MASS=10, CM=3, IP=1,1,1, QG=5,0,0\nMARKER/3, PART=3\nPART/4, MASS=1, CM=4, IP=1,1,1, QG=5,1,0\nMARKER/4, PART=4\n\
+         MARKER/5, PART=4, QP=0,-1,0\nBUSHING/1, I=5, J=3, K=1E5,1E5,1E5, KT=1E3,1E3,1E3\nACCGRAV/KGRAV=-9.81\nEND\n"
+    );
+    let why = cannot_rest(&text);
+    assert!(
+        why.contains("force of 9.81")
+            && why.contains("on PART/3")
+            && why.contains("(0.000000, 0.000000, -1.000000)")
+            && why.contains("nothing carries it"),
+        "{why}"
+    );
+}

@@ -1,0 +1,27 @@
+//! Mechanisms: constraints, how they are put together, counted, and moved. A module a claim's subject; see `tests/README.md`.
+#![cfg(feature = "solver")]
+
+#[path = "../common/curves.rs"]
+mod curve_shapes;
+#[path = "../common/running.rs"]
+mod running;
+
+mod alignment;
+mod angles;
+mod constraints;
+mod continuation;
+mod curves;
+mod elements;
+mod initial;
+mod joints;
+mod large;
+mod laws;
+mod left_out;
+mod massless;
+mod mechanisms;
+mod misaligned;
+mod ranks;
+mod scene;
+mod singular_passages;
+mod turns;
+mod verify;

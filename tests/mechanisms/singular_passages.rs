@@ -1,0 +1,107 @@
+//! Loops that move freely through positions where their rows are dependent, or near them, by every method and request.
+//!
+//! A crank and a rod of one length, and a parallelogram, go on smoothly where their branches meet; where the branches only come near each
+//! other the motion stays on its own. A method may stop there, by name; it must not jump, nor lose energy, and say nothing.
+
+use crate::running;
+
+use cognate::analysis::watch::Unwatched;
+use cognate::numeric::METHODS;
+use cognate::results::Status;
+use running::{Analysis, Options, begin, model, options_by, values};
+
+/// Steps that a run may try: what takes more is told, and nothing else is asked of it.
+const MAX_STEPS: usize = 6000;
+
+/// A crank of length one, a rod and a slider on one line, which turn with 3 rad/s; the column is how far the slider is off its branch.
+fn crank_and_rod(rod: f64) -> String {
+    format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1, WZ=3\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=1,0,0\n\
+         PART/3, MASS=1, CM=30, IP=1,1,1, QG=1,0,0\nMARKER/30, PART=3\nMARKER/31, PART=3, QP={rod:?},0,0\n\
+         PART/4, MASS=1, CM=40, IP=1,1,1, QG={:?},0,0\nMARKER/40, PART=4\nMARKER/41, PART=4, REULER=90D,90D,0\n\
+         MARKER/11, PART=1, REULER=90D,90D,0\nJOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=21\n\
+         JOINT/3, REVOLUTE, I=31, J=40\nJOINT/4, TRANSLATIONAL, I=41, J=11\n",
+        1.0 + rod
+    )
+}
+
+/// A parallelogram with cranks of 1 and a base of 3, upright at the start, under gravity.
+const PARALLELOGRAM: &str = "PART/2, MASS=1, CM=20, IP=1,1,1, WZ=5\nMARKER/20, PART=2, QP=0,0.5,0\nMARKER/21, PART=2\nMARKER/22, PART=2, QP=0,1,0\n\
+     PART/3, MASS=1, CM=30, IP=1,1,1\nMARKER/30, PART=3, QP=1.5,1,0\nMARKER/32, PART=3, QP=0,1,0\nMARKER/33, PART=3, QP=3,1,0\n\
+     PART/4, MASS=1, CM=40, IP=1,1,1\nMARKER/40, PART=4, QP=3,0.5,0\nMARKER/43, PART=4, QP=3,1,0\nMARKER/44, PART=4, QP=3,0,0\n\
+     MARKER/14, PART=1, QP=3,0,0\nACCGRAV/JGRAV=-3\n\
+     JOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, REVOLUTE, I=32, J=22\nJOINT/3, REVOLUTE, I=43, J=33\nJOINT/4, REVOLUTE, I=44, J=14\n";
+
+/// Runs a loop by every method with some requests: a column vanishes and energy stays, or the run ends by name.
+fn right_or_told(text: &str, column: &str, requests: &[f64]) {
+    let (mut wrong, mut completed) = (Vec::new(), 0);
+    for method in METHODS {
+        for &request in requests {
+            let options = Options {
+                max_steps: Some(MAX_STEPS),
+                ..options_by(&[column], method.name, request)
+            };
+            let mut s = begin(model(text), "loop", options);
+            let status = s
+                .simulate(Analysis::Dynamic, 3.0, 60, &mut Unwatched)
+                .expect("it can be run");
+            let record = &s.run.record;
+            let drift = record.energy_drift.expect("nothing but gravity acts");
+            let off = values(&s, column)
+                .iter()
+                .fold(0.0, |m: f64, x| m.max(x.abs()));
+            // what was put out before it ended is right, too
+            let kept = drift < (500.0 * request).max(1e-6) && off < 1e-6;
+            let said = match status {
+                Status::Completed => true,
+                _ => record.stop_reason.contains("JOINT/") || status == Status::Limit,
+            };
+            completed += usize::from(status == Status::Completed);
+            if !kept || !said {
+                wrong.push(format!(
+                    "{} {request:e}: {status:?}, energy {drift:e}, off {off:e}, {}",
+                    method.name, record.stop_reason
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // most arrive
+    assert!(
+        2 * completed > METHODS.len() * requests.len(),
+        "{completed}"
+    );
+}
+
+const REQUESTS: [f64; 8] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+
+#[test]
+fn a_rod_as_long_as_its_crank_goes_on_smoothly_or_the_run_stops_by_name() {
+    right_or_told(&crank_and_rod(1.0), "DX(40,1)-2*DX(21,1)", &REQUESTS);
+}
+
+#[test]
+fn a_parallelogram_goes_on_smoothly_or_the_run_stops_by_name() {
+    right_or_told(PARALLELOGRAM, "AZ(30,1)", &REQUESTS);
+}
+
+#[test]
+fn a_rod_hardly_longer_than_its_crank_stays_on_its_branch() {
+    for longer in [1e-3, 1e-6, 1e-9] {
+        // 1 + ε − |sin| without cancellation
+        let near = 2.0 * longer + longer * longer;
+        let column = format!("DX(40,1)-COS(AZ(21,1))-SQRT({near:e}+COS(AZ(21,1))**2)");
+        right_or_told(&crank_and_rod(1.0 + longer), &column, &[1e-4, 1e-6, 1e-8]);
+    }
+}
+
+#[test]
+fn a_rod_hardly_shorter_than_its_crank_turns_it_back() {
+    for shorter in [1e-3, 1e-6] {
+        right_or_told(
+            &crank_and_rod(1.0 - shorter),
+            "MIN(COS(AZ(21,1)),0)",
+            &[1e-4, 1e-6, 1e-8],
+        );
+    }
+}

@@ -1,0 +1,13 @@
+//! The program: the command line, files of results, the README. A module a claim's subject; see `tests/README.md`.
+#![cfg(feature = "cli")]
+
+#[path = "../common/command.rs"]
+mod command;
+#[path = "../common/results.rs"]
+mod result_laws;
+
+mod broken;
+mod cli;
+mod cli_eval;
+mod readme;
+mod results;
