@@ -174,6 +174,10 @@ pub fn read_source(source: Source) -> Reading {
         if excused && d.code != "unknown_element" {
             continue;
         }
+        if let Some(given) = argument_of(&records, &d) {
+            out.push(source.locate(d, given));
+            continue;
+        }
         let mut settings = records.iter().flatten().filter(|r| r.id.is_none());
         match settings.find(|r| d.line == 0 && d.element.as_ref() == Some(&r.element())) {
             Some(record) => out.push(source.locate(d, record.head)),
@@ -192,6 +196,17 @@ pub fn read_source(source: Source) -> Reading {
         records,
     };
     reading
+}
+
+/// The place of the argument that a finding is about, if it stands in its element's statement.
+fn argument_of(records: &[Option<Record>], d: &Diagnostic) -> Option<Span> {
+    let (element, argument) = (d.element.as_ref()?, d.argument?);
+    let mut records = records.iter().flatten();
+    let record = records.find(|r| r.element() == *element)?;
+    let arguments = record.row.arguments();
+    let given = record.given.iter();
+    let mut spans = given.filter(|g| arguments[g.argument].keyword() == argument);
+    spans.next().map(|g| g.span)
 }
 
 /// Gives the elements that diagnostics are about the names that stand above their statements.

@@ -54,6 +54,9 @@ pub struct Diagnostic {
     pub column: usize,
     /// the element concerned, for example `SFORCE/3`
     pub element: Option<String>,
+    /// keyword of the argument concerned, for example `IP`; where the element was read from a file,
+    /// the message stands at that argument
+    pub argument: Option<&'static str>,
     /// the name that the file gives the element
     pub name: Option<String>,
     /// further places of the same text, and what stands there
@@ -74,6 +77,7 @@ impl Diagnostic {
             line: 0,
             column: 0,
             element: None,
+            argument: None,
             name: None,
             marks: Vec::new(),
             help: Vec::new(),

@@ -3,7 +3,7 @@
 use cognate::dataset::command::{Command, Script, SimulationKind};
 use cognate::dataset::statement::STATEMENTS;
 use cognate::dataset::{self, Reading};
-use cognate::diagnostic::Severity;
+use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::model::*;
 use std::collections::BTreeSet;
 
@@ -551,6 +551,18 @@ fn all_mistakes_of_a_file_are_reported_at_once() {
     );
 }
 
+/// Returns true unless a message is about an argument that its statement has not, by the table.
+fn is_placed(d: &Diagnostic) -> bool {
+    let (Some(element), Some(argument)) = (&d.element, d.argument) else {
+        return true;
+    };
+    let keyword = element.split('/').next().unwrap();
+    let row = STATEMENTS
+        .iter()
+        .find(|s| s.keyword().eq_ignore_ascii_case(keyword));
+    row.is_some_and(|row| row.arguments().iter().any(|a| a.keyword() == argument))
+}
+
 /// Each file of the folder holds one fault; what is printed stands beside it. With BLESS set the texts are written anew,
 /// to be read before they are kept.
 #[test]
@@ -570,6 +582,9 @@ fn each_bad_input_gets_its_message() {
         let text = std::fs::read_to_string(path).unwrap();
         let found = dataset::read_text(&text).diagnostics;
         assert!(!found.is_empty(), "{} has a fault", path.display());
+        for d in &found {
+            assert!(is_placed(d), "{}: {d}", path.display());
+        }
         let printed = format!("{}\n", dataset::Errors(found));
         let beside = path.with_extension("txt");
         if std::env::var_os("BLESS").is_some() {

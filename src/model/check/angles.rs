@@ -55,11 +55,12 @@ fn orientation(out: &mut Out, who: Who, orientation: &Orientation) {
     number(out, who, "REULER", doubted);
 }
 
-fn number(out: &mut Out, who: Who, argument: &str, angle: Option<f64>) {
+fn number(out: &mut Out, who: Who, argument: &'static str, angle: Option<f64>) {
     let Some((angle, what)) = angle.and_then(|a| Some((a, reads_as_degrees(a)?))) else {
         return;
     };
     warn(out, CODE, who, format!("{argument}: {what}"));
+    at_argument(out, argument);
     advise(
         out,
         format!("the suffix D makes degrees of a literal: {angle}D"),

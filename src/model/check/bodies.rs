@@ -54,6 +54,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
                 who,
                 format!("the mass {} is negative", part.mass),
             );
+            at_argument(out, "MASS");
         }
         if part.mass > 0.0 && part.cm.is_none() && !part.ground {
             error(
@@ -62,6 +63,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
                 who,
                 "it has a mass but no CM".into(),
             );
+            at_argument(out, "MASS");
             advise(out, "CM names the marker at the centre of mass");
         }
         if part.ip != [0.0; 6] && part.cm.is_none() && part.im.is_none() && !part.ground {
@@ -71,6 +73,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
                 who,
                 "it has IP but neither CM nor IM".into(),
             );
+            at_argument(out, "IP");
         }
         for (name, marker) in [("CM", part.cm), ("IM", part.im)] {
             let Some(m) = marker.and_then(|m| model.markers.get(&m).map(|_| m)) else {
@@ -84,6 +87,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
                     who,
                     format!("{name} = {m}: {marker} belongs to another part"),
                 );
+                at_argument(out, name);
             }
             if model.markers[&m].floating {
                 error(
@@ -92,6 +96,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
                     who,
                     format!("{name} = {m}: {marker} is FLOATING"),
                 );
+                at_argument(out, name);
             }
         }
     }
@@ -115,6 +120,7 @@ pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
                 who,
                 "a moment of inertia in IP is negative".into(),
             );
+            at_argument(out, "IP");
             continue;
         }
         let j = Matrix3::new(xx, -xy, -xz, -xy, yy, -yz, -xz, -yz, zz);
@@ -123,6 +129,7 @@ pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
         if moments[0] < -TOLERANCE {
             let message = "the products in IP are too large: no body has this inertia".to_owned();
             warn(out, "impossible_inertia", who, message);
+            at_argument(out, "IP");
             advise(
                 out,
                 "IP is xx, yy, zz, xy, xz, yz; the products are the positive integrals of xy dm …",
@@ -130,26 +137,30 @@ pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
         } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
             let message = "one principal moment is larger than the two others together: no body has this inertia".to_owned();
             warn(out, "impossible_inertia", who, message);
+            at_argument(out, "IP");
         }
     }
 }
 
 pub(super) fn axes_have_directions(model: &Model, out: &mut Out) {
-    let mut check = |who: Who, origin: [f64; 3], orientation: &Orientation, names: [&str; 3]| {
-        let Orientation::Points { z, x, .. } = orientation else {
-            return;
-        };
-        for (point, name) in [(z, names[0]), (x, names[1])] {
-            if *point == Some(origin) {
-                let message = format!("{name} is the origin {}: it gives no direction", names[2]);
+    let mut check =
+        |who: Who, origin: [f64; 3], orientation: &Orientation, names: [&'static str; 3]| {
+            let Orientation::Points { z, x, .. } = orientation else {
+                return;
+            };
+            for (point, name) in [(z, names[0]), (x, names[1])] {
+                if *point == Some(origin) {
+                    let message =
+                        format!("{name} is the origin {}: it gives no direction", names[2]);
+                    error(out, "no_direction", who, message);
+                    at_argument(out, name);
+                }
+            }
+            if z.is_some() && z == x {
+                let message = format!("{} and {} are the same point", names[0], names[1]);
                 error(out, "no_direction", who, message);
             }
-        }
-        if z.is_some() && z == x {
-            let message = format!("{} and {} are the same point", names[0], names[1]);
-            error(out, "no_direction", who, message);
-        }
-    };
+        };
     for (id, p) in bodies(model) {
         check((id, &p.place), p.qg, &p.orientation, ["ZG", "XG", "QG"]);
     }
@@ -182,6 +193,7 @@ pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
                 r.argument, r.target.number, r.target
             );
             warn(out, "not_floating", who, message);
+            at_argument(out, r.argument);
             continue;
         }
         let owner = r.element;
@@ -191,6 +203,7 @@ pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
                 r.argument, r.target.number, r.target
             );
             error(out, "floating_marker_shared", who, message);
+            at_argument(out, r.argument);
             advise(out, "each such element needs a floating marker of its own");
         }
         owners.entry(r.target.number).or_insert(owner);
@@ -205,6 +218,7 @@ pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
                 let message =
                     format!("{name} = {m}: {marker} is FLOATING and has no frame of its own");
                 error(out, "floating_marker", (id, element.place()), message);
+                at_argument(out, name);
             }
         }
     }

@@ -53,6 +53,7 @@ pub(super) fn joints_are_complete(model: &Model, out: &mut Out) {
                     who,
                     "the pitch diameter PD is zero".into(),
                 );
+                at_argument(out, "PD");
             }
             _ => {}
         }

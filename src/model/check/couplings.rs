@@ -14,6 +14,7 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
                     who,
                     format!("{} stands twice in JOINTS", ElementKind::Joint.id(*joint)),
                 );
+                at_argument(out, "JOINTS");
             }
             let Some(kind) = model.joints.get(joint).map(|j| j.kind) else {
                 continue;
@@ -25,6 +26,7 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
         }
         if c.user.is_none() && !c.scales.is_empty() && c.scales.iter().all(|&s| s == 0.0) {
             error(out, "unfit_value", who, "all SCALES are zero".into());
+            at_argument(out, "SCALES");
         }
     }
 }

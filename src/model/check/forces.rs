@@ -17,6 +17,7 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
         let who = (ElementKind::Beam.id(id), &b.place);
         if b.length <= 0.0 {
             error(out, "unfit_value", who, "LENGTH must be positive".into());
+            at_argument(out, "LENGTH");
         }
         for (name, x) in [
             ("AREA", b.area),
@@ -25,6 +26,7 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
         ] {
             if x <= 0.0 {
                 warn(out, "unfit_value", who, format!("{name} is not positive"));
+                at_argument(out, name);
             }
         }
     }

@@ -83,6 +83,7 @@ pub(super) fn springs_have_their_length(model: &Model, out: &mut Out) {
             );
             let who = (ElementKind::SpringDamper.id(id), &s.place);
             warn(out, "unlikely_magnitude", who, message);
+            at_argument(out, "LENGTH");
         }
     }
 }
@@ -138,6 +139,7 @@ pub(super) fn inertia_fits_its_part(model: &Model, out: &mut Out) {
             continue;
         };
         warn(out, "unlikely_magnitude", (id, &part.place), message);
+        at_argument(out, "IP");
         advise(
             out,
             "IP is in the units of MASS times the square of LENGTH: 1 kg m² is 1E6 kg mm²",
@@ -213,6 +215,7 @@ pub(super) fn stiffness_can_be_resolved(model: &Model, out: &mut Out) {
                 short(period)
             );
             warn(out, "unlikely_magnitude", (id, place), message);
+            at_argument(out, argument);
             advise(
                 out,
                 "a joint holds without deformation; a contact is stiff enough where its depth is small against the parts",
@@ -226,6 +229,7 @@ pub(super) fn stiffness_can_be_resolved(model: &Model, out: &mut Out) {
                 short(stop)
             );
             warn(out, "unlikely_magnitude", (id, place), message);
+            at_argument(out, "DAMPING");
         }
     }
 }

@@ -152,6 +152,13 @@ fn warn(out: &mut Out, code: &'static str, who: Who, message: String) {
     out.push(about(Diagnostic::warning(code, message), who));
 }
 
+/// Says that the last finding is about an argument of its element.
+fn at_argument(out: &mut Out, argument: &'static str) {
+    if let Some(d) = out.last_mut() {
+        d.argument = Some(argument);
+    }
+}
+
 fn advise(out: &mut Out, advice: impl Into<String>) {
     if let Some(d) = out.last_mut() {
         d.help.push(advice.into());

@@ -1,6 +1,6 @@
 //! Rules of references: elements that are named exist, and functions can be read.
 
-use super::{Out, about, advise, error, near};
+use super::{Out, about, advise, at_argument, error, near};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expr::Expr;
 use crate::expr::ast::Node;
@@ -16,6 +16,7 @@ pub(super) fn references_exist(model: &Model, out: &mut Out) {
         let number = r.target.number;
         let message = format!("{} = {number}: {} does not exist", r.argument, r.target);
         error(out, "unknown_element", (r.element, r.place), message);
+        at_argument(out, r.argument);
         if let Some(advice) = near(number, &model.numbers(r.target.kind)) {
             advise(out, advice);
         }

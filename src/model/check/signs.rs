@@ -13,47 +13,47 @@ pub(super) fn laws_resist(model: &Model, out: &mut Out) {
         } else {
             ["K", "C"]
         };
-        stiffness(out, who, k, s.stiffness);
-        damping(out, who, c, s.damping);
+        stiffness(out, who, (k, ""), s.stiffness);
+        damping(out, who, (c, ""), s.damping);
     }
     for (&id, b) in &model.bushings {
         let who = (ElementKind::Bushing.id(id), &b.place);
-        for (n, axis) in AXES.iter().enumerate() {
+        for (n, axis) in AXES.into_iter().enumerate() {
             let [k, c] = if n < 3 { ["K", "C"] } else { ["KT", "CT"] };
-            stiffness(out, who, &format!("{k} {axis}"), b.stiffness[n]);
-            damping(out, who, &format!("{c} {axis}"), b.damping[n]);
+            stiffness(out, who, (k, axis), b.stiffness[n]);
+            damping(out, who, (c, axis), b.damping[n]);
         }
     }
     for (&id, f) in &model.fields {
         let who = (ElementKind::Field.id(id), &f.place);
-        for (n, axis) in AXES.iter().enumerate() {
+        for (n, axis) in AXES.into_iter().enumerate() {
             let own = |matrix: &[f64]| matrix.get(7 * n).copied().unwrap_or(0.0);
-            stiffness(out, who, &format!("KMATRIX {axis}"), own(&f.stiffness));
-            damping(out, who, &format!("CMATRIX {axis}"), own(&f.damping));
+            stiffness(out, who, ("KMATRIX", axis), own(&f.stiffness));
+            damping(out, who, ("CMATRIX", axis), own(&f.damping));
         }
-        damping(out, who, "CRATIO", f.damping_ratio.unwrap_or(0.0));
+        damping(out, who, ("CRATIO", ""), f.damping_ratio.unwrap_or(0.0));
     }
     for (&id, b) in &model.beams {
         let who = (ElementKind::Beam.id(id), &b.place);
-        damping(out, who, "CRATIO", b.damping_ratio.unwrap_or(0.0));
+        damping(out, who, ("CRATIO", ""), b.damping_ratio.unwrap_or(0.0));
         // the lower triangle by rows: its diagonal
-        for (n, axis) in AXES.iter().enumerate() {
+        for (n, axis) in AXES.into_iter().enumerate() {
             let own = b.damping.get(n * (n + 3) / 2).copied();
-            damping(out, who, &format!("CMATRIX {axis}"), own.unwrap_or(0.0));
+            damping(out, who, ("CMATRIX", axis), own.unwrap_or(0.0));
         }
     }
     for (&id, n) in &model.nodal_forces {
         let who = (ElementKind::Nforce.id(id), &n.place);
-        damping(out, who, "CRATIO", n.damping_ratio.unwrap_or(0.0));
+        damping(out, who, ("CRATIO", ""), n.damping_ratio.unwrap_or(0.0));
     }
 }
 
 pub(super) fn contacts_resist(model: &Model, out: &mut Out) {
     for (&id, c) in &model.contacts {
         let who = (ElementKind::Contact.id(id), &c.place);
-        stiffness(out, who, "STIFFNESS", c.stiffness);
-        stiffness(out, who, "PENALTY", c.penalty);
-        damping(out, who, "DAMPING", c.damping);
+        stiffness(out, who, ("STIFFNESS", ""), c.stiffness);
+        stiffness(out, who, ("PENALTY", ""), c.penalty);
+        damping(out, who, ("DAMPING", ""), c.damping);
         friction(out, who, [c.mu_static, c.mu_dynamic]);
     }
     for (&id, f) in &model.frictions {
@@ -62,20 +62,29 @@ pub(super) fn contacts_resist(model: &Model, out: &mut Out) {
     }
 }
 
-fn stiffness(out: &mut Out, who: Who, name: &str, value: f64) {
+/// An argument of a statement, and which of its values: an axis, or nothing.
+type Of = (&'static str, &'static str);
+
+fn stiffness(out: &mut Out, who: Who, (argument, axis): Of, value: f64) {
     if value < 0.0 {
+        let name = format!("{argument} {axis}");
+        let name = name.trim_end();
         let message = format!(
             "{name} = {value}: it pushes away from its free position, the more the farther"
         );
         warn(out, "negative_stiffness", who, message);
+        at_argument(out, argument);
         advise(out, "a stiffness is positive, whatever the direction");
     }
 }
 
-fn damping(out: &mut Out, who: Who, name: &str, value: f64) {
+fn damping(out: &mut Out, who: Who, (argument, axis): Of, value: f64) {
     if value < 0.0 {
+        let name = format!("{argument} {axis}");
+        let name = name.trim_end();
         let message = format!("{name} = {value}: it feeds energy instead of taking it");
         warn(out, "negative_damping", who, message);
+        at_argument(out, argument);
         advise(out, "damping is positive, whatever the direction");
     }
 }
@@ -85,6 +94,7 @@ fn friction(out: &mut Out, who: Who, coefficients: [f64; 2]) {
         if mu < 0.0 {
             let message = format!("{name} = {mu}: friction below zero feeds energy");
             warn(out, "negative_damping", who, message);
+            at_argument(out, name);
         }
     }
 }

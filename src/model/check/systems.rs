@@ -66,6 +66,7 @@ pub(super) fn arrays_have_their_size(model: &Model, out: &mut Out) {
                 who,
                 format!("SIZE = {size}, but {name} holds {n}"),
             );
+            at_argument(out, "SIZE");
         }
     }
     for (&id, m) in &model.matrices {
@@ -124,6 +125,7 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
                 r.argument, r.target.number, r.target
             );
             error(out, "wrong_array", (r.element, r.place), message);
+            at_argument(out, r.argument);
         }
     }
     for (&id, t) in &model.transfer_functions {
@@ -131,6 +133,7 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
         if t.numerator.len() > t.denominator.len() {
             let message = "the degree of NUMERATOR is higher than that of DENOMINATOR".to_owned();
             error(out, "improper_transfer_function", who, message);
+            at_argument(out, "NUMERATOR");
         }
         if t.denominator.last().is_some_and(|&a| a == 0.0) {
             error(
