@@ -1,25 +1,27 @@
 //! `cognate explain`: the meaning of a code or a name, or the outline of a model.
 
-use super::functions;
 use super::verify::model_of;
 use super::{Exit, Failure, Outcome, say};
+use super::{functions, statements};
 use crate::analysis::verify::outline::{Outline, outline};
+use crate::dataset::manual;
 use crate::diagnostic::codes::{all, code};
 use crate::diagnostic::{Diagnostic, near_names};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Explain the code of a mistake, a name of the language, or what becomes of a model
+/// Explain the code of a mistake, a statement, a name of the language, or what becomes of a model
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   cognate explain
   cognate explain unexpected_token
   cognate explain IMPACT
+  cognate explain CONTACT        the statement, and the function
   cognate explain slider_crank.adm")]
 pub struct Args {
-    /// Code as it stands in error[CODE], a name of the language, or a model (.adm, .acf); all codes
-    /// when not given
+    /// Code as it stands in error[CODE], a statement, a name of the language, or a model (.adm,
+    /// .acf); all codes when not given
     what: Option<String>,
     /// Of a model: print the outline as JSON
     #[arg(long)]
@@ -54,8 +56,12 @@ fn list() -> String {
         .collect()
 }
 
-/// Returns the explanation of a code, or else the card of a name of the language.
-fn explained(what: &str) -> Result<String, Diagnostic> {
+/// Returns the explanation of a code, or else the page of a statement and the card of a name of the
+/// language.
+///
+/// # Errors
+/// When nobody knows it; the advice lists near names.
+pub fn explained(what: &str) -> Result<String, Diagnostic> {
     let what = what
         .trim()
         .trim_start_matches("error[")
@@ -67,17 +73,28 @@ fn explained(what: &str) -> Result<String, Diagnostic> {
         ));
     }
     let cards = functions::known(what);
-    if !cards.is_empty() {
-        return Ok(functions::text(&cards));
+    let statement = manual::page(what)
+        .filter(|page| cards.is_empty() || page.keyword.eq_ignore_ascii_case(what))
+        .map(statements::text);
+    let function = (!cards.is_empty()).then(|| functions::text(&cards));
+    let found = match (statement, function) {
+        (Some(statement), Some(function)) => {
+            Some(format!("statement {statement}\nfunction {function}"))
+        }
+        (statement, function) => statement.or(function),
+    };
+    if let Some(found) = found {
+        return Ok(found);
     }
     let mut near = near_names(what, all().map(|c| c.name));
     if near.is_empty() {
-        near = functions::near(what);
+        near = [manual::near(what), functions::near(what)].concat();
+        near.dedup();
     }
-    let message = format!("`{what}` is no code, and the language has no such name");
+    let message = format!("`{what}` is no code, no statement, and no name of the language");
     let unknown = Diagnostic::error("unknown_name", message);
     Err(if near.is_empty() {
-        unknown.help("`cognate explain` lists all codes, `cognate functions` all names")
+        unknown.help("`cognate explain` lists all codes, `cognate statements` all statements, `cognate functions` all names")
     } else {
         unknown.help(format!("did you mean {}?", near.join(" or ")))
     })

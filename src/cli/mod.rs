@@ -22,8 +22,10 @@ pub mod progress;
 pub mod render;
 mod repl;
 mod run;
+mod statements;
 mod summary;
 mod verify;
+mod width;
 
 use crate::dataset::Dataset;
 use crate::diagnostic::Diagnostic;
@@ -52,6 +54,7 @@ enum Verb {
     Plot(plot::Args),
     Repl(repl::Args),
     Run(run::Args),
+    Statements(statements::Args),
     Verify(verify::Args),
 }
 
@@ -188,6 +191,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),
         Verb::Run(args) => run::run(args),
+        Verb::Statements(args) => statements::run(args),
         Verb::Verify(args) => verify::run(args),
     });
     let exit = match std::panic::catch_unwind(verb) {

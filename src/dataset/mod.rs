@@ -10,6 +10,7 @@
 
 pub mod command;
 pub mod lens;
+pub mod manual;
 pub mod mesh;
 pub mod read;
 pub mod row;

@@ -9,5 +9,6 @@ mod result_laws;
 mod broken;
 mod cli;
 mod cli_eval;
+mod manual;
 mod readme;
 mod results;

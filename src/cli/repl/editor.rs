@@ -1,8 +1,10 @@
 //! Help while typing: completion, colours, the signature of the function at hand, and lines that go
 //! on.
 
+use super::super::statements;
 use super::names::{Names, words};
 use super::session::{COMMANDS, Session};
+use crate::dataset::manual;
 use crate::expr::ast::{Callee, Dialect};
 use crate::expr::{Profile, Symbol, names, parse, symbol};
 use rustyline::completion::{Completer, Pair};
@@ -59,6 +61,9 @@ impl Completer for Helper {
         if typed.is_empty() {
             return Ok((start, Vec::new()));
         }
+        if let Some(found) = of_statements(line.get(..start).unwrap_or_default(), &typed) {
+            return Ok((start, found));
+        }
         let commands = COMMANDS
             .iter()
             .filter(|c| fits(c.0))
@@ -81,6 +86,47 @@ impl Completer for Helper {
             .map(|n| pair(n.clone(), n.clone()));
         Ok((start, commands.chain(known).chain(defined).collect()))
     }
+}
+
+/// Returns what completes a word of a statement: after `:help` and `:statements` its keyword, after
+/// `KEYWORD/` the keywords of its arguments; `None` where an expression is typed.
+fn of_statements(before: &str, typed: &str) -> Option<Vec<Pair>> {
+    let pair = |display: String, replacement: String| Pair {
+        display,
+        replacement,
+    };
+    let command = before.trim();
+    if matches!(command, ":help" | ":h" | ":?" | ":statements") {
+        let pages = manual::all().map(|(_, page)| page);
+        let statements = pages
+            .filter(|page| page.keyword.starts_with(typed))
+            .map(|page| {
+                pair(
+                    format!("{}: {}", page.keyword, page.summary),
+                    page.keyword.into(),
+                )
+            });
+        let functions = names(Dialect::Function)
+            .iter()
+            .filter(|n| command != ":statements" && n.0.starts_with(typed))
+            .map(|n| pair(n.0.into(), n.0.into()));
+        return Some(statements.chain(functions).collect());
+    }
+    let (keyword, _) = before.split_once('/')?;
+    let keyword = keyword.trim();
+    let is_word = !keyword.is_empty()
+        && keyword
+            .bytes()
+            .all(|b| b.is_ascii_alphabetic() || b == b'_');
+    // TIME, which has no arguments, may also be the beginning of a quotient
+    let page = manual::page(keyword).filter(|page| is_word && !page.entries().is_empty())?;
+    let arguments = page.entries().into_iter();
+    let fitting = arguments.filter(|entry| entry.note.name.starts_with(typed));
+    Some(
+        fitting
+            .map(|entry| pair(statements::form(&entry), entry.note.name.into()))
+            .collect(),
+    )
 }
 
 /// The rest of a signature, shown behind the cursor; it is not typed.
@@ -232,6 +278,21 @@ mod tests {
         assert!(complete("om").1.iter().any(|p| p.replacement == "OMEGA"));
         assert!(complete(":pl").1.iter().any(|p| p.replacement == ":plot "));
         assert!(complete("").1.is_empty());
+    }
+
+    #[test]
+    fn statements_and_their_arguments_are_completed() {
+        let history = DefaultHistory::new();
+        let context = Context::new(&history);
+        let complete = |line: &str| {
+            let (_, found) = helper().complete(line, line.len(), &context).unwrap();
+            found.into_iter().map(|p| p.replacement).collect::<Vec<_>>()
+        };
+        assert!(complete(":help cont").contains(&"CONTACT".to_owned()));
+        assert_eq!(complete(":statements fric"), ["FRICTION"]);
+        assert!(complete("CONTACT/1, IGEOM=2, st").contains(&"STIFFNESS".to_owned()));
+        // a quotient is no statement
+        assert!(complete("TIME/2 + ste").contains(&"STEP(".to_owned()));
     }
 
     #[test]

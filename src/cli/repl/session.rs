@@ -5,7 +5,7 @@ use super::names::{Expansion, Names};
 use crate::cli::anatomy;
 use crate::cli::eval::DialectName;
 use crate::cli::formula::{Formula, Setting, derivative_names, give, times};
-use crate::cli::{card, functions, plot};
+use crate::cli::{card, explain, plot, statements};
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::expr::ast::Dialect;
 use crate::expr::{Profile, parse, symbol};
@@ -27,13 +27,18 @@ pub enum Reply {
 }
 
 /// The TABLE of commands: name, arguments, effect.
-pub const COMMANDS: [(&str, &str, &str); 13] = [
+pub const COMMANDS: [(&str, &str, &str); 14] = [
     (
         ":help",
         "[NAME]",
-        "this list, or what a function or command is",
+        "this list, or what a function, statement, code or command is",
     ),
     (":functions", "", "all names of the language"),
+    (
+        ":statements",
+        "[NAME]",
+        "the statements of datasets and the commands, or one of them",
+    ),
     (
         ":let",
         "[NAME = EXPRESSION | VARVAL(3) = VALUE]",
@@ -132,6 +137,7 @@ impl Session {
         let rest = rest.trim();
         let done = match command {
             ":help" | ":h" | ":?" => self.help(rest),
+            ":statements" => statements::about(rest),
             ":functions" => Ok(card::all()
                 .iter()
                 .map(|c| format!("{}\n", c.signature))
@@ -214,7 +220,7 @@ impl Session {
                 .find(command)
                 .map(line)
                 .ok_or_else(|| unknown_command(name)),
-            name => functions::of_name(name).map(|cards| functions::text(&cards)),
+            name => explain::explained(name),
         }
     }
 

@@ -148,6 +148,11 @@ pub struct Script {
 static ROWS: LazyLock<Vec<&'static dyn Statement>> =
     LazyLock::new(|| COMMANDS.iter().chain(STATEMENTS).copied().collect());
 
+/// All commands, then all statements of the dataset.
+pub(super) fn rows() -> &'static [&'static dyn Statement] {
+    &ROWS
+}
+
 fn find(word: &str) -> Meaning {
     if word.len() < 3 && !word.eq_ignore_ascii_case("IC") {
         return Meaning::Unknown;

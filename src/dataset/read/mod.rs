@@ -273,10 +273,13 @@ impl<'a> Reader<'a> {
             "unknown_argument",
             format!("{keyword} has no argument {word}"),
         );
-        d = match near.is_empty() {
-            false => d.help(format!("did you mean {}?", near.join(" or "))),
-            true if known.is_empty() => d.help(format!("{keyword} takes no arguments")),
-            true => d.help(format!("it has {}", known.join(", "))),
+        if !near.is_empty() {
+            d = d.help(format!("did you mean {}?", near.join(" or ")));
+        }
+        d = if known.is_empty() {
+            d.help(format!("{keyword} takes no arguments"))
+        } else {
+            d.help(format!("{keyword} has {}", known.join(", ")))
         };
         let d = self
             .source
