@@ -244,7 +244,7 @@ pub(super) static PAGES: &[Page] = &[
         summary: "A surface by a routine or from a file.",
         text: "",
         equation: "",
-        effect: Effect::Refused,
+        effect: Effect::Kept,
         notes: &[],
         example: "",
     },

@@ -30,7 +30,7 @@ pub(super) static PAGES: &[Page] = &[
         equation: "                    on I                             on J\nTRANSLATIONAL       e along the unit vector J to I   the opposite\n  + ACTIONONLY      e along z_J                      nothing\nROTATIONAL          e about z_J                      the opposite\n  + ACTIONONLY      e about z_J                      nothing\n\n   <--- e   J o--------o I   e --->",
         effect: Effect::Solved,
         notes: &[
-            f("TRANSLATIONAL", "A force."),
+            f("TRANSLATIONAL", "A force along a line."),
             f("ROTATIONAL", "A torque about z of J; the z axes should stay parallel."),
             I, J,
             f("ACTIONONLY", "Only I is acted on, and the force is along z of J."),

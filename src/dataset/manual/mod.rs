@@ -297,6 +297,15 @@ mod tests {
     }
 
     #[test]
+    fn what_is_refused_is_told_so() {
+        for (_, page) in all() {
+            let kind = page.row().and_then(Statement::kind);
+            let refused = kind.is_some_and(|kind| kind.is_unsolved());
+            assert_eq!(page.effect == Effect::Refused, refused, "{}", page.keyword);
+        }
+    }
+
+    #[test]
     fn abbreviations_find_their_page() {
         assert_eq!(page("simu").map(|p| p.keyword), Some("SIMULATE"));
         assert_eq!(page("contact/").map(|p| p.keyword), Some("CONTACT"));

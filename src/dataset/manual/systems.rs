@@ -214,7 +214,7 @@ pub(super) static PAGES: &[Page] = &[
     Page { keyword: "MATERIAL", summary: "A material of flexible bodies; masses of parts are explicit.", text: "", equation: "", effect: Effect::Kept, notes: &[], example: "" },
     Page { keyword: "SECTION", summary: "A section of flexible beams.", text: "", equation: "", effect: Effect::Kept, notes: &[], example: "" },
     Page { keyword: "FE_PART", summary: "A flexible beam as a body.", text: GONE, equation: "", effect: Effect::Refused, notes: &[], example: "" },
-    Page { keyword: "FE_NODE", summary: "A node of a flexible beam.", text: GONE, equation: "", effect: Effect::Refused, notes: &[], example: "" },
+    Page { keyword: "FE_NODE", summary: "A node of a flexible beam.", text: GONE, equation: "", effect: Effect::Kept, notes: &[], example: "" },
     Page { keyword: "FE_LOAD", summary: "A load along a flexible beam.", text: GONE, equation: "", effect: Effect::Refused, notes: &[], example: "" },
     Page { keyword: "FLEX_BODY", summary: "A flexible body from a file of modes.", text: GONE, equation: "", effect: Effect::Refused, notes: &[], example: "" },
     Page { keyword: "FEMDATA", summary: "Asks for loads on a body for another program.", text: "", equation: "", effect: Effect::Kept, notes: &[], example: "" },
