@@ -3,7 +3,10 @@
 //! A program of the scene reads one flat row of numbers: `t | q | v | x | turns | loops |
 //! external`. The integrator's unknowns y are its middle part `q | v | x`. Both stay plain slices,
 //! so that programs and methods read and write them as they are; [`Layout`] says where a number
-//! stands, and [`State`] is y by its blocks.
+//! stands, [`State`] is y by its blocks, and [`Instant`] is all of the row by its blocks.
+//!
+//! Some programs read more, after these numbers: with branches held, or as implicit equations.
+//! [`LongRow`] and [`ImplicitLayout`] say where that stands.
 
 use crate::expr::program::Input;
 use std::ops::Range;
@@ -35,6 +38,69 @@ pub struct State<B> {
     pub v: B,
     /// further states   (n_x)
     pub x: B,
+}
+
+/// The numbers of one instant by their blocks.
+#[derive(Clone, Debug)]
+pub struct Instant<S> {
+    /// time
+    pub t: S,
+    /// positions of the forest   (n_q)
+    pub q: Vec<S>,
+    /// velocities of the forest   (n_v)
+    pub v: Vec<S>,
+    /// further states   (n_x)
+    pub x: Vec<S>,
+    /// last accepted values of counted angles   (n_turns)
+    pub turns: Vec<S>,
+    /// unknowns of algebraic loops that are solved beside the programs   (n_loops)
+    pub loops: Vec<S>,
+    /// external inputs   (n_external)
+    pub external: Vec<S>,
+}
+
+/// A longer row: `numbers | more | sides`.
+///
+/// With branches held, `more` are the unknowns of all loops; for implicit equations ẏ and the
+/// multipliers. Programs that hold no branches read the row without its sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LongRow {
+    /// sizes of the blocks of the numbers
+    pub numbers: Layout,
+    /// further numbers
+    pub n_more: usize,
+    /// sides of switches on which branches are held
+    pub n_sides: usize,
+}
+
+/// Unknowns and row of the implicit equations.
+///
+/// ```text
+/// unknowns    y | λ | µ
+/// row         numbers | ẏ | λ | µ | sides
+/// ```
+///
+/// The numbers have y among them, so that of the unknowns only the multipliers are added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImplicitLayout {
+    /// sizes of the blocks of the numbers
+    pub numbers: Layout,
+    /// rows that take part: each has a multiplier
+    pub n_rows: usize,
+    /// whether rows hold in velocity too, with a second multiplier each
+    pub has_mu: bool,
+    /// sides of switches on which branches are held
+    pub n_sides: usize,
+}
+
+/// Returns the `N` numbers from a place on, such as the four of a quaternion.
+pub fn several<S: Copy, const N: usize>(row: &[S], first: usize) -> [S; N] {
+    std::array::from_fn(|k| row[first + k])
+}
+
+/// Replaces the `N` numbers from a place on.
+pub fn replace<S: Copy, const N: usize>(row: &mut [S], first: usize, by: [S; N]) {
+    row[first..first + N].copy_from_slice(&by);
 }
 
 impl Layout {
@@ -105,9 +171,18 @@ impl Layout {
         self.external().start + k
     }
 
+    /// Returns the places of `n` external inputs from the `k`-th on.
+    pub fn externals_at(&self, k: usize, n: usize) -> Range<usize> {
+        self.external_at(k)..self.external_at(k + n)
+    }
+
     /// Returns how many unknowns the integrator has.
     pub fn n_y(&self) -> usize {
         self.n_q + self.n_v + self.n_x
+    }
+    /// Returns y without the multipliers that a method for implicit equations has after it.
+    pub fn without_multipliers<'y, T>(&self, y: &'y [T]) -> &'y [T] {
+        &y[..self.n_y()]
     }
     /// Splits y, or what stands in its order, into its blocks; further numbers after these, such as
     /// multipliers, are left aside.
@@ -130,12 +205,135 @@ impl Layout {
             x: &mut rest[..self.n_x],
         }
     }
+    /// Returns the number of outputs of a rate program: ẏ, then the strength of the rows.
+    pub fn n_rates(&self) -> usize {
+        self.n_y() + 1
+    }
+    /// Splits the outputs of a rate program into ẏ and the strength of the rows.
+    pub fn rates<'r>(&self, outputs: &'r [f64]) -> (&'r [f64], f64) {
+        (self.without_multipliers(outputs), outputs[self.n_y()])
+    }
+    /// Splits the numbers of an instant into their blocks.
+    pub fn instant<S: Copy>(&self, numbers: &[S]) -> Instant<S> {
+        Instant {
+            t: numbers[Self::TIME],
+            q: numbers[self.q()].to_vec(),
+            v: numbers[self.v()].to_vec(),
+            x: numbers[self.x()].to_vec(),
+            turns: numbers[self.turns()].to_vec(),
+            loops: numbers[self.loops()].to_vec(),
+            external: numbers[self.external()].to_vec(),
+        }
+    }
+    /// Puts time and state into a row of numbers; multipliers after the state are of no concern.
+    pub fn set_state(&self, numbers: &mut [f64], t: f64, y: &[f64]) {
+        numbers[Self::TIME] = t;
+        numbers[self.y()].copy_from_slice(self.without_multipliers(y));
+    }
     /// Splits what a projection changes: positions by a tangent (n_v), velocities (n_v), then
     /// states of contacts on curves.
     pub fn change<'c>(&self, change: &'c [f64]) -> State<&'c [f64]> {
         let (q, rest) = change.split_at(self.n_v);
         let (v, x) = rest.split_at(self.n_v);
         State { q, v, x }
+    }
+}
+
+impl LongRow {
+    /// Returns the places of the further numbers.
+    pub fn more(&self) -> Range<usize> {
+        self.numbers.len()..self.numbers.len() + self.n_more
+    }
+    /// Returns the places of the sides.
+    pub fn sides(&self) -> Range<usize> {
+        self.more().end..self.more().end + self.n_sides
+    }
+    /// Returns the place of the side of the `k`-th switch.
+    pub fn side_at(&self, k: usize) -> usize {
+        self.sides().start + k
+    }
+    /// Returns how many numbers the row has.
+    pub fn len(&self) -> usize {
+        self.sides().end
+    }
+    /// Returns false: there is always time.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+    /// Puts the numbers of a state and sides into the row.
+    pub fn put(&self, row: &mut [f64], numbers: &[f64], sides: &[f64]) {
+        row[..self.numbers.len()].copy_from_slice(numbers);
+        row[self.sides()].copy_from_slice(sides);
+    }
+    /// Splits a row that may lack sides into its numbers and the further ones.
+    pub fn split<'r, S>(&self, row: &'r [S]) -> (&'r [S], &'r [S]) {
+        (&row[..self.numbers.len()], &row[self.more()])
+    }
+}
+
+impl ImplicitLayout {
+    /// Returns the number of unknowns.
+    pub fn size(&self) -> usize {
+        self.numbers.n_y() + self.n_multipliers()
+    }
+    /// Returns how many multipliers there are, λ and µ.
+    pub fn n_multipliers(&self) -> usize {
+        if self.has_mu {
+            2 * self.n_rows
+        } else {
+            self.n_rows
+        }
+    }
+    /// Returns the row that the residual reads.
+    pub fn row(&self) -> LongRow {
+        LongRow {
+            numbers: self.numbers,
+            n_more: self.size(),
+            n_sides: self.n_sides,
+        }
+    }
+    /// Splits what stands after the numbers of a state into ẏ, λ, µ.
+    pub fn split<'m, S>(&self, more: &'m [S]) -> [&'m [S]; 3] {
+        let (ydot, multipliers) = more.split_at(self.numbers.n_y());
+        let (lambda, mu) = multipliers.split_at(self.n_rows);
+        [ydot, lambda, mu]
+    }
+    /// Returns the places of y among the unknowns.
+    pub fn y(&self) -> Range<usize> {
+        0..self.numbers.n_y()
+    }
+    /// Returns the places of λ among the unknowns.
+    pub fn lambda(&self) -> Range<usize> {
+        self.y().end..self.y().end + self.n_rows
+    }
+    /// Returns the places of λ and µ among the unknowns.
+    pub fn multipliers(&self) -> Range<usize> {
+        self.y().end..self.size()
+    }
+    /// Returns where the row has the `j`-th unknown.
+    pub fn unknown_at(&self, j: usize) -> usize {
+        if self.y().contains(&j) {
+            self.numbers.y_at(j)
+        } else {
+            self.row().more().start + j
+        }
+    }
+    /// Returns where the row has the rate of the `j`-th unknown; `None` for multipliers.
+    pub fn rate_at(&self, j: usize) -> Option<usize> {
+        self.y().contains(&j).then(|| self.row().more().start + j)
+    }
+    /// Puts the numbers of a state, rates, multipliers and sides into the row.
+    pub fn put(
+        &self,
+        row: &mut [f64],
+        numbers: &[f64],
+        (y, ydot): (&[f64], &[f64]),
+        sides: &[f64],
+    ) {
+        self.row().put(row, numbers, sides);
+        let more = &mut row[self.row().more()];
+        more[self.y()].copy_from_slice(&ydot[self.y()]);
+        more[self.multipliers()].copy_from_slice(&y[self.multipliers()]);
     }
 }
 
@@ -165,5 +363,40 @@ mod tests {
         let y = layout.y();
         layout.state_mut(&mut row[y]).v[1] = 99;
         assert_eq!(row[layout.v_at(1)], 99);
+    }
+
+    #[test]
+    fn every_unknown_of_the_implicit_equations_has_its_place_in_the_row() {
+        let implicit = ImplicitLayout {
+            numbers: Layout {
+                n_q: 2,
+                n_v: 1,
+                n_external: 3,
+                ..Layout::default()
+            },
+            n_rows: 2,
+            has_mu: true,
+            n_sides: 1,
+        };
+        let mut row = vec![0.0; implicit.row().len()];
+        let numbers: Vec<f64> = (0..implicit.numbers.len()).map(|k| k as f64).collect();
+        let y: Vec<f64> = (0..implicit.size()).map(|j| 10.0 + j as f64).collect();
+        let ydot: Vec<f64> = (0..implicit.size()).map(|j| 20.0 + j as f64).collect();
+        implicit.put(&mut row, &numbers, (&y, &ydot), &[-1.0]);
+        let (first, more) = implicit.row().split(&row);
+        assert_eq!(first, numbers);
+        assert_eq!(
+            implicit.split(more),
+            [&ydot[..3], &y[3..5], &y[5..]],
+            "{row:?}"
+        );
+        for j in 0..implicit.size() {
+            let of_state = j < 3;
+            let expected = if of_state { 1.0 + j as f64 } else { y[j] };
+            assert_eq!(row[implicit.unknown_at(j)], expected);
+            let rate = implicit.rate_at(j).map(|place| row[place]);
+            assert_eq!(rate, of_state.then(|| ydot[j]));
+        }
+        assert_eq!(row[implicit.row().side_at(0)], -1.0);
     }
 }

@@ -1,5 +1,6 @@
 //! Positions and their tangents: quaternions have four numbers, and three directions to move in.
 
+use super::layout::{replace, several};
 use super::{LinkMotion, Scene, Source};
 use crate::space::Vec3;
 use crate::space::rotation::quaternion_rate;
@@ -44,12 +45,15 @@ impl Mover {
             q[k] += change[v];
         }
         for &(k, v) in &self.balls {
-            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
-            let (a, b, c) = (0.5 * change[v], 0.5 * change[v + 1], 0.5 * change[v + 2]);
-            q[k] = w - x * a - y * b - z * c;
-            q[k + 1] = x + w * a + y * c - z * b;
-            q[k + 2] = y + w * b + z * a - x * c;
-            q[k + 3] = z + w * c + x * b - y * a;
+            let [w, x, y, z] = several(q, k);
+            let [a, b, c] = several(change, v).map(|x: f64| 0.5 * x);
+            let turned = [
+                w - x * a - y * b - z * c,
+                x + w * a + y * c - z * b,
+                y + w * b + z * a - x * c,
+                z + w * c + x * b - y * a,
+            ];
+            replace(q, k, turned);
         }
         self.normalize(q);
     }
@@ -60,7 +64,7 @@ impl Mover {
         let mut all: Vec<(usize, usize, f64)> =
             self.simple.iter().map(|&(k, v)| (v, k, 1.0)).collect();
         for &(k, v) in &self.balls {
-            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
+            let [w, x, y, z] = several(q, k);
             let columns = [[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]];
             for (c, column) in columns.iter().enumerate() {
                 all.extend(
@@ -83,11 +87,14 @@ impl Mover {
         }
         for &(k, v) in &self.balls {
             // 2 q* ∘ δq
-            let (w, x, y, z) = (q[k], q[k + 1], q[k + 2], q[k + 3]);
-            let (a, b, c, d) = (change[k], change[k + 1], change[k + 2], change[k + 3]);
-            out[v] = 2.0 * (w * b - x * a - y * d + z * c);
-            out[v + 1] = 2.0 * (w * c + x * d - y * a - z * b);
-            out[v + 2] = 2.0 * (w * d - x * c + y * b - z * a);
+            let [w, x, y, z] = several(q, k);
+            let [a, b, c, d] = several(change, k);
+            let turn = [
+                2.0 * (w * b - x * a - y * d + z * c),
+                2.0 * (w * c + x * d - y * a - z * b),
+                2.0 * (w * d - x * c + y * b - z * a),
+            ];
+            replace(&mut out, v, turn);
         }
         out
     }
@@ -98,11 +105,8 @@ impl Mover {
             change[k] = tangent[v];
         }
         for &(k, v) in &self.balls {
-            let rate = quaternion_rate(
-                [q[k], q[k + 1], q[k + 2], q[k + 3]],
-                Vec3([tangent[v], tangent[v + 1], tangent[v + 2]]),
-            );
-            change[k..k + 4].copy_from_slice(&rate);
+            let rate = quaternion_rate(several(q, k), Vec3(several(tangent, v)));
+            replace(change, k, rate);
         }
     }
 
@@ -110,10 +114,11 @@ impl Mover {
     pub fn normalize(&self, q: &mut [f64]) -> bool {
         let mut changed = false;
         for &(k, _) in &self.balls {
-            let n2: f64 = q[k..k + 4].iter().map(|x| x * x).sum();
+            let quaternion: [f64; 4] = several(q, k);
+            let n2: f64 = quaternion.iter().map(|x| x * x).sum();
             if (n2 - 1.0).abs() > 4.0 * f64::EPSILON {
                 let f = 1.0 / n2.sqrt();
-                q[k..k + 4].iter_mut().for_each(|x| *x *= f);
+                replace(q, k, quaternion.map(|x| x * f));
                 changed = true;
             }
         }

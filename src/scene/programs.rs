@@ -4,7 +4,7 @@
 use super::Scene;
 use super::configuration::Configured;
 use super::equations::{Equations, STATIC, Unsupported};
-use super::layout::Layout;
+use super::layout::{Layout, LongRow};
 use super::loops;
 use super::solve::{gram, solve_symmetric};
 use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value};
@@ -80,8 +80,12 @@ where
     E: FnOnce(&mut Builder, Vec<Value>) -> Vec<Vec<Value>>,
 {
     let builder = RefCell::new(Builder::new(Folding::Structural));
-    let n = scene.layout.len();
-    let layout: Vec<Input> = (0..n + n_more).map(|k| Input::Slot(k as u32)).collect();
+    let row = LongRow {
+        numbers: scene.layout,
+        n_more,
+        n_sides: 0,
+    };
+    let layout: Vec<Input> = (0..row.len()).map(|k| Input::Slot(k as u32)).collect();
     let mut numbers: Vec<Sym<'_>> = layout
         .iter()
         .map(|&input| Sym::input(input, &builder))
@@ -90,13 +94,14 @@ where
         numbers[scene.layout.v()].fill(Sym::Constant(0.0));
     }
     let mut solved = numbers[scene.layout.loops()].to_vec();
+    let (of_state, more) = row.split(&numbers);
     if known {
-        solved = numbers[n..n + scene.loops.len()].to_vec();
+        solved = more[..scene.loops.len()].to_vec();
     } else if scene.layout.n_loops == 0 && !scene.loops.is_empty() {
         solved = loops::eliminated(scene, &numbers, &builder);
     }
-    let equations = Equations::with_unknowns(scene, &numbers[..n], solved, false);
-    let out = f(&equations, &numbers[n..]);
+    let equations = Equations::with_unknowns(scene, of_state, solved, false);
+    let out = f(&equations, more);
     let recorder = &mut *builder.borrow_mut();
     let values: Vec<_> = out.iter().map(|s| s.value(recorder)).collect();
     let lists = end(recorder, values);
@@ -208,8 +213,12 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
     } else {
         None
     };
-    let first = scene.layout.len() + n_loops;
-    let n_rates = scene.layout.n_y() + 1;
+    let row = LongRow {
+        numbers: scene.layout,
+        n_more: n_loops,
+        n_sides: n_switches,
+    };
+    let n_rates = scene.layout.n_rates();
     let (mut all, _) = recorded(
         scene,
         n_loops + n_switches,
@@ -223,7 +232,7 @@ pub fn switching(scene: Configured<'_>) -> Result<Option<Switching>, Vec<Unsuppo
         },
         |builder, values| {
             let (wanted, sources) = values.split_at(n_rates + n_loops);
-            let side = |k: usize| Input::Slot((first + k) as u32);
+            let side = |k: usize| Input::Slot(row.side_at(k) as u32);
             let (held, switches) = builder.held(wanted, sources, side);
             let (rates, residuals) = held.split_at(n_rates);
             vec![switches, residuals.to_vec(), rates.to_vec()]
@@ -254,7 +263,11 @@ where
 {
     switching.held.as_ref().filter(|_| scene.loops.is_empty())?;
     let n_switches = switching.switches.n_outputs();
-    let first = scene.layout.len() + n_more;
+    let row = LongRow {
+        numbers: scene.layout,
+        n_more,
+        n_sides: n_switches,
+    };
     let (n_first, n_all, same) = (Cell::new(0), Cell::new(0), Cell::new(false));
     let (mut programs, complaints) = recorded(
         scene,
@@ -273,8 +286,8 @@ where
         },
         |builder, values| {
             let (known, wanted) = values.split_at(values.len() - n_all.get());
-            let side = |k: usize| Input::Slot((first + k) as u32);
-            let sources = &known[scene.layout.n_y() + 1..];
+            let side = |k: usize| Input::Slot(row.side_at(k) as u32);
+            let sources = &known[scene.layout.n_rates()..];
             let (held, switches) = builder.held(wanted, sources, side);
             same.set(switches.len() == n_switches);
             let (one, other) = held.split_at(n_first.get());

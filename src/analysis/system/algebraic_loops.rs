@@ -150,13 +150,16 @@ impl AlgebraicLoops {
         self.dual_numbers.extend(numbers.iter().map(|&x| lift(x)));
         for first in (0..n).step_by(WIDTH) {
             let last = (first + WIDTH).min(n);
-            for k in first..last {
-                self.dual_numbers[self.places.start + k].eps[k - first] = 1.0;
+            let some = self.places.clone().skip(first).zip(0..last - first);
+            for (place, direction) in some.clone() {
+                self.dual_numbers[place].eps[direction] = 1.0;
             }
             self.residual
                 .eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
+            for (place, direction) in some {
+                self.dual_numbers[place].eps[direction] = 0.0;
+            }
             for k in first..last {
-                self.dual_numbers[self.places.start + k].eps[k - first] = 0.0;
                 for (i, out) in self.dual_out.iter().enumerate() {
                     self.lu.matrix_mut()[i + n * k] = out.eps[k - first];
                 }

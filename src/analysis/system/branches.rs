@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::program::{Program, Work};
 use crate::model::Level;
 use crate::scene::configuration::Configured;
-use crate::scene::layout::Layout;
+use crate::scene::layout::{Layout, LongRow};
 use crate::scene::programs::{self, Switching};
 use crate::scene::{Scene, Source};
 
@@ -31,9 +31,8 @@ pub struct Branches {
     pub(super) numbers: Vec<f64>,
     /// loops with branches held, solved in that row
     pub(super) loops: Option<AlgebraicLoops>,
-    /// number of unknowns of all loops
-    n_loops: usize,
-    pub(super) layout: Layout,
+    /// that row: the numbers, the unknowns of all loops, the sides
+    pub(super) row: LongRow,
     /// whether branches are held
     holding: bool,
     /// sides of the switches, as the held rate reads them   (n_switches)
@@ -52,13 +51,16 @@ impl Branches {
     pub(super) fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
         let switching = programs::switching(scene).map_err(complaints)?;
         let n = switching.as_ref().map_or(0, |s| s.switches.n_outputs());
-        let (first, n_loops) = (scene.layout.len(), scene.loops.len());
+        let row = LongRow {
+            numbers: scene.layout,
+            n_more: scene.loops.len(),
+            n_sides: n,
+        };
         let residual = switching.as_ref().and_then(|s| s.held_loops.clone());
         Ok(Self {
-            loops: residual.map(|r| AlgebraicLoops::of(&scene, r, first..first + n_loops)),
-            n_loops,
+            loops: residual.map(|r| AlgebraicLoops::of(&scene, r, row.more())),
+            row,
             watched_angles: watched_angles(&scene, switching.as_ref()),
-            layout: scene.layout,
             switching,
             switch_work: Work::default(),
             unknown_work: Work::default(),
@@ -131,15 +133,12 @@ impl Branches {
     /// Puts numbers and sides into the row that held programs read. Unknowns of loops stay what
     /// they were, where the numbers do not say them.
     pub(super) fn put(&mut self, numbers: &[f64]) {
-        let n = numbers.len();
-        let sides = n + self.n_loops;
-        self.numbers.resize(sides + self.sides.len(), 0.0);
-        self.numbers[..n].copy_from_slice(numbers);
-        let known = self.layout.loops();
+        self.numbers.resize(self.row.len(), 0.0);
+        self.row.put(&mut self.numbers, numbers, &self.sides);
+        let known = self.row.numbers.loops();
         if !known.is_empty() {
-            self.numbers[n..sides].copy_from_slice(&numbers[known]);
+            self.numbers[self.row.more()].copy_from_slice(&numbers[known]);
         }
-        self.numbers[sides..].copy_from_slice(&self.sides);
     }
 
     /// Solves the loops of the held branches in the row.
@@ -159,15 +158,9 @@ impl Branches {
         if !self.holding || self.loops.is_none() || self.with_sides(numbers).is_none() {
             return false;
         }
-        let first = numbers.len();
-        let places = self.layout.loops();
-        numbers[places].copy_from_slice(&self.numbers[first..first + self.n_loops]);
+        let places = self.row.numbers.loops();
+        numbers[places].copy_from_slice(&self.numbers[self.row.more()]);
         true
-    }
-
-    /// Returns the first place of the sides in the row.
-    pub(super) fn first_side(&self) -> usize {
-        self.layout.len() + self.n_loops
     }
 
     /// Returns whether what held branches read has to be solved for beside the programs.
@@ -207,7 +200,7 @@ impl Branches {
             return;
         };
         if let (Some(unknowns), false) = (&switching.unknowns, solved) {
-            let places = numbers.len()..numbers.len() + self.n_loops;
+            let places = self.row.more();
             let (work, unknown) = (&mut self.unknown_work, &mut self.numbers[places]);
             unknowns.run(numbers, work, unknown);
         }
@@ -223,7 +216,7 @@ impl Branches {
     /// reason to become shorter, and a branch may come and go in every turn.
     pub(in crate::analysis) fn longest_turn(&self, y: &[f64], ydot: &[f64]) -> f64 {
         let time = |angle: &WatchedAngle| {
-            let [speed, acceleration] = angle.rates(&self.layout, y, ydot).map(f64::abs);
+            let [speed, acceleration] = angle.rates(&self.row.numbers, y, ydot).map(f64::abs);
             let fastest = (speed * speed + 2.0 * MAX_TURN_PER_STEP * acceleration).sqrt();
             2.0 * MAX_TURN_PER_STEP / (speed + fastest)
         };

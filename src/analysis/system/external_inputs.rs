@@ -322,7 +322,7 @@ impl ExternalInputs {
                             all.iter().flat_map(|v| v.0).collect()
                         }
                     })?;
-                    let places = l.external_at(hook.place)..l.external_at(hook.place + hook.n);
+                    let places = l.externals_at(hook.place, hook.n);
                     if places.clone().any(|place| inputs.reads(place)) {
                         return Err(vec![Unsupported::new(hook.element, Lack::OwnResult)]);
                     }
@@ -526,7 +526,7 @@ pub fn remember(
             t
         };
         // methods for implicit equations have multipliers behind it
-        system.set(t, &state[..system.scene.layout.n_y()]);
+        system.set(t, &state);
         for (track, piece) in system.external.tracks.iter().zip(&mut pieces) {
             track
                 .expression

@@ -24,6 +24,7 @@ use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
+use crate::scene::layout::ImplicitLayout;
 use crate::scene::programs::{Switching, held_with, record, record_more};
 use written::Written;
 
@@ -40,9 +41,7 @@ pub enum Formulation {
 #[derive(Debug)]
 pub struct Implicit {
     formulation: Formulation,
-    /// unknowns of the explicit system; rows that take part
-    n: usize,
-    m: usize,
+    layout: ImplicitLayout,
     /// with the branch that each state says
     free: Written,
     /// with branches held
@@ -57,16 +56,13 @@ fn residual<S: Scalar>(
     scene: &Scene,
     at: &Equations<'_, S>,
     more: &[S],
-    formulation: Formulation,
+    layout: ImplicitLayout,
 ) -> Vec<S> {
-    let l = scene.layout;
-    let n = l.n_y();
-    let (ydot, multipliers) = more.split_at(n);
+    let [ydot, lambda, mu] = layout.split(more);
     let rows: Vec<_> = (0..scene.rows.len())
         .filter(|&r| at.is_active(r))
         .map(|r| at.row(r))
         .collect();
-    let (lambda, mu) = multipliers.split_at(rows.len());
     let mut v = at.velocities().to_vec();
     for (row, &mu) in rows.iter().zip(mu) {
         for &(k, g) in &row.gradient {
@@ -76,12 +72,12 @@ fn residual<S: Scalar>(
     let minus = |rates: &[S], values: Vec<S>| -> Vec<S> {
         rates.iter().zip(values).map(|(&a, b)| a - b).collect()
     };
-    let rates = l.state(ydot);
+    let rates = layout.numbers.state(ydot);
     let mut out = minus(rates.q, at.position_rates_at(&v));
     out.extend(at.imbalance(rates.v, lambda));
     out.extend(minus(rates.x, at.state_rates()));
     out.extend(rows.iter().map(|row| row.value));
-    if formulation == Formulation::Stabilized {
+    if layout.has_mu {
         out.extend(rows.iter().map(|row| {
             let along = row.gradient.iter();
             along.fold(row.drift, |s, &(k, g)| s + g * at.velocities()[k])
@@ -111,50 +107,44 @@ impl Implicit {
             )
             .help("leave the method to the program, or ask for RADAU5")]);
         }
-        let n = scene.layout.n_y();
-        let m = scene.configuration.active_rows().count();
-        let levels = match formulation {
-            Formulation::Index3 => 1,
-            Formulation::Stabilized => 2,
+        let layout = ImplicitLayout {
+            numbers: scene.layout,
+            n_rows: scene.configuration.active_rows().count(),
+            has_mu: match formulation {
+                Formulation::Index3 => false,
+                Formulation::Stabilized => true,
+            },
+            n_sides: switching.map_or(0, |s| s.switches.n_outputs()),
         };
-        let size = n + levels * m;
-        let (program, complaints) = record_more(scene, n + levels * m, |at, more| {
-            residual(&scene, at, more, formulation)
+        let (program, complaints) = record_more(scene, layout.size(), |at, more| {
+            residual(&scene, at, more, layout)
         });
         if !complaints.is_empty() {
             return Err(crate::analysis::system::complaints(complaints));
         }
         let multipliers = record(scene, |at| multipliers_at(&scene, at))
             .map_err(crate::analysis::system::complaints)?;
-        let free = Written::new(&scene, program, multipliers, (n, size), outside);
+        let free = Written::new(&scene, program, multipliers, layout, outside);
         let held = switching.and_then(|switching| {
-            let more = n + levels * m;
-            let [residual, multipliers] = held_with(scene, switching, more, |at, more| {
-                [
-                    residual(&scene, at, more, formulation),
-                    multipliers_at(&scene, at),
-                ]
-            })?;
-            Some(Written::new(
-                &scene,
-                residual,
-                multipliers,
-                (n, size),
-                outside,
-            ))
+            let [residual, multipliers] =
+                held_with(scene, switching, layout.size(), |at, more| {
+                    [
+                        residual(&scene, at, more, layout),
+                        multipliers_at(&scene, at),
+                    ]
+                })?;
+            Some(Written::new(&scene, residual, multipliers, layout, outside))
         });
         let mut pattern: Vec<_> = free.pattern().collect();
         pattern.extend(held.iter().flat_map(Written::pattern));
         pattern.sort_unstable_by_key(|&(i, j)| (j, i));
         pattern.dedup();
-        let n_sides = switching.map_or(0, |s| s.switches.n_outputs());
         let mut implicit = Self {
             formulation,
-            n,
-            m,
+            layout,
             free,
             held,
-            numbers: vec![0.0; scene.layout.len() + n + levels * m + n_sides],
+            numbers: vec![0.0; layout.row().len()],
             pattern: Vec::new(),
         };
         implicit.free.place_in(&pattern);
@@ -172,19 +162,12 @@ impl Implicit {
 
     /// Returns the number of unknowns.
     pub fn size(&self) -> usize {
-        match self.formulation {
-            Formulation::Index3 => self.n + self.m,
-            Formulation::Stabilized => self.n + 2 * self.m,
-        }
+        self.layout.size()
     }
 
     fn set(&mut self, numbers: &[f64], y: &[f64], ydot: &[f64], sides: &[f64]) {
-        let (n, first) = (self.n, numbers.len());
-        self.numbers[..first].copy_from_slice(numbers);
-        self.numbers[first..first + n].copy_from_slice(&ydot[..n]);
-        let sides_from = first + y.len();
-        self.numbers[first + n..sides_from].copy_from_slice(&y[n..]);
-        self.numbers[sides_from..].copy_from_slice(sides);
+        self.layout
+            .put(&mut self.numbers, numbers, (y, ydot), sides);
     }
 }
 
@@ -233,8 +216,7 @@ impl Dae for System {
     }
 
     fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
-        let n = self.implicit().n;
-        self.set(t, &y[..n]);
+        self.set(t, y);
         let holding = self.recorded.branches.is_holding();
         if let Some(i) = &mut self.implicit {
             i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
@@ -268,7 +250,7 @@ impl Dae for System {
         cj: f64,
         values: &mut [f64],
     ) -> Result<(), Failure> {
-        self.set(t, &y[..self.implicit().n]);
+        self.set(t, y);
         let holding = self.recorded.branches.is_holding();
         if let Some(i) = &mut self.implicit {
             i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
@@ -282,14 +264,14 @@ impl Dae for System {
     }
 
     fn consistent(&mut self, t: f64, y: &mut [f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        let n = self.implicit().n;
-        y[n..].fill(0.0);
+        let layout = self.implicit().layout;
+        y[layout.multipliers()].fill(0.0);
         ydot.fill(0.0);
-        Ode::rate(self, t, &y[..n], &mut ydot[..n])?;
+        Ode::rate(self, t, &y[layout.y()], &mut ydot[layout.y()])?;
         let holding = self.recorded.branches.is_holding();
         if let Some(i) = &mut self.implicit {
             i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
-            let lambda = &mut y[n..n + i.m];
+            let lambda = &mut y[layout.lambda()];
             if let (true, Some(held)) = (holding, &mut i.held) {
                 held.multipliers(&i.numbers, lambda);
                 if lambda.iter().all(|x| x.is_finite()) {
@@ -304,7 +286,7 @@ impl Dae for System {
     fn kinds(&self) -> Vec<Kind> {
         let l = self.scene.layout;
         let mut kinds = vec![Kind::Differential; l.n_y()];
-        if self.implicit().formulation == Formulation::Index3 && self.implicit().m > 0 {
+        if self.implicit().formulation == Formulation::Index3 && self.implicit().layout.n_rows > 0 {
             (l.state_mut(&mut kinds).v).fill(Kind::DifferentialUncontrolled);
         }
         kinds.resize(Dae::size(self), Kind::Algebraic);
@@ -313,7 +295,7 @@ impl Dae for System {
 
     fn levels(&self) -> Levels {
         let l = self.scene.layout;
-        let m = self.implicit().m;
+        let m = self.implicit().layout.n_rows;
         let (mut rows, mut unknowns) = (vec![1; l.n_y()], vec![0; l.n_y()]);
         l.state_mut(&mut rows).v.fill(2);
         l.state_mut(&mut unknowns).v.fill(1);
@@ -327,13 +309,11 @@ impl Dae for System {
     }
 
     fn typical(&self, typical: &mut [f64]) {
-        let n = self.implicit().n;
         typical.fill(1.0);
-        Ode::typical(self, &mut typical[..n]);
+        Ode::typical(self, &mut typical[self.implicit().layout.y()]);
     }
 
     fn relations(&self, relations: &mut [Relation]) {
-        let n = self.implicit().n;
-        Ode::relations(self, &mut relations[..n]);
+        Ode::relations(self, &mut relations[self.implicit().layout.y()]);
     }
 }

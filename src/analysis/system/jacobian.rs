@@ -12,6 +12,7 @@ use crate::numeric::pattern::Pattern;
 use crate::numeric::sparse::DENSE_LIMIT;
 use crate::numeric::{Failure, Ode};
 use crate::scalar::Dual;
+use crate::scene::layout::Layout;
 use crate::scene::slopes::{self, WIDTH};
 use std::sync::Arc;
 
@@ -28,10 +29,10 @@ enum Gradient {
 }
 
 impl Gradient {
-    /// Chooses the way that takes less for the first `n` outputs of a program.
-    fn new(rate: &Program, n: usize) -> Self {
-        // unknowns are numbers 1 … n of the row, time is number 0
-        match slopes::recorded(rate, n, (1..=n).chain([0])) {
+    /// Chooses the way that takes less for the rates of a program.
+    fn new(rate: &Program, layout: &Layout) -> Self {
+        let places = layout.y().chain([Layout::TIME]);
+        match slopes::recorded(rate, layout.n_y(), places) {
             Some(program) => Gradient::Recorded(Box::new(Recording::new(program))),
             None => Gradient::Duals,
         }
@@ -59,7 +60,7 @@ impl System {
     }
 
     /// Chooses the derivatives of the rates as they are taken now: recorded, if that is worth it.
-    fn gradient(&mut self, n: usize) -> &mut Gradient {
+    fn gradient(&mut self) -> &mut Gradient {
         let holding = usize::from(self.recorded.branches.is_holding());
         if self.recorded.derivatives.gradients[holding].is_none() {
             let loops =
@@ -68,7 +69,7 @@ impl System {
             let gradient = if beside {
                 Gradient::Duals
             } else {
-                Gradient::new(self.present_rate(), n)
+                Gradient::new(self.present_rate(), &self.scene.layout)
             };
             self.recorded.derivatives.gradients[holding] = Some(gradient);
         }
@@ -82,7 +83,7 @@ impl System {
         jacobian: &mut [f64],
         dfdt: &mut [f64],
     ) -> Result<(), Failure> {
-        self.gradient(n);
+        self.gradient();
         let branches = &mut self.recorded.branches;
         let (holding, sliding) = (branches.is_holding(), branches.is_sliding());
         match &mut self.recorded.derivatives.gradients[usize::from(holding)] {
@@ -94,20 +95,22 @@ impl System {
                     recording.run(&self.numbers)
                 };
                 for (i, row) in entries.chunks(n + 1).enumerate() {
-                    for (j, &entry) in row[..n].iter().enumerate() {
+                    let Some((&by_time, by_y)) = row.split_last() else {
+                        continue;
+                    };
+                    for (j, &entry) in by_y.iter().enumerate() {
                         jacobian[i + n * j] = entry;
                     }
-                    dfdt[i] = row[n];
+                    dfdt[i] = by_time;
                 }
             }
             _ => {
-                // unknowns are numbers 1 … n of the row, time is number 0
-                let columns: Vec<Vec<usize>> = (0..=n).map(|k| vec![k]).collect();
+                let places = [Layout::TIME].into_iter().chain(self.scene.layout.y());
+                let columns: Vec<Vec<usize>> = places.map(|place| vec![place]).collect();
                 self.along_sums(&columns, |k, slope| {
-                    let column = if k == 0 {
-                        &mut *dfdt
-                    } else {
-                        &mut jacobian[n * (k - 1)..n * k]
+                    let column = match k.checked_sub(1) {
+                        None => &mut *dfdt,
+                        Some(j) => &mut jacobian[n * j..n * (j + 1)],
                     };
                     for (i, entry) in column.iter_mut().enumerate() {
                         *entry = slope(i);
@@ -135,7 +138,7 @@ impl System {
 
     fn found_pattern(&mut self) -> Option<Pattern> {
         let n = self.scene.layout.n_y();
-        if n <= DENSE_LIMIT || matches!(self.gradient(n), Gradient::Recorded(..)) {
+        if n <= DENSE_LIMIT || matches!(self.gradient(), Gradient::Recorded(..)) {
             return None;
         }
         let l = self.scene.layout;
@@ -148,7 +151,7 @@ impl System {
         rows.truncate(n);
         let branches = &self.recorded.branches;
         if let Some(held) = branches.held_rate() {
-            along.resize(branches.first_side(), Vec::new());
+            along.resize(branches.row.sides().start, Vec::new());
             if let Some(loops) = &branches.loops {
                 loops.depend(&mut along);
             }
@@ -206,7 +209,7 @@ impl System {
         };
         own.numbers.clear();
         (own.numbers).extend(numbers.iter().map(|&re| Dual { re, ..constant }));
-        own.out.resize(n + 1, constant);
+        own.out.resize(self.scene.layout.n_rates(), constant);
         let mut outcome = Ok(());
         for (chunk, some) in sums.chunks(WIDTH).enumerate() {
             let mark = |numbers: &mut [Dual<WIDTH>], slope: f64| {

@@ -506,20 +506,14 @@ impl System {
     /// concern.
     pub(super) fn numbers_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut numbers = self.numbers.clone();
-        let places = self.scene.layout.y();
-        numbers[Layout::TIME] = t;
-        let n = places.len();
-        numbers[places].copy_from_slice(&y[..n]);
+        self.scene.layout.set_state(&mut numbers, t, y);
         numbers
     }
 
     /// Takes over time and state, and solves the loops there; multipliers after the state are of no
     /// concern.
     pub(super) fn set(&mut self, t: f64, y: &[f64]) {
-        self.numbers[Layout::TIME] = t;
-        let places = self.scene.layout.y();
-        let n = places.len();
-        self.numbers[places].copy_from_slice(&y[..n]);
+        self.scene.layout.set_state(&mut self.numbers, t, y);
         self.fill(false);
     }
 

@@ -10,7 +10,6 @@ use super::rows::ROUNDING;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scene::Source;
-use crate::scene::layout::Layout;
 use crate::scene::solve::NEAR_SINGULAR_PIVOT;
 use std::sync::Arc;
 
@@ -43,9 +42,9 @@ impl System {
     /// Puts the stage `y` of a step onto weak rows before it is evaluated, where violations would
     /// be felt.
     fn evaluate_weak(&mut self, t: f64, y: &[f64]) {
-        let n = self.scene.layout.n_y();
+        let l = self.scene.layout;
         self.recorded.rows.were_weak = true;
-        let strength = self.recorded.rate.values[n].max(0.0);
+        let strength = l.rates(&self.recorded.rate.values).1.max(0.0);
         let permitted = (MAGNIFIED_ERROR * self.precision * strength.sqrt()).max(ROUNDING);
         let violation = self.worst_violation();
         if violation.is_nan() || violation > permitted {
@@ -58,7 +57,8 @@ impl System {
             }
             self.stage = stage;
         }
-        self.singular_steps.see(t, self.recorded.rate.values[n]);
+        let (_, strength) = l.rates(&self.recorded.rate.values);
+        self.singular_steps.see(t, strength);
     }
 
     /// Returns the largest violation of a row at the present numbers.
@@ -167,13 +167,13 @@ impl Ode for System {
                 recoverable: true,
             });
         }
-        let n = ydot.len();
+        let l = self.scene.layout;
         self.recorded.run_rate(&self.numbers);
-        let strength = self.recorded.rate.values[n];
+        let (_, strength) = l.rates(&self.recorded.rate.values);
         if strength < NEAR_SINGULAR_PIVOT && self.recorded.rows.projection.is_some() {
             self.evaluate_weak(t, y);
         }
-        ydot.copy_from_slice(&self.recorded.rate.values[..n]);
+        ydot.copy_from_slice(l.rates(&self.recorded.rate.values).0);
         // a sum is finite only if all its terms are
         let sum: f64 = ydot.iter().map(|x| x * 0.0).sum();
         if sum == 0.0 {
@@ -218,8 +218,7 @@ impl Ode for System {
         let mut state = y.to_vec();
         let mut normal = |v: &[f64], numbers: &mut [f64]| {
             l.state_mut(&mut state).v.copy_from_slice(v);
-            numbers[Layout::TIME] = t;
-            numbers[l.y()].copy_from_slice(&state);
+            l.set_state(numbers, t, &state);
             l.change(projection.run(numbers)).v.to_vec()
         };
         let none = normal(&vec![0.0; n_v], &mut self.numbers);

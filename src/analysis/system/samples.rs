@@ -76,8 +76,8 @@ impl Samples {
         for s in &scene.samplers {
             all.push(Sampled {
                 id: s.id,
-                states: l.external_at(s.states)..l.external_at(s.states + s.n),
-                results: l.external_at(s.results)..l.external_at(s.results + s.n),
+                states: l.externals_at(s.states, s.n),
+                results: l.externals_at(s.results, s.n),
                 period: Recording::new(record(scene, |at| vec![at.formula(s.period)])?),
                 next: vec![0.0; s.n],
                 due: f64::INFINITY,

@@ -263,10 +263,10 @@ impl Branches {
     /// Evaluates f and each dₖ; all that slide are left on their negative sides. False: a loop has
     /// no solution on one of them.
     fn rates_of_branches(&mut self, numbers: &[f64]) -> bool {
-        let (first, n) = (self.first_side(), self.layout.n_y() + 1);
+        let (row, n) = (self.row, self.row.numbers.n_rates());
         self.put(numbers);
         let m = self.slides.which.len();
-        let known = self.layout.len()..first;
+        let known = row.more();
         if self.slides.unknowns.len() != known.len() * (m + 1) {
             self.slides.unknowns = self.numbers[known].repeat(m + 1);
         }
@@ -274,10 +274,10 @@ impl Branches {
         self.slides.changes.resize(n * m, 0.0);
         self.slides.alpha.resize(m, 0.0);
         for place in 0..m {
-            self.numbers[first + self.slides.which[place]] = -1.0;
+            self.numbers[row.side_at(self.slides.which[place])] = -1.0;
         }
         for place in 0..m {
-            let side = first + self.slides.which[place];
+            let side = row.side_at(self.slides.which[place]);
             self.numbers[side] = 1.0;
             if !self.run_branch(place + 1) {
                 return false;
@@ -299,7 +299,7 @@ impl Branches {
     /// Evaluates the rates on the sides that the row says: f as branch 0, those of the others into
     /// the places of their changes. False: a loop has no solution.
     fn run_branch(&mut self, branch: usize) -> bool {
-        let places = self.layout.len()..self.first_side();
+        let places = self.row.more();
         let known = places.len() * branch..places.len() * (branch + 1);
         self.numbers[places.clone()].copy_from_slice(&self.slides.unknowns[known.clone()]);
         if self.solve_held().is_err() {
@@ -349,7 +349,7 @@ impl Branches {
                 } else {
                     &s.changes[n * (j - 1)..n * j]
                 };
-                for (place, d) in self.layout.y().zip(along) {
+                for (place, d) in self.row.numbers.y().zip(along) {
                     s.numbers[place].eps[j - first] = *d;
                 }
             }

@@ -19,7 +19,7 @@ use crate::expr::program::{Levels, Program, Work};
 use crate::scalar::Interval;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
-use crate::scene::layout::Layout;
+use crate::scene::layout::{Layout, LongRow};
 use crate::scene::programs;
 
 /// Evaluations for one search, at most.
@@ -71,7 +71,12 @@ impl TimeEvents {
         if levels.is_empty() {
             return Ok(Self::default());
         }
-        let n = scene.layout.len() + scene.loops.len();
+        let row = LongRow {
+            numbers: scene.layout,
+            n_more: scene.loops.len(),
+            n_sides: 0,
+        };
+        let n = row.len();
         Ok(Self {
             inputs: vec![Interval { lo: 0.0, hi: 0.0 }; n],
             values: vec![Interval { lo: 0.0, hi: 0.0 }; levels.len()],

@@ -55,10 +55,10 @@ impl Leg<'_> {
         let Some(mut sides) = self.sides.take() else {
             return false;
         };
-        let n = self.system.scene.layout.n_y();
+        let l = self.system.scene.layout;
         let node = |t: f64, y: &[f64]| Node {
             t,
-            y: y[..n].to_vec(),
+            y: l.without_multipliers(y).to_vec(),
         };
         let ends = [node(step.t0, &self.before), node(step.t1, method.y())];
         let [from, to] = [0, 1].map(|k| {
@@ -164,8 +164,7 @@ impl Leg<'_> {
     /// Chooses other rows where they are better; whether it did.
     fn choose(&mut self, t: f64, y: &[f64]) -> bool {
         let l = self.system.scene.layout;
-        self.system.numbers[Layout::TIME] = t;
-        self.system.numbers[l.y()].copy_from_slice(&y[..l.n_y()]);
+        l.set_state(&mut self.system.numbers, t, y);
         let Some(active) = ranks::better_rows(self.system.configured(), &self.system.numbers)
         else {
             return false;

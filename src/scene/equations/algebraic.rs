@@ -30,13 +30,13 @@ impl<S: Scalar> Equations<'_, S> {
     /// Rate of the unknown of an equation that does not read its rate.
     pub(super) fn algebraic_rate(&self, d: usize) -> S {
         let equation = &self.scene.differentials[d];
-        if self.rates_open.borrow().contains(&d) {
+        if self.scratch.rates_open.borrow().contains(&d) {
             return self.complain(&Asker::Rate(equation.id.element.number), Lack::OwnValue);
         }
-        self.rates_open.borrow_mut().push(d);
+        self.scratch.rates_open.borrow_mut().push(d);
         let along = self.moved(equation.formula, Moving::Others(d));
         let own = self.moved(equation.formula, Moving::Only(d));
-        self.rates_open.borrow_mut().pop();
+        self.scratch.rates_open.borrow_mut().pop();
         -(along.first / own.first)
     }
 
@@ -60,7 +60,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     fn moved_input(&self, input: Input, moving: Moving, asked_by: &Asker) -> Jet<S> {
         match input {
-            Input::Time => at_rate(self.t, if own(moving) { S::zero() } else { S::one() }),
+            Input::Time => at_rate(self.now.t, if own(moving) { S::zero() } else { S::one() }),
             Input::Mode => Jet::constant(self.scene.mode),
             Input::Measure(Measure::Varval, _) => nothing(),
             Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k) {

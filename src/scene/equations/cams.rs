@@ -25,7 +25,7 @@ impl<S: Scalar> Equations<'_, S> {
         let cam = &self.scene.cams[c];
         let mut s = [S::zero(); 2];
         for (k, s) in s.iter_mut().enumerate().take(cam.contact.n_parameters()) {
-            *s = self.x[cam.state + k] + S::constant(self.configuration.contacts[c].offset[k]);
+            *s = self.now.x[cam.state + k] + S::constant(self.configuration.contacts[c].offset[k]);
         }
         s
     }

@@ -5,6 +5,7 @@ use crate::model::Level;
 use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
 use crate::scene::articulated::ArticulatedFactor;
+use crate::scene::layout::{replace, several};
 use crate::scene::solve::{Factor, MassFactor, Solution, accelerations, solve_symmetric};
 use crate::scene::sweep::{self, LinkState, Wrench};
 use crate::scene::{LinkMotion, Source, programs};
@@ -18,12 +19,8 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Accelerations, multipliers and reactions.
     pub fn solved(&self) -> &Solved<S> {
-        self.solved.get_or_init(|| {
-            self.solving.set(true);
-            let solved = self.solve();
-            self.solving.set(false);
-            solved
-        })
+        let solve = || self.scratch.while_solving(|| self.solve());
+        self.scratch.solved.get_or_init(solve)
     }
 
     pub(super) fn loads(&self) -> (Vec<Wrench<S>>, Vec<Action<S>>) {
@@ -235,9 +232,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// Loads along the free coordinates, gravity included, with the forces of the active rows at
     /// the given multipliers: all zero in equilibrium   (n_v)
     pub fn balance(&self, multipliers: &[S]) -> Vec<S> {
-        self.solving.set(true);
-        let (wrenches, _) = self.loads();
-        self.solving.set(false);
+        let (wrenches, _) = self.scratch.while_solving(|| self.loads());
         let carried = sweep::inward(self.scene, &self.links, self.gravity(), &wrenches);
         let free = self.scene.freedoms.iter().filter(|f| f.v.is_some());
         let mut f: Vec<S> = free.map(|f| -f.component(&carried[f.link])).collect();
@@ -257,9 +252,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// M v̇ + h(q, v) − f(t, q, v, x) − Gᵀλ        (n_v)
     /// ```
     pub fn imbalance(&self, vdot: &[S], multipliers: &[S]) -> Vec<S> {
-        self.solving.set(true);
-        let (mut wrenches, _) = self.loads();
-        self.solving.set(false);
+        let (mut wrenches, _) = self.scratch.while_solving(|| self.loads());
         let active = (0..self.scene.rows.len()).filter(|&r| self.is_active(r));
         for (r, &l) in active.zip(multipliers) {
             for (m, action) in self.row(r).actions {
@@ -283,9 +276,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Returns how large the loads are, whatever cancels: Σ |force| + Σ |torque| / length + weight.
     pub fn load_scale(&self) -> S {
-        self.solving.set(true);
-        let (_, actions) = self.loads();
-        self.solving.set(false);
+        let (_, actions) = self.scratch.while_solving(|| self.loads());
         let mass: f64 = self.scene.links.iter().map(|l| l.mass).sum();
         let weight = S::constant(mass * self.scene.gravity.norm());
         actions.iter().fold(weight, |sum, a| {
@@ -304,12 +295,12 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// `q̇`
     pub fn position_rates(&self) -> Vec<S> {
-        self.position_rates_at(&self.v)
+        self.position_rates_at(&self.now.v)
     }
 
     /// `q̇` at other velocities of the free coordinates.
     pub fn position_rates_at(&self, v: &[S]) -> Vec<S> {
-        let mut out = vec![S::zero(); self.q.len()];
+        let mut out = vec![S::zero(); self.now.q.len()];
         for link in &self.scene.links {
             if let LinkMotion::Ball {
                 coordinate,
@@ -321,9 +312,9 @@ impl<S: Scalar> Equations<'_, S> {
                     Source::Driven(_) => unreachable!("no motion drives a ball"),
                 };
                 let w = Vec3([0, 1, 2].map(speed));
-                let q = [0, 1, 2, 3].map(|k| self.q[quaternion + k]);
-                out[quaternion..quaternion + 4]
-                    .copy_from_slice(&crate::space::rotation::quaternion_rate(q, w));
+                let q: [S; 4] = several(&self.now.q, quaternion);
+                let rate = crate::space::rotation::quaternion_rate(q, w);
+                replace(&mut out, quaternion, rate);
             }
         }
         for (c, f) in self.scene.coordinates.iter().zip(&self.scene.freedoms) {
@@ -340,7 +331,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// `ẋ`
     pub fn state_rates(&self) -> Vec<S> {
-        let mut out = vec![S::zero(); self.x.len()];
+        let mut out = vec![S::zero(); self.now.x.len()];
         for (m, motion) in self.scene.motions.iter().enumerate() {
             if let Some(s) = motion.state {
                 out[s] = self.driven[m].first;

@@ -54,7 +54,7 @@ impl<S: Scalar> Equations<'_, S> {
         if let Some(value) = self.evaluated(f) {
             return value;
         }
-        if self.open.borrow().is_open[f] {
+        if self.scratch.open.borrow().is_open[f] {
             let owner = &self.scene.formulas[f].owner;
             return self.too_early(Key::Formula(f), owner, Lack::OwnValue);
         }
@@ -63,8 +63,8 @@ impl<S: Scalar> Equations<'_, S> {
             let formula = &self.scene.formulas[here.formula];
             let Some(&input) = formula.program.inputs().get(here.inputs.len()) else {
                 let value = self.apply(here.formula, &here.inputs);
-                self.open.borrow_mut().set(here.formula, false);
-                self.formulas.borrow_mut()[here.formula] = Some(value);
+                self.scratch.open.borrow_mut().set(here.formula, false);
+                self.scratch.formulas.borrow_mut()[here.formula] = Some(value);
                 path.pop();
                 continue;
             };
@@ -78,16 +78,17 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Value of a formula that is known.
     fn evaluated(&self, f: usize) -> Option<S> {
-        self.unknown(Key::Formula(f)).or(self.formulas.borrow()[f])
+        self.unknown(Key::Formula(f))
+            .or(self.scratch.formulas.borrow()[f])
     }
 
     /// Returns true if a formula is neither known nor being evaluated.
     fn is_untouched(&self, f: usize) -> bool {
-        !self.open.borrow().is_open[f] && self.evaluated(f).is_none()
+        !self.scratch.open.borrow().is_open[f] && self.evaluated(f).is_none()
     }
 
     fn descend(&self, formula: usize) -> Descent<S> {
-        self.open.borrow_mut().set(formula, true);
+        self.scratch.open.borrow_mut().set(formula, true);
         Descent {
             formula,
             inputs: Vec::new(),
@@ -96,15 +97,15 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Evaluates a formula, also where it closes a loop.
     pub(super) fn evaluate(&self, f: usize) -> S {
-        let was_open = self.open.borrow().is_open[f];
+        let was_open = self.scratch.open.borrow().is_open[f];
         if !was_open {
-            self.open.borrow_mut().set(f, true);
+            self.scratch.open.borrow_mut().set(f, true);
         }
         let formula = &self.scene.formulas[f];
         let inputs = formula.program.inputs().iter();
         let inputs: Vec<S> = inputs.map(|&i| self.input_of(formula, i)).collect();
         if !was_open {
-            self.open.borrow_mut().set(f, false);
+            self.scratch.open.borrow_mut().set(f, false);
         }
         self.apply(f, &inputs)
     }
@@ -194,7 +195,7 @@ impl<S: Scalar> Equations<'_, S> {
     fn added(&self, f: usize) -> S {
         let mut inputs = self.scene.external_inputs.iter();
         match inputs.position(|s| *s == ExternalInput::Input(f)) {
-            Some(place) => self.external[place],
+            Some(place) => self.now.external[place],
             None => S::zero(),
         }
     }
@@ -208,7 +209,7 @@ impl<S: Scalar> Equations<'_, S> {
             ExternalInput::Delay(k) if self.scene.mode == STATIC => {
                 self.formula(self.scene.delays[k].expression)
             }
-            _ => self.external[place],
+            _ => self.now.external[place],
         }
     }
 
@@ -233,7 +234,7 @@ impl<S: Scalar> Equations<'_, S> {
             return read.get(&formula).copied().unwrap_or_else(nothing);
         }
         match input {
-            Input::Time => Jet::variable(self.t),
+            Input::Time => Jet::variable(self.now.t),
             Input::Mode => Jet::constant(self.scene.mode),
             Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k) {
                 Some(Entry::Number(x)) => Jet::constant(x),
@@ -252,7 +253,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// formula one order lower.
     fn state_in_time(&self, d: usize, order: usize) -> Jet<S> {
         let equation = &self.scene.differentials[d];
-        let Some(value) = equation.state.map(|s| self.x[s]) else {
+        let Some(value) = equation.state.map(|s| self.now.x[s]) else {
             return Jet::constant(f64::NAN);
         };
         if order == 0 {

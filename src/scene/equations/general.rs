@@ -80,7 +80,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// An input that is no formula; `None`: it is no function of places.
     fn traced_input(&self, input: Input) -> Option<Traced<S>> {
         match input {
-            Input::Time => Some(Traced::of_time(Jet::variable(self.t))),
+            Input::Time => Some(Traced::of_time(Jet::variable(self.now.t))),
             Input::Mode => Some(Traced::of_time(Jet::constant(self.scene.mode))),
             Input::Measure(Measure::Aryval, [id, k, ..]) => match self.entry(id, k)? {
                 Entry::Number(x) => Some(Traced::of_time(Jet::constant(x))),

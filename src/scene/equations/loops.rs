@@ -8,7 +8,7 @@ use crate::scene::loops::Key;
 impl<S: Scalar> Equations<'_, S> {
     /// Returns what was asked for too early.
     pub(in crate::scene) fn discovered(self) -> Vec<Key> {
-        self.discovered.into_inner()
+        self.scratch.discovered.into_inner()
     }
 
     /// Value of an unknown of the loops; `None`: it is none.
@@ -17,7 +17,7 @@ impl<S: Scalar> Equations<'_, S> {
             return None;
         }
         let k = self.scene.loops.iter().position(|u| u.key == key)?;
-        match self.loops.get(k) {
+        match self.now.loops.get(k) {
             Some(&value) => Some(value),
             None => Some(self.complain(&self.scene.loops[k].asker, Lack::OutsideLoop)),
         }
@@ -25,7 +25,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// The first `count` unknowns of the loops.
     pub(in crate::scene) fn unknowns(&self, count: usize) -> Vec<S> {
-        self.loops[..count].to_vec()
+        self.now.loops[..count].to_vec()
     }
 
     /// Something is asked for that depends on who asks.
@@ -33,7 +33,7 @@ impl<S: Scalar> Equations<'_, S> {
         if !self.discovering {
             return self.complain(asked_by, lack);
         }
-        let mut found = self.discovered.borrow_mut();
+        let mut found = self.scratch.discovered.borrow_mut();
         if !found.contains(&key) {
             found.push(key);
         }
@@ -42,9 +42,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// Asks for all that loads, rates and functions ask for, without solving anything.
     pub(in crate::scene) fn discover(&self) {
-        self.solving.set(true);
-        self.loads();
-        self.solving.set(false);
+        self.scratch.while_solving(|| self.loads());
         self.state_rates();
         for f in 0..self.scene.formulas.len() {
             self.formula(f);
@@ -58,7 +56,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     /// ρ of the loops: zero at their solution.
     pub(in crate::scene) fn loop_residuals(&self) -> Vec<S> {
-        let keys = self.scene.loops.iter().zip(&self.loops);
+        let keys = self.scene.loops.iter().zip(&self.now.loops);
         keys.map(|(unknown, &z)| match unknown.key {
             Key::Formula(f) => self.evaluate(f) - z,
             Key::Measure(m, ids) => self.measure_itself(m, ids, &unknown.asker) - z,

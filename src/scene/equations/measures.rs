@@ -36,7 +36,7 @@ impl<S: Scalar> Equations<'_, S> {
                 }
             }
             Family::Acceleration => {
-                if self.solving.get() {
+                if self.scratch.solving.get() {
                     let key = Key::Measure(measure, ids);
                     return self.too_early(key, asked_by, Lack::OwnAcceleration(measure));
                 }
@@ -87,7 +87,7 @@ impl<S: Scalar> Equations<'_, S> {
                 }
             }
             Measure::Senval => match scene.sensor_place(id) {
-                Some(place) => self.external[place],
+                Some(place) => self.now.external[place],
                 None => self.complain(asked_by, Lack::Element(ElementKind::Sensor.id(id))),
             },
             Measure::Dif | Measure::Dif1 => match scene.differential(id) {
@@ -104,7 +104,7 @@ impl<S: Scalar> Equations<'_, S> {
         let unknown = || self.unknown(Key::Value(d)).unwrap_or_else(S::zero);
         self.scene.differentials[d]
             .state
-            .map_or_else(unknown, |s| self.x[s])
+            .map_or_else(unknown, |s| self.now.x[s])
     }
 
     /// Rate of a differential equation.

@@ -18,6 +18,7 @@ mod loops;
 mod measures;
 mod reactions;
 mod rows;
+mod scratch;
 mod turns;
 mod undetermined_reactions;
 mod unsupported;
@@ -31,8 +32,7 @@ pub use unsupported::{Lack, Unsupported};
 
 use super::Scene;
 use super::configuration::{Configuration, Configured};
-use super::layout::Layout;
-use super::loops::Key;
+use super::layout::{Instant, several};
 use super::sweep::{self, Coordinates, LinkState};
 use crate::expr::program::Input;
 use crate::model::{ElementId, Level};
@@ -40,8 +40,7 @@ use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
 use crate::scene::asker::Asker;
 use crate::space::MarkerState;
-use formulas::Opened;
-use std::cell::{Cell, OnceCell, RefCell};
+use scratch::Scratch;
 use std::ops::Range;
 
 /// Value of MODE in a kinematic analysis.
@@ -53,37 +52,20 @@ pub const STATIC: f64 = 5.0;
 pub struct Equations<'s, S: Scalar> {
     scene: &'s Scene,
     configuration: &'s Configuration,
-    t: S,
-    q: Vec<S>,
-    v: Vec<S>,
-    x: Vec<S>,
-    turns: Vec<S>,
-    /// numbers from outside   (n_external)
-    external: Vec<S>,
+    /// the numbers that it was given
+    now: Instant<S>,
+    /// value, rate and acceleration that each motion prescribes   (n_motions)
     driven: Vec<Jet<S>>,
-    /// with the accelerations of driven coordinates only
+    /// with the accelerations of driven coordinates only   (n_links)
     links: Vec<LinkState<S>>,
-    markers: RefCell<Vec<Option<MarkerState<S>>>>,
-    formulas: RefCell<Vec<Option<S>>>,
-    /// formulas being evaluated: a formula that asks for itself is a loop
-    open: RefCell<Opened>,
-    solved: OnceCell<Solved<S>>,
-    solving: Cell<bool>,
-    /// states of stress that dependent rows permit
-    shares: OnceCell<Vec<Share<S>>>,
-    /// values of the unknowns of algebraic loops
-    loops: Vec<S>,
     /// notes what is asked for too early instead of complaining
     discovering: bool,
-    discovered: RefCell<Vec<Key>>,
-    /// equations whose rates are being found
-    rates_open: RefCell<Vec<usize>>,
-    /// what could not be supplied, for the compiler to report
-    complaints: RefCell<Vec<Unsupported>>,
+    /// everything else, as it is asked for
+    scratch: Scratch<S>,
 }
 
 impl<'s, S: Scalar> Equations<'s, S> {
-    /// From the flat row of numbers that [`Layout`] describes.
+    /// From the flat row of numbers that [`Layout`](super::layout::Layout) describes.
     pub fn new(scene: Configured<'s>, numbers: &[S]) -> Self {
         let loops = numbers[scene.layout.loops()].to_vec();
         Self::with_unknowns(scene, numbers, loops, false)
@@ -101,29 +83,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
             scene,
             configuration,
         } = scene;
-        let l = &scene.layout;
         let mut this = Self {
             scene,
             configuration,
-            t: numbers[Layout::TIME],
-            q: numbers[l.q()].to_vec(),
-            v: numbers[l.v()].to_vec(),
-            x: numbers[l.x()].to_vec(),
-            turns: numbers[l.turns()].to_vec(),
-            external: numbers[l.external()].to_vec(),
+            now: Instant {
+                loops,
+                ..scene.layout.instant(numbers)
+            },
             driven: Vec::new(),
             links: Vec::new(),
-            markers: RefCell::new(vec![None; scene.markers.len()]),
-            formulas: RefCell::new(vec![None; scene.formulas.len()]),
-            open: RefCell::new(Opened::none(scene.formulas.len())),
-            solved: OnceCell::new(),
-            solving: Cell::new(false),
-            shares: OnceCell::new(),
-            loops,
             discovering,
-            discovered: RefCell::new(Vec::new()),
-            rates_open: RefCell::new(Vec::new()),
-            complaints: RefCell::new(Vec::new()),
+            scratch: Scratch::new(scene),
         };
         this.driven = (0..scene.motions.len()).map(|m| this.drive(m)).collect();
         this.links = sweep::outward(scene, &this.coordinates(&[]));
@@ -132,13 +102,13 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Returns what could not be supplied; empty when all is well.
     pub fn complaints(&self) -> Vec<Unsupported> {
-        self.complaints.borrow().clone()
+        self.scratch.complaints.borrow().clone()
     }
 
     /// Notes what could not be supplied; its value is NaN.
     fn complain(&self, asked_by: &Asker, lack: Lack) -> S {
         let what = Unsupported::new(asked_by.clone(), lack);
-        let mut complaints = self.complaints.borrow_mut();
+        let mut complaints = self.scratch.complaints.borrow_mut();
         if !complaints.contains(&what) {
             complaints.push(what);
         }
@@ -152,8 +122,8 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     fn coordinates<'a>(&'a self, vdot: &'a [S]) -> Coordinates<'a, S> {
         Coordinates {
-            q: &self.q,
-            v: &self.v,
+            q: &self.now.q,
+            v: &self.now.v,
             vdot,
             driven: &self.driven,
         }
@@ -161,17 +131,17 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Time.
     pub fn time(&self) -> S {
-        self.t
+        self.now.t
     }
 
     /// Returns some of the further states.
     pub fn further_states(&self, places: &std::ops::Range<usize>) -> &[S] {
-        &self.x[places.clone()]
+        &self.now.x[places.clone()]
     }
 
     /// Velocities of the free coordinates   (n_v)
     pub fn velocities(&self) -> &[S] {
-        &self.v
+        &self.now.v
     }
 
     /// Value, rate and acceleration that a motion prescribes.
@@ -192,10 +162,13 @@ impl<'s, S: Scalar> Equations<'s, S> {
         }
         let f = match self.scene.computed(motion.formula) {
             // a closure of the user's tells its derivatives
-            Some(p) => Jet::new(self.external[p], self.external[p + 1], self.external[p + 2]),
+            Some(p) => {
+                let [value, first, second] = several(&self.now.external, p);
+                Jet::new(value, first, second)
+            }
             None => self.in_time(motion.formula, 2),
         };
-        let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.x[s + k]);
+        let state = |k: usize| motion.state.map_or_else(S::zero, |s| self.now.x[s + k]);
         let offset = S::constant(start.offset);
         match motion.level {
             Level::Displacement => f,
@@ -220,11 +193,11 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Pose and velocity of a marker; its accelerations are those of driven coordinates only.
     pub fn marker(&self, m: usize) -> MarkerState<S> {
-        if let Some(state) = self.markers.borrow()[m] {
+        if let Some(state) = self.scratch.markers.borrow()[m] {
             return state;
         }
         let state = sweep::marker_state(&self.scene.markers[m], &self.links);
-        self.markers.borrow_mut()[m] = Some(state);
+        self.scratch.markers.borrow_mut()[m] = Some(state);
         state
     }
 
@@ -278,13 +251,13 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// Numbers from outside: places among these.
     pub fn external(&self, places: Range<usize>) -> &[S] {
-        &self.external[places]
+        &self.now.external[places]
     }
 
     /// Supplies what a formula asks for: the one door between the language and the scene.
     pub fn input(&self, input: Input, asked_by: &Asker) -> S {
         match input {
-            Input::Time => self.t,
+            Input::Time => self.now.t,
             Input::Mode => S::constant(self.scene.mode),
             Input::Measure(measure, ids) => self.measure(measure, ids, asked_by),
             Input::Delayed(_) | Input::Slot(_) => {

@@ -17,8 +17,8 @@ impl<S: Scalar> Equations<'_, S> {
     /// Action of a force element on its I marker.
     pub(super) fn force_action(&self, f: usize) -> Action<S> {
         // within a function: the function may be a load, which the accelerations wait for
-        let within = self.open.borrow().any();
-        if self.solving.get() || self.discovering || within {
+        let within = self.scratch.open.borrow().any();
+        if self.scratch.solving.get() || self.discovering || within {
             self.scene.forces[f].action(self)
         } else {
             self.solved().actions[f]
@@ -212,7 +212,7 @@ impl<S: Scalar> Equations<'_, S> {
         let Some(element) = element else {
             return self.complain(asked_by, Lack::Measure(measure));
         };
-        if self.solving.get() && self.scene.constraints.iter().any(|c| c.id == element) {
+        if self.scratch.solving.get() && self.scene.constraints.iter().any(|c| c.id == element) {
             let key = Key::Measure(measure, [id, jflag, comp, rm]);
             return self.too_early(key, asked_by, Lack::OwnReaction(measure));
         }
@@ -259,7 +259,7 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn generic_force(&self, measure: Measure, ids: [u32; 4], asked_by: &Asker) -> S {
         use Measure as M;
         let [i, j, k, _] = ids;
-        if self.solving.get() && self.carries_reaction(i, j) {
+        if self.scratch.solving.get() && self.carries_reaction(i, j) {
             let key = Key::Measure(measure, ids);
             return self.too_early(key, asked_by, Lack::OwnReaction(measure));
         }

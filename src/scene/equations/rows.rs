@@ -78,7 +78,7 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn along(&self, gradient: &[(usize, S)]) -> S {
         gradient
             .iter()
-            .fold(S::zero(), |s, &(v, g)| s + g * self.v[v])
+            .fold(S::zero(), |s, &(v, g)| s + g * self.now.v[v])
     }
 
     /// A sum of displacements: each a sum of coordinates where it can be, else by duals along

@@ -36,7 +36,7 @@ impl<S: Scalar> Equations<'_, S> {
             return self.sum_of_coordinates(sum) + S::constant(offset);
         }
         let turn = std::f64::consts::TAU;
-        let turns = (self.turns[k] - principal).scale(1.0 / turn).round();
+        let turns = (self.now.turns[k] - principal).scale(1.0 / turn).round();
         principal + turns.scale(turn)
     }
 
@@ -56,7 +56,7 @@ impl<S: Scalar> Equations<'_, S> {
         let (mut speed, mut driven_acceleration) = (S::zero(), S::zero());
         for &c in &counted.between {
             match self.scene.coordinates[c].source {
-                Source::Free { v, .. } => speed += self.v[v].abs(),
+                Source::Free { v, .. } => speed += self.now.v[v].abs(),
                 Source::Driven(m) => {
                     speed += self.driven[m].first.abs();
                     driven_acceleration += self.driven[m].second.abs();

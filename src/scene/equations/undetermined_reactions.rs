@@ -59,7 +59,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// States of stress of all rows that do not take part, with their shares in the smallest set of
     /// reactions.
     pub(super) fn shares(&self) -> &[Share<S>] {
-        self.shares.get_or_init(|| self.smallest())
+        self.scratch.shares.get_or_init(|| self.smallest())
     }
 
     fn smallest(&self) -> Vec<Share<S>> {

@@ -6,6 +6,7 @@ use crate::expr::program::{Builder, Folding, Input, Program, Work};
 use crate::numeric::pattern::Pattern;
 use crate::scalar::{Dual, Scalar};
 use crate::scene::Scene;
+use crate::scene::layout::ImplicitLayout;
 use crate::scene::slopes::WIDTH;
 
 /// Programs of one form of the implicit equations. All read the numbers, then ẏ, λ, μ, and what may
@@ -16,10 +17,7 @@ pub(super) struct Written {
     /// multipliers at a state
     multipliers: Program,
     jacobian: Jacobian,
-    /// unknowns of the explicit system
-    n: usize,
-    /// number of numbers before ẏ
-    first: usize,
+    layout: ImplicitLayout,
     work: Work,
     /// places of the entries among those of a larger pattern   (entries)
     places: Vec<usize>,
@@ -48,27 +46,20 @@ enum Jacobian {
 /// Operations whose derivatives are recorded, times the unknowns, at most.
 const MAX_OPERATIONS: usize = 400_000;
 
-/// Returns where the residual reads unknown `j`: numbers 1 … n, and of the multipliers those after
-/// ẏ, which begins at `first`.
-fn place(j: usize, n: usize, first: usize) -> usize {
-    if j < n { 1 + j } else { first + j }
-}
-
 impl Jacobian {
     fn new(
         scene: &Scene,
         residual: &Program,
-        n: usize,
-        size: usize,
+        layout: ImplicitLayout,
         outside: &ExternalInputs,
     ) -> Self {
-        let first = scene.layout.len();
+        let size = layout.size();
         let by_duals = || {
             let mut along = vec![Vec::new(); residual.inputs().len()];
             for j in 0..size {
-                along[place(j, n, first)].push(j as u32);
-                if j < n {
-                    along[first + j].push(j as u32);
+                along[layout.unknown_at(j)].push(j as u32);
+                if let Some(rate) = layout.rate_at(j) {
+                    along[rate].push(j as u32);
                 }
             }
             outside.depend(&mut along);
@@ -90,8 +81,8 @@ impl Jacobian {
         let slot = |k: usize| Input::Slot(k as u32);
         // y, then ẏ
         let places = (0..size)
-            .map(|j| slot(place(j, n, first)))
-            .chain((0..n).map(|j| slot(first + j)));
+            .map(|j| slot(layout.unknown_at(j)))
+            .chain((0..size).filter_map(|j| layout.rate_at(j)).map(slot));
         let places: Vec<_> = places.map(|input| builder.input(input)).collect();
         let mut wanted = Vec::new();
         let mut entries = Vec::new();
@@ -107,7 +98,7 @@ impl Jacobian {
             };
             for j in 0..size {
                 let by_y = output(j);
-                let by_ydot = if j < n { output(size + j) } else { None };
+                let by_ydot = layout.rate_at(j).and_then(|_| output(size + j));
                 if by_y.is_some() || by_ydot.is_some() || i == j {
                     entries.push((i, j, by_y, by_ydot));
                 }
@@ -127,21 +118,19 @@ impl Jacobian {
 }
 
 impl Written {
-    /// Records the derivatives of a residual with `size` unknowns, `n` of them of the explicit
-    /// system.
+    /// Records the derivatives of a residual.
     pub(super) fn new(
         scene: &Scene,
         residual: Program,
         multipliers: Program,
-        (n, size): (usize, usize),
+        layout: ImplicitLayout,
         outside: &ExternalInputs,
     ) -> Self {
         Self {
-            jacobian: Jacobian::new(scene, &residual, n, size, outside),
+            jacobian: Jacobian::new(scene, &residual, layout, outside),
             residual,
             multipliers,
-            n,
-            first: scene.layout.len(),
+            layout,
             work: Work::default(),
             places: Vec::new(),
         }
@@ -182,7 +171,7 @@ impl Written {
         outside: &mut ExternalInputs,
         values: &mut [f64],
     ) {
-        let (n, first) = (self.n, self.first);
+        let layout = self.layout;
         let read = &read[..self.residual.inputs().len()];
         values.fill(0.0);
         match &mut self.jacobian {
@@ -212,9 +201,9 @@ impl Written {
                     let mark = |numbers: &mut [Dual<WIDTH>], by_y: f64, by_ydot: f64| {
                         for (k, group) in groups.iter().enumerate() {
                             for &j in group {
-                                numbers[place(j, n, first)].eps[k] = by_y;
-                                if j < n {
-                                    numbers[first + j].eps[k] = by_ydot;
+                                numbers[layout.unknown_at(j)].eps[k] = by_y;
+                                if let Some(rate) = layout.rate_at(j) {
+                                    numbers[rate].eps[k] = by_ydot;
                                 }
                             }
                         }

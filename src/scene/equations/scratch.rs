@@ -1,0 +1,55 @@
+//! Results kept within one instant: each thing is computed when it is first asked for.
+
+use super::formulas::Opened;
+use super::{Share, Solved, Unsupported};
+use crate::scene::Scene;
+use crate::scene::loops::Key;
+use crate::space::MarkerState;
+use std::cell::{Cell, OnceCell, RefCell};
+
+/// Results found so far, and questions that are open.
+pub(super) struct Scratch<S> {
+    /// poses and velocities of markers   (n_markers)
+    pub markers: RefCell<Vec<Option<MarkerState<S>>>>,
+    /// values of formulas   (n_formulas)
+    pub formulas: RefCell<Vec<Option<S>>>,
+    /// formulas being evaluated: a formula that asks for itself is a loop
+    pub open: RefCell<Opened>,
+    /// accelerations, multipliers and reactions
+    pub solved: OnceCell<Solved<S>>,
+    /// true while loads are found, on which accelerations depend
+    pub solving: Cell<bool>,
+    /// states of stress that dependent rows permit
+    pub shares: OnceCell<Vec<Share<S>>>,
+    /// unknowns of loops that were asked for too early
+    pub discovered: RefCell<Vec<Key>>,
+    /// algebraic equations whose rates are being found
+    pub rates_open: RefCell<Vec<usize>>,
+    /// what could not be supplied, for the compiler to report
+    pub complaints: RefCell<Vec<Unsupported>>,
+}
+
+impl<S: Copy> Scratch<S> {
+    /// Creates the scratch of an instant at which nothing has been asked for.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            markers: RefCell::new(vec![None; scene.markers.len()]),
+            formulas: RefCell::new(vec![None; scene.formulas.len()]),
+            open: RefCell::new(Opened::none(scene.formulas.len())),
+            solved: OnceCell::new(),
+            solving: Cell::new(false),
+            shares: OnceCell::new(),
+            discovered: RefCell::default(),
+            rates_open: RefCell::default(),
+            complaints: RefCell::default(),
+        }
+    }
+
+    /// Computes what accelerations depend on: whoever asks for these meanwhile asks too early.
+    pub fn while_solving<T>(&self, compute: impl FnOnce() -> T) -> T {
+        let before = self.solving.replace(true);
+        let found = compute();
+        self.solving.set(before);
+        found
+    }
+}
