@@ -456,13 +456,13 @@ fn closures_give_all_components_of_vector_forces() {
     let plain = forces("VFORCE/1", f, &laws[0])
         + &forces("VTORQUE/1", t, &laws[1]).replace("JFLOAT=5", "JFLOAT=7");
     let reads = ["DX(2,1)", "VX(2,1)", "WX(2,1)", "WY(2,1)"];
-    let force = |call: &cognate::analysis::system::external_inputs::Call<'_>| {
+    let force = |call: &cognate::analysis::system::closures::Call<'_>| {
         let [x, v, ..] = *call.values else {
             return [f64::NAN; 3];
         };
         [-3.0 * x - 0.1 * v, call.time.cos(), 0.2 * x]
     };
-    let torque = |call: &cognate::analysis::system::external_inputs::Call<'_>| {
+    let torque = |call: &cognate::analysis::system::closures::Call<'_>| {
         let [_, _, wx, wy] = *call.values else {
             return [f64::NAN; 3];
         };

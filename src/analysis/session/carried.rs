@@ -1,7 +1,7 @@
 //! The state that one simulation leaves to the next, and the model moved to it.
 
 use super::Session;
-use crate::analysis::system::{System, external_inputs, samples};
+use crate::analysis::system::{System, past, samples};
 use crate::expr::measures::Measure;
 use crate::model::geometry::orientation;
 use crate::model::{ElementId, ElementKind, Model, Orientation};
@@ -34,7 +34,7 @@ pub(super) struct Carried {
     /// states of sampled systems, by the numbers of their GSE
     pub(super) samples: BTreeMap<u32, samples::Held>,
     /// the past of delayed values
-    pub(super) past: BTreeMap<DelayId, external_inputs::Past>,
+    pub(super) past: BTreeMap<DelayId, past::Past>,
 }
 
 impl Carried {
@@ -58,8 +58,8 @@ impl Session {
             t: numbers[Layout::TIME],
             turns,
             sensors: sensed(&system.scene, &numbers),
-            samples: system.samples.held(&numbers),
-            past: system.external.past(),
+            samples: system.recorded.samples.held(&numbers),
+            past: system.recorded.external.delays.past(),
             unknowns: [&unknowns.q[..], &unknowns.v, &unknowns.x].concat(),
             at_rest: false,
             parts,

@@ -23,7 +23,7 @@ mod stop_reason;
 
 use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
-use crate::analysis::system::external_inputs;
+use crate::analysis::system::closures;
 use crate::analysis::time::output::Output;
 use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
@@ -92,7 +92,7 @@ pub struct Session {
     /// programs of the present scene: of the columns; of energies and rows
     columns_program: Option<Program>,
     account: Option<Program>,
-    hooks: Vec<external_inputs::Hook>,
+    hooks: Vec<closures::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether
     /// matrices are wanted
     pub linear: Vec<(Option<String>, bool, Linearization)>,
@@ -147,15 +147,15 @@ impl Session {
     ///
     /// `name` is an element ("SFORCE/3"), the text of its ROUTINE, or the first number of
     /// `USER(…)`; `inputs` are expressions of the function language whose values the closure is
-    /// given, in this order. They may not depend on what it computes. See [`external_inputs::Law`]
+    /// given, in this order. They may not depend on what it computes. See [`closures::Law`]
     /// for what it has to fill in.
     pub fn register(
         &mut self,
         name: &str,
         inputs: &[&str],
-        law: impl Fn(&external_inputs::Call<'_>, &mut [f64]) + Send + Sync + 'static,
+        law: impl Fn(&closures::Call<'_>, &mut [f64]) + Send + Sync + 'static,
     ) {
-        self.hooks.push(external_inputs::Hook {
+        self.hooks.push(closures::Hook {
             name: name.to_string(),
             inputs: inputs.iter().map(ToString::to_string).collect(),
             law: std::sync::Arc::new(law),
@@ -167,11 +167,7 @@ impl Session {
 
     /// The columns of the results, before there are any.
     fn choose_columns(&mut self) {
-        let names: Vec<_> = self
-            .hooks
-            .iter()
-            .map(external_inputs::Hook::as_name)
-            .collect();
+        let names: Vec<_> = self.hooks.iter().map(closures::Hook::as_name).collect();
         let known = |id: u32, user: &crate::model::Formula| {
             let element = ElementKind::Request.id(id);
             names.iter().any(|n| n.stands_for(element, user))

@@ -185,7 +185,9 @@ const TOLD_STEPS: usize = 200;
 /// which keeps positions on the rows as well.
 fn is_integrated(system: &System) -> bool {
     let l = system.scene.layout;
-    l.n_x > 0 || l.n_q > 0 && system.external.remembers() || !system.samples.is_empty()
+    l.n_x > 0
+        || l.n_q > 0 && !system.recorded.external.delays.is_empty()
+        || !system.recorded.samples.is_empty()
 }
 
 /// Most changes of method that a record names.

@@ -8,8 +8,9 @@ use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::start::assemble::{self, Assembly};
 use crate::analysis::start::{coincident, initial_conditions, misalignment, placement, velocities};
+use crate::analysis::system::external_inputs::ExternalInputs;
 use crate::analysis::system::{System, complaints};
-use crate::analysis::system::{external_inputs, samples};
+use crate::analysis::system::{closures, samples};
 use crate::analysis::verify::culprit::blamed;
 use crate::analysis::warning::Warning;
 use crate::diagnostic::Diagnostic;
@@ -77,7 +78,11 @@ impl Session {
         }
         system.numbers.copy_from_slice(&carried.numbers);
         self.set_constants(&system.scene, &mut system.numbers);
-        system.external.begin(carried.t, &carried.past);
+        system
+            .recorded
+            .external
+            .delays
+            .begin(carried.t, &carried.past);
         system.resolve().ok()?;
         system.begin_sensing();
         Some((system, kept.assembly))
@@ -123,7 +128,7 @@ impl Session {
         mode: u32,
         inputs: &[u32],
     ) -> Result<(Arc<Scene>, Option<Model>), Vec<Diagnostic>> {
-        let hooks = self.hooks.iter().map(external_inputs::Hook::as_name);
+        let hooks = self.hooks.iter().map(closures::Hook::as_name);
         let mut extra = self.columns.extra.clone();
         extra.extend(spline_calls(&self.model).iter().map(SplineCall::extra));
         let mut options = build::Options {
@@ -234,9 +239,9 @@ impl Session {
         let mut system = System::with_hooks(start.scene, start.configuration, &self.hooks)?;
         let carried = self.carried.as_ref();
         if let Some(carried) = carried {
-            system.external.begin(t, &carried.past);
+            system.recorded.external.delays.begin(t, &carried.past);
         } else {
-            system.external.begin(t, &BTreeMap::new());
+            system.recorded.external.delays.begin(t, &BTreeMap::new());
         }
         system.numbers[Layout::TIME] = t;
         system.numbers[l.y()].copy_from_slice(&y);
@@ -296,8 +301,7 @@ impl Session {
             angles
                 .zip(scene.configuration.angles())
                 .for_each(|(x, angle)| *x = angle);
-            let mut outside =
-                external_inputs::ExternalInputs::new(scene, &self.hooks).map_err(complaints)?;
+            let mut outside = ExternalInputs::new(scene, &self.hooks).map_err(complaints)?;
             outside.evaluate(&mut numbers, true);
         }
         Ok(numbers[l.external()].to_vec())

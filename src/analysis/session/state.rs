@@ -6,7 +6,7 @@
 
 use super::Session;
 use super::carried::Carried;
-use crate::analysis::system::external_inputs::Past;
+use crate::analysis::system::past::Past;
 use crate::analysis::system::samples::Held;
 use crate::dataset;
 use crate::diagnostic::{Diagnostic, Severity};

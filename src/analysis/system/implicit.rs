@@ -17,7 +17,7 @@
 mod written;
 
 use crate::analysis::system::System;
-use crate::analysis::system::external_inputs::ExternalInputs;
+use crate::analysis::system::closures::Closures;
 use crate::diagnostic::Diagnostic;
 use crate::numeric::{Dae, Failure, Kind, Levels, Ode, Relation};
 use crate::scalar::Scalar;
@@ -94,7 +94,7 @@ impl Implicit {
     pub fn new(
         scene: Configured<'_>,
         formulation: Formulation,
-        (outside, switching): (&ExternalInputs, Option<&Switching>),
+        (outside, switching): (&Closures, Option<&Switching>),
     ) -> Result<Self, Vec<Diagnostic>> {
         if !scene.loops.is_empty() {
             let loops: Vec<String> = scene.loops.iter().map(|u| u.asker.to_string()).collect();
@@ -184,26 +184,21 @@ impl System {
     /// # Errors
     /// Functions that read what is solved for.
     pub fn make_implicit(&mut self, formulation: Formulation) -> Result<(), Vec<Diagnostic>> {
-        if self
-            .implicit
-            .as_ref()
-            .is_none_or(|i| i.formulation != formulation)
-        {
-            let switching = self.recorded.branches.switching.as_ref();
-            let more = (&self.external, switching);
-            let implicit = Implicit::new(self.configured(), formulation, more)?;
-            self.implicit = Some(Box::new(implicit));
+        let implicit = self.recorded.implicit.as_ref();
+        if implicit.is_none_or(|i| i.formulation != formulation) {
+            let here = self.scene.within(&self.configuration);
+            self.recorded.make_implicit(here, formulation)?;
         }
         Ok(())
     }
 
     /// Returns the number of unknowns of the implicit system: the state, and multipliers.
     pub fn implicit_size(&self) -> usize {
-        self.implicit.as_ref().map_or(0, |i| i.size())
+        self.recorded.implicit.as_ref().map_or(0, |i| i.size())
     }
 
     fn implicit(&self) -> &Implicit {
-        match &self.implicit {
+        match &self.recorded.implicit {
             Some(implicit) => implicit,
             None => unreachable!("make_implicit comes before a method for implicit equations"),
         }
@@ -218,7 +213,7 @@ impl Dae for System {
     fn residual(&mut self, t: f64, y: &[f64], ydot: &[f64], r: &mut [f64]) -> Result<(), Failure> {
         self.set(t, y);
         let holding = self.recorded.branches.is_holding();
-        if let Some(i) = &mut self.implicit {
+        if let Some(i) = &mut self.recorded.implicit {
             i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
             if let (true, Some(held)) = (holding, &mut i.held) {
                 held.residual(&i.numbers, r);
@@ -252,13 +247,13 @@ impl Dae for System {
     ) -> Result<(), Failure> {
         self.set(t, y);
         let holding = self.recorded.branches.is_holding();
-        if let Some(i) = &mut self.implicit {
+        if let Some(i) = &mut self.recorded.implicit {
             i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
             let written = match (holding, &mut i.held) {
                 (true, Some(held)) => held,
                 _ => &mut i.free,
             };
-            written.derivatives(&i.numbers, cj, &mut self.external, values);
+            written.derivatives(&i.numbers, cj, &mut self.recorded.external.closures, values);
         }
         Ok(())
     }
@@ -269,7 +264,7 @@ impl Dae for System {
         ydot.fill(0.0);
         Ode::rate(self, t, &y[layout.y()], &mut ydot[layout.y()])?;
         let holding = self.recorded.branches.is_holding();
-        if let Some(i) = &mut self.implicit {
+        if let Some(i) = &mut self.recorded.implicit {
             i.set(&self.numbers, y, ydot, self.recorded.branches.sides());
             let lambda = &mut y[layout.lambda()];
             if let (true, Some(held)) = (holding, &mut i.held) {

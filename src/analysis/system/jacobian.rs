@@ -65,7 +65,7 @@ impl System {
         if self.recorded.derivatives.gradients[holding].is_none() {
             let loops =
                 self.recorded.loops.is_some() || holding == 1 && self.recorded.branches.has_loops();
-            let beside = loops || !self.external.is_empty();
+            let beside = loops || !self.recorded.external.is_empty();
             let gradient = if beside {
                 Gradient::Duals
             } else {
@@ -230,7 +230,7 @@ impl System {
             for k in 0..some.len() {
                 take(chunk * WIDTH + k, &|i| own.out[i].eps[k]);
             }
-            self.external.forget(&mut own.numbers);
+            self.recorded.external.closures.forget(&mut own.numbers);
             let recorded = &self.recorded;
             let loops = if recorded.branches.is_holding() {
                 &recorded.branches.loops

@@ -7,16 +7,18 @@
 //! recorded     the programs of a configuration: rate, rows, branches, loops, turns; remade as a whole
 //! ode          ẏ = f(t, y), projection; jacobian: its derivatives
 //! implicit     F(t, y, ẏ) = 0
-//! external_inputs, sensors, samples     numbers that programs read but do not compute
+//! external_inputs (past, closures), sensors, samples     numbers that programs read but do not compute
 //! pulses, peaks, time_events, tunnelling, singular_step     how long a step may be
 //! ```
 
 mod algebraic_loops;
 pub mod branches;
+pub mod closures;
 pub mod external_inputs;
 pub mod implicit;
 mod jacobian;
 mod ode;
+pub mod past;
 pub(super) mod peaks;
 mod pulses;
 mod recorded;
@@ -41,17 +43,12 @@ use crate::scene::mover::Mover;
 use crate::scene::slopes::WIDTH;
 use crate::scene::{Coordinate, Scene, Source};
 use branches::Branches;
-use external_inputs::{ExternalInputs, Hook};
-use implicit::Implicit;
-use peaks::Peaks;
-use pulses::Pulses;
+use closures::Hook;
 use recorded::Recorded;
-use samples::{Held, Samples};
-use sensors::Sensors;
+use samples::Held;
 use singular_step::SingularSteps;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use time_events::TimeEvents;
 use turns::Look;
 
 /// A scene with its programs, ready to be integrated.
@@ -63,22 +60,10 @@ pub struct System {
     pub configuration: Configuration,
     /// what the programs read: t | q | v | x | turns | loops | external
     pub numbers: Vec<f64>,
-    /// the programs of the configuration
-    recorded: Recorded,
-    /// the same as an implicit system, when a method asks for it
-    implicit: Option<Box<Implicit>>,
-    /// values of the past, results of closures
-    pub external: ExternalInputs,
-    /// what is watched
-    pub sensors: Sensors,
-    /// what is sampled
-    pub samples: Samples,
-    /// smooth pulses of functions of time
-    pulses: Pulses,
-    /// narrow peaks of functions
-    pub(super) peaks: Peaks,
-    /// breaks at times that are fixed beforehand
-    pub(super) time_events: TimeEvents,
+    /// the programs of the configuration, and what they have seen
+    pub(super) recorded: Recorded,
+    /// the closures that hooks of the scene refer to
+    hooks: Vec<Hook>,
     /// instants near which rows were dependent in the present step
     singular_steps: SingularSteps,
     /// the permitted local error: evaluations need not be much better
@@ -118,17 +103,11 @@ impl System {
             lent_inertia,
             ..Elimination::default()
         };
-        let recorded = Recorded::new(&scene, &mut configuration, &scene.initial_q)?;
+        let recorded = Recorded::new(&scene, &mut configuration, &scene.initial_q, hooks)?;
         let here = scene.within(&configuration);
         Ok(Self {
             recorded,
-            implicit: None,
-            external: ExternalInputs::new(here, hooks).map_err(complaints)?,
-            sensors: Sensors::new(here).map_err(complaints)?,
-            samples: Samples::new(here).map_err(complaints)?,
-            pulses: Pulses::new(here)?,
-            peaks: Peaks::new(here)?,
-            time_events: TimeEvents::new(here).map_err(complaints)?,
+            hooks: hooks.to_vec(),
             singular_steps: SingularSteps::default(),
             precision: 1e-6,
             unsolved: None,
@@ -148,17 +127,13 @@ impl System {
         let mut configuration = self.configuration.clone();
         configuration.active = active;
         let q = &self.numbers[self.scene.layout.q()];
-        let recorded = Recorded::new(&self.scene, &mut configuration, q)?;
-        let here = self.scene.within(&configuration);
-        let implicit = match &self.implicit {
-            Some(implicit) => Some(Box::new(Implicit::new(
-                here,
-                implicit.formulation(),
-                (&self.external, recorded.branches.switching.as_ref()),
-            )?)),
-            None => None,
-        };
-        (self.recorded, self.implicit) = (recorded, implicit);
+        let mut recorded = Recorded::new(&self.scene, &mut configuration, q, &self.hooks)?;
+        if let Some(implicit) = &self.recorded.implicit {
+            let here = self.scene.within(&configuration);
+            recorded.make_implicit(here, implicit.formulation())?;
+        }
+        let before = std::mem::replace(&mut self.recorded, recorded);
+        self.recorded.carry_on(before);
         self.configuration = configuration;
         Ok(())
     }
@@ -202,7 +177,7 @@ impl System {
 
     /// Returns whether the motion would stay where switch `k` changes, while those slide that do.
     pub fn attracts(&mut self, t: f64, y: &[f64], k: usize) -> bool {
-        if !self.recorded.branches.can_hold() || !self.external.is_empty() {
+        if !self.recorded.branches.can_hold() || !self.recorded.external.is_empty() {
             return false;
         }
         self.set(t, y);
@@ -256,28 +231,31 @@ impl System {
 
     /// Returns the times at which steps have to end, lest a pulse passes unseen.
     pub fn landings(&mut self, start: f64, end: f64) -> Vec<f64> {
-        self.pulses.landings(&mut self.time_events, start, end)
+        let recorded = &mut self.recorded;
+        recorded
+            .pulses
+            .landings(&mut recorded.time_events, start, end)
     }
 
     /// Looks at narrow peaks at the end of a step; their slopes are those over a time `delta`.
     pub(super) fn look_at_peaks(&mut self, t: f64, y: &[f64], ydot: &[f64], delta: f64) {
-        if self.peaks.is_empty() {
+        if self.recorded.peaks.is_empty() {
             return;
         }
         let mut later = std::mem::take(&mut self.stage);
         later.clear();
         later.extend(y.iter().zip(ydot).map(|(y, f)| y + delta * f));
         self.set(t + delta, &later);
-        self.peaks.see_later(&self.numbers);
+        self.recorded.peaks.see_later(&self.numbers);
         self.stage = later;
         self.set(t, y);
-        self.peaks.see_end(&self.numbers, delta);
+        self.recorded.peaks.see_end(&self.numbers, delta);
     }
 
     /// Returns the `k`-th logarithm of the narrow peaks at a state.
     pub(super) fn peak_at(&mut self, t: f64, y: &[f64], k: usize) -> f64 {
         self.set(t, y);
-        self.peaks.eval(&self.numbers)[k]
+        self.recorded.peaks.eval(&self.numbers)[k]
     }
 
     /// Returns whether rows have nearly been dependent since this was last asked.
@@ -407,30 +385,36 @@ impl System {
 
     /// Takes the sensors as they stand at the start of a simulation.
     pub fn begin_sensing(&mut self) {
-        self.sensors.begin(&self.scene.sensors, &mut self.numbers);
+        self.recorded
+            .sensors
+            .begin(&self.scene.sensors, &mut self.numbers);
     }
 
     /// Returns the sensors that are triggered at an accepted state, by their places in
     /// [`Scene::sensors`]; SENVAL is new then. `switched`: a switch was located at this state.
     pub fn sense(&mut self, t: f64, y: &[f64], switched: bool) -> Vec<usize> {
-        if self.sensors.is_empty() {
+        if self.recorded.sensors.is_empty() {
             return Vec::new();
         }
         self.set(t, y);
         let sensors = &self.scene.sensors;
-        self.sensors.sense(sensors, &mut self.numbers, switched)
+        self.recorded
+            .sensors
+            .sense(sensors, &mut self.numbers, switched)
     }
 
     /// Evaluates by how much the expressions of sensors are beyond their values   (n_sensors)
     pub fn beyond_sensors(&mut self, t: f64, y: &[f64], values: &mut Vec<f64>) {
         self.set(t, y);
         let sensors = &self.scene.sensors;
-        self.sensors.beyond(sensors, &self.numbers, values);
+        self.recorded.sensors.beyond(sensors, &self.numbers, values);
     }
 
     /// Returns whether a sensor that waits for its value passes it between two such evaluations.
     pub fn passes_sensor(&self, before: &[f64], after: &[f64]) -> bool {
-        self.sensors.passes(&self.scene.sensors, before, after)
+        self.recorded
+            .sensors
+            .passes(&self.scene.sensors, before, after)
     }
 
     /// Goes on as the last simulation left the samples, or takes the first ones here.
@@ -438,20 +422,20 @@ impl System {
     /// # Errors
     /// A period that is not positive.
     pub fn begin_sampling(&mut self, held: &BTreeMap<u32, Held>) -> Result<(), Diagnostic> {
-        self.samples.begin(&mut self.numbers, held)
+        self.recorded.samples.begin(&mut self.numbers, held)
     }
 
     /// Sets the samples back to where the simulation begins.
     pub fn restart_sampling(&mut self) {
-        self.samples.restart(&mut self.numbers);
+        self.recorded.samples.restart(&mut self.numbers);
     }
 
     /// Takes the samples that are due at an accepted state; returns whether a state has changed.
     pub fn sample(&mut self, t: f64, y: &[f64]) -> bool {
-        let due = self.samples.due_at(t);
-        let changed = self.samples.take(&due, &mut self.numbers);
+        let due = self.recorded.samples.due_at(t);
+        let changed = self.recorded.samples.take(&due, &mut self.numbers);
         self.set(t, y);
-        self.samples.prepare_next(&due, &self.numbers);
+        self.recorded.samples.prepare_next(&due, &self.numbers);
         changed
     }
 
@@ -468,8 +452,8 @@ impl System {
     /// Returns all numbers at a state that is on the rows.
     pub fn row_of(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         self.set(t, y);
-        if !self.external.is_empty() {
-            self.external.evaluate(&mut self.numbers, true);
+        if !self.recorded.external.is_empty() {
+            self.recorded.external.evaluate(&mut self.numbers, true);
         }
         self.numbers.clone()
     }
@@ -493,8 +477,8 @@ impl System {
             (self.recorded.branches).exchange_sides(&mut branch.sides);
             self.set(row[Layout::TIME], &state);
             (self.recorded.branches).exchange_sides(&mut branch.sides);
-            if !self.external.is_empty() {
-                self.external.evaluate(&mut self.numbers, true);
+            if !self.recorded.external.is_empty() {
+                self.recorded.external.evaluate(&mut self.numbers, true);
             }
             rows.push((branch.part, self.numbers.clone()));
         }
@@ -529,8 +513,8 @@ impl System {
     /// Fills in the numbers that follow from time and state; `output`: also those that only results
     /// show.
     fn fill(&mut self, output: bool) {
-        if !self.external.is_empty() {
-            self.external.evaluate(&mut self.numbers, output);
+        if !self.recorded.external.is_empty() {
+            self.recorded.external.evaluate(&mut self.numbers, output);
         }
         if let Some(loops) = &mut self.recorded.loops {
             // where branches are held, the branch that the state says may have no solution
@@ -546,7 +530,7 @@ impl System {
     /// Puts in along which directions closures' results and loops' unknowns change, where `along`
     /// says it of the other numbers.
     pub fn depend_along(&self, along: &mut [Vec<u32>]) {
-        self.external.depend(along);
+        self.recorded.external.closures.depend(along);
         if let Some(loops) = &self.recorded.loops {
             loops.depend(along);
         }
@@ -559,7 +543,7 @@ impl System {
     /// # Errors
     /// The index of a loop that nothing determines, in [`Scene::loops`].
     pub fn follow_along(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
-        self.external.follow(numbers, first);
+        self.recorded.external.closures.follow(numbers, first);
         let recorded = &mut self.recorded;
         let held = recorded.branches.is_holding() && numbers.len() > self.scene.layout.len();
         let loops = if held {

@@ -298,7 +298,8 @@ impl Ode for System {
                 };
             }
             // short steps because of a contact have to be seen in velocity
-            let smooth = self.recorded.branches.is_empty() && self.peaks.is_empty() && !f.in_ball;
+            let smooth =
+                self.recorded.branches.is_empty() && self.recorded.peaks.is_empty() && !f.in_ball;
             relations.v[v] = Relation {
                 group: Some(2 + kind),
                 share: SHARE_OF_LARGEST_SPEED,

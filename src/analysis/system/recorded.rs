@@ -1,14 +1,23 @@
 //! The programs of a scene in one configuration.
 //!
 //! They are recorded together, before the first step and again whenever other rows are chosen: each
-//! of them is written for the rows that take part.
+//! of them is written for the rows that take part, as whatever reads an acceleration or a reaction
+//! depends on them. What has been seen so far (the past, sensors, samples) is carried over.
 
 use super::algebraic_loops::AlgebraicLoops;
 use super::branches::Branches;
+use super::closures::Hook;
 use super::complaints;
+use super::external_inputs::ExternalInputs;
+use super::implicit::{Formulation, Implicit};
 use super::jacobian::Derivatives;
+use super::peaks::Peaks;
+use super::pulses::Pulses;
 use super::recording::Recording;
 use super::rows::Rows;
+use super::samples::Samples;
+use super::sensors::Sensors;
+use super::time_events::TimeEvents;
 use super::tunnelling::ThicknessBounds;
 use super::turns::Turns;
 use crate::diagnostic::Diagnostic;
@@ -29,26 +38,41 @@ const LEAST_USUAL_PIVOT: f64 = 0.01;
 
 /// The programs of a scene in one configuration, with their scratch.
 #[derive(Debug)]
-pub(super) struct Recorded {
+pub(in crate::analysis) struct Recorded {
     /// ẏ, then the strength of the rows: their weakest pivot over its usual size   (n + 1)
-    pub rate: Recording,
+    pub(super) rate: Recording,
     /// rows: kept by projection, watched where they are left out
-    pub rows: Rows,
+    pub(super) rows: Rows,
     /// switching functions, and the rate with branches held
     pub branches: Branches,
     /// unknowns of loops that are not linear
     pub loops: Option<AlgebraicLoops>,
     /// angles whose turns are counted from step to step
-    pub turns: Option<Turns>,
+    pub(super) turns: Option<Turns>,
     /// bodies that could pass through each other
     pub thickness: ThicknessBounds,
     /// derivatives of the rates
-    pub derivatives: Derivatives,
+    pub(super) derivatives: Derivatives,
+    /// the same as an implicit system, when a method asks for it
+    pub implicit: Option<Box<Implicit>>,
+    /// values of the past, results of closures
+    pub external: ExternalInputs,
+    /// expressions that are watched
+    pub sensors: Sensors,
+    /// discrete states
+    pub samples: Samples,
+    /// smooth pulses of functions of time
+    pub pulses: Pulses,
+    /// narrow peaks of functions
+    pub peaks: Peaks,
+    /// breaks at times that are fixed beforehand
+    pub time_events: TimeEvents,
 }
 
 impl Recorded {
     /// Records the programs of a scene, and chooses how accelerations are eliminated: pivots are
-    /// measured at the positions `q`, and the shorter rate is kept.
+    /// measured at the positions `q`, and the shorter rate is kept. The hooks of the scene refer to
+    /// `hooks`.
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
@@ -56,6 +80,7 @@ impl Recorded {
         scene: &Scene,
         configuration: &mut Configuration,
         q: &[f64],
+        hooks: &[Hook],
     ) -> Result<Self, Vec<Diagnostic>> {
         let usual_pivots = usual_pivots(scene.within(configuration), q);
         configuration.elimination.usual_pivots = usual_pivots;
@@ -72,7 +97,38 @@ impl Recorded {
             loops: AlgebraicLoops::new(here).map_err(complaints)?,
             thickness: ThicknessBounds::new(here, scene.layout.n_y()).map_err(complaints)?,
             derivatives: Derivatives::default(),
+            implicit: None,
+            external: ExternalInputs::new(here, hooks).map_err(complaints)?,
+            sensors: Sensors::new(here).map_err(complaints)?,
+            samples: Samples::new(here).map_err(complaints)?,
+            pulses: Pulses::new(here)?,
+            peaks: Peaks::new(here)?,
+            time_events: TimeEvents::new(here).map_err(complaints)?,
         })
+    }
+
+    /// Records the implicit equations, too.
+    ///
+    /// # Errors
+    /// Functions that read what is solved for.
+    pub fn make_implicit(
+        &mut self,
+        scene: Configured<'_>,
+        formulation: Formulation,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let switching = self.branches.switching.as_ref();
+        let closures = &self.external.closures;
+        let implicit = Implicit::new(scene, formulation, (closures, switching))?;
+        self.implicit = Some(Box::new(implicit));
+        Ok(())
+    }
+
+    /// Goes on from what the programs of other rows have seen so far.
+    pub fn carry_on(&mut self, mut before: Self) {
+        self.external.delays.carry_on(&mut before.external.delays);
+        self.sensors.carry_on(&before.sensors);
+        self.samples.carry_on(before.samples);
+        self.time_events.carry_on(&before.time_events);
     }
 
     /// Evaluates the rates at a row of numbers, and how strong the rows are: of the branches that

@@ -10,7 +10,7 @@
 //! ends a step, so that no step leads over one, and the method begins anew where the states have
 //! changed. Several systems that are sampled at one instant see each other's states of before it.
 
-use super::external_inputs::Law;
+use super::closures::Law;
 use super::recording::Recording;
 use crate::diagnostic::Diagnostic;
 use crate::model::ElementId;
@@ -154,6 +154,14 @@ impl Samples {
         }
         self.restart(numbers);
         Ok(())
+    }
+
+    /// Goes on from the samples of the same systems, recorded for other rows.
+    pub(super) fn carry_on(&mut self, before: Self) {
+        for (s, before) in self.all.iter_mut().zip(before.all) {
+            (s.next, s.begun) = (before.next, before.begun);
+            (s.due, s.length) = (before.due, before.length);
+        }
     }
 
     /// Sets the samples back to where the simulation begins.

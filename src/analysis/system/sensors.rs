@@ -99,6 +99,11 @@ impl Sensors {
         }
     }
 
+    /// Goes on from the same sensors, recorded for other rows.
+    pub(super) fn carry_on(&mut self, before: &Self) {
+        self.armed.clone_from(&before.armed);
+    }
+
     /// Returns the sensors that are triggered at an accepted state; SENVAL is new then. `switched`:
     /// a switch was located at this state.
     pub(super) fn sense(

@@ -92,6 +92,11 @@ impl TimeEvents {
         })
     }
 
+    /// Goes on from the same functions, recorded for other rows.
+    pub fn carry_on(&mut self, before: &Self) {
+        self.known = before.known;
+    }
+
     /// Returns a time after `t` just before a break, or up to which nothing breaks; no later than
     /// `end`.
     pub fn next(&mut self, t: f64, end: f64) -> f64 {

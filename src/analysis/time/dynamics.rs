@@ -110,7 +110,7 @@ pub fn integrate(
     let t0 = system.numbers[Layout::TIME];
     let mut y = system.numbers[system.scene.layout.y()].to_vec();
     system.precision = options.error;
-    system.external.begin(t0, &BTreeMap::new());
+    system.recorded.external.delays.begin(t0, &BTreeMap::new());
     system.restart_sampling();
     system.begin_sensing();
     if n == 0 {
@@ -190,7 +190,7 @@ fn end_there(
 fn timeless(system: &mut System, outputs: &[f64], max_steps: usize, out: &mut Trajectory) {
     for &t in outputs {
         loop {
-            let due = system.samples.due();
+            let due = system.recorded.samples.due();
             if due > t {
                 break;
             }

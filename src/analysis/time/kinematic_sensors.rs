@@ -37,7 +37,7 @@ impl Followed {
         if system.counts_turns() {
             self.counting.begin(system, now.t, &now.y);
         }
-        if !system.sensors.is_empty() {
+        if !system.recorded.sensors.is_empty() {
             system.beyond_sensors(now.t, &now.y, &mut self.before);
             self.pace = system.pace(now.t, &now.y);
         }
@@ -53,7 +53,7 @@ impl Followed {
             let turn = (self.counting).turn_within(system, ends, (n, 0.0), &mut state_at);
             self.counting.divide(turn);
         }
-        if !system.sensors.is_empty() {
+        if !system.recorded.sensors.is_empty() {
             let pace = system.pace(now.t, &now.y);
             let way = h * pace.max(std::mem::replace(&mut self.pace, pace));
             let looks = (way / WAY_BETWEEN_LOOKS).clamp(LOOKS_IN_STEP, MAX_LOOKS);
@@ -72,7 +72,7 @@ impl Followed {
         to: f64,
         out: &mut Trajectory,
     ) -> Result<(), Ended> {
-        if !system.sensors.is_empty() {
+        if !system.recorded.sensors.is_empty() {
             while self.t < to {
                 let next = self.t + self.distance;
                 let next = if next < to && next > self.t { next } else { to };

@@ -10,7 +10,7 @@
 //! inside a step. [`switches`](crate::analysis::time::switches) locates it.
 
 use crate::analysis::system::System;
-use crate::analysis::system::external_inputs;
+use crate::analysis::system::past;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
@@ -259,21 +259,28 @@ impl<'a> Leg<'a> {
         let unseen = self.system.longest_unseen(t, y).min(turn);
         let unseen = unseen.max(LEAST_HORIZON * (end - t));
         // however near, it must be further on
-        let event = (self.system.time_events.next(t, end)).max(t + 4.0 * f64::EPSILON * t.abs());
+        let event =
+            (self.system.recorded.time_events.next(t, end)).max(t + 4.0 * f64::EPSILON * t.abs());
         let turned = self.longest_turn(t, y);
         let due = self
             .system
+            .recorded
             .samples
             .due()
             .min(t + unseen)
             .min(event)
             .min(turned)
             .min(self.peak_horizon(t));
-        if !self.system.external.remembers() {
+        if self.system.recorded.external.delays.is_empty() {
             return due;
         }
         self.system.set(t, y);
-        let delay = self.system.external.shortest_delay(&self.system.numbers);
+        let delay = self
+            .system
+            .recorded
+            .external
+            .delays
+            .shortest_delay(&self.system.numbers);
         due.min(t + delay.max(LEAST_DELAY * (end - t)))
     }
 
@@ -348,10 +355,10 @@ impl<'a> Leg<'a> {
     /// Puts out what lies within a step; the time from which it goes on: the first one behind a
     /// time event at its end.
     fn accept(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
-        let behind = self.system.time_events.behind(step.t1);
+        let behind = self.system.recorded.time_events.behind(step.t1);
         let anew = behind.unwrap_or(step.t1).min(self.limits.end);
         self.repeated = 0;
-        self.system.peaks.keep();
+        self.system.recorded.peaks.keep();
         self.emit(method, step, anew);
         self.watch.progress(step.t1, step.h, method.stats());
         anew
@@ -359,12 +366,14 @@ impl<'a> Leg<'a> {
 
     /// Takes the samples that are due; whether a discrete state has changed.
     fn sample(&mut self, method: &dyn Method<System>, step: &Step) -> bool {
-        if !(self.system.samples.is_due(step.t1) && self.system.sample(step.t1, method.y())) {
+        if !(self.system.recorded.samples.is_due(step.t1)
+            && self.system.sample(step.t1, method.y()))
+        {
             return false;
         }
         // discrete states are new from the sample on, the sample itself included
         if let (Some(&t), Some(row)) = (self.out.t.last(), self.out.rows.last_mut())
-            && self.system.samples.is_together(t, step.t1)
+            && self.system.recorded.samples.is_together(t, step.t1)
         {
             *row = self.system.row(t, method.y());
         }
@@ -373,8 +382,8 @@ impl<'a> Leg<'a> {
 
     /// Keeps what is asked of the past; whether the interpolant had no value.
     fn remember(&mut self, method: &mut dyn Method<System>, step: &Step) -> bool {
-        self.system.external.remembers()
-            && external_inputs::remember(self.system, method, step).is_err()
+        !self.system.recorded.external.delays.is_empty()
+            && past::remember(self.system, method, step).is_err()
     }
 
     /// Does what triggered sensors ask for; whether the method is to begin anew, and with which

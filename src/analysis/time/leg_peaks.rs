@@ -41,21 +41,21 @@ pub(super) struct Peak {
 impl Leg<'_> {
     /// Looks at the narrow peaks where a method begins.
     pub(super) fn begin_peaks(&mut self, method: &dyn Method<System>) {
-        if self.system.peaks.is_empty() {
+        if self.system.recorded.peaks.is_empty() {
             return;
         }
         let delta = 1e-9 * (self.limits.end - self.limits.start);
         let (t, y) = (method.t(), method.y());
         self.system.look_at_peaks(t, y, method.ydot(), delta);
-        self.system.peaks.keep();
+        self.system.recorded.peaks.keep();
     }
 
     /// Returns how far a step from `t` may go because of narrow peaks.
     pub(super) fn peak_horizon(&mut self, t: f64) -> f64 {
-        if self.system.peaks.is_empty() {
+        if self.system.recorded.peaks.is_empty() {
             return f64::INFINITY;
         }
-        let turned = t + self.system.peaks.longest_turn();
+        let turned = t + self.system.recorded.peaks.longest_turn();
         self.peak = self.peak.filter(|p| t < p.to);
         match self.peak {
             Some(p) if t < p.from - p.width => turned.min(p.from),
@@ -70,7 +70,7 @@ impl Leg<'_> {
         method: &mut dyn Method<System>,
         step: &Step,
     ) -> Option<f64> {
-        if self.system.peaks.is_empty() {
+        if self.system.recorded.peaks.is_empty() {
             return None;
         }
         let (y, ydot) = (method.y(), method.ydot());
@@ -78,7 +78,7 @@ impl Leg<'_> {
         if self.repeated >= MAX_REPEATED {
             return None;
         }
-        let hidden = self.system.peaks.hidden(step.h).into_iter();
+        let hidden = self.system.recorded.peaks.hidden(step.h).into_iter();
         // a peak at which the interpolant has no value is left to error control
         let found = hidden.filter_map(|k| self.locate(method, step, k).ok().flatten());
         let first = found.min_by(|a, b| a.from.total_cmp(&b.from))?;
@@ -137,7 +137,7 @@ impl Leg<'_> {
             }
         }
         let (summit, height) = if at_c > at_d { (c, at_c) } else { (d, at_d) };
-        if !self.system.peaks.stands_out(k, height) || height < NEGLIGIBLE {
+        if !self.system.recorded.peaks.stands_out(k, height) || height < NEGLIGIBLE {
             return Ok(None);
         }
         self.width(method, step, (summit, height, k))

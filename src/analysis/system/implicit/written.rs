@@ -1,7 +1,7 @@
 //! A residual as it is written down once: its program, its derivatives, and the multipliers to
 //! begin with.
 
-use crate::analysis::system::external_inputs::ExternalInputs;
+use crate::analysis::system::closures::Closures;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
 use crate::numeric::pattern::Pattern;
 use crate::scalar::{Dual, Scalar};
@@ -47,12 +47,7 @@ enum Jacobian {
 const MAX_OPERATIONS: usize = 400_000;
 
 impl Jacobian {
-    fn new(
-        scene: &Scene,
-        residual: &Program,
-        layout: ImplicitLayout,
-        outside: &ExternalInputs,
-    ) -> Self {
+    fn new(scene: &Scene, residual: &Program, layout: ImplicitLayout, outside: &Closures) -> Self {
         let size = layout.size();
         let by_duals = || {
             let mut along = vec![Vec::new(); residual.inputs().len()];
@@ -124,7 +119,7 @@ impl Written {
         residual: Program,
         multipliers: Program,
         layout: ImplicitLayout,
-        outside: &ExternalInputs,
+        outside: &Closures,
     ) -> Self {
         Self {
             jacobian: Jacobian::new(scene, &residual, layout, outside),
@@ -168,7 +163,7 @@ impl Written {
         &mut self,
         read: &[f64],
         cj: f64,
-        outside: &mut ExternalInputs,
+        outside: &mut Closures,
         values: &mut [f64],
     ) {
         let layout = self.layout;
