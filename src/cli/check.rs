@@ -5,7 +5,7 @@ use super::{Exit, Failure, Outcome, complain, remark, say};
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::dataset::command::{Command, Script, Simulate};
 use crate::dataset::{self, Errors, Reading};
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Severity};
 use crate::model::{ElementKind, Model};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -82,13 +82,12 @@ fn is_error(d: &Diagnostic) -> bool {
 const HORIZON: f64 = 10.0;
 
 /// Reasons why a model is not solved, or not as it is meant, that are no mistakes in it.
-const NOT_SOLVED_HERE: [&str; 6] = [
-    "unsupported",
-    "user_routine",
-    "curve_data",
-    "skipped",
-    "creeping_friction",
-    "approximate",
+const NOT_SOLVED_HERE: [Cause; 5] = [
+    Cause::Unsupported,
+    Cause::UserRoutine,
+    Cause::CurveData,
+    Cause::Skipped,
+    Cause::Approximate,
 ];
 
 /// Finds what a run would refuse or doubt before its first step, of a model as commands leave it
@@ -113,7 +112,7 @@ fn assembled(
         session.preview(analysis, end)
     };
     let mut found = begin(Options::default());
-    let ours = |d: &Diagnostic| NOT_SOLVED_HERE.contains(&d.code);
+    let ours = |d: &Diagnostic| d.is_any(&NOT_SOLVED_HERE);
     if found.iter().any(|d| is_error(d) && ours(d)) {
         // told, and left out to see the rest
         let unsolved = ElementKind::ALL.iter().copied().filter(|k| k.is_unsolved());

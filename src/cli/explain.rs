@@ -6,7 +6,7 @@ use super::{functions, statements};
 use crate::analysis::verify::outline::{Outline, outline};
 use crate::dataset::manual;
 use crate::diagnostic::codes::{all, code};
-use crate::diagnostic::{Diagnostic, near_names};
+use crate::diagnostic::{Cause, Diagnostic, near_names};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -92,7 +92,7 @@ pub fn explained(what: &str) -> Result<String, Diagnostic> {
         near.dedup();
     }
     let message = format!("`{what}` is no code, no statement, and no name of the language");
-    let unknown = Diagnostic::error("unknown_name", message);
+    let unknown = Diagnostic::error(Cause::UnknownName, message);
     Err(if near.is_empty() {
         unknown.help("`cognate explain` lists all codes, `cognate statements` all statements, `cognate functions` all names")
     } else {

@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, Outcome, remark, say};
 use crate::dataset::{self, Reading};
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Severity};
 use std::path::PathBuf;
 
 /// Write a dataset in the style of Adams View
@@ -61,8 +61,9 @@ pub fn run(args: &Args) -> Outcome {
             "the output is the input, which is never overwritten",
         ));
     }
-    std::fs::write(output, reading.dataset.source.encode(&text))
-        .map_err(|e| Diagnostic::error("file_unwritable", format!("{}: {e}", output.display())))?;
+    std::fs::write(output, reading.dataset.source.encode(&text)).map_err(|e| {
+        Diagnostic::error(Cause::FileUnwritable, format!("{}: {e}", output.display()))
+    })?;
     Ok(Exit::Done)
 }
 

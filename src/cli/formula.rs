@@ -5,7 +5,7 @@
 //! evaluation and names the part of the text that has no value, and the reason.
 
 use super::data::Data;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Cause, Diagnostic, Span};
 use crate::expr::ast::{Callee, Dialect, Node};
 use crate::expr::interpolation::Interpolation;
 use crate::expr::measures::Family;
@@ -49,17 +49,18 @@ impl Formula {
     /// The first mistake in it, with its place.
     pub fn new(text: &str, setting: &Setting) -> Result<Self, Diagnostic> {
         let expr = Expr::parse_profile(text, setting.dialect, setting.profile)?;
-        let program = expr
-            .compile(&setting.data.bindings)
-            .map_err(|d| match d.code {
-                "unknown_element" if asks_for_curve(&expr, &d) => {
+        let program = expr.compile(&setting.data.bindings).map_err(|d| {
+            let is_unknown = d.is(Cause::UnknownElement);
+            match (is_unknown, asks_for_curve(&expr, &d)) {
+                (true, true) => {
                     d.help("points come from `--curves FILE`; in the REPL from `:curves FILE`")
                 }
-                "unknown_element" => {
+                (true, false) => {
                     d.help("data come from `--splines FILE`; in the REPL from `:splines FILE`")
                 }
-                _ => d,
-            })?;
+                (false, _) => d,
+            }
+        })?;
         let asked = [&expr.inputs()[..], program.inputs()].concat();
         Ok(Self {
             expr,
@@ -133,18 +134,14 @@ impl Formula {
     /// Returns the reason why there is no finite number.
     fn trouble(&self, time: Option<f64>, data: &Data, sample: &Sample) -> Diagnostic {
         match self.expr.eval_with(&TimedData { data, time }) {
-            Err(d) => match d.code {
-                "missing_value"
-                    if time.is_none() && self.program.inputs().contains(&Input::Time) =>
-                {
-                    d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")
-                }
-                "missing_value" => {
-                    let advice = self.what_is_missing(&d, data);
-                    d.help(advice)
-                }
-                _ => d,
-            },
+            Err(d) if !d.is(Cause::MissingValue) => d,
+            Err(d) if time.is_none() && self.program.inputs().contains(&Input::Time) => {
+                d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")
+            }
+            Err(d) => {
+                let advice = self.what_is_missing(&d, data);
+                d.help(advice)
+            }
             Ok(_) => {
                 let which = if sample[1].is_finite() {
                     "second derivative"
@@ -154,8 +151,11 @@ impl Formula {
                 let at = time.map_or(String::new(), |t| {
                     format!(" at time {}", crate::results::digits(t))
                 });
-                Diagnostic::error("domain", format!("the {which} has no finite value{at}"))
-                    .at(self.expr.text(), Span::new(0, self.expr.text().len()))
+                Diagnostic::error(
+                    Cause::Domain,
+                    format!("the {which} has no finite value{at}"),
+                )
+                .at(self.expr.text(), Span::new(0, self.expr.text().len()))
             }
         }
     }
@@ -255,7 +255,7 @@ pub fn give(setting: &mut Setting, call: &str, value: f64) -> Result<(), Diagnos
         }
         Input::Time | Input::Delayed(_) | Input::Slot(_) => {
             return Err(Diagnostic::error(
-                "missing_value",
+                Cause::MissingValue,
                 format!("`{call}` cannot be given a value this way"),
             )
             .help("the time is given by `--time`; in the REPL by `:time`"));

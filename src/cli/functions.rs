@@ -2,7 +2,7 @@
 
 use super::card::{self, Card};
 use super::{Exit, Outcome, say};
-use crate::diagnostic::{Diagnostic, near_names};
+use crate::diagnostic::{Cause, Diagnostic, near_names};
 use crate::results::json;
 use serde_json::Value;
 
@@ -60,7 +60,7 @@ pub fn of_name(name: &str) -> Result<Vec<Card>, Diagnostic> {
         return Ok(cards);
     }
     let near = near(name);
-    let unknown = Diagnostic::error("unknown_name", format!("the language has no `{name}`"));
+    let unknown = Diagnostic::error(Cause::UnknownName, format!("the language has no `{name}`"));
     Err(if near.is_empty() {
         unknown.help("`cognate functions` lists all names")
     } else {

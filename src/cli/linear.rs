@@ -5,7 +5,7 @@ use crate::analysis::linear::Wanted;
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::watch::Watch;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::ElementKind;
 use crate::results::{self, Status, json};
 use std::path::PathBuf;
@@ -111,7 +111,7 @@ pub fn run(args: &Args) -> Outcome {
             let path = dir.join(name);
             if let Some(folder) = path.parent() {
                 std::fs::create_dir_all(folder).map_err(|e| {
-                    Diagnostic::error("file_unwritable", format!("{}: {e}", folder.display()))
+                    Diagnostic::error(Cause::FileUnwritable, format!("{}: {e}", folder.display()))
                 })?;
             }
             results::write_text(&path, &text)?;

@@ -28,7 +28,7 @@ mod verify;
 mod width;
 
 use crate::dataset::Dataset;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use clap::{Parser, Subcommand};
 use render::Sources;
 use std::io::Write;
@@ -123,9 +123,9 @@ pub struct Failure {
 impl From<Diagnostic> for Failure {
     /// A mistake in the input, or a file that cannot be written.
     fn from(diagnostic: Diagnostic) -> Self {
-        let exit = match diagnostic.code {
-            "file_unwritable" => Exit::Unwritable,
-            _ => Exit::Input,
+        let exit = match diagnostic.is(Cause::FileUnwritable) {
+            true => Exit::Unwritable,
+            false => Exit::Input,
         };
         Self {
             exit,
@@ -242,7 +242,7 @@ pub fn say(text: &str) {
     }
     let what = format!("results cannot be written to standard output: {e}");
     complain(
-        &[Diagnostic::error("file_unwritable", what)],
+        &[Diagnostic::error(Cause::FileUnwritable, what)],
         &Sources::default(),
     );
     std::process::exit(Exit::Unwritable.code().into());

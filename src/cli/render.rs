@@ -1,7 +1,7 @@
 //! Diagnostics as text for people: the source line, a caret below the place, and advice.
 
 use crate::dataset::syntax::Source;
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Severity};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
@@ -79,15 +79,15 @@ pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> St
 
 /// Codes that a model can have hundreds of, one for each element of a family, all with the same
 /// remedy.
-const ALIKE: [&str; 8] = [
-    "unsupported",
-    "user_routine",
-    "curve_data",
-    "skipped",
-    "approximate",
-    "misaligned",
-    "impossible_inertia",
-    "superseded",
+const ALIKE: [Cause; 8] = [
+    Cause::Unsupported,
+    Cause::UserRoutine,
+    Cause::CurveData,
+    Cause::Skipped,
+    Cause::Approximate,
+    Cause::Misaligned,
+    Cause::ImpossibleInertia,
+    Cause::Superseded,
 ];
 /// Number of these that are shown in full.
 const FIRST_ALIKE: usize = 3;
@@ -104,7 +104,7 @@ fn sorted_out(diagnostics: &[Diagnostic]) -> (Vec<&Diagnostic>, Vec<(&str, Vec<&
             (other.code, other.severity, &other.help) == (d.code, d.severity, &d.help)
         };
         let before = shown.iter().filter(|s| same(s)).count();
-        let element = d.element.as_deref().filter(|_| ALIKE.contains(&d.code));
+        let element = d.element.as_deref().filter(|_| d.is_any(&ALIKE));
         match element {
             Some(element) if before >= FIRST_ALIKE => {
                 match alike.iter_mut().find(|(first, _)| same(first)) {

@@ -9,7 +9,7 @@ use crate::analysis::session::{Options, Session};
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Severity};
 use crate::model::{ElementKind, Model, SettingsStatement};
 use crate::numeric::Stats;
 use crate::results::output_folder::OutputFolder;
@@ -215,7 +215,7 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
             _ => format!("--column {}", k + 1),
         };
         for mut d in model.check_expression(text) {
-            if is_final || d.code != "unknown_element" {
+            if is_final || !d.is(Cause::UnknownElement) {
                 d.file = Some(place.clone());
                 failure.diagnostics.push(d);
             }

@@ -19,7 +19,7 @@ pub mod syntax;
 pub mod value;
 pub mod write;
 
-use crate::diagnostic::{Diagnostic, Severity, Span};
+use crate::diagnostic::{Cause, Diagnostic, Severity, Span};
 use crate::model::{ElementKind, MarkerOwner, Model};
 use read::Table;
 use row::Record;
@@ -172,7 +172,7 @@ pub fn read_source(source: Source) -> Reading {
     for d in reading.model.check() {
         // What seems to be missing may be what was not understood.
         let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));
-        if excused && d.code != "unknown_element" {
+        if excused && !d.is(Cause::UnknownElement) {
             continue;
         }
         if let Some(given) = argument_of(&records, &d) {

@@ -4,9 +4,8 @@
 //! A [`Record`] is a statement read but not yet believed: which row, which number, which arguments
 //! with their values. The rows themselves stand in `statement.rs`.
 
-use super::command::Command;
 use super::value::{Field, Kind, Value};
-use crate::diagnostic::{Diagnostic, Span, near_names};
+use crate::diagnostic::{Cause, Span, near_names};
 use crate::model::{
     self, ById, ElementKind, EquilibriumSettings, Formula, IntegratorSettings, Model, Place,
     Settings, SettingsStatement, Units,
@@ -181,10 +180,6 @@ pub trait Statement: Sync {
     fn settings(&self) -> Option<SettingsStatement> {
         None
     }
-    /// The command that a record is; `None` for statements of the dataset, which change the model.
-    fn command(&self, _: &Record) -> Option<Result<Command, Box<Diagnostic>>> {
-        None
-    }
     /// Sets what a statement without a number sets back to what holds without it.
     fn reset(&self, _: &mut Model) {}
     /// All elements of this kind as records, for writing.
@@ -290,7 +285,10 @@ impl<T: Element> Statement for Numbered<T> {
         let mut element = match (list.get(&id), change) {
             (Some(e), true) => e.clone(),
             (None, true) => {
-                let mut p = Problem::new("unknown_element", format!("{name} does not exist"));
+                let mut p = Problem::new(
+                    Cause::UnknownElement.code(),
+                    format!("{name} does not exist"),
+                );
                 p.help = near_ids(id, list.keys().copied());
                 return vec![p];
             }

@@ -3,7 +3,10 @@
 //! Every mistake a user can make becomes a [`Diagnostic`]: a stable code, a place, a sentence, and
 //! advice. All mistakes of a text are collected; reading continues after a mistake wherever it can.
 
+mod cause;
 pub mod codes;
+
+pub use cause::Cause;
 
 use std::fmt;
 
@@ -66,10 +69,10 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Creates an error without a place.
-    pub fn error(code: &'static str, message: impl Into<String>) -> Self {
+    /// Creates an error without a place; `code` is a code, or a [`Cause`] on which the program acts.
+    pub fn error(code: impl Into<&'static str>, message: impl Into<String>) -> Self {
         Self {
-            code,
+            code: code.into(),
             severity: Severity::Error,
             message: message.into(),
             span: None,
@@ -84,7 +87,7 @@ impl Diagnostic {
         }
     }
     /// Creates a warning without a place.
-    pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
+    pub fn warning(code: impl Into<&'static str>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
             ..Self::error(code, message)

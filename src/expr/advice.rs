@@ -8,7 +8,7 @@ use super::ast::{Callee, Dialect};
 use super::foreign::{ASSIGNED, CHARACTERS, DEGREES, EXPRESSION_NAMES, NAMES, RADIANS, UNITS};
 use super::signature::Kind;
 use super::symbols::{self, Symbol};
-use super::token::{self, About, Fault, Lexer, Open};
+use super::token::{self, About, Fault, FaultKind, Lexer, Open};
 use crate::diagnostic::{Diagnostic, Span, near_names};
 
 /// Returns the diagnostic for the first mistake of a text.
@@ -18,20 +18,22 @@ pub(crate) fn explain(text: &str, dialect: Dialect, fault: &Fault) -> Diagnostic
         dialect,
         span: fault.span,
     };
-    let (message, help) = match (fault.code, fault.about) {
-        ("bad_char", _) => place.bad_character(),
-        ("bad_number", _) => place.bad_number(),
-        ("unknown_name", _) => place.unknown_name(),
-        ("not_callable", _) => place.not_callable(),
+    let (message, help) = match (fault.kind, fault.about) {
+        (FaultKind::BadCharacter, _) => place.bad_character(),
+        (FaultKind::BadNumber, _) => place.bad_number(),
+        (FaultKind::UnknownName, _) => place.unknown_name(),
+        (FaultKind::NotCallable, _) => place.not_callable(),
         (
-            "unexpected_end",
+            FaultKind::UnexpectedEnd,
             About::Token {
                 after_operand,
                 inside,
             },
         ) => place.unexpected_end(after_operand, inside),
-        ("empty_argument", _) => place.empty_argument(),
-        ("missing_arguments", About::Token { inside, .. }) => place.missing_arguments(inside),
+        (FaultKind::EmptyArgument, _) => place.empty_argument(),
+        (FaultKind::MissingArguments, About::Token { inside, .. }) => {
+            place.missing_arguments(inside)
+        }
         (
             _,
             About::Token {
@@ -39,12 +41,12 @@ pub(crate) fn explain(text: &str, dialect: Dialect, fault: &Fault) -> Diagnostic
                 inside,
             },
         ) => place.unexpected_token(after_operand, inside),
-        ("arity", About::Count(callee, count)) => arity(callee, count),
-        (code, About::Argument(callee, k)) => place.argument(code, callee, k),
-        (code, About::Limit(limit)) => beyond(code, limit),
-        (code, _) => (code.replace('_', " "), vec![]),
+        (_, About::Count(callee, count)) => arity(callee, count),
+        (kind, About::Argument(callee, k)) => place.argument(kind, callee, k),
+        (kind, About::Limit(limit)) => beyond(kind, limit),
+        (kind, About::Place) => (kind.code().replace('_', " "), vec![]),
     };
-    let mut said = at(text, fault.code, message, fault.span);
+    let mut said = at(text, fault.kind.code(), message, fault.span);
     said.help = help;
     match place.unclosed(fault) {
         Some(parenthesis) => said.mark(parenthesis, "this parenthesis is not closed"),
@@ -307,7 +309,9 @@ impl Place<'_> {
             return None;
         };
         let from = self.text.get(name.start..self.span.start)?;
-        let open = from.find('(').filter(|_| fault.code == "unexpected_end")?;
+        let open = from
+            .find('(')
+            .filter(|_| fault.kind == FaultKind::UnexpectedEnd)?;
         Some(Span::new(name.start + open, name.start + open + 1))
     }
 
@@ -426,13 +430,13 @@ impl Place<'_> {
     }
 
     /// Words an argument of the wrong kind or range.
-    fn argument(&self, code: &str, callee: Callee, k: usize) -> Said {
+    fn argument(&self, fault: FaultKind, callee: Callee, k: usize) -> Said {
         let parameter = callee.argument_name(k);
         let name = callee.name();
         let word = self.word();
         let help = vec![format!("it is written {}", callee.signature())];
-        match (code, callee.argument(k)) {
-            ("out_of_range", Kind::Identifier { zero, .. }) => {
+        match (fault, callee.argument(k)) {
+            (FaultKind::OutOfRange, Kind::Identifier { zero, .. }) => {
                 let first = u32::from(!zero);
                 (
                     format!(
@@ -441,7 +445,7 @@ impl Place<'_> {
                     help,
                 )
             }
-            ("out_of_range", Kind::Selector(choice)) => (
+            (FaultKind::OutOfRange, Kind::Selector(choice)) => (
                 format!("{parameter} of {name} is {choice}, not {word}"),
                 help,
             ),
@@ -509,14 +513,16 @@ fn arity(callee: Callee, count: usize) -> Said {
 }
 
 /// Words a limit that is exceeded.
-fn beyond(code: &str, limit: usize) -> Said {
-    let message = match code {
-        "limit_nesting" => {
+fn beyond(fault: FaultKind, limit: usize) -> Said {
+    let message = match fault {
+        FaultKind::Nesting => {
             format!("more than {limit} functions and parentheses inside one another")
         }
-        "limit_symbols" => format!("more than {limit} operators, brackets, functions and numbers"),
-        "limit_elements" => format!("more than {limit} different elements of one kind"),
-        "limit_lines" => format!("more than {limit} lines"),
+        FaultKind::Symbols => {
+            format!("more than {limit} operators, brackets, functions and numbers")
+        }
+        FaultKind::Elements => format!("more than {limit} different elements of one kind"),
+        FaultKind::Lines => format!("more than {limit} lines"),
         _ => format!("more than {limit} characters"),
     };
     (

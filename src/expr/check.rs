@@ -12,7 +12,7 @@
 use super::ast::{Callee, Constant, Dialect};
 use super::signature::{Choice, Element, Kind as ArgumentKind, LARGEST_IDENTIFIER};
 use super::symbols::{Profile, Symbol, symbol};
-use super::token::{About, Fault, Kind, Lexer, Open, Token};
+use super::token::{About, Fault, FaultKind, Kind, Lexer, Open, Token};
 use crate::diagnostic::Span;
 use std::collections::BTreeSet;
 
@@ -136,7 +136,7 @@ pub(crate) fn check(
     limits: Limits,
 ) -> Result<Vec<Atom>, Fault> {
     if let Some(span) = character_after(text, MOST_CHARACTERS) {
-        return Err(Fault::new("limit_length", span).about(About::Limit(MOST_CHARACTERS)));
+        return Err(Fault::new(FaultKind::Characters, span).about(About::Limit(MOST_CHARACTERS)));
     }
     let mut check = Check {
         text,
@@ -192,7 +192,7 @@ impl Check<'_> {
                 Kind::End => return Err(self.unexpected_end(false)),
                 Kind::Comma | Kind::Close if self.at_start_of_argument() => {
                     let about = self.unexpected(token.span, false).about;
-                    return Err(Fault::new("empty_argument", token.span).about(about));
+                    return Err(Fault::new(FaultKind::EmptyArgument, token.span).about(about));
                 }
                 _ => return Err(self.unexpected(token.span, false)),
             };
@@ -204,14 +204,14 @@ impl Check<'_> {
     fn name(&mut self, name: Token) -> Result<Option<Token>, Fault> {
         let text = &self.text[name.span.start..name.span.end];
         let Some(meaning) = symbol(text, self.dialect, self.profile) else {
-            return Err(Fault::new("unknown_name", name.span));
+            return Err(Fault::new(FaultKind::UnknownName, name.span));
         };
         let open = match meaning {
             Symbol::Constant(c) => {
                 self.atoms.push(Atom::Constant(c));
                 let after = self.next()?;
                 return match after.kind {
-                    Kind::Open => Err(Fault::new("not_callable", after.span)),
+                    Kind::Open => Err(Fault::new(FaultKind::NotCallable, after.span)),
                     _ => self.after_operand(after),
                 };
             }
@@ -223,7 +223,7 @@ impl Check<'_> {
         };
         self.open(open, name.span)?;
         let inside = Some((open, name.span));
-        let missing = Fault::new("missing_arguments", name.span).about(About::Token {
+        let missing = Fault::new(FaultKind::MissingArguments, name.span).about(About::Token {
             after_operand: false,
             inside,
         });
@@ -234,7 +234,7 @@ impl Check<'_> {
         let first = self.next()?;
         match (first.kind, open) {
             (Kind::Close, Open::Call(callee)) => {
-                Err(Fault::new("arity", name.span).about(About::Count(callee, 0)))
+                Err(Fault::new(FaultKind::Arity, name.span).about(About::Count(callee, 0)))
             }
             _ => Ok(Some(first)),
         }
@@ -286,7 +286,7 @@ impl Check<'_> {
         let count = self.arguments.len() - frame.first;
         let (least, most) = callee.arity();
         if !(least..=most).contains(&count) {
-            return Err(Fault::new("arity", frame.name).about(About::Count(callee, count)));
+            return Err(Fault::new(FaultKind::Arity, frame.name).about(About::Count(callee, count)));
         }
         for k in 0..count {
             self.integer(callee.argument(k), self.arguments[frame.first + k])
@@ -306,9 +306,9 @@ impl Check<'_> {
         let span = Span::new(argument.start, argument.end);
         let text = &self.text[argument.start..argument.end];
         if argument.tokens != 1 || !text.bytes().all(|b| b.is_ascii_digit()) {
-            return Err(Fault::new("integer_required", span));
+            return Err(Fault::new(FaultKind::IntegerRequired, span));
         }
-        let out_of_range = Fault::new("out_of_range", span);
+        let out_of_range = Fault::new(FaultKind::OutOfRange, span);
         let Ok(n) = text.parse::<u32>() else {
             return Err(out_of_range);
         };
@@ -336,7 +336,7 @@ impl Check<'_> {
                 .count();
             if of_this_kind > self.limits.elements {
                 return Err(
-                    Fault::new("limit_elements", span).about(About::Limit(self.limits.elements))
+                    Fault::new(FaultKind::Elements, span).about(About::Limit(self.limits.elements))
                 );
             }
         }
@@ -348,7 +348,7 @@ impl Check<'_> {
         if self.frames.len() >= self.limits.nesting.min(DEEPEST_NESTING)
             || self.depth >= DEEPEST_TREE
         {
-            return Err(Fault::new("limit_nesting", name)
+            return Err(Fault::new(FaultKind::Nesting, name)
                 .about(About::Limit(self.limits.nesting.min(DEEPEST_NESTING))));
         }
         self.frames.push(Frame {
@@ -370,7 +370,9 @@ impl Check<'_> {
     fn deeper(&mut self, token: Token) -> Result<Token, Fault> {
         self.depth += 1;
         if self.depth > DEEPEST_TREE {
-            return Err(Fault::new("limit_nesting", token.span).about(About::Limit(DEEPEST_TREE)));
+            return Err(
+                Fault::new(FaultKind::Nesting, token.span).about(About::Limit(DEEPEST_TREE))
+            );
         }
         self.next()
     }
@@ -399,12 +401,12 @@ impl Check<'_> {
     fn unexpected_end(&self, after_operand: bool) -> Fault {
         let end = self.text.trim_end_matches([' ', '\t', '\r', '\n']).len();
         let about = self.unexpected(Span::new(end, end), after_operand).about;
-        Fault::new("unexpected_end", Span::new(end, end)).about(about)
+        Fault::new(FaultKind::UnexpectedEnd, Span::new(end, end)).about(about)
     }
 
     fn unexpected(&self, span: Span, after_operand: bool) -> Fault {
         let inside = self.frames.last().map(|f| (f.open, f.name));
-        Fault::new("unexpected_token", span).about(About::Token {
+        Fault::new(FaultKind::UnexpectedToken, span).about(About::Token {
             after_operand,
             inside,
         })
@@ -422,7 +424,7 @@ impl Check<'_> {
         if token.kind != Kind::End {
             self.symbols += 1;
             if self.symbols > self.limits.symbols {
-                return Err(Fault::new("limit_symbols", token.span)
+                return Err(Fault::new(FaultKind::Symbols, token.span)
                     .about(About::Limit(self.limits.symbols)));
             }
         }
@@ -449,12 +451,13 @@ impl Check<'_> {
         for c in self.text[self.counted.bytes..span.end].chars() {
             let place = Span::new(self.counted.bytes, self.counted.bytes + c.len_utf8());
             if self.counted.characters >= self.limits.characters {
-                return Err(
-                    Fault::new("limit_length", place).about(About::Limit(self.limits.characters))
-                );
+                return Err(Fault::new(FaultKind::Characters, place)
+                    .about(About::Limit(self.limits.characters)));
             }
             if self.counted.line_breaks >= self.limits.lines {
-                return Err(Fault::new("limit_lines", place).about(About::Limit(self.limits.lines)));
+                return Err(
+                    Fault::new(FaultKind::Lines, place).about(About::Limit(self.limits.lines))
+                );
             }
             self.counted.bytes = place.end;
             self.counted.characters += 1;
@@ -471,7 +474,7 @@ mod tests {
     fn fault(text: &str, limits: Limits) -> (&'static str, usize) {
         let found = check(text, Dialect::Function, Profile::Adams, limits);
         let fault = found.expect_err(text);
-        (fault.code, fault.span.start + 1)
+        (fault.kind.code(), fault.span.start + 1)
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::finite;
 use super::functions::{Family, Function};
 use super::interpolation::Bindings;
 use super::program::{BinaryOp, Builder, Folding, Input, Program, Sym, UnaryOp, Value};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Cause, Diagnostic, Span};
 use std::cell::RefCell;
 use std::f64::consts::PI;
 
@@ -138,7 +138,7 @@ impl<'a> Compiler<'a> {
         match values.get(ast.root as usize) {
             Some(&Some(value)) => Ok(value),
             _ => Err(Diagnostic::error(
-                "unexpected_end",
+                Cause::UnexpectedEnd,
                 "the expression is empty",
             )),
         }
@@ -353,7 +353,7 @@ fn operation(op: Written) -> BinaryOp {
 }
 
 fn domain(reason: &str) -> Diagnostic {
-    Diagnostic::error("domain", reason)
+    Diagnostic::error(Cause::Domain, reason)
 }
 
 /// Returns the mistake of an operation on constants that has no finite value.

@@ -8,7 +8,7 @@ use super::parse::parse;
 use super::program::{Input, Program};
 use super::symbols::Profile;
 use super::walk::{self, Host};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Cause, Diagnostic, Span};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
@@ -225,7 +225,7 @@ pub fn input_named(name: &str, dialect: Dialect) -> Result<Input, Diagnostic> {
     let ast = parse(name, dialect, Profile::Adams)?;
     ast.input(ast.root).ok_or_else(|| {
         let said = Diagnostic::error(
-            "missing_value",
+            Cause::MissingValue,
             format!("`{name}` is not the name of an input"),
         );
         said.help(

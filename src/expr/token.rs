@@ -5,7 +5,7 @@
 
 use super::ast::Callee;
 use super::compile::literal_value;
-use crate::diagnostic::Span;
+use crate::diagnostic::{Cause, Span};
 
 /// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,11 +38,55 @@ pub(crate) struct Token {
     pub span: Span,
 }
 
-/// The first mistake of a text: code, bytes, and the state of the check there, for advice.
+/// The kind of a mistake in a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FaultKind {
+    BadCharacter,
+    BadNumber,
+    UnexpectedToken,
+    UnexpectedEnd,
+    UnknownName,
+    NotCallable,
+    MissingArguments,
+    EmptyArgument,
+    Arity,
+    IntegerRequired,
+    OutOfRange,
+    Characters,
+    Lines,
+    Symbols,
+    Elements,
+    Nesting,
+}
+
+impl FaultKind {
+    /// Returns the code of the diagnostic.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::BadCharacter => "bad_char",
+            Self::BadNumber => "bad_number",
+            Self::UnexpectedToken => "unexpected_token",
+            Self::UnexpectedEnd => Cause::UnexpectedEnd.code(),
+            Self::UnknownName => Cause::UnknownName.code(),
+            Self::NotCallable => "not_callable",
+            Self::MissingArguments => "missing_arguments",
+            Self::EmptyArgument => "empty_argument",
+            Self::Arity => "arity",
+            Self::IntegerRequired => "integer_required",
+            Self::OutOfRange => "out_of_range",
+            Self::Characters => "limit_length",
+            Self::Lines => "limit_lines",
+            Self::Symbols => "limit_symbols",
+            Self::Elements => "limit_elements",
+            Self::Nesting => "limit_nesting",
+        }
+    }
+}
+
+/// The first mistake of a text: kind, bytes, and the state of the check there, for advice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fault {
-    /// code of the diagnostic
-    pub code: &'static str,
+    pub kind: FaultKind,
     pub span: Span,
     /// state of the check there
     pub about: About,
@@ -78,9 +122,9 @@ pub(crate) enum Open {
 }
 
 impl Fault {
-    pub fn new(code: &'static str, span: Span) -> Self {
+    pub fn new(kind: FaultKind, span: Span) -> Self {
         Self {
-            code,
+            kind,
             span,
             about: About::Place,
         }
@@ -178,7 +222,10 @@ impl<'a> Lexer<'a> {
                     self.at += 1;
                     self.skip_while(|b| matches!(b, b' ' | b'\t' | b'\r'));
                     if self.peek().is_some_and(|b| b != b'\n') {
-                        return Err(Fault::new("bad_char", Span::new(ampersand, ampersand + 1)));
+                        return Err(Fault::new(
+                            FaultKind::BadCharacter,
+                            Span::new(ampersand, ampersand + 1),
+                        ));
                     }
                 }
                 _ => return Ok(()),
@@ -191,7 +238,10 @@ impl<'a> Lexer<'a> {
             .chars()
             .next()
             .map_or(0, char::len_utf8);
-        Fault::new("bad_char", Span::new(self.at, self.at + length))
+        Fault::new(
+            FaultKind::BadCharacter,
+            Span::new(self.at, self.at + length),
+        )
     }
 
     /// Reads `mantissa [exponent] [D]`, after which neither a letter, a digit, `_` nor `.` may
@@ -218,7 +268,7 @@ impl<'a> Lexer<'a> {
             self.at += 1;
         }
         well_formed &= self.skip_while(|b| is_word(b) || b == b'.') == 0;
-        let fault = Fault::new("bad_number", Span::new(start, self.at));
+        let fault = Fault::new(FaultKind::BadNumber, Span::new(start, self.at));
         if !well_formed {
             return Err(fault);
         }
@@ -273,10 +323,14 @@ mod tests {
             "1E400", "1E308D", "1_",
         ] {
             let fault = kinds(&format!("2+{text}")).unwrap_err();
-            assert_eq!((fault.code, fault.span.start), ("bad_number", 2), "{text}");
+            assert_eq!(
+                (fault.kind.code(), fault.span.start),
+                ("bad_number", 2),
+                "{text}"
+            );
         }
         assert_eq!(
-            Lexer::new("30D", false).next().unwrap_err().code,
+            Lexer::new("30D", false).next().unwrap_err().kind.code(),
             "bad_number"
         );
     }
@@ -286,15 +340,15 @@ mod tests {
         assert_eq!(kinds("2 & \r\n + ! one & two\n&").map(|k| k.len()), Ok(2));
         assert_eq!(
             kinds("2&3").unwrap_err(),
-            Fault::new("bad_char", Span::new(1, 2))
+            Fault::new(FaultKind::BadCharacter, Span::new(1, 2))
         );
         assert_eq!(
             kinds("2 & ! no").unwrap_err(),
-            Fault::new("bad_char", Span::new(2, 3))
+            Fault::new(FaultKind::BadCharacter, Span::new(2, 3))
         );
         assert_eq!(
             kinds("1 ü").unwrap_err(),
-            Fault::new("bad_char", Span::new(2, 4))
+            Fault::new(FaultKind::BadCharacter, Span::new(2, 4))
         );
     }
 }

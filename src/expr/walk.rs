@@ -13,7 +13,7 @@ use super::functions::Function;
 use super::interpolation::{Bindings, Interpolation};
 use super::print::Digits;
 use super::program::Input;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Cause, Diagnostic, Span};
 use crate::scalar::Scalar;
 
 /// The source of the numbers and data that an expression reads.
@@ -193,11 +193,13 @@ impl<'a> Walk<'a> {
         };
         match host.input(input) {
             Some(value) if value.is_finite() => Ok(value),
-            Some(value) => {
-                Err(self.trouble("domain", ix, format!("{} is {value}", self.ast.written(ix))))
-            }
+            Some(value) => Err(self.trouble(
+                Cause::Domain.code(),
+                ix,
+                format!("{} is {value}", self.ast.written(ix)),
+            )),
             None => Err(self.trouble(
-                "missing_value",
+                Cause::MissingValue.code(),
                 ix,
                 format!("{} has no value here", self.ast.written(ix)),
             )),
@@ -213,9 +215,11 @@ impl<'a> Walk<'a> {
         let number = delays.iter().find(|d| d.0 == ix).map_or(0, |d| d.1);
         match host.input(Input::Delayed(number)) {
             Some(value) if value.is_finite() => Ok(value),
-            Some(value) => {
-                Err(self.trouble("domain", ix, format!("{} is {value}", self.ast.written(ix))))
-            }
+            Some(value) => Err(self.trouble(
+                Cause::Domain.code(),
+                ix,
+                format!("{} is {value}", self.ast.written(ix)),
+            )),
             None => {
                 let past = "DELAY needs the values of the past".to_string();
                 let mut trouble = self.trouble("needs_history", ix, past);
@@ -321,8 +325,8 @@ impl<'a> Walk<'a> {
         match host.bindings().unwrap_or(&empty).bind(function, args) {
             Ok(bound) => Ok(bound.eval(args)),
             Err(said) => {
-                let mut trouble =
-                    self.trouble(said.code, self.culprit(ix, said.code), said.message);
+                let culprit = self.culprit(ix, said.is(Cause::UnknownElement));
+                let mut trouble = self.trouble(said.code, culprit, said.message);
                 trouble.help = said.help;
                 Err(trouble)
             }
@@ -331,7 +335,7 @@ impl<'a> Walk<'a> {
 
     /// Returns the argument of a call over data that a mistake is about: the identifier, or the
     /// order.
-    fn culprit(&self, ix: NodeIx, code: &str) -> NodeIx {
+    fn culprit(&self, ix: NodeIx, is_unknown: bool) -> NodeIx {
         let Node::Call {
             callee: Callee::Interpolation(f),
             ref args,
@@ -339,10 +343,10 @@ impl<'a> Walk<'a> {
         else {
             return ix;
         };
-        let place = match (f, code) {
-            (Interpolation::Curve, "unknown_element") => 3,
-            (Interpolation::Invpsd, "unknown_element") => 1,
-            (_, "unknown_element") => 2,
+        let place = match (f, is_unknown) {
+            (Interpolation::Curve, true) => 3,
+            (Interpolation::Invpsd, true) => 1,
+            (_, true) => 2,
             (Interpolation::Akispl | Interpolation::Cubspl | Interpolation::Interp, _) => 3,
             _ => return ix,
         };
@@ -416,7 +420,11 @@ impl<'a> Walk<'a> {
             ),
             None => String::new(),
         };
-        let mut trouble = self.trouble("domain", ix, format!("{what} has no value{when}: {why}"));
+        let mut trouble = self.trouble(
+            Cause::Domain.code(),
+            ix,
+            format!("{what} has no value{when}: {why}"),
+        );
         trouble.help.extend(self.step_in_order(ix, operands));
         trouble
     }

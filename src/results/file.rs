@@ -1,7 +1,7 @@
 //! Files of results: the extension of the name tells the format.
 
 use super::{Run, csv, gra, json, msg, res};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -80,7 +80,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), Diagnostic> {
     written.map_err(|e| {
         // a rest that cannot be removed either adds nothing to say
         let _ = std::fs::remove_file(&beside);
-        let mut d = Diagnostic::error("file_unwritable", format!("cannot be written: {e}"));
+        let mut d = Diagnostic::error(Cause::FileUnwritable, format!("cannot be written: {e}"));
         d.file = Some(path.display().to_string());
         d
     })

@@ -6,7 +6,7 @@
 //! that the next one would take for somebody else's.
 
 use super::write_text;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -178,7 +178,7 @@ fn try_to_write(dir: &Path) -> std::io::Result<()> {
 }
 
 fn unwritable(path: &Path, e: &std::io::Error) -> Diagnostic {
-    let mut d = Diagnostic::error("file_unwritable", format!("cannot be written: {e}"));
+    let mut d = Diagnostic::error(Cause::FileUnwritable, format!("cannot be written: {e}"));
     d.file = Some(path.display().to_string());
     d
 }

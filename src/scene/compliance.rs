@@ -4,7 +4,7 @@ use super::asker::Asker;
 use super::build::Builder;
 use super::compile::Compiler;
 use super::forces::{ForceElement, ForceLaw};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{BeamFormulation, ElementKind};
 use crate::physics::beam::Section;
 use crate::physics::field::{self, Field};
@@ -63,7 +63,7 @@ impl Builder<'_> {
                 );
                 self.scene
                     .warnings
-                    .push(Diagnostic::warning("approximate", what).element(name));
+                    .push(Diagnostic::warning(Cause::Approximate, what).element(name));
             }
             let section = Section {
                 length: b.length,

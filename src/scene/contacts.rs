@@ -7,7 +7,7 @@ use super::forces::{ForceLaw, Touching};
 use super::left_out::Reason;
 use super::tunnelling::ThicknessBound;
 use super::untouchable::{NoPair, Untouchable};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{Contact, ContactLaw, CoulombFriction, ElementId, ElementKind, Shape};
 use crate::physics::contact::extent::Extent;
 use crate::physics::contact::law::{Coulomb, Law, Normal};
@@ -232,7 +232,8 @@ impl Builder<'_> {
             if let (ContactLaw::User, Some(_)) = (contact.law, &contact.function) {
                 // a routine of contacts is called for incidents that only its own solver finds
                 if !self.zero_user {
-                    let d = Diagnostic::error("user_routine", "a CONTACT by USER is not solved");
+                    let d =
+                        Diagnostic::error(Cause::UserRoutine, "a CONTACT by USER is not solved");
                     c.errors.push(d.element(name).help(
                         "give it an IMPACT or POISSON law, or take what USER would compute as zero (--zero-user)",
                     ));
@@ -279,7 +280,8 @@ impl Builder<'_> {
                 }
                 Err(why) => {
                     let help = "--skip-unsupported CONTACT leaves out the contacts that cannot be solved; the results are then those of another model";
-                    let error = Diagnostic::error("unsupported", why.to_string()).element(name);
+                    let error =
+                        Diagnostic::error(Cause::Unsupported, why.to_string()).element(name);
                     c.errors.push(error.help(help));
                 }
             }
@@ -514,7 +516,7 @@ impl Builder<'_> {
             approximate.push("AUGMENTED_LAGRANGIAN_FORMULATION: the plain law is used, bodies overlap as the stiffness permits");
         }
         for what in approximate {
-            let warning = Diagnostic::warning("approximate", what).element(name);
+            let warning = Diagnostic::warning(Cause::Approximate, what).element(name);
             self.scene.warnings.push(warning);
         }
         Ok(Law { normal, friction })

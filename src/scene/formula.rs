@@ -1,6 +1,6 @@
 //! Expressions of the model as programs: splines and arrays they name are found in the model.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::compile;
 use crate::expr::interpolation::{Bindings, Curve, CurvePoints, Spline};
 use crate::expr::program::Program;
@@ -52,7 +52,7 @@ pub(crate) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
 /// Why its data make none.
 pub(super) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
     let unfit = |what: String| {
-        Diagnostic::error("curve_data", what)
+        Diagnostic::error(Cause::CurveData, what)
             .element(ElementKind::Curve.id(id))
             .help("give a MATRIX with one row x, y, z for each point")
     };

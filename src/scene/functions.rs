@@ -7,7 +7,7 @@ use super::build::Builder;
 use super::compile::Compiler;
 use super::external_inputs::{ExternalInput, HookKind, SceneDelay, SceneHook};
 use super::history::DelayId;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::program::{Builder as Recorder, Folding, Input, Program};
 use crate::model::{ElementKind, Formula as ModelFormula, RequestKind, Text};
 
@@ -42,7 +42,7 @@ impl Builder<'_> {
             Ok(compiled) => compiled,
             Err(mut d) => {
                 d.element = Some(owner.to_string());
-                if d.code == "unknown_element" {
+                if d.is(Cause::UnknownElement) {
                     c.errors.append(&mut self.unusable);
                 }
                 c.errors.push(d);
@@ -116,7 +116,7 @@ impl Builder<'_> {
         });
         let Some((element, closure)) = known else {
             let message = "USER needs a routine that is not part of the dataset";
-            c.errors.push(Diagnostic::error("user_routine", message).element(owner.to_string()).help(
+            c.errors.push(Diagnostic::error(Cause::UserRoutine, message).element(owner.to_string()).help(
                 "register a closure for it through the library, switch the element off, or take what USER would compute as zero (--zero-user)",
             ));
             return vec![usize::MAX; n];

@@ -8,7 +8,7 @@
 
 use super::build::Builder;
 use super::untouchable::Untouchable;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::measures::{Family as MeasureFamily, Measure};
 use crate::expr::program::Input;
 use crate::model::{ElementId, ElementKind, Family, Formula, MarkerOwner, Model};
@@ -155,7 +155,7 @@ impl LeftOut {
                 this.leave(id, &Reason::NotSolved);
                 continue;
             }
-            let error = Diagnostic::error("unsupported", "is read, but not solved yet");
+            let error = Diagnostic::error(Cause::Unsupported, "is read, but not solved yet");
             this.told.push(error.element(id).help(format!(
                 "--skip-unsupported {kind} leaves all of its kind out; the results are then those of another model"
             )));
@@ -189,10 +189,10 @@ impl LeftOut {
             };
             let told = if skip.contains(&ElementKind::Friction) {
                 let what = format!("moves without the friction of FRICTION={value}");
-                Diagnostic::warning("skipped", what)
+                Diagnostic::warning(Cause::Skipped, what)
             } else {
                 let what = format!("FRICTION={value} of a joint is read, but not solved");
-                Diagnostic::error("unsupported", what)
+                Diagnostic::error(Cause::Unsupported, what)
                     .help("state its friction in a statement FRICTION, which is solved")
                     .help("--skip-unsupported FRICTION moves it without friction; the results are then those of another model")
             };
@@ -202,7 +202,7 @@ impl LeftOut {
 
     fn leave(&mut self, id: ElementId, why: &Reason) {
         if self.elements.insert(id) {
-            let warning = Diagnostic::warning("skipped", format!("is left out: {why}"));
+            let warning = Diagnostic::warning(Cause::Skipped, format!("is left out: {why}"));
             self.told.push(warning.element(id));
         }
     }

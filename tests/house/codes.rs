@@ -119,3 +119,29 @@ fn codes_are_explained_once_and_in_full_sentences() {
         );
     }
 }
+
+/// What decides something is a value of a type (`Cause`, `FaultKind`), not a text that is compared.
+#[test]
+fn no_code_is_compared_as_text() {
+    let mut files = Vec::new();
+    sources(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
+        &mut files,
+    );
+    let mut compared = Vec::new();
+    for file in files {
+        let source = std::fs::read_to_string(&file).unwrap();
+        let source = source
+            .split("#[cfg(test)]\nmod tests")
+            .next()
+            .unwrap_or_default();
+        for line in source.lines().filter(|l| !l.trim_start().starts_with("//")) {
+            let compares = [".code == \"", ".code != \"", ".contains(&d.code)"];
+            let matches = line.contains("match ") && line.trim_end().ends_with(".code {");
+            if matches || compares.iter().any(|c| line.contains(c)) {
+                compared.push(format!("{}: {}", file.display(), line.trim()));
+            }
+        }
+    }
+    assert!(compared.is_empty(), "{compared:#?}");
+}

@@ -5,7 +5,7 @@ use super::{Analysis, Session};
 use crate::analysis::time::valueless::{self, Loss};
 use crate::analysis::verify::driving::driving;
 use crate::analysis::warning::{AssemblyWarning, Warning};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementId, ElementKind, Family, Model};
 
 /// Misalignment of a joint as drawn, relative to the mechanism or in rad, that numbers typed with
@@ -95,7 +95,7 @@ impl Session {
                 Loss::Domain(why) => why,
                 Loss::NotFinite | Loss::Pole { .. } => "it has no finite value at the start".into(),
             };
-            Diagnostic::error("domain", what).element(lost.function.to_string())
+            Diagnostic::error(Cause::Domain, what).element(lost.function.to_string())
         }));
         self.warn_of_splines(&system, std::slice::from_ref(&system.numbers));
         found.extend(driving(&system.scene, &self.model));

@@ -7,7 +7,7 @@ use crate::analysis::time::output::Output;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Linear, Simulate, SimulationKind, Step};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::ElementKind;
 use crate::results::{Event, Status};
 
@@ -144,7 +144,7 @@ fn located(mut d: Diagnostic, step: &Step) -> Diagnostic {
 
 fn second_file() -> Diagnostic {
     let what = "a run has one dataset and one table of results";
-    Diagnostic::error("unsupported", what).help(
+    Diagnostic::error(Cause::Unsupported, what).help(
         "FILE belongs at the beginning; another dataset needs a command file of its own, a saved state RELOAD/SYSTEM=file",
     )
 }

@@ -25,7 +25,7 @@ use crate::analysis::quantity::amount;
 use crate::analysis::start::assemble::{self, CLOSED, DEPENDENT, Redundant};
 use crate::analysis::start::nearby::Surroundings;
 use crate::analysis::warning::AssemblyWarning;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::ElementKind;
 use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::numeric::rank::Rank;
@@ -553,7 +553,7 @@ impl<'s> Search<'s> {
                  {} is off by {off}{way}; up to {limit} it would be redundant and left out",
                 row.equation
             );
-            errors.push(Diagnostic::error("assembly", message).element(row.element).help(
+            errors.push(Diagnostic::error(Cause::Assembly, message).element(row.element).help(
                 "align its markers with those of the other joints, or say by IC/ERROR what may be left over",
             ));
         }

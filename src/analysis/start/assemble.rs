@@ -8,7 +8,7 @@ use crate::analysis::direction::{Axis, Direction};
 use crate::analysis::quantity::{length, short};
 use crate::analysis::start::{alignment, branch, nearby};
 use crate::analysis::warning::{AssemblyWarning, Warning};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::numeric::rank::Rank;
 use crate::physics::row::{Law, body_angles};
@@ -422,7 +422,7 @@ fn contradictions(scene: Configured<'_>, g: &DVector<f64>, numbers: &[f64]) -> V
         .take(20)
         .map(|r| {
             let row = &scene.rows[r];
-            Diagnostic::error("assembly", format!("cannot be satisfied: {}", gap(&scene, &at, r, g[r])))
+            Diagnostic::error(Cause::Assembly, format!("cannot be satisfied: {}", gap(&scene, &at, r, g[r])))
                 .element(row.element)
                 .help("move the parts nearer to where the joints want them, or remove a constraint that contradicts")
         })

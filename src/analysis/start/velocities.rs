@@ -7,7 +7,7 @@ use super::initial_conditions::of_joints;
 use crate::analysis::direction::Direction;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::warning::ConditionWarning;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementKind, Model};
 use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::scene::configuration::Configured;
@@ -36,7 +36,7 @@ fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f
         .map(|m| ElementKind::Motion.id(m.id).to_string())
         .collect();
     Diagnostic::error(
-        "assembly",
+        Cause::Assembly,
         format!(
             "the prescribed velocities contradict it: {} would have to give way by {rate} per unit of time {way}",
             row.equation

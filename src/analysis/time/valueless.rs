@@ -6,6 +6,7 @@
 //! there. Before a pole a function has values all the time; its divisor has nearly gone to zero
 //! against that of a little later.
 
+use crate::diagnostic::Cause;
 use crate::expr::Expr;
 use crate::expr::ast::{Ast, BinaryOp, Callee, Node, NodeIx};
 use crate::expr::functions::Function;
@@ -178,7 +179,7 @@ pub fn there(
             .ok()
             .and_then(|e| e.eval_with(&host).err());
         let loss = match said {
-            Some(d) if d.code == "domain" => Loss::Domain(d.message),
+            Some(d) if d.is(Cause::Domain) => Loss::Domain(d.message),
             _ => Loss::NotFinite,
         };
         Some(Valueless {

@@ -9,7 +9,7 @@ use super::{leave_out_unknown, skeleton, stand_still, start};
 use crate::analysis::start::dataset::Dataset;
 use crate::analysis::start::{assemble, misalignment, velocities};
 use crate::analysis::warning::AssemblyWarning;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementId, ElementKind, Family, Model};
 use crate::scene::Scene;
 use crate::scene::build::Options;
@@ -46,7 +46,7 @@ pub(in crate::analysis) fn blamed(model: &Model, said: Vec<Diagnostic>) -> Vec<D
 /// The same of a model without what has no influence on its freedoms.
 pub(super) fn traced(model: &Model, said: Vec<Diagnostic>) -> Vec<Diagnostic> {
     // a curve that is left, or that has no tangent in common, is fault enough
-    if said.iter().any(|d| d.code != "assembly") {
+    if said.iter().any(|d| !d.is(Cause::Assembly)) {
         return said;
     }
     let mut suspects = suspects(model);
@@ -95,7 +95,7 @@ fn accused(model: &Model, suspects: &[Suspect], said: Vec<Diagnostic>) -> Diagno
         }
         _ => "it contradicts the others: without it the rest of the model assembles".to_owned(),
     };
-    let mut d = Diagnostic::error("assembly", message).element(first.id);
+    let mut d = Diagnostic::error(Cause::Assembly, message).element(first.id);
     if first.id.kind != ElementKind::Motion && !names.is_empty() {
         d = d.help(format!("so it does without {names}"));
     }

@@ -2,6 +2,7 @@
 
 use crate::analysis::direction::Axis;
 use crate::analysis::quantity::{amount, length, short};
+use crate::diagnostic::Cause;
 use crate::model::check::alignment::Misalignment;
 use crate::model::{ElementId, ElementKind};
 use std::fmt;
@@ -96,7 +97,7 @@ impl AssemblyWarning {
     /// Returns its stable short name.
     pub(super) fn code(&self) -> &'static str {
         match self {
-            AssemblyWarning::Misaligned { .. } => "misaligned",
+            AssemblyWarning::Misaligned { .. } => Cause::Misaligned.code(),
             AssemblyWarning::Axes(_) => "axes_not_aligned",
             AssemblyWarning::Turned { .. } => "turned",
             AssemblyWarning::WrongWayRound { .. } | AssemblyWarning::OppositeAngle { .. } => {

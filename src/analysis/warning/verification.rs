@@ -1,7 +1,7 @@
 //! Warnings of verifications: what is taken for granted, and what a simulation would need.
 
 use super::owner;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::ElementId;
 use crate::scene::left_out::Hidden;
 use std::fmt;
@@ -36,7 +36,7 @@ impl VerificationWarning {
     pub(super) fn code(&self) -> &'static str {
         match self {
             VerificationWarning::Massless(d) => d.code,
-            VerificationWarning::StandsStill(_) => "user_routine",
+            VerificationWarning::StandsStill(_) => Cause::UserRoutine.code(),
             VerificationWarning::UnknownConstraint { .. } => "unknown_constraint",
             VerificationWarning::FreedomNearby { .. } => "freedom",
         }

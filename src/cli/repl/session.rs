@@ -6,7 +6,7 @@ use crate::cli::anatomy;
 use crate::cli::eval::DialectName;
 use crate::cli::formula::{Formula, Setting, derivative_names, give, times};
 use crate::cli::{card, explain, plot, statements};
-use crate::diagnostic::{Diagnostic, near_names};
+use crate::diagnostic::{Cause, Diagnostic, near_names};
 use crate::expr::ast::Dialect;
 use crate::expr::{Profile, parse, symbol};
 use crate::report::terminal::terminal;
@@ -119,7 +119,7 @@ impl Session {
             )
             .err()
         };
-        !ends && error().is_some_and(|d| d.code == "unexpected_end")
+        !ends && error().is_some_and(|d| d.is(Cause::UnexpectedEnd))
     }
 
     /// Executes a line.
@@ -461,7 +461,7 @@ fn mistake(said: Diagnostic, expansion: &Expansion) -> Reply {
 /// A mistake about a name that the language does not know, with the command that defines it, where
 /// the name could be a number: `k*2`, `k = 3`.
 fn with_let(said: Diagnostic, expansion: &Expansion) -> Diagnostic {
-    let Some(span) = said.span.filter(|_| said.code == "unknown_name") else {
+    let Some(span) = said.span.filter(|_| said.is(Cause::UnknownName)) else {
         return said;
     };
     let name = expansion.text.get(span.start..span.end).unwrap_or_default();

@@ -1,6 +1,7 @@
 //! The effect of a command on a model.
 
 use super::*;
+use crate::diagnostic::Cause;
 
 impl Model {
     /// Does to the model what a command says: changes an element or settings, switches elements on
@@ -82,7 +83,7 @@ impl Model {
         let mut out = Vec::new();
         for &id in ids.iter().filter(missing) {
             let message = format!("{} does not exist", kind.id(id));
-            let mut d = Diagnostic::error("unknown_element", message);
+            let mut d = Diagnostic::error(Cause::UnknownElement, message);
             d.help.extend(near_ids(id, known.iter().copied()));
             out.push(d);
         }

@@ -7,6 +7,15 @@ use crate::dataset::value::Field;
 /// Makes a command of what its arguments have filled.
 type Meant<T> = fn(T, &Record) -> Result<Command, Box<Diagnostic>>;
 
+/// A row of the table of commands: read like a statement, and made a command.
+pub(super) trait Interpret: Statement {
+    /// Makes a command of a record of this row.
+    ///
+    /// # Errors
+    /// Arguments that do not fit each other.
+    fn interpret(&self, record: &Record) -> Result<Command, Box<Diagnostic>>;
+}
+
 /// A command that is no statement: its arguments fill a `T`, of which it is made.
 struct CommandRow<T: 'static> {
     keyword: &'static str,
@@ -32,8 +41,11 @@ impl<T: Default> Statement for CommandRow<T> {
     fn records(&self, _: &Model) -> Vec<Record> {
         Vec::new()
     }
-    fn command(&self, record: &Record) -> Option<Result<Command, Box<Diagnostic>>> {
-        Some((self.meant)(filled(self.bindings, record), record))
+}
+
+impl<T: Default> Interpret for CommandRow<T> {
+    fn interpret(&self, record: &Record) -> Result<Command, Box<Diagnostic>> {
+        (self.meant)(filled(self.bindings, record), record)
     }
 }
 
@@ -126,7 +138,7 @@ const REAL: Kind = Kind::Real { angle: false };
 
 /// Commands that control the run.
 #[rustfmt::skip]
-pub(super) static COMMANDS: &[&dyn Statement] = &[
+pub(super) static COMMANDS: &[&dyn Interpret] = &[
     command!("SIMULATE", Simulation, open: false, {
         one_of "KINEMATICS" ("kind", kind = Some(SimulationKind::Kinematic));
         one_of "DYNAMICS" ("kind", kind = Some(SimulationKind::Dynamic));
@@ -180,8 +192,9 @@ fn show((): (), record: &Record) -> Result<Command, Box<Diagnostic>> {
 /// Returns the command that a record is: one that controls the run, or a change of the model.
 pub(super) fn interpret(record: Record) -> Result<Command, Box<Diagnostic>> {
     let prints = [SettingsStatement::List, SettingsStatement::Nolist];
-    match record.row.command(&record) {
-        Some(command) => command,
+    let keyword = record.row.keyword();
+    match COMMANDS.iter().find(|c| c.keyword() == keyword) {
+        Some(command) => command.interpret(&record),
         None if prints.into_iter().any(|s| record.row.settings() == Some(s)) => show((), &record),
         None => Ok(Command::Change(record)),
     }

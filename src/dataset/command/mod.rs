@@ -145,8 +145,10 @@ pub struct Script {
 }
 
 /// The two tables one after the other: commands, then statements.
-static ROWS: LazyLock<Vec<&'static dyn Statement>> =
-    LazyLock::new(|| COMMANDS.iter().chain(STATEMENTS).copied().collect());
+static ROWS: LazyLock<Vec<&'static dyn Statement>> = LazyLock::new(|| {
+    let commands = COMMANDS.iter().map(|&c| c as &dyn Statement);
+    commands.chain(STATEMENTS.iter().copied()).collect()
+});
 
 /// All commands, then all statements of the dataset.
 pub(super) fn rows() -> &'static [&'static dyn Statement] {

@@ -1,6 +1,7 @@
 //! Functions: expressions that go on over lines, and USER with its constants.
 
 use super::*;
+use crate::diagnostic::Cause;
 
 impl Reader<'_> {
     /// An expression: up to `\`, the end, or a comma (or slash) that is followed by `KEYWORD =`.
@@ -42,7 +43,7 @@ impl Reader<'_> {
         }
         if to == from {
             let message = format!("{} = what? It takes an expression", self.text(name));
-            return self.fail("missing_value", name.span, message);
+            return self.fail(Cause::MissingValue.code(), name.span, message);
         }
         if let Some(user) = self.user(from, to)? {
             return Ok(user);

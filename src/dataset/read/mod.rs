@@ -11,7 +11,7 @@ mod values;
 use super::row::{Argument, Given, Meaning, Record, Statement, canonical, meaning};
 use super::syntax::{Source, Token, TokenKind, Tokens};
 use super::value::{Kind, Number, Value};
-use crate::diagnostic::{Diagnostic, Severity, Span, near_names};
+use crate::diagnostic::{Cause, Diagnostic, Severity, Span, near_names};
 use crate::model::{Break, Formula, Place};
 
 /// A table of statements to read with.
@@ -245,7 +245,7 @@ impl<'a> Reader<'a> {
                     self.arguments[argument].keyword(),
                     kind.describe()
                 );
-                return self.fail("missing_value", name.span, message);
+                return self.fail(Cause::MissingValue.code(), name.span, message);
             }
             (_, true) => self.value(kind, name)?,
         };

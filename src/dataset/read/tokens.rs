@@ -1,6 +1,7 @@
 //! Tokens of a statement: the text of some, the next of a kind, where an argument ends, complaints.
 
 use super::*;
+use crate::diagnostic::Cause;
 
 impl<'a> Reader<'a> {
     /// The text of some tokens: lines joined by a blank; `between` stands for a comma that began a
@@ -81,7 +82,7 @@ impl<'a> Reader<'a> {
                     .or(self.tokens.last())
                     .map_or(Span::default(), |t| t.span);
                 let message = format!("a value is missing before `{}`", self.source.slice(span));
-                self.fail("missing_value", span, message)
+                self.fail(Cause::MissingValue.code(), span, message)
             }
         }
     }

@@ -1,12 +1,13 @@
 //! Values of arguments: numbers, words, texts and lists, each as its kind is written.
 
 use super::*;
+use crate::diagnostic::Cause;
 
 impl Reader<'_> {
     pub(super) fn value(&mut self, kind: Kind, name: Token) -> Result<Value, Reported> {
         if self.at_end_of_value() {
             let message = format!("{} = what? It takes {}", self.text(name), kind.describe());
-            return self.fail("missing_value", name.span, message);
+            return self.fail(Cause::MissingValue.code(), name.span, message);
         }
         Ok(match kind {
             Kind::Flag => Value::Flag,

@@ -4,7 +4,7 @@
 //! number; walker and compiler both use it. INVPSD becomes a sum of sines ([`Signal`]).
 
 use super::{Curve, Interpolation, Spline, Surface};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::spline::Piecewise;
 use crate::scalar::{Scalar, Table};
 use std::collections::BTreeMap;
@@ -183,7 +183,7 @@ fn unknown<'a>(kind: &str, id: u32, known: impl Iterator<Item = &'a u32>) -> Dia
         0 => format!("no {kind} is given"),
         _ => format!("there are: {}", known.join(", ")),
     };
-    Diagnostic::error("unknown_element", format!("there is no {kind} {id}")).help(advice)
+    Diagnostic::error(Cause::UnknownElement, format!("there is no {kind} {id}")).help(advice)
 }
 
 /// A sum of sines with pseudo-random phases and amplitudes from a spectrum.

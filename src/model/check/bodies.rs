@@ -2,6 +2,7 @@
 //! axes, owners of floating markers.
 
 use super::*;
+use crate::diagnostic::Cause;
 use crate::physics::joint::Tie;
 use nalgebra::Matrix3;
 
@@ -128,7 +129,7 @@ pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
         moments.sort_by(f64::total_cmp);
         if moments[0] < -TOLERANCE {
             let message = "the products in IP are too large: no body has this inertia".to_owned();
-            warn(out, "impossible_inertia", who, message);
+            warn(out, Cause::ImpossibleInertia.code(), who, message);
             at_argument(out, "IP");
             advise(
                 out,
@@ -136,7 +137,7 @@ pub(super) fn inertia_is_possible(model: &Model, out: &mut Out) {
             );
         } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
             let message = "one principal moment is larger than the two others together: no body has this inertia".to_owned();
-            warn(out, "impossible_inertia", who, message);
+            warn(out, Cause::ImpossibleInertia.code(), who, message);
             at_argument(out, "IP");
         }
     }

@@ -1,7 +1,7 @@
 //! Rules of references: elements that are named exist, and functions can be read.
 
 use super::{Out, about, advise, at_argument, error, near};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Cause, Diagnostic, Span};
 use crate::expr::Expr;
 use crate::expr::ast::Node;
 use crate::expr::signature;
@@ -15,7 +15,12 @@ pub(super) fn references_exist(model: &Model, out: &mut Out) {
         }
         let number = r.target.number;
         let message = format!("{} = {number}: {} does not exist", r.argument, r.target);
-        error(out, "unknown_element", (r.element, r.place), message);
+        error(
+            out,
+            Cause::UnknownElement.code(),
+            (r.element, r.place),
+            message,
+        );
         at_argument(out, r.argument);
         if let Some(advice) = near(number, &model.numbers(r.target.kind)) {
             advise(out, advice);
@@ -66,7 +71,7 @@ pub(super) fn functions_can_be_read(model: &Model, out: &mut Out) {
                         continue;
                     }
                     let message = format!("{target} does not exist");
-                    let mut d = who(Diagnostic::error("unknown_element", message));
+                    let mut d = who(Diagnostic::error(Cause::UnknownElement, message));
                     d.help
                         .extend(near(target.number, &model.numbers(target.kind)));
                     out.push(placed(d, owned.formula, at));
@@ -92,7 +97,7 @@ impl Model {
                 continue;
             }
             let message = format!("{target} does not exist");
-            let mut d = Diagnostic::error("unknown_element", message);
+            let mut d = Diagnostic::error(Cause::UnknownElement, message);
             d.help
                 .extend(near(target.number, &self.numbers(target.kind)));
             out.push(d.at(text, Span::new(at, at + 1)));

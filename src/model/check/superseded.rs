@@ -1,6 +1,7 @@
 //! Arguments of former releases that are read, kept, and do nothing.
 
 use super::*;
+use crate::diagnostic::Cause;
 
 pub(super) fn joints_have_no_old_friction(model: &Model, out: &mut Out) {
     for (&id, joint) in &model.joints {
@@ -17,7 +18,7 @@ pub(super) fn joints_have_no_old_friction(model: &Model, out: &mut Out) {
             "{}: friction given with a joint is not computed",
             given.join(", ")
         );
-        warn(out, "superseded", who, message);
+        warn(out, Cause::Superseded.code(), who, message);
         advise(
             out,
             format!("FRICTION/…, JOINT={id}, MU_STATIC=…, MU_DYNAMIC=… is computed"),

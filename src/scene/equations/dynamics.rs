@@ -190,7 +190,8 @@ impl<S: Scalar> Equations<'_, S> {
             .iter()
             .map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v]))
             .collect();
-        solve_symmetric(gram, rhs, &[])
+        let usual_pivots = &self.configuration.elimination.usual_pivots;
+        solve_symmetric(gram, rhs, usual_pivots)
     }
 
     /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are

@@ -1,7 +1,7 @@
 //! Inputs that functions ask for and the equations of a scene cannot supply: as data, and as the
 //! sentence that the user reads.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::measures::{Measure, orientation_components};
 use crate::model::{ElementId, ElementKind};
 use crate::scene::asker::Asker;
@@ -161,7 +161,8 @@ impl Unsupported {
 
     /// Makes an error of it, about the function that asks.
     pub fn error(&self) -> Diagnostic {
-        Diagnostic::error("unsupported", self.lack.to_string()).element(self.asked_by.to_string())
+        Diagnostic::error(Cause::Unsupported, self.lack.to_string())
+            .element(self.asked_by.to_string())
     }
 
     /// Makes a warning of it: the column that asks is empty.

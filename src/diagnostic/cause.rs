@@ -1,0 +1,82 @@
+//! Causes: the kinds of mistakes on which the program itself acts.
+//!
+//! Most codes are for the reader alone. Those that decide anything (an exit code, further advice,
+//! whether to look on) are values of this type where they are given and where they are asked for,
+//! so that the two cannot drift apart.
+
+use super::Diagnostic;
+
+/// A kind of mistake on which the program acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Cause {
+    /// something stands for a model that is not quite the one written
+    Approximate,
+    /// parts and joints do not fit together
+    Assembly,
+    /// a curve or surface is given by what cannot be read
+    CurveData,
+    /// an operation has no value for what it is given
+    Domain,
+    /// a file or folder cannot be written
+    FileUnwritable,
+    /// inertias that no body has
+    ImpossibleInertia,
+    /// axes of a loop are parallel within tolerance, not exactly
+    Misaligned,
+    /// a formula asks for a value that is not given
+    MissingValue,
+    /// an element is left out on request
+    Skipped,
+    /// a statement that another one of the same element replaces
+    Superseded,
+    /// a text ends before the expression does
+    UnexpectedEnd,
+    /// an element that does not exist is referred to
+    UnknownElement,
+    /// a name that the language does not have
+    UnknownName,
+    /// an element or argument that is read, but not solved
+    Unsupported,
+    /// a routine of the user's that is not there
+    UserRoutine,
+}
+
+impl Cause {
+    /// Returns the code of a diagnostic with this cause.
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::Approximate => "approximate",
+            Self::Assembly => "assembly",
+            Self::CurveData => "curve_data",
+            Self::Domain => "domain",
+            Self::FileUnwritable => "file_unwritable",
+            Self::ImpossibleInertia => "impossible_inertia",
+            Self::Misaligned => "misaligned",
+            Self::MissingValue => "missing_value",
+            Self::Skipped => "skipped",
+            Self::Superseded => "superseded",
+            Self::UnexpectedEnd => "unexpected_end",
+            Self::UnknownElement => "unknown_element",
+            Self::UnknownName => "unknown_name",
+            Self::Unsupported => "unsupported",
+            Self::UserRoutine => "user_routine",
+        }
+    }
+}
+
+impl From<Cause> for &'static str {
+    fn from(cause: Cause) -> Self {
+        cause.code()
+    }
+}
+
+impl Diagnostic {
+    /// Returns whether this is a diagnostic with a cause.
+    pub fn is(&self, cause: Cause) -> bool {
+        self.code == cause.code()
+    }
+    /// Returns whether this is a diagnostic with one of some causes.
+    pub fn is_any(&self, causes: &[Cause]) -> bool {
+        causes.iter().any(|&cause| self.is(cause))
+    }
+}
