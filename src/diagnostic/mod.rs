@@ -69,7 +69,8 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Creates an error without a place; `code` is a code, or a [`Cause`] on which the program acts.
+    /// Creates an error without a place; `code` is a code, or a [`Cause`] on which the program
+    /// acts.
     pub fn error(code: impl Into<&'static str>, message: impl Into<String>) -> Self {
         Self {
             code: code.into(),

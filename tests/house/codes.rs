@@ -129,6 +129,8 @@ fn no_code_is_compared_as_text() {
         &mut files,
     );
     let mut compared = Vec::new();
+    // instructions have codes, too
+    files.retain(|file| !file.components().any(|c| c.as_os_str() == "program"));
     for file in files {
         let source = std::fs::read_to_string(&file).unwrap();
         let source = source
