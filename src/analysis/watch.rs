@@ -1,5 +1,7 @@
 //! Hooks through which a caller follows a long analysis and can end it.
 
+use super::system::System;
+use super::time::trajectory::Trajectory;
 use crate::numeric::Stats;
 
 /// Hooks called while an analysis goes on, after each step of it.
@@ -10,6 +12,9 @@ pub trait Watch {
     }
     /// Takes note of the time that has been reached, of the last step, and of what it all has cost.
     fn progress(&mut self, _t: f64, _h: f64, _stats: &Stats) {}
+    /// Takes states that have been put out; all but the last may be
+    /// [released](Trajectory::release).
+    fn collect(&mut self, _system: &System, _trajectory: &mut Trajectory) {}
 }
 
 /// The hooks of a caller who does not look.

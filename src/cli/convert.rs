@@ -1,13 +1,15 @@
 //! `cognate convert`: results from one format into another.
 
+use super::output::StyleArgs;
 use super::{Exit, Failure, Outcome, remark};
 use crate::results::{self, Run};
 use std::path::{Path, PathBuf};
 
 /// Convert results from one format into another
 ///
-/// The names of the files tell the formats: .res (XML and old text form), .gra and .csv are read;
-/// .csv, .json and .res are written.
+/// The names of the files tell the formats: .res (XML and old text form), .gra, .csv and .parquet are
+/// read, also as parts of a run that was ended from outside (.part1); .csv, .parquet, .json and .res
+/// are written.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -25,6 +27,8 @@ pub struct Args {
     /// Keep the rows of this sequence, such as static_001 or dynamic_001 (repeatable)
     #[arg(long = "sequence", value_name = "NAME")]
     sequences: Vec<String>,
+    #[command(flatten)]
+    style: StyleArgs,
 }
 
 /// Converts results from one file into another.
@@ -40,7 +44,7 @@ pub fn run(args: &Args) -> Outcome {
     let mut run = results::read(&args.input)?;
     select_columns(&mut run, &args.columns)?;
     select_sequences(&mut run, &args.sequences)?;
-    results::write(&run, &args.output)?;
+    results::write(&run, &args.output, args.style.style())?;
     remark(format!(
         "{} columns, {} rows in {}",
         run.table_columns().len(),

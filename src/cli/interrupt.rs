@@ -1,5 +1,5 @@
-//! Ctrl-C: the first asks the running analysis to stop and keep what it has, the second ends the
-//! program at once.
+//! Ctrl-C and other requests to end (SIGTERM, SIGHUP): the first asks the running analysis to stop
+//! and keep what it has, the second ends the program at once.
 //!
 //! Where nothing polls (while a large model is put together), a run that has no results yet ends by
 //! itself a moment later.
@@ -45,15 +45,43 @@ pub fn install() {
     });
 }
 
-/// Lets Ctrl-C set the flag from now on, as [`install`], and ends a run that has no results and
-/// does not see it.
+/// Lets Ctrl-C and other requests to end set the flag from now on, as [`install`], and ends a run
+/// that has no results and does not see it.
 pub fn install_for_run() {
-    let _ = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-        std::thread::spawn(end_unless_seen);
-    });
+    let _ = ctrlc::set_handler(ask_to_stop);
+    #[cfg(unix)]
+    listen_for_ends();
+}
+
+fn ask_to_stop() {
+    if STOP.swap(true, Ordering::Relaxed) {
+        std::process::exit(130);
+    }
+    std::thread::spawn(end_unless_seen);
+}
+
+/// Listens for SIGTERM and SIGHUP, but for a signal that whoever started this program wants it to
+/// ignore (`nohup`).
+#[cfg(unix)]
+fn listen_for_ends() {
+    use signal_hook::consts::signal::{SIGHUP, SIGTERM};
+    let ignored = ignored_signals();
+    let heard = [SIGTERM, SIGHUP].into_iter();
+    let heard = heard.filter(|signal| ignored & (1 << (signal - 1)) == 0);
+    // where that is not possible they end the program, as before
+    if let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) {
+        std::thread::spawn(move || signals.forever().for_each(|_| ask_to_stop()));
+    }
+}
+
+/// Returns the signals that this process ignores, a bit each from the lowest; none where the system
+/// does not tell.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    line.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok())
+        .unwrap_or(0)
 }
 
 fn end_unless_seen() {

@@ -17,6 +17,7 @@ pub mod formula;
 mod functions;
 pub mod interrupt;
 mod linear;
+mod output;
 mod plot;
 pub mod progress;
 pub mod render;

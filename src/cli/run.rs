@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::render::Sources;
-use super::{Exit, Failure, Outcome, interrupt, linear, remark, say, summary};
+use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Options, Session};
@@ -12,8 +12,9 @@ use crate::dataset::{self, Reading};
 use crate::diagnostic::{Cause, Diagnostic, Severity};
 use crate::model::{ElementKind, Model, SettingsStatement};
 use crate::numeric::Stats;
+use crate::results::format::Format;
 use crate::results::output_folder::OutputFolder;
-use crate::results::{Event, Status, csv, json, msg, res};
+use crate::results::{Event, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -67,6 +68,8 @@ pub struct Args {
     /// Steps that a simulation may try before it ends with exit code 7
     #[arg(long, value_name = "N")]
     max_steps: Option<usize>,
+    #[command(flatten)]
+    output: output::FileArgs,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -87,11 +90,12 @@ enum KindName {
 /// Shows progress and listens for Ctrl-C.
 struct Terminal<'a> {
     progress: &'a std::cell::RefCell<Progress>,
+    tables: output::Tables,
 }
 
 impl Watch for Terminal<'_> {
     fn interrupted(&mut self) -> bool {
-        interrupt::requested()
+        interrupt::requested() || self.tables.have_failed()
     }
     fn progress(&mut self, t: f64, _h: f64, stats: &Stats) {
         interrupt::results_begin();
@@ -121,14 +125,20 @@ pub fn run(args: &Args) -> Outcome {
     let doubts = remark_on_warnings(args, &reading);
     let (model, dataset) = (reading.model, reading.dataset);
     check_columns(args, &model, &steps)?;
-    let full = model.settings.contains_key(&SettingsStatement::Results);
     let mut session = open(args, model, &base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
     let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
     let folder = OutputFolder::open(&dir, &session.run.name)?;
+    let full = session
+        .model
+        .settings
+        .contains_key(&SettingsStatement::Results);
+    let tables = output::Tables::open(&args.output, folder, &session.run.name, full)?;
 
     // solve
-    let (status, failure) = match solve(args, &mut session, &steps) {
+    let receiver = tables.clone();
+    session.receive(Box::new(move |run| receiver.look(run)));
+    let (status, failure) = match solve(args, &mut session, &steps, &tables) {
         Ok(status) => (status, None),
         Err(errors) => {
             let record = &mut session.run.record;
@@ -153,12 +163,12 @@ pub fn run(args: &Args) -> Outcome {
         // what an earlier run has written stays
         (Vec::new(), json::text(&json::record(&session.run)))
     } else {
-        write(&mut session, folder, full, shown)?
+        tables.complete(&mut session, shown)?
     };
     if args.json {
         say(&record);
     } else if shown && !is_refused {
-        say(&summary::table(&session.run));
+        say(&tables.overview(&session.run));
         remark(summary::facts(&session.run, &written).trim_end());
     }
     if let Some(mut diagnostics) = failure {
@@ -231,7 +241,8 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
 
 /// Opens the session of a model, with the options of the command line.
 fn open(args: &Args, model: Model, base: &str) -> Session {
-    let full = model.settings.contains_key(&SettingsStatement::Results);
+    let full = model.settings.contains_key(&SettingsStatement::Results)
+        || args.output.formats.contains(&Format::Res);
     let options = Options {
         error: args.error,
         method: args.method.clone(),
@@ -253,7 +264,12 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
 }
 
 /// Obeys the commands of a run, with a bar of its progress.
-fn solve(args: &Args, session: &mut Session, steps: &[Step]) -> Result<Status, Vec<Diagnostic>> {
+fn solve(
+    args: &Args,
+    session: &mut Session,
+    steps: &[Step],
+    tables: &output::Tables,
+) -> Result<Status, Vec<Diagnostic>> {
     let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
     let begin = |start: f64, end: f64| {
         progress.borrow().done();
@@ -261,6 +277,7 @@ fn solve(args: &Args, session: &mut Session, steps: &[Step]) -> Result<Status, V
     };
     let mut terminal = Terminal {
         progress: &progress,
+        tables: tables.clone(),
     };
     let outcome = obey(session, steps, begin, &mut terminal);
     progress.borrow().done();
@@ -431,47 +448,6 @@ fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
         "a first line that is no command is taken as the name of the dataset; the command is FILE/MODEL=name",
     );
     Failure::in_files(Exit::Input, vec![d])
-}
-
-/// Writes all files of the run; returns their names, and the record. The record comes last, so that
-/// its status shows that the others are complete.
-fn write(
-    session: &mut Session,
-    mut folder: OutputFolder,
-    full: bool,
-    picture: bool,
-) -> Result<(Vec<PathBuf>, String), Failure> {
-    let clock = Instant::now();
-    let run = &session.run;
-    let own = |ending: &str| format!("{}.{ending}", run.name);
-    folder.put(&own("csv"), &csv::write(run, true))?;
-    if full {
-        folder.put(&own("res"), &res::write(run))?;
-    }
-    folder.put(&own("msg"), &msg::write(run))?;
-    for (name, text) in linear::files(session) {
-        folder.put(&name, &text)?;
-    }
-    for (name, text) in &session.saved {
-        folder.put(name, text)?;
-    }
-    if let Some(text) = summary::picture(run).filter(|_| picture) {
-        folder.put(&own("svg"), &text)?;
-    }
-    folder.remove_stale(&["csv", "res", "msg", "svg"].map(own))?;
-    let name = own("json");
-    session.run.record.write_seconds = clock.elapsed().as_secs_f64();
-    let record = json::with_files(json::record(&session.run), folder.written());
-    let record = json::text(&record);
-    folder.put(&name, &record)?;
-    for (was, is) in folder.kept() {
-        remark(format!(
-            "{} was not written by this program or has been changed: kept as {}",
-            was.display(),
-            is.display()
-        ));
-    }
-    Ok((folder.files().to_vec(), record))
 }
 
 /// Returns the processor time of this process, in s, where the system tells it.

@@ -130,6 +130,59 @@ fn warnings(all: &[Warning]) -> Vec<String> {
     shown
 }
 
+/// Rows of an overview, at most.
+const MOST_OF_OVERVIEW: usize = 8192;
+
+/// Rows at equal distances of a run that has released some, so that it can be shown.
+#[derive(Debug, Default)]
+pub struct Overview {
+    rows: Run,
+    /// distance of its rows, a power of two; 0: it has none yet
+    stride: usize,
+    /// rows of the run that it has seen
+    seen: usize,
+}
+
+impl Overview {
+    /// Takes a part of the rows that a run holds and that are new.
+    pub fn take(&mut self, run: &Run) {
+        if self.stride == 0 {
+            self.stride = 1;
+            self.rows = Run {
+                columns: run
+                    .columns
+                    .iter()
+                    .map(crate::results::Column::empty)
+                    .collect(),
+                ..Run::new(&run.name, &run.title, run.units.clone())
+            };
+            self.rows.table.clone_from(&run.table);
+        }
+        for row in self.seen.max(run.released)..run.rows() {
+            if !row.is_multiple_of(self.stride) {
+                continue;
+            }
+            let place = row - run.released;
+            let values: Vec<f64> = run.columns.iter().map(|c| c.values[place]).collect();
+            self.rows.push(&values);
+            if self.rows.rows() >= MOST_OF_OVERVIEW {
+                self.rows.keep_every_second();
+                self.stride *= 2;
+            }
+        }
+        self.seen = run.rows();
+    }
+
+    /// Returns the run if it holds all its rows, else its overview up to the last row.
+    pub fn of<'a>(&'a mut self, run: &'a Run) -> &'a Run {
+        if run.released == 0 {
+            return run;
+        }
+        self.take(run);
+        &self.rows
+    }
+}
+
 /// Most panels of the picture.
 const PANELS: usize = 12;
 

@@ -2,33 +2,71 @@
 //! per output.
 //!
 //! Numbers have the shortest digits that read back as the same bits, so that a table is as good as
-//! the run itself.
+//! the run itself. Where spreadsheets have a comma in their numbers, cells are separated by `;`.
 
-use super::{Column, Kind, Run, Sequence, Units, digits, malformed, number};
+use super::format::{Style, TableText};
+use super::number::push_digits;
+use super::{Column, Kind, Run, Sequence, Units, malformed, number};
 use crate::diagnostic::Diagnostic;
+use std::ops::Range;
 
 /// Writes the table of a run. `units`: with a row of units below the names.
 pub fn write(run: &Run, units: bool) -> String {
-    let columns: Vec<&Column> = run
-        .table_columns()
-        .into_iter()
-        .filter_map(|i| run.columns.get(i))
-        .collect();
-    let mut rows = vec![columns.iter().map(|c| c.name.clone()).collect::<Vec<_>>()];
-    if units {
-        rows.push(columns.iter().map(|c| unit_cell(&c.unit)).collect());
+    let style = Style {
+        units,
+        ..Style::default()
+    };
+    super::format::text(&mut Table::new(style), run)
+}
+
+/// A table that is being written.
+#[derive(Debug)]
+pub struct Table {
+    style: Style,
+}
+
+impl Table {
+    /// Prepares a table.
+    pub fn new(style: Style) -> Self {
+        Self { style }
     }
-    let mut text = to_text(&rows);
-    for row in run.table_rows() {
-        for (i, column) in columns.iter().enumerate() {
-            if i > 0 {
-                text.push(',');
-            }
-            text.push_str(&digits(column.values[row]));
+}
+
+impl TableText for Table {
+    fn begin(&mut self, run: &Run, text: &mut Vec<u8>) {
+        let columns = || {
+            let columns = run.table_columns().into_iter();
+            columns.filter_map(|i| run.columns.get(i))
+        };
+        let mut rows = vec![columns().map(|c| c.name.clone()).collect::<Vec<_>>()];
+        if self.style.units {
+            rows.push(columns().map(|c| unit_cell(&c.unit)).collect());
         }
-        text.push('\n');
+        let separator = self.style.separator();
+        text.extend_from_slice(to_text(&rows, separator).as_bytes());
     }
-    text
+
+    fn rows(&mut self, run: &Run, rows: Range<usize>, text: &mut Vec<u8>) {
+        let columns = run.table_columns().into_iter();
+        let columns: Vec<&Column> = columns.filter_map(|i| run.columns.get(i)).collect();
+        let separator = self.style.separator();
+        for place in run.table_places(rows) {
+            for (i, column) in columns.iter().enumerate() {
+                if i > 0 {
+                    text.push(separator);
+                }
+                let from = text.len();
+                push_digits(column.values[place], text);
+                if self.style.decimal_comma {
+                    let point = text[from..].iter_mut().find(|c| **c == b'.');
+                    point.into_iter().for_each(|c| *c = b',');
+                }
+            }
+            text.push(b'\n');
+        }
+    }
+
+    fn end(&mut self, _run: &Run, _text: &mut Vec<u8>) {}
 }
 
 /// Writes a unit in a cell: never empty, so that no reader takes the row for numbers or for a blank
@@ -42,8 +80,10 @@ fn unit_cell(unit: &str) -> String {
 }
 
 /// Writes rows of text cells, quoted where they must be.
-fn to_text(rows: &[Vec<String>]) -> String {
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
+fn to_text(rows: &[Vec<String>], separator: u8) -> String {
+    let mut writer = ::csv::WriterBuilder::new()
+        .delimiter(separator)
+        .from_writer(Vec::new());
     for row in rows {
         // writing rows of equal length to memory cannot fail
         let written = writer.write_record(row);
@@ -55,12 +95,19 @@ fn to_text(rows: &[Vec<String>]) -> String {
         .unwrap_or_default()
 }
 
-/// Reads a table; a second row that holds no number is the row of units.
+/// Reads a table; a second row that holds no number is the row of units. Cells may be
+/// separated by `;`, numbers then have a decimal comma.
 ///
 /// # Errors
 /// When a row has more or fewer cells than the first, or a cell holds no number, with the line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
+    let decimal_comma = has_decimal_commas(bytes);
+    let number = |cell: &str| match decimal_comma {
+        true => number(&cell.replace(',', ".")),
+        false => number(cell),
+    };
     let mut reader = ::csv::ReaderBuilder::new()
+        .delimiter(if decimal_comma { b';' } else { b',' })
         .has_headers(false)
         .flexible(true)
         .trim(::csv::Trim::All)
@@ -126,6 +173,14 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     Ok(run)
 }
 
+/// Returns whether cells are separated by `;`: it comes first of the two separators outside of
+/// quotes.
+fn has_decimal_commas(bytes: &[u8]) -> bool {
+    let line = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
+    let mut bare = line.split(|&b| b == b'"').step_by(2).flatten();
+    bare.find(|b| matches!(b, b';' | b',')) == Some(&b';')
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,6 +223,21 @@ mod tests {
                 assert_eq!(if units { a.unit.as_str() } else { "" }, b.unit);
             }
         }
+    }
+
+    #[test]
+    fn a_table_with_decimal_commas_reads_back_to_the_bit() {
+        let style = Style {
+            decimal_comma: true,
+            ..Style::default()
+        };
+        let text = crate::results::format::text(&mut Table::new(style), &example());
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "time;DX(12,21);\"say \"\"x\"\"\"");
+        assert_eq!(lines[2], "0,30000000000000004;-1e-300;3");
+        let back = read(text.as_bytes()).unwrap();
+        assert_eq!(back.columns[0].values, [0.1 + 0.2, 1.0]);
+        assert_eq!(back.columns[1].values, [-1e-300, f64::MAX]);
     }
 
     #[test]

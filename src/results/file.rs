@@ -1,11 +1,13 @@
 //! Files of results: the extension of the name tells the format.
 
-use super::{Run, csv, gra, json, msg, res};
-use crate::diagnostic::{Cause, Diagnostic};
+use super::format::{Format, Reader, Style};
+use super::part_file::{create_beside, unwritable};
+use super::{Run, msg};
+use crate::diagnostic::Diagnostic;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Reads a file of results; its name tells the format: `.res`, `.gra` or `.csv`.
+/// Reads a file of results; its name tells the format, one of [`Format`] that can be read.
 ///
 /// # Errors
 /// When the file cannot be read, its format is none of these, or its contents are not of that
@@ -16,20 +18,19 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
         d.file.get_or_insert(file.clone());
         d
     };
-    let bytes = std::fs::read(path).map_err(|e| {
-        in_file(Diagnostic::error(
-            "file_unreadable",
-            format!("cannot be read: {e}"),
-        ))
+    let extension = extension(&whole_name(path));
+    let reader = Format::row(&extension).and_then(|row| row.read);
+    let reader = reader.ok_or_else(|| {
+        let known = format!(
+            "formats that can be read: {}",
+            Format::names(false).join(", ")
+        );
+        in_file(unknown_format(&extension, &known))
     })?;
-    let mut run = match extension(path).as_str() {
-        "res" => res::read(&bytes),
-        "gra" => gra::read(&bytes),
-        "csv" => csv::read(&bytes),
-        other => Err(unknown_format(
-            other,
-            "formats that can be read: res, gra, csv",
-        )),
+    let mut run = if path.is_dir() {
+        read_parts(path, &extension, reader)
+    } else {
+        contents(path).and_then(|bytes| reader(whole_lines(path, &bytes)))
     }
     .map_err(in_file)?;
     if run.name.is_empty() {
@@ -41,22 +42,79 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
     Ok(run)
 }
 
-/// Writes a run to a file; its name tells the format: `.csv`, `.json`, `.res` or `.msg`.
+fn contents(path: &Path) -> Result<Vec<u8>, Diagnostic> {
+    std::fs::read(path).map_err(|e| {
+        let mut d = Diagnostic::error("file_unreadable", format!("cannot be read: {e}"));
+        d.file = Some(path.display().to_string());
+        d
+    })
+}
+
+/// Reads the folder of parts that a run has left which was ended from outside, as one table.
+fn read_parts(folder: &Path, extension: &str, reader: Reader) -> Result<Run, Diagnostic> {
+    let unreadable =
+        |e: std::io::Error| Diagnostic::error("file_unreadable", format!("cannot be read: {e}"));
+    let entries = std::fs::read_dir(folder).map_err(unreadable)?;
+    let entries = entries.map(|entry| entry.map(|e| e.path()));
+    let mut parts = entries.collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
+    parts.retain(|part| self::extension(part) == extension);
+    parts.sort();
+    let mut whole: Option<Run> = None;
+    for part in parts {
+        let run = reader(&contents(&part)?)?;
+        match &mut whole {
+            Some(whole) => whole.append(run),
+            None => whole = Some(run),
+        }
+    }
+    whole.ok_or_else(|| Diagnostic::error("result_syntax", "there are no parts in this folder"))
+}
+
+/// Returns the contents of a part without a last line that was not completed.
+fn whole_lines<'a>(path: &Path, bytes: &'a [u8]) -> &'a [u8] {
+    let is_text = extension(path) != extension(&whole_name(path));
+    match bytes.iter().rposition(|&b| b == b'\n') {
+        Some(last) if is_text => &bytes[..=last],
+        _ => bytes,
+    }
+}
+
+/// Returns the name that a part of a file is to have in the end: `run.csv` for `run.csv.part1`.
+fn whole_name(path: &Path) -> PathBuf {
+    let is_part = extension(path)
+        .strip_prefix("part")
+        .is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()));
+    if is_part {
+        path.with_extension("")
+    } else {
+        path.to_owned()
+    }
+}
+
+/// Writes a run to a file; its name tells the format: one of [`Format`] that can be written, or
+/// `.msg`.
 ///
 /// # Errors
 /// When the file cannot be written, or its format is none of these.
-pub fn write(run: &Run, path: &Path) -> Result<(), Diagnostic> {
-    let text = match extension(path).as_str() {
-        "csv" => csv::write(run, true),
-        "json" => json::document(run),
-        "res" => res::write(run),
-        "msg" => msg::write(run),
-        other => {
-            let known = "formats that can be written: csv, json, res, msg";
-            return Err(unknown_format(other, known));
-        }
-    };
-    write_text(path, &text)
+pub fn write(run: &Run, path: &Path, style: Style) -> Result<(), Diagnostic> {
+    let extension = extension(path);
+    if extension == "msg" {
+        return write_text(path, &msg::write(run));
+    }
+    let sink = Format::row(&extension).and_then(|row| row.sink);
+    let sink = sink.ok_or_else(|| {
+        let names = Format::names(true).join(", ");
+        let known = format!("formats that can be written: {names}, msg");
+        unknown_format(&extension, &known)
+    })?;
+    let mut sink = sink(style, path);
+    sink.rows(run, run.held())?;
+    let finished = sink.finish(run)?;
+    std::fs::rename(&finished.part, path).map_err(|e| {
+        // a rest that cannot be removed either adds nothing to say
+        let _ = std::fs::remove_file(&finished.part);
+        unwritable(path, &e)
+    })
 }
 
 /// Writes a text to a file, all or nothing.
@@ -66,23 +124,14 @@ pub fn write(run: &Run, path: &Path) -> Result<(), Diagnostic> {
 /// # Errors
 /// When the file cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), Diagnostic> {
-    let beside = |k: u32| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(format!(".part{k}"));
-        PathBuf::from(name)
-    };
-    // a file of that name is somebody's
-    let beside = (1..).map(beside).find(|p| p.symlink_metadata().is_err());
-    let beside = beside.unwrap_or_else(|| path.to_owned());
-    let written = std::fs::File::create_new(&beside)
-        .and_then(|mut file| file.write_all(text.as_bytes()))
-        .and_then(|()| std::fs::rename(&beside, path));
+    let (part, mut file) = create_beside(path).map_err(|e| unwritable(path, &e))?;
+    let written = file
+        .write_all(text.as_bytes())
+        .and_then(|()| std::fs::rename(&part, path));
     written.map_err(|e| {
         // a rest that cannot be removed either adds nothing to say
-        let _ = std::fs::remove_file(&beside);
-        let mut d = Diagnostic::error(Cause::FileUnwritable, format!("cannot be written: {e}"));
-        d.file = Some(path.display().to_string());
-        d
+        let _ = std::fs::remove_file(&part);
+        unwritable(path, &e)
     })
 }
 

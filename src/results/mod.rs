@@ -7,12 +7,16 @@
 
 pub mod csv;
 mod file;
+pub mod format;
 pub mod gra;
 pub mod json;
 mod log;
 pub mod msg;
 mod number;
 pub mod output_folder;
+#[cfg(feature = "parquet")]
+pub mod parquet;
+mod part_file;
 mod record;
 pub mod res;
 mod run;

@@ -13,8 +13,31 @@ pub(super) fn malformed(line: usize, message: impl Into<String>) -> Diagnostic {
 
 /// Writes a number with the shortest decimal digits that read back as the same number.
 pub fn digits(x: f64) -> String {
-    let text = format!("{x:?}");
-    text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
+    let mut text = Vec::new();
+    push_digits(x, &mut text);
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+/// Numbers that are written with an exponent although their digits are found with leading zeros.
+const LEADING_ZEROS: std::ops::Range<f64> = 1e-5..1e-4;
+
+/// Appends a number with the shortest decimal digits that read back as the same number: `1e300`,
+/// `NaN`, `-inf`; whole numbers have no point.
+pub fn push_digits(x: f64, text: &mut Vec<u8>) {
+    if LEADING_ZEROS.contains(&x.abs()) {
+        text.extend_from_slice(format!("{x:?}").as_bytes());
+        return;
+    }
+    let mut buffer = zmij::Buffer::new();
+    let digits = buffer.format(x).as_bytes();
+    let digits = digits.strip_suffix(b".0").unwrap_or(digits);
+    match digits.iter().rposition(|&c| c == b'+') {
+        Some(plus) => {
+            text.extend_from_slice(&digits[..plus]);
+            text.extend_from_slice(&digits[plus + 1..]);
+        }
+        None => text.extend_from_slice(digits),
+    }
 }
 
 /// Reads a number as result files of every age write it: `1.5`, `-2.18E-014`, `1.0D+00`,
@@ -43,5 +66,21 @@ mod tests {
                 "1234567"
             ]
         );
+    }
+
+    #[test]
+    fn digits_are_those_of_the_standard_library() {
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        for k in 0..20_000 {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            let usual = (bits % 1_000_000) as f64 * f64::powi(10.0, k % 45 - 25);
+            for x in [f64::from_bits(bits), usual, -usual] {
+                let text = format!("{x:?}");
+                let text = text.strip_suffix(".0").unwrap_or(&text);
+                assert_eq!(digits(x), text);
+            }
+        }
     }
 }

@@ -2,11 +2,13 @@
 //!
 //! A run record lists the files of its run and their sizes. A file that stands in the way and is
 //! not on that list was made by somebody else, or changed since: it is renamed, never overwritten.
-//! The list is written before each file, so that a run that is killed in between leaves no file
-//! that the next one would take for somebody else's.
+//! Files are complete beside their places before any is put there, and the list is written before
+//! that: a run that is killed in between leaves no file that the next one would take for somebody
+//! else's.
 
-use super::write_text;
-use crate::diagnostic::{Cause, Diagnostic};
+use super::format::Finished;
+use super::part_file::{PartFile, beside, unwritable};
+use crate::diagnostic::Diagnostic;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -51,20 +53,61 @@ impl OutputFolder {
         })
     }
 
-    /// Writes a file into the folder, under a name that may contain folders of its own.
+    /// Returns the place of a file, under a name that may contain folders of its own.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.dir.join(name)
+    }
+
+    /// Returns the place of a file, whose folders are made.
     ///
     /// # Errors
-    /// When it cannot be written, or what is there cannot be moved.
-    pub fn put(&mut self, name: &str, text: &str) -> Result<(), Diagnostic> {
-        self.make_way(name)?;
-        let bytes = text.len() as u64;
-        if name != self.record {
-            self.announce(name, bytes)?;
+    /// When a folder cannot be made.
+    pub fn place(&self, name: &str) -> Result<PathBuf, Diagnostic> {
+        let path = self.path(name);
+        match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+                std::fs::create_dir_all(folder).map_err(|e| unwritable(&path, &e))?;
+            }
+            _ => {}
         }
-        let path = self.dir.join(name);
-        write_text(&path, text)?;
-        self.written.insert(name.to_owned(), bytes);
-        self.files.push(path);
+        Ok(path)
+    }
+
+    /// Writes a text beside its place.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn prepare(&self, name: &str, text: &str) -> Result<Finished, Diagnostic> {
+        let mut file = PartFile::new(&self.place(name)?);
+        file.append(text.as_bytes())?;
+        file.finish()
+    }
+
+    /// Puts complete files in their places, after a list that claims them.
+    ///
+    /// # Errors
+    /// When one cannot be put there, or what is there cannot be moved.
+    pub fn put(&mut self, files: &[(String, Finished)]) -> Result<(), Diagnostic> {
+        self.claim(files)?;
+        for (name, file) in files {
+            self.put_in_place(name, file)?;
+            self.written.insert(name.clone(), file.bytes);
+            self.files.push(self.dir.join(name));
+        }
+        Ok(())
+    }
+
+    /// Puts the record in its place.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn put_record(&mut self, text: &str) -> Result<(), Diagnostic> {
+        let record = self.record.clone();
+        let file = self.prepare(&record, text)?;
+        self.put_in_place(&record, &file)?;
+        self.files.push(self.dir.join(&record));
+        // from now on it is ours
+        self.earlier.insert(record, vec![file.bytes]);
         Ok(())
     }
 
@@ -92,24 +135,31 @@ impl OutputFolder {
         &self.files
     }
 
+    /// Returns the part of a file that another run has left, which was ended from outside.
+    pub fn left_part(&self, name: &str) -> Option<PathBuf> {
+        let part = beside(&self.dir.join(name), 1);
+        part.symlink_metadata().is_ok().then_some(part)
+    }
+
     /// Returns the files of others that were in the way: where they were, and where they are now.
     pub fn kept(&self) -> &[(PathBuf, PathBuf)] {
         &self.kept
     }
 
-    /// Makes the folder of a file, and moves what somebody else has put in its place.
-    fn make_way(&mut self, name: &str) -> Result<(), Diagnostic> {
+    /// Renames a complete file to its place. What an earlier run has put there goes first: a file
+    /// system that replaces a file by another waits for the disk.
+    fn put_in_place(&mut self, name: &str, file: &Finished) -> Result<(), Diagnostic> {
         let path = self.dir.join(name);
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|e| unwritable(&path, &e))?;
+        if path.symlink_metadata().is_ok() {
+            if self.is_earlier(name, &path) || self.written.contains_key(name) {
+                std::fs::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
+            } else {
+                let aside = free_name(&path);
+                std::fs::rename(&path, &aside).map_err(|e| unwritable(&path, &e))?;
+                self.kept.push((path.clone(), aside));
+            }
         }
-        let is_there = path.symlink_metadata().is_ok();
-        if is_there && !self.is_earlier(name, &path) && !self.written.contains_key(name) {
-            let aside = free_name(&path);
-            std::fs::rename(&path, &aside).map_err(|e| unwritable(&path, &e))?;
-            self.kept.push((path, aside));
-        }
-        Ok(())
+        std::fs::rename(&file.part, &path).map_err(|e| unwritable(&path, &e))
     }
 
     /// Returns true if a file is one of the earlier run, as it was written.
@@ -119,22 +169,24 @@ impl OutputFolder {
         there.is_ok_and(|there| sizes.is_some_and(|sizes| sizes.contains(&there.len())))
     }
 
-    /// Writes a record that claims a file before it is written, beside those of the earlier run.
-    fn announce(&mut self, name: &str, bytes: u64) -> Result<(), Diagnostic> {
-        let record = self.record.clone();
-        self.make_way(&record)?;
+    /// Writes a record that claims files before they are put in their places, beside those of the
+    /// earlier run.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn claim(&mut self, more: &[(String, Finished)]) -> Result<(), Diagnostic> {
         let mut files = self.written.clone();
-        files.insert(name.to_owned(), bytes);
+        files.extend(more.iter().map(|(name, file)| (name.clone(), file.bytes)));
         let text = json!({
             "status": "being written",
             "versions": {"cognate": env!("CARGO_PKG_VERSION")},
             "files": files,
             "replaced": self.earlier,
         });
-        let text = format!("{text:#}\n");
-        write_text(&self.dir.join(&record), &text)?;
-        // from now on it is ours
-        self.earlier.insert(record, vec![text.len() as u64]);
+        let shown = self.files.len();
+        self.put_record(&format!("{text:#}\n"))?;
+        // the record of the run is still to come
+        self.files.truncate(shown);
         Ok(())
     }
 }
@@ -175,12 +227,6 @@ fn try_to_write(dir: &Path) -> std::io::Result<()> {
     let probe = free_name(&folder.join(format!(".cognate-{}", std::process::id())));
     std::fs::File::create_new(&probe)?;
     std::fs::remove_file(&probe)
-}
-
-fn unwritable(path: &Path, e: &std::io::Error) -> Diagnostic {
-    let mut d = Diagnostic::error(Cause::FileUnwritable, format!("cannot be written: {e}"));
-    d.file = Some(path.display().to_string());
-    d
 }
 
 /// Returns `path~`, or the first of `path~2`, `path~3` … that is free.

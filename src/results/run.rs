@@ -25,6 +25,8 @@ pub struct Run {
     pub record: Record,
     /// what happened, in order, as the `.msg` file tells it
     pub log: Vec<Event>,
+    /// rows at the beginning that have been written to files and are no longer held
+    pub released: usize,
 }
 
 /// One quantity over all rows.
@@ -34,8 +36,18 @@ pub struct Column {
     pub name: String,
     /// `mm`, `rad/sec` …; empty: a pure number or unknown
     pub unit: String,
-    /// one per row
+    /// one per row that is held: all but the first [`Run::released`]
     pub values: Vec<f64>,
+}
+
+impl Column {
+    /// Returns a column of the same name and unit without values.
+    pub fn empty(&self) -> Self {
+        Self {
+            values: Vec::new(),
+            ..self.clone()
+        }
+    }
 }
 
 /// An element of the model that results belong to.
@@ -182,9 +194,50 @@ impl Run {
             at += length;
         }
     }
-    /// Returns the number of rows.
+    /// Drops the second, fourth, sixth … row of a run that holds all its rows, and its sequences.
+    pub fn keep_every_second(&mut self) {
+        self.sequences.clear();
+        for column in &mut self.columns {
+            column.values = column.values.iter().step_by(2).copied().collect();
+        }
+    }
+    /// Appends the rows of another run with the same columns.
+    pub fn append(&mut self, other: Run) {
+        let from = self.rows();
+        for (own, more) in self.columns.iter_mut().zip(other.columns) {
+            own.values.extend(more.values);
+        }
+        for sequence in other.sequences {
+            let rows = from + sequence.rows.start..from + sequence.rows.end;
+            match self.sequences.last_mut() {
+                Some(last) if last.name == sequence.name && last.rows.end == rows.start => {
+                    last.rows.end = rows.end;
+                }
+                _ => self.sequences.push(Sequence { rows, ..sequence }),
+            }
+        }
+    }
+    /// Returns the number of rows, those that are no longer held included.
     pub fn rows(&self) -> usize {
-        self.columns.first().map_or(0, |c| c.values.len())
+        self.released + self.columns.first().map_or(0, |c| c.values.len())
+    }
+    /// Returns the rows that are held.
+    pub fn held(&self) -> Range<usize> {
+        self.released..self.rows()
+    }
+    /// Drops the values of all rows, which somebody has written elsewhere; the rows count on.
+    pub fn release(&mut self) {
+        self.released = self.rows();
+        for column in &mut self.columns {
+            column.values.clear();
+        }
+    }
+    /// Returns those of some rows that tables show, and of these those that are held, as places in
+    /// [`Column::values`].
+    pub fn table_places(&self, rows: Range<usize>) -> impl Iterator<Item = usize> + '_ {
+        let held = rows.start.max(self.released)..rows.end.min(self.rows());
+        held.filter(|row| self.is_in_table(*row))
+            .map(|row| row - self.released)
     }
     /// Returns the indices of the columns that tables show: [`Run::table`], or all.
     pub fn table_columns(&self) -> Vec<usize> {
@@ -196,12 +249,11 @@ impl Run {
     }
     /// Returns the rows that tables show: all but the model as it was read.
     pub fn table_rows(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.rows()).filter(|row| {
-            !self
-                .sequences
-                .iter()
-                .any(|s| s.kind == Kind::Input && s.rows.contains(row))
-        })
+        (0..self.rows()).filter(|row| self.is_in_table(*row))
+    }
+    fn is_in_table(&self, row: usize) -> bool {
+        let input = |s: &Sequence| s.kind == Kind::Input && s.rows.contains(&row);
+        !self.sequences.iter().any(input)
     }
     /// Returns the index of the column with this name, without regard to blanks and case.
     pub fn find(&self, name: &str) -> Option<usize> {

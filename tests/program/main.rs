@@ -12,3 +12,4 @@ mod cli_eval;
 mod manual;
 mod readme;
 mod results;
+mod written;

@@ -23,8 +23,10 @@ const MAX_EQUILIBRIA_BETWEEN: f64 = 1e4;
 /// The equilibria that were found, one after the other.
 #[derive(Default)]
 struct Equilibria {
-    /// all numbers at each
-    rows: Vec<Vec<f64>>,
+    /// how many
+    count: usize,
+    /// all numbers at the last
+    last: Option<Vec<f64>>,
     stats: Stats,
     /// the method, and the stability of the last one
     method: String,
@@ -49,13 +51,13 @@ impl Session {
         let first = system.numbers.clone();
         // the equilibria
         let clock = Instant::now();
-        let found = self.equilibria(system, &times, watch);
+        self.run.begin(kind);
+        let found = self.equilibria(system, &times, program, watch);
         let seconds = clock.elapsed().as_secs_f64();
-        // their results
-        self.rows(kind, program, &found.rows);
+        self.warn_of_gaps();
         let stopped = found.failed;
         // what the next simulation begins with
-        let last = found.rows.last().cloned().unwrap_or(first);
+        let last = found.last.unwrap_or(first);
         let end = last[Layout::TIME];
         self.keep(system, last);
         if let Some(carried) = &mut self.carried {
@@ -64,7 +66,7 @@ impl Session {
         // the record
         let simulation = results::Simulation {
             end,
-            outputs: found.rows.len(),
+            outputs: found.count,
             method: found.method,
             solve_seconds: seconds,
             counts: counts(&found.stats),
@@ -73,11 +75,13 @@ impl Session {
         self.close(simulation, stopped)
     }
 
-    /// Settles the system at each time, as long as there is an equilibrium.
+    /// Settles the system at each time, as long as there is an equilibrium, and adds it to the
+    /// results.
     fn equilibria(
         &mut self,
         system: &mut System,
         times: &[f64],
+        program: &Program,
         watch: &mut dyn Watch,
     ) -> Equilibria {
         let settings = Settings::of(&self.model.equilibrium);
@@ -109,7 +113,9 @@ impl Session {
                 self.warn(RunWarning::Unstable { at: t, directions });
             }
             all.method = format!("EQUILIBRIUM, {stability}");
-            all.rows.push(system.numbers.clone());
+            self.more_rows(program, std::slice::from_ref(&system.numbers));
+            all.count += 1;
+            all.last = Some(system.numbers.clone());
         }
         all
     }

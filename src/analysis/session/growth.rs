@@ -11,7 +11,6 @@
 //! most if its speed does as t². The force that feeds it has the largest power in the end.
 
 use crate::analysis::system::System;
-use crate::analysis::time::trajectory::Trajectory;
 use crate::model::ElementId;
 use crate::scene::equations::Equations;
 use crate::scene::forces::ForceElement;
@@ -23,7 +22,52 @@ const GROWTH_PER_QUARTER: f64 = 50.0;
 /// Kinetic energy in the last quarter over all energy in the first.
 const BEYOND_ALL: f64 = 1e6;
 /// States looked at, at most.
-const LOOKS: usize = 80;
+const LOOKS: usize = 160;
+
+/// States at equal numbers of rows: those whose indices a power of two divides.
+#[derive(Debug)]
+pub(super) struct Looks {
+    rows: Vec<Vec<f64>>,
+    stride: usize,
+    /// rows so far
+    count: usize,
+}
+
+impl Default for Looks {
+    fn default() -> Self {
+        Self {
+            rows: Vec::new(),
+            stride: 1,
+            count: 0,
+        }
+    }
+}
+
+impl Looks {
+    /// Keeps some of the next states.
+    pub fn see(&mut self, rows: &[Vec<f64>]) {
+        for row in rows {
+            if self.count.is_multiple_of(self.stride) {
+                self.rows.push(row.clone());
+            }
+            self.count += 1;
+            if self.rows.len() > LOOKS {
+                let kept = std::mem::take(&mut self.rows).into_iter().step_by(2);
+                self.rows = kept.collect();
+                self.stride *= 2;
+            }
+        }
+    }
+
+    /// Returns how the motion of a simulation grows, if it does so without bound.
+    pub fn growth(&self, system: &System, first: &[f64], last: &[f64]) -> Option<Growth> {
+        if system.scene.forces.is_empty() {
+            return None;
+        }
+        let looked = self.rows.iter().map(Vec::as_slice);
+        of(system, looked.chain([first, last]), [first, last])
+    }
+}
 
 /// A motion that grows without bound.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,19 +78,17 @@ pub(super) struct Growth {
     pub fed_by: Option<ElementId>,
 }
 
-/// Returns how the motion of a simulation grows, if it does so without bound.
-pub(super) fn of(system: &System, first: &[f64], trajectory: &Trajectory) -> Option<Growth> {
-    let last = trajectory.rows.last()?;
-    if system.scene.forces.is_empty() {
-        return None;
-    }
+/// Returns how the motion grows over some states, if it does so without bound.
+fn of<'a>(
+    system: &System,
+    looked: impl Iterator<Item = &'a [f64]>,
+    [first, last]: [&[f64]; 2],
+) -> Option<Growth> {
     let scene = system.configured();
     let (t0, t1) = (first[Layout::TIME], last[Layout::TIME]);
     let mut largest = [0.0_f64; 4];
     let mut energy = 0.0_f64;
-    let stride = trajectory.rows.len().div_ceil(LOOKS);
-    let looked = trajectory.rows.iter().rev().step_by(stride);
-    for row in looked.map(Vec::as_slice).chain([first]) {
+    for row in looked {
         let part = 4.0 * (row[Layout::TIME] - t0) / (t1 - t0);
         let quarter = (part.ceil() as usize).clamp(1, 4) - 1;
         let [kinetic, potential] = Equations::new(scene, row).energy();

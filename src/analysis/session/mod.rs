@@ -11,6 +11,7 @@ mod growth;
 mod outcome;
 mod over_time;
 mod preview;
+mod rows;
 pub mod script;
 mod settings;
 mod shells;
@@ -33,6 +34,8 @@ use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
 use carried::Carried;
 use outcome::units;
+use rows::Gaps;
+pub use rows::Receiver;
 use start::Kept;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -102,8 +105,10 @@ pub struct Session {
     pub folders: Vec<std::path::PathBuf>,
     /// a sensor ended the run, not only its simulation
     halted: bool,
-    /// columns that have been told to have gaps
-    gaps: BTreeSet<String>,
+    /// columns that have gaps
+    gaps: Gaps,
+    /// takes rows while simulations go on
+    receiver: Option<Receiver>,
     shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
 }
 
@@ -138,7 +143,8 @@ impl Session {
             saved: std::collections::BTreeMap::new(),
             folders: Vec::new(),
             halted: false,
-            gaps: BTreeSet::new(),
+            gaps: Gaps::default(),
+            receiver: None,
             shells: None,
         }
     }

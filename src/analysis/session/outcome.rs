@@ -3,7 +3,6 @@
 
 use super::Session;
 use super::stop_reason::{Cause, StopReason};
-use crate::analysis::session::columns;
 use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
@@ -12,7 +11,7 @@ use crate::analysis::time::{ranks, valueless};
 use crate::analysis::warning::{RunWarning, Warning};
 use crate::model::{ElementId, Model};
 use crate::numeric::{Reason, Stop};
-use crate::results::{self, Counts, Event, Kind, RowChange, Status};
+use crate::results::{self, Counts, Event, RowChange, Status};
 use crate::scene::equations::row_name;
 
 impl Session {
@@ -37,65 +36,6 @@ impl Session {
         record.stop_reason.clone_from(&simulation.stop_reason);
         record.simulations.push(simulation);
         record.status
-    }
-
-    pub(super) fn rows(
-        &mut self,
-        kind: Kind,
-        program: &crate::expr::program::Program,
-        rows: &[Vec<f64>],
-    ) {
-        self.run.begin(kind);
-        columns::append(&mut self.run, program, rows);
-        self.run.end();
-        self.warn_of_gaps(rows.len());
-    }
-
-    /// Warns, once for each, of columns that have values, but not in all of the last rows.
-    fn warn_of_gaps(&mut self, n: usize) {
-        let from = self.run.rows().saturating_sub(n);
-        let time = &self.run.columns[0].values;
-        let gap = |column: &results::Column| {
-            let gap = column.values[from..].iter().position(|x| !x.is_finite())?;
-            let some = column.values.iter().any(|x| x.is_finite());
-            some.then(|| (column.name.clone(), time[from + gap]))
-        };
-        let gaps: Vec<(String, f64)> = self.run.columns.iter().filter_map(gap).collect();
-        for (column, at) in gaps {
-            if self.gaps.insert(column.clone()) {
-                self.warn(RunWarning::Gap { column, at });
-            }
-        }
-    }
-
-    /// The rows of a simulation, each with the columns of the rows that took part there.
-    pub(super) fn selected_rows(
-        &mut self,
-        kind: Kind,
-        program: &crate::expr::program::Program,
-        system: &System,
-        trajectory: &Trajectory,
-    ) {
-        self.run.begin(kind);
-        let mut from = 0;
-        let mut program = program.clone();
-        for (until, _, active) in &trajectory.selections {
-            columns::append_means(
-                &mut self.run,
-                &program,
-                &trajectory.rows[from..*until],
-                |k| trajectory.means.get(&(from + k)),
-            );
-            let mut configuration = system.configuration.clone();
-            configuration.active.clone_from(active);
-            let there = system.scene.within(&configuration);
-            (program, from) = (self.columns.program(there).0, *until);
-        }
-        columns::append_means(&mut self.run, &program, &trajectory.rows[from..], |k| {
-            trajectory.means.get(&(from + k))
-        });
-        self.run.end();
-        self.warn_of_gaps(trajectory.rows.len());
     }
 
     /// Tells when and where the rank of the rows changed.
@@ -220,43 +160,6 @@ impl Session {
                 explained(system, stop, stands)
             }
         })
-    }
-
-    /// Energy and constraint drift over the rows of a simulation.
-    pub(super) fn drift(&mut self, system: &System, first: &[f64], rows: &[Vec<f64>]) {
-        let scene = &system.scene;
-        let n_rows = scene.rows.len();
-        if self.account.is_none() {
-            let program = crate::scene::programs::record(system.configured(), |at| {
-                let [kinetic, potential] = at.energy();
-                let mut out = vec![kinetic, potential];
-                out.extend((0..n_rows).map(|r| at.row(r).value));
-                out
-            });
-            self.account = program.ok();
-        }
-        let Some(program) = self.account.clone() else {
-            return;
-        };
-        let mut work = crate::expr::program::Work::default();
-        let mut out = vec![0.0; 2 + n_rows];
-        let (mut worst, mut scale, mut change, mut start) = (0.0_f64, 0.0_f64, 0.0_f64, None);
-        for row in std::iter::once(first).chain(rows.iter().map(Vec::as_slice)) {
-            program.run(row, &mut work, &mut out);
-            let energy = out[0] + out[1];
-            let begin = *start.get_or_insert(energy);
-            change = change.max((energy - begin).abs());
-            scale = scale.max(out[0].abs()).max(out[1].abs());
-            worst = out[2..].iter().fold(worst, |m, g| m.max(g.abs()));
-        }
-        let conservative = scene.forces.is_empty() && scene.motions.is_empty();
-        let record = &mut self.run.record;
-        if conservative && scale > 0.0 {
-            record.energy_drift = Some(record.energy_drift.unwrap_or(0.0).max(change / scale));
-        }
-        if n_rows > 0 {
-            record.constraint_drift = Some(record.constraint_drift.unwrap_or(0.0).max(worst));
-        }
     }
 }
 

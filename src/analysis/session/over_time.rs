@@ -1,7 +1,8 @@
 //! A simulation over time: from its settings to its results and its place in the record.
 
-use super::growth::{self, Growth};
+use super::growth::Growth;
 use super::outcome::counts;
+use super::rows::{Follower, Seen};
 use super::simulate::Span;
 use super::{Analysis, Session};
 use crate::analysis::system::System;
@@ -40,18 +41,26 @@ impl Session {
         self.log_begin(kind, &settings);
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
-        let (trajectory, seconds) = self.timed(system, kind, span, &settings, watch)?;
+        let mut seen = self.begin_rows(kind, program, system);
+        let (mut trajectory, seconds) =
+            self.timed(system, (kind, span), &settings, (&mut seen, watch))?;
         // its results
-        self.selected_rows(kind, program, system, &trajectory);
+        let until = trajectory.t.len();
+        self.see(&mut seen, system, &mut trajectory, until);
+        self.warn_of_gaps();
         self.run.log.push(Event::End);
         self.rank_changes(system, chosen, &trajectory);
         self.note_sensors(system, &trajectory);
         let stopped = self.stop_reason(system, &trajectory);
-        self.drift(system, &first, &trajectory.rows);
-        self.warn_of_growth(growth::of(system, &first, &trajectory));
-        self.warn_of_splines(system, &trajectory.rows);
+        self.note_drift(system, &seen.balance);
+        let last = trajectory.rows.last().cloned();
+        let grown = last
+            .as_ref()
+            .map(|last| seen.looks.growth(system, &first, last));
+        self.warn_of_growth(grown.flatten());
+        self.warn_of_splines(seen.readings);
         // what the next simulation begins with
-        let last = trajectory.rows.last().cloned().unwrap_or(first);
+        let last = last.unwrap_or(first);
         self.keep(system, last);
         // the record
         self.warn_of_rounding(&trajectory, settings.error);
@@ -59,7 +68,7 @@ impl Session {
         self.run.record.error = Some(settings.error);
         let simulation = results::Simulation {
             end: trajectory.t.last().copied().unwrap_or(span.start),
-            outputs: trajectory.rows.len(),
+            outputs: trajectory.t.len(),
             method: methods(&trajectory),
             solve_seconds: seconds,
             counts: counts(&trajectory.stats),
@@ -94,16 +103,16 @@ impl Session {
     }
 
     /// Integrates as often as the options say; the last trajectory, and the median of the seconds.
+    /// Rows become results meanwhile where somebody receives them.
     ///
     /// # Errors
     /// Motions that the equations cannot supply.
     fn timed(
-        &self,
+        &mut self,
         system: &mut System,
-        kind: Kind,
-        span: Span,
+        (kind, span): (Kind, Span),
         settings: &Options,
-        watch: &mut dyn Watch,
+        (seen, watch): (&mut Seen, &mut dyn Watch),
     ) -> Result<(Trajectory, f64), Vec<Diagnostic>> {
         let outputs = span.output.times(span.start, span.end);
         let first = system.numbers.clone();
@@ -115,7 +124,8 @@ impl Session {
         };
         let mut seconds = Vec::new();
         let mut trajectory = Trajectory::default();
-        for _ in 0..self.options.repeat.max(1) {
+        let repeat = self.options.repeat.max(1);
+        for k in 1..=repeat {
             if !trajectory.selections.is_empty() {
                 if system.reselect(chosen.clone()).is_err() {
                     break;
@@ -124,11 +134,12 @@ impl Session {
             }
             system.numbers.copy_from_slice(&first);
             let clock = Instant::now();
+            let mut follower = Follower::new(self, seen, watch, k == repeat);
             trajectory = match &mut path {
-                Some(path) => kinematics::trace(system, path, &outputs, settings, watch),
-                None => dynamics::integrate(system, &outputs, settings, watch),
+                Some(path) => kinematics::trace(system, path, &outputs, settings, &mut follower),
+                None => dynamics::integrate(system, &outputs, settings, &mut follower),
             };
-            seconds.push(clock.elapsed().as_secs_f64());
+            seconds.push(clock.elapsed().as_secs_f64() - seen.seconds);
         }
         seconds.sort_by(f64::total_cmp);
         let median = seconds[seconds.len() / 2];

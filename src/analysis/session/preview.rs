@@ -97,7 +97,9 @@ impl Session {
             };
             Diagnostic::error(Cause::Domain, what).element(lost.function.to_string())
         }));
-        self.warn_of_splines(&system, std::slice::from_ref(&system.numbers));
+        let mut readings = self.readings(&system);
+        readings.see(std::slice::from_ref(&system.numbers));
+        self.warn_of_splines(readings);
         found.extend(driving(&system.scene, &self.model));
         Ok(found)
     }

@@ -6,7 +6,7 @@ use crate::analysis::system::System;
 use crate::analysis::warning::RunWarning;
 use crate::expr::ast::{Callee, Node};
 use crate::expr::interpolation::Interpolation;
-use crate::expr::program::Work;
+use crate::expr::program::{Program, Work};
 use crate::model::{ElementId, ElementKind, Family, Formula, Model, Text};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
@@ -85,25 +85,27 @@ pub(super) fn spline_calls(model: &Model) -> Vec<SplineCall> {
     all
 }
 
-impl Session {
-    /// Warns of splines that are read outside their data at any of these rows of numbers.
-    pub(super) fn warn_of_splines(&mut self, system: &System, rows: &[Vec<f64>]) {
-        let calls = spline_calls(&self.model);
-        let first = self.columns.extra.len();
-        let formulas = system.scene.extra.get(first..first + calls.len());
-        let Some(formulas) = formulas.filter(|f| !f.is_empty()) else {
+/// The arguments of splines over the rows of a simulation.
+#[derive(Default)]
+pub(super) struct Readings {
+    calls: Vec<SplineCall>,
+    /// the arguments; `None`: nothing reads a spline
+    program: Option<Program>,
+    /// by call: the first time outside, and the value that is farthest from the data
+    outside: Vec<Option<(f64, f64)>>,
+}
+
+impl Readings {
+    /// Evaluates the arguments at states.
+    pub fn see(&mut self, rows: &[Vec<f64>]) {
+        let Some(program) = &self.program else {
             return;
         };
-        let (program, _) = record_with_complaints(system.configured(), |at| {
-            formulas.iter().map(|&f| at.formula(f)).collect()
-        });
         let mut work = Work::default();
-        let mut values = vec![0.0; calls.len()];
-        // the first time outside, and the value that is farthest from the data
-        let mut outside: Vec<Option<(f64, f64)>> = vec![None; calls.len()];
+        let mut values = vec![0.0; self.calls.len()];
         for row in rows {
             program.run(row, &mut work, &mut values);
-            for ((call, &value), seen) in calls.iter().zip(&values).zip(&mut outside) {
+            for ((call, &value), seen) in self.calls.iter().zip(&values).zip(&mut self.outside) {
                 let beyond = |x: f64| (call.range[0] - x).max(x - call.range[1]);
                 if beyond(value) > ROUNDING * (call.range[1] - call.range[0]) {
                     let (since, worst) = seen.unwrap_or((row[Layout::TIME], value));
@@ -116,7 +118,31 @@ impl Session {
                 }
             }
         }
-        for (call, seen) in calls.into_iter().zip(outside) {
+    }
+}
+
+impl Session {
+    /// Prepares to watch the arguments of splines.
+    pub(super) fn readings(&self, system: &System) -> Readings {
+        let calls = spline_calls(&self.model);
+        let first = self.columns.extra.len();
+        let formulas = system.scene.extra.get(first..first + calls.len());
+        let Some(formulas) = formulas.filter(|f| !f.is_empty()) else {
+            return Readings::default();
+        };
+        let (program, _) = record_with_complaints(system.configured(), |at| {
+            formulas.iter().map(|&f| at.formula(f)).collect()
+        });
+        Readings {
+            outside: vec![None; calls.len()],
+            program: Some(program),
+            calls,
+        }
+    }
+
+    /// Warns of splines that were read outside their data.
+    pub(super) fn warn_of_splines(&mut self, readings: Readings) {
+        for (call, seen) in readings.calls.into_iter().zip(readings.outside) {
             let Some((since, value)) = seen else { continue };
             self.warn(RunWarning::OutsideData {
                 element: call.element,

@@ -90,6 +90,7 @@ impl Tracer<'_> {
         if self.out.ends_before(target) {
             let row = self.system.row_of(target, &y);
             self.out.push(target, row);
+            watch.collect(self.system, &mut self.out);
         }
         // at outputs a value within ERROR counts
         trigger(self.system, (target, &y), true, &mut self.out)
@@ -129,7 +130,7 @@ impl Tracer<'_> {
         let now = self.path.now();
         let numbers = system.numbers_at(now.t, &now.y);
         if let Some(active) = ranks::better_rows(system.configured(), &numbers) {
-            let chosen = (self.out.rows.len(), now.t, active.clone());
+            let chosen = (self.out.t.len(), now.t, active.clone());
             system.numbers.copy_from_slice(&numbers);
             if system.reselect(active).is_ok() {
                 self.out.selections.push(chosen);

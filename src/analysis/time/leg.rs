@@ -361,6 +361,7 @@ impl<'a> Leg<'a> {
         self.system.recorded.peaks.keep();
         self.emit(method, step, anew);
         self.watch.progress(step.t1, step.h, method.stats());
+        self.watch.collect(self.system, self.out);
         anew
     }
 

@@ -169,7 +169,7 @@ impl Leg<'_> {
         else {
             return false;
         };
-        let chosen = (self.out.rows.len(), t, active.clone());
+        let chosen = (self.out.t.len(), t, active.clone());
         if self.system.reselect(active).is_err() {
             return false;
         }

@@ -40,8 +40,10 @@ pub enum Takeover {
 pub struct Trajectory {
     /// output times reached
     pub t: Vec<f64>,
-    /// all numbers (t | q | v | x | turns) at each
+    /// all numbers (t | q | v | x | turns) at each but the first [`Self::released`]
     pub rows: Vec<Vec<f64>>,
+    /// states at the beginning that have become results and are no longer held
+    pub released: usize,
     /// rows at which the motion stays where functions change branch: the numbers on each of the
     /// branches, and its part in the mean
     pub means: BTreeMap<usize, Vec<(f64, Vec<f64>)>>,
@@ -74,6 +76,14 @@ impl Trajectory {
     pub(super) fn push(&mut self, t: f64, row: Vec<f64>) {
         self.t.push(t);
         self.rows.push(row);
+    }
+
+    /// Drops the states up to an index, but never the last.
+    pub fn release(&mut self, until: usize) {
+        let until = until.min(self.t.len().saturating_sub(1));
+        self.rows.drain(..until.saturating_sub(self.released));
+        self.released = self.released.max(until);
+        self.means = self.means.split_off(&until);
     }
 
     /// Notes that a row left out within tolerance is off by more.

@@ -14,7 +14,7 @@ mod text;
 mod write;
 
 pub use read::read;
-pub use write::write;
+pub use write::{Steps, write};
 
 /// The entity that holds columns which belong to no element.
 const EXPRESSIONS: &str = "expressions";

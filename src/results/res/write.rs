@@ -1,50 +1,97 @@
 //! Writing `.res` files.
 
 use super::EXPRESSIONS;
-use crate::results::{Run, Status, digits};
+use crate::results::format::TableText;
+use crate::results::number::push_digits;
+use crate::results::{Run, Status};
 use std::fmt::Write;
+use std::ops::Range;
 
 /// Writes a run as `.res` text, which reads back with the same numbers.
 pub fn write(run: &Run) -> String {
-    let owners = owners(run);
-    let mut text = String::from(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <Results xmlns=\"http://www.mscsoftware.com/:xrf10\">\n",
-    );
-    head(run, &mut text);
-    step_map(run, &owners, &mut text);
-    for (sequence, id) in run.sequences.iter().zip(1..) {
-        put(
-            &mut text,
-            format_args!("<Data name=\"{}\" id=\"{id}\">\n", escape(&sequence.name)),
-        );
-        for row in sequence.rows.clone().filter(|&row| row < run.rows()) {
-            put(
-                &mut text,
-                format_args!("<Step type=\"{}\">\n", sequence.kind.step()),
-            );
-            values(run, &owners, row, &mut text);
-            text.push_str("</Step>\n");
-        }
-        text.push_str("</Data>\n");
-    }
-    let status = if run.record.status == Status::Completed {
-        "Successful"
-    } else {
-        "Failed"
-    };
-    put(
-        &mut text,
-        format_args!(
-            "<TerminationStatus runTermObject=\"{}\" runStatus=\"{status}\" />\n",
-            escape(&run.record.stop_reason)
-        ),
-    );
-    text.push_str("</Analysis>\n</Results>\n");
-    text
+    crate::results::format::text(&mut Steps::default(), run)
 }
 
-fn put(text: &mut String, what: std::fmt::Arguments<'_>) {
+/// A `.res` file that is being written.
+#[derive(Debug, Default)]
+pub struct Steps {
+    /// the entity that each column belongs to; `None`: it belongs to no element
+    owners: Vec<Option<usize>>,
+    /// sequences whose data block has been opened
+    opened: usize,
+}
+
+impl Steps {
+    /// Opens the data blocks of sequences up to one, and closes those before.
+    fn open(&mut self, run: &Run, until: usize, text: &mut Vec<u8>) {
+        while self.opened < until {
+            self.close(text);
+            let name = escape(&run.sequences[self.opened].name);
+            self.opened += 1;
+            let id = self.opened;
+            put(text, &format!("<Data name=\"{name}\" id=\"{id}\">\n"));
+        }
+    }
+
+    fn close(&self, text: &mut Vec<u8>) {
+        if self.opened > 0 {
+            put(text, "</Data>\n");
+        }
+    }
+}
+
+impl TableText for Steps {
+    fn begin(&mut self, run: &Run, text: &mut Vec<u8>) {
+        self.owners = owners(run);
+        put(
+            text,
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+             <Results xmlns=\"http://www.mscsoftware.com/:xrf10\">\n",
+        );
+        let mut before = String::new();
+        head(run, &mut before);
+        step_map(run, &self.owners, &mut before);
+        put(text, &before);
+    }
+
+    fn rows(&mut self, run: &Run, rows: Range<usize>, text: &mut Vec<u8>) {
+        for (sequence, index) in run.sequences.iter().zip(0..) {
+            let own = sequence.rows.start.max(rows.start)..sequence.rows.end.min(rows.end);
+            for row in own {
+                self.open(run, index + 1, text);
+                put(text, "<Step type=\"");
+                put(text, sequence.kind.step());
+                put(text, "\">\n");
+                values(run, &self.owners, row - run.released, text);
+                put(text, "</Step>\n");
+            }
+        }
+    }
+
+    fn end(&mut self, run: &Run, text: &mut Vec<u8>) {
+        self.open(run, run.sequences.len(), text);
+        self.close(text);
+        let status = if run.record.status == Status::Completed {
+            "Successful"
+        } else {
+            "Failed"
+        };
+        let reason = escape(&run.record.stop_reason);
+        put(
+            text,
+            &format!(
+                "<TerminationStatus runTermObject=\"{reason}\" runStatus=\"{status}\" />\n\
+                 </Analysis>\n</Results>\n"
+            ),
+        );
+    }
+}
+
+fn put(text: &mut Vec<u8>, more: &str) {
+    text.extend_from_slice(more.as_bytes());
+}
+
+fn add(text: &mut String, what: std::fmt::Arguments<'_>) {
     // writing to a String cannot fail
     let _ = text.write_fmt(what);
 }
@@ -69,7 +116,7 @@ fn head(run: &Run, text: &mut String) {
         env!("CARGO_PKG_VERSION"),
     );
     let u = &run.units;
-    put(
+    add(
         text,
         format_args!(
             "<Bibliography>\n\
@@ -96,21 +143,21 @@ fn head(run: &Run, text: &mut String) {
 fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
     let component = |text: &mut String, name: &str, column: usize, label: bool| {
         let unit = run.columns.get(column).map_or("", |c| c.unit.as_str());
-        put(text, format_args!("<Component name=\"{}\"", escape(name)));
+        add(text, format_args!("<Component name=\"{}\"", escape(name)));
         if label {
-            put(text, format_args!(" plotLabel=\"{}\"", escape(name)));
+            add(text, format_args!(" plotLabel=\"{}\"", escape(name)));
         }
         if !unit.is_empty() {
-            put(text, format_args!(" unitsValue=\"{}\"", escape(unit)));
+            add(text, format_args!(" unitsValue=\"{}\"", escape(unit)));
         }
-        put(text, format_args!(" id=\"{}\" />\n", column + 1));
+        add(text, format_args!(" id=\"{}\" />\n", column + 1));
     };
     text.push_str("<StepMap name=\"map_001\">\n<Entity name=\"time\">\n");
     component(text, "TIME", 0, false);
     text.push_str("</Entity>\n");
     for e in &run.entities {
         let (name, entity, kind, id) = (escape(&e.name), escape(&e.entity), escape(&e.kind), e.id);
-        put(
+        add(
             text,
             format_args!(
                 "<Entity name=\"{name}\" entity=\"{entity}\" entType=\"{kind}\" objectId=\"{id}\">\n"
@@ -125,7 +172,7 @@ fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
         .filter(|&c| owners[c].is_none())
         .collect();
     if !free.is_empty() {
-        put(
+        add(
             text,
             format_args!(
                 "<Entity name=\"{EXPRESSIONS}\" entity=\"{EXPRESSIONS}\" entType=\"Request\" objectId=\"0\">\n"
@@ -138,19 +185,19 @@ fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
     text.push_str("</StepMap>\n");
 }
 
-/// Writes one row, a line per group of neighbours with one owner.
-fn values(run: &Run, owners: &[Option<usize>], row: usize, text: &mut String) {
+/// Writes one row, a line per group of neighbours with one owner. `place`: where its values are.
+fn values(run: &Run, owners: &[Option<usize>], place: usize, text: &mut Vec<u8>) {
     for (i, column) in run.columns.iter().enumerate() {
         if i > 0 {
             text.push(if i == 1 || owners[i] != owners[i - 1] {
-                '\n'
+                b'\n'
             } else {
-                ' '
+                b' '
             });
         }
-        text.push_str(&digits(column.values[row]));
+        push_digits(column.values[place], text);
     }
-    text.push('\n');
+    text.push(b'\n');
 }
 
 /// Escapes a text for an attribute: markup, and characters that XML cannot hold.

@@ -1,0 +1,286 @@
+//! Rows on their way from an analysis into the results: their columns are evaluated, everything
+//! that is told about all rows sees them, and then nobody needs their states.
+//!
+//! Where the rows of results are received while a simulation goes on ([`Session::receive`]), this
+//! happens some rows at a time. The groups change nothing: each row is seen once, in order, by sums
+//! and maxima that do not know where a group ends.
+
+use super::growth::Looks;
+use super::spline_range::Readings;
+use super::{Session, columns};
+use crate::analysis::system::System;
+use crate::analysis::time::trajectory::Trajectory;
+use crate::analysis::warning::RunWarning;
+use crate::analysis::watch::Watch;
+use crate::expr::program::{Program, Work};
+use crate::numeric::Stats;
+use crate::results::{Kind, Run};
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+
+/// States that are held, at least, before they become rows of results.
+const ROWS_AT_ONCE: usize = 1024;
+/// Time after which they do so however few they are.
+const LONGEST_WAIT: Duration = Duration::from_secs(1);
+
+/// Takes the rows of a run as they come, and may release them.
+pub type Receiver = Box<dyn FnMut(&mut Run) + Send>;
+
+/// Everything that has seen the rows of a simulation over time so far.
+pub(super) struct Seen {
+    /// the program of the columns for the next rows
+    program: Program,
+    /// choices of rows that it has followed
+    selections: usize,
+    /// rows seen
+    rows: usize,
+    pub balance: Balance,
+    pub looks: Looks,
+    pub readings: Readings,
+    /// time that seeing took, in s
+    pub seconds: f64,
+}
+
+/// Energies and constraint rows over the rows of a simulation.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Balance {
+    /// energy at the start
+    start: Option<f64>,
+    /// largest change of the energy
+    change: f64,
+    /// largest kinetic or potential energy
+    scale: f64,
+    /// largest residual of a constraint row
+    worst: f64,
+}
+
+/// Columns that lack values in some rows.
+#[derive(Debug, Default)]
+pub(super) struct Gaps {
+    /// whether a column has had a value
+    has_value: Vec<bool>,
+    /// when it first had none in the present simulation
+    first: Vec<Option<f64>>,
+    /// columns that have been told
+    told: BTreeSet<String>,
+}
+
+impl Gaps {
+    /// Looks at the last rows of a run, all of which it holds.
+    fn look(&mut self, run: &Run, n: usize) {
+        self.has_value.resize(run.columns.len(), false);
+        self.first.resize(run.columns.len(), None);
+        let from = run.held().len().saturating_sub(n);
+        let time = &run.columns[0].values;
+        let seen = self.has_value.iter_mut().zip(&mut self.first);
+        for (column, (has_value, first)) in run.columns.iter().zip(seen) {
+            let new = &column.values[from..];
+            let gap = new.iter().position(|x| !x.is_finite());
+            *first = first.or(gap.map(|gap| time[from + gap]));
+            *has_value |= new.iter().any(|x| x.is_finite());
+        }
+    }
+
+    /// Returns the columns that have gaps in the present simulation, and ends it.
+    fn take(&mut self, run: &Run) -> Vec<(String, f64)> {
+        let seen = self.has_value.iter().zip(&mut self.first);
+        let gaps = run.columns.iter().zip(seen);
+        let gaps = gaps.filter_map(|(column, (has_value, first))| {
+            let at = first.take().filter(|_| *has_value)?;
+            Some((column.name.clone(), at))
+        });
+        let gaps: Vec<_> = gaps.collect();
+        (gaps.into_iter())
+            .filter(|(column, _)| self.told.insert(column.clone()))
+            .collect()
+    }
+}
+
+impl Session {
+    /// Hands the rows of results to a receiver while simulations go on.
+    pub fn receive(&mut self, receiver: Receiver) {
+        self.receiver = Some(receiver);
+    }
+
+    /// Ends the sequence after the last `n` rows, which are new, and hands them on.
+    fn hand_over(&mut self, n: usize) {
+        self.run.end();
+        self.gaps.look(&self.run, n);
+        if let Some(receiver) = &mut self.receiver {
+            receiver(&mut self.run);
+        }
+    }
+
+    /// Adds a sequence of rows.
+    pub(super) fn rows(&mut self, kind: Kind, program: &Program, rows: &[Vec<f64>]) {
+        self.run.begin(kind);
+        self.more_rows(program, rows);
+        self.warn_of_gaps();
+    }
+
+    /// Adds rows to the last sequence.
+    pub(super) fn more_rows(&mut self, program: &Program, rows: &[Vec<f64>]) {
+        columns::append(&mut self.run, program, rows);
+        self.hand_over(rows.len());
+    }
+
+    /// Warns, once for each, of columns that have values, but not in all rows of a simulation.
+    pub(super) fn warn_of_gaps(&mut self) {
+        for (column, at) in self.gaps.take(&self.run) {
+            self.warn(RunWarning::Gap { column, at });
+        }
+    }
+
+    /// Begins the rows of a simulation over time.
+    pub(super) fn begin_rows(&mut self, kind: Kind, program: &Program, system: &System) -> Seen {
+        self.run.begin(kind);
+        let mut seen = Seen {
+            program: program.clone(),
+            selections: 0,
+            rows: 0,
+            balance: Balance::default(),
+            looks: Looks::default(),
+            readings: self.readings(system),
+            seconds: 0.0,
+        };
+        let first = std::slice::from_ref(&system.numbers);
+        self.weigh(&mut seen.balance, system, first);
+        seen
+    }
+
+    /// Makes rows of results of the states up to an index, and drops those that nobody needs: all
+    /// but the last.
+    pub(super) fn see(
+        &mut self,
+        seen: &mut Seen,
+        system: &System,
+        trajectory: &mut Trajectory,
+        until: usize,
+    ) {
+        while seen.rows < until {
+            // each with the columns of the rows that took part there
+            let change = trajectory.selections.get(seen.selections);
+            if let Some((at, _, active)) = change.filter(|c| c.0 <= seen.rows) {
+                debug_assert!(*at == seen.rows, "choices follow each other");
+                let mut configuration = system.configuration.clone();
+                configuration.active.clone_from(active);
+                let there = system.scene.within(&configuration);
+                seen.program = self.columns.program(there).0;
+                seen.selections += 1;
+                continue;
+            }
+            let end = change.map_or(until, |c| c.0.min(until));
+            let (from, released) = (seen.rows, trajectory.released);
+            let rows = &trajectory.rows[from - released..end - released];
+            columns::append_means(&mut self.run, &seen.program, rows, |k| {
+                trajectory.means.get(&(from + k))
+            });
+            self.weigh(&mut seen.balance, system, rows);
+            seen.looks.see(rows);
+            seen.readings.see(rows);
+            seen.rows = end;
+            self.hand_over(rows.len());
+        }
+        trajectory.release(until);
+    }
+
+    /// Watches energies and constraint rows over states.
+    fn weigh(&mut self, balance: &mut Balance, system: &System, rows: &[Vec<f64>]) {
+        let n_rows = system.scene.rows.len();
+        if self.account.is_none() {
+            let program = crate::scene::programs::record(system.configured(), |at| {
+                let [kinetic, potential] = at.energy();
+                let mut out = vec![kinetic, potential];
+                out.extend((0..n_rows).map(|r| at.row(r).value));
+                out
+            });
+            self.account = program.ok();
+        }
+        let Some(program) = &self.account else {
+            return;
+        };
+        let mut work = Work::default();
+        let mut out = vec![0.0; 2 + n_rows];
+        for row in rows {
+            program.run(row, &mut work, &mut out);
+            let energy = out[0] + out[1];
+            let start = *balance.start.get_or_insert(energy);
+            balance.change = balance.change.max((energy - start).abs());
+            balance.scale = balance.scale.max(out[0].abs()).max(out[1].abs());
+            balance.worst = out[2..].iter().fold(balance.worst, |m, g| m.max(g.abs()));
+        }
+    }
+
+    /// Notes energy and constraint drift of a simulation.
+    pub(super) fn note_drift(&mut self, system: &System, balance: &Balance) {
+        if balance.start.is_none() {
+            return;
+        }
+        let scene = &system.scene;
+        let conservative = scene.forces.is_empty() && scene.motions.is_empty();
+        let record = &mut self.run.record;
+        if conservative && balance.scale > 0.0 {
+            let drift = balance.change / balance.scale;
+            record.energy_drift = Some(record.energy_drift.unwrap_or(0.0).max(drift));
+        }
+        if !scene.rows.is_empty() {
+            let worst = record.constraint_drift.unwrap_or(0.0).max(balance.worst);
+            record.constraint_drift = Some(worst);
+        }
+    }
+}
+
+/// A caller's hooks, and the session that makes rows of results while an integration goes on.
+pub(super) struct Follower<'a> {
+    session: &'a mut Session,
+    seen: &'a mut Seen,
+    watch: &'a mut dyn Watch,
+    /// whether these rows are the results, and not those of a repetition
+    is_kept: bool,
+    last: Instant,
+}
+
+impl<'a> Follower<'a> {
+    /// Follows an integration. `is_kept`: its rows are the results.
+    pub fn new(
+        session: &'a mut Session,
+        seen: &'a mut Seen,
+        watch: &'a mut dyn Watch,
+        is_kept: bool,
+    ) -> Self {
+        Self {
+            session,
+            seen,
+            watch,
+            is_kept,
+            last: Instant::now(),
+        }
+    }
+}
+
+impl Watch for Follower<'_> {
+    fn interrupted(&mut self) -> bool {
+        self.watch.interrupted()
+    }
+    fn progress(&mut self, t: f64, h: f64, stats: &Stats) {
+        self.watch.progress(t, h, stats);
+    }
+    fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {
+        let n = trajectory.rows.len();
+        let wait = self.session.receiver.is_none()
+            || n < ROWS_AT_ONCE && (n < 2 || self.last.elapsed() < LONGEST_WAIT);
+        if wait {
+            return;
+        }
+        // the last state may still change
+        let until = trajectory.t.len() - 1;
+        if self.is_kept {
+            let clock = Instant::now();
+            self.session.see(self.seen, system, trajectory, until);
+            self.seen.seconds += clock.elapsed().as_secs_f64();
+        } else {
+            trajectory.release(until);
+        }
+        self.last = Instant::now();
+    }
+}

@@ -1,0 +1,276 @@
+//! The files of a run: tables that grow while it goes on, and what is written when it is over.
+
+use super::{Failure, linear, remark, summary};
+use crate::analysis::session::Session;
+use crate::diagnostic::Diagnostic;
+use crate::results::format::{Format, Sink, Style};
+use crate::results::output_folder::OutputFolder;
+use crate::results::{Run, json, msg};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Numbers that a run holds at most before they go to its files.
+const MOST_HELD: usize = 1 << 21;
+/// Time after which rows go to the disk, where they outlive this process.
+const LONGEST_IN_MEMORY: Duration = Duration::from_secs(1);
+/// Numbers of the largest `.res` file that is written without being asked for: some 200 MB.
+pub const MOST_IN_RES: usize = 10_000_000;
+
+/// The wishes of a user about files.
+#[derive(clap::Args)]
+pub struct FileArgs {
+    /// Formats of the tables: csv, parquet, res, json. Without this option it is csv, and res if
+    /// the dataset has RESULTS and there are no more than 10 million numbers
+    #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = table_format)]
+    pub formats: Vec<Format>,
+    #[command(flatten)]
+    style: StyleArgs,
+}
+
+/// The wishes of a user about the look of tables.
+#[derive(clap::Args)]
+pub struct StyleArgs {
+    /// No row of units below the names in .csv files
+    #[arg(long)]
+    no_units: bool,
+    /// Numbers with a comma, and ; between them, in .csv files
+    #[arg(long)]
+    decimal_comma: bool,
+}
+
+impl StyleArgs {
+    /// Returns the style.
+    pub fn style(&self) -> Style {
+        Style {
+            units: !self.no_units,
+            decimal_comma: self.decimal_comma,
+        }
+    }
+}
+
+/// Returns the format of a name.
+///
+/// # Errors
+/// The formats that there are.
+fn table_format(name: &str) -> Result<Format, String> {
+    let row = Format::row(&name.to_lowercase()).filter(|row| row.sink.is_some());
+    row.map(|row| row.format)
+        .ok_or_else(|| format!("formats: {}", Format::names(true).join(", ")))
+}
+
+/// A table of a run that is being written.
+struct Table {
+    name: String,
+    sink: Box<dyn Sink>,
+    /// numbers beyond which it is given up
+    most: usize,
+}
+
+/// The tables of a run, shared by the run that fills them and the command that completes them.
+#[derive(Clone)]
+pub struct Tables(Arc<Mutex<Growing>>);
+
+/// The tables of a run that goes on.
+struct Growing {
+    folder: OutputFolder,
+    tables: Vec<Table>,
+    /// rows that the tables have taken
+    taken: usize,
+    /// when rows last went to the disk
+    flushed: Instant,
+    /// whether the folder knows that this run is being written
+    is_claimed: bool,
+    overview: summary::Overview,
+    /// why nothing more can be written
+    failed: Option<Diagnostic>,
+}
+
+impl Tables {
+    /// Opens the tables of a run called `base`; `full`: RESULTS asks for every element.
+    ///
+    /// # Errors
+    /// When a folder cannot be made.
+    pub fn open(
+        args: &FileArgs,
+        folder: OutputFolder,
+        base: &str,
+        full: bool,
+    ) -> Result<Self, Diagnostic> {
+        let asked = !args.formats.is_empty();
+        let formats = match (asked, full) {
+            (true, _) => args.formats.clone(),
+            (false, true) => vec![Format::Csv, Format::Res],
+            (false, false) => vec![Format::Csv],
+        };
+        let mut tables = Vec::new();
+        for row in crate::results::format::FORMATS {
+            let Some(sink) = row.sink.filter(|_| formats.contains(&row.format)) else {
+                continue;
+            };
+            let name = table_name(base, row.name);
+            let is_limited = row.format == Format::Res && !asked;
+            tables.push(Table {
+                sink: sink(args.style.style(), &folder.path(&name)),
+                name,
+                most: if is_limited { MOST_IN_RES } else { usize::MAX },
+            });
+        }
+        Ok(Self(Arc::new(Mutex::new(Growing {
+            folder,
+            tables,
+            taken: 0,
+            flushed: Instant::now(),
+            is_claimed: false,
+            overview: summary::Overview::default(),
+            failed: None,
+        }))))
+    }
+
+    fn growing(&self) -> MutexGuard<'_, Growing> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes the rows of a run that are new, when there are many or it is time.
+    pub fn look(&self, run: &mut Run) {
+        let mut growing = self.growing();
+        if growing.failed.is_none() {
+            let looked = growing.look(run);
+            growing.failed = looked.err();
+        }
+    }
+
+    /// Returns whether nothing more can be written.
+    pub fn have_failed(&self) -> bool {
+        self.growing().failed.is_some()
+    }
+
+    /// Writes what is left, and all other files of the run; returns their names, and the record.
+    /// The record comes last, so that its status shows that the others are complete.
+    ///
+    /// # Errors
+    /// When a file cannot be written, or could not be while the run went on.
+    pub fn complete(
+        &self,
+        session: &mut Session,
+        picture: bool,
+    ) -> Result<(Vec<PathBuf>, String), Failure> {
+        let mut growing = self.growing();
+        if let Some(failed) = growing.failed.take() {
+            return Err(failed.into());
+        }
+        Ok(growing.complete(session, picture)?)
+    }
+
+    /// Prints a few rows of the table.
+    pub fn overview(&self, run: &Run) -> String {
+        summary::table(self.growing().overview.of(run))
+    }
+}
+
+/// Returns the name of a table: that of the record is not free.
+fn table_name(base: &str, format: &str) -> String {
+    match format {
+        "json" => format!("{base}.table.json"),
+        other => format!("{base}.{other}"),
+    }
+}
+
+impl Growing {
+    fn look(&mut self, run: &mut Run) -> Result<(), Diagnostic> {
+        let is_full = run.held().len() * run.columns.len() > MOST_HELD;
+        let is_due = self.flushed.elapsed() > LONGEST_IN_MEMORY;
+        if !is_full && !is_due {
+            return Ok(());
+        }
+        self.take(run)?;
+        if is_due {
+            if !std::mem::replace(&mut self.is_claimed, true) {
+                self.folder.claim(&[])?;
+            }
+            for table in &mut self.tables {
+                table.sink.flush(run)?;
+            }
+            self.flushed = Instant::now();
+        }
+        if is_full && self.tables.iter().all(|t| t.sink.may_release()) {
+            self.overview.take(run);
+            run.release();
+        }
+        Ok(())
+    }
+
+    /// Hands rows that are new to the tables.
+    fn take(&mut self, run: &Run) -> Result<(), Diagnostic> {
+        let rows = self.taken..run.rows();
+        self.taken = rows.end;
+        let numbers = rows.end.saturating_mul(run.columns.len());
+        for table in self.tables.extract_if(.., |t| numbers > t.most) {
+            remark(format!(
+                "{} is left out: more than {} million numbers; --format res writes it",
+                table.name,
+                MOST_IN_RES / 1_000_000
+            ));
+        }
+        for table in self.tables.iter_mut().filter(|_| !rows.is_empty()) {
+            self.folder.place(&table.name)?;
+            table.sink.rows(run, rows.clone())?;
+        }
+        Ok(())
+    }
+
+    fn complete(
+        &mut self,
+        session: &mut Session,
+        picture: bool,
+    ) -> Result<(Vec<PathBuf>, String), Diagnostic> {
+        let clock = Instant::now();
+        let run = &session.run;
+        // tables
+        self.take(run)?;
+        let mut files = Vec::new();
+        for table in &mut self.tables {
+            self.folder.place(&table.name)?;
+            files.push((table.name.clone(), table.sink.finish(run)?));
+        }
+        // texts
+        let own = |ending: &str| format!("{}.{ending}", run.name);
+        let mut texts = vec![(own("msg"), msg::write(run))];
+        texts.extend(linear::files(session));
+        texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));
+        if picture && let Some(text) = summary::picture(self.overview.of(run)) {
+            texts.push((own("svg"), text));
+        }
+        for (name, text) in texts {
+            let file = self.folder.prepare(&name, &text)?;
+            files.push((name, file));
+        }
+        // their places
+        self.folder.put(&files)?;
+        let tables = Format::names(true).into_iter();
+        let mut mine: Vec<String> = tables.map(|f| table_name(&run.name, f)).collect();
+        mine.extend(["msg", "svg"].map(own));
+        self.folder.remove_stale(&mine)?;
+        // the record
+        session.run.record.write_seconds = clock.elapsed().as_secs_f64();
+        let record = json::with_files(json::record(&session.run), self.folder.written());
+        let record = json::text(&record);
+        self.folder.put_record(&record)?;
+        for (was, is) in self.folder.kept() {
+            remark(format!(
+                "{} was not written by this program or has been changed: kept as {}",
+                was.display(),
+                is.display()
+            ));
+        }
+        for table in &self.tables {
+            if let Some(part) = self.folder.left_part(&table.name) {
+                let part = part.display();
+                remark(format!(
+                    "{part} holds rows of a run that was ended from outside"
+                ));
+            }
+        }
+        Ok((self.folder.files().to_vec(), record))
+    }
+}

@@ -1,0 +1,200 @@
+//! Files that are written beside their place, under names that nobody has, and renamed when they
+//! are complete: no reader meets half a file, and a run that is ended from outside leaves its rows
+//! in the part.
+
+use super::Run;
+use super::format::{Finished, Sink, TableText};
+use crate::diagnostic::{Cause, Diagnostic};
+use std::fs::File;
+use std::io::Write;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Bytes of text that are collected before they go to the file.
+const BUFFER: usize = 1 << 20;
+
+/// A file beside its place.
+#[derive(Debug)]
+pub struct PartFile {
+    /// where it is to be in the end
+    place: PathBuf,
+    /// where it is, once it has been made
+    part: Option<(PathBuf, File)>,
+    bytes: u64,
+}
+
+impl PartFile {
+    /// Prepares the part of a file; it is made with the first bytes.
+    pub fn new(place: &Path) -> Self {
+        Self {
+            place: place.to_owned(),
+            part: None,
+            bytes: 0,
+        }
+    }
+
+    /// Appends bytes.
+    ///
+    /// # Errors
+    /// `file_unwritable`.
+    pub fn append(&mut self, bytes: &[u8]) -> Result<(), Diagnostic> {
+        self.try_to_append(bytes)
+            .map_err(|e| unwritable(&self.place, &e))
+    }
+
+    fn try_to_append(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        if self.part.is_none() {
+            self.part = Some(create_beside(&self.place)?);
+        }
+        if let Some((_, file)) = &mut self.part {
+            file.write_all(bytes)?;
+            self.bytes += bytes.len() as u64;
+        }
+        Ok(())
+    }
+
+    /// Closes the file.
+    ///
+    /// # Errors
+    /// `file_unwritable`.
+    pub fn finish(&mut self) -> Result<Finished, Diagnostic> {
+        self.append(&[])?;
+        let (part, _) = self.part.take().unzip();
+        Ok(Finished {
+            part: part.unwrap_or_else(|| self.place.clone()),
+            bytes: self.bytes,
+        })
+    }
+}
+
+impl Drop for PartFile {
+    /// Removes a part that holds nothing.
+    fn drop(&mut self) {
+        if let (Some((part, _)), 0) = (&self.part, self.bytes) {
+            // an empty file that cannot be removed either does no harm
+            let _ = std::fs::remove_file(part);
+        }
+    }
+}
+
+/// Creates a file beside `path`, called `path.part1`, or by the next number that nobody has.
+///
+/// # Errors
+/// When no file can be made there.
+pub fn create_beside(path: &Path) -> std::io::Result<(PathBuf, File)> {
+    let mut number = 1;
+    loop {
+        let part = beside(path, number);
+        match File::create_new(&part) {
+            Ok(file) => return Ok((part, file)),
+            // a file of that name is somebody's
+            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
+            Err(e) => return Err(e),
+        }
+    }
+}
+
+/// Returns `path.part1` or another number.
+pub fn beside(path: &Path, number: u32) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(format!(".part{number}"));
+    PathBuf::from(name)
+}
+
+/// Makes an error of a file that cannot be written.
+pub fn unwritable(path: &Path, e: &std::io::Error) -> Diagnostic {
+    let mut d = Diagnostic::error(Cause::FileUnwritable, format!("cannot be written: {e}"));
+    d.file = Some(path.display().to_string());
+    d
+}
+
+/// A file of text that grows with its run.
+pub struct TextSink<T> {
+    table: T,
+    file: PartFile,
+    /// text that has not been written yet
+    text: Vec<u8>,
+    has_begun: bool,
+}
+
+impl<T: TableText> TextSink<T> {
+    /// Prepares the file of a table.
+    pub fn new(table: T, place: &Path) -> Self {
+        Self {
+            table,
+            file: PartFile::new(place),
+            text: Vec::new(),
+            has_begun: false,
+        }
+    }
+
+    fn begin(&mut self, run: &Run) {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.table.begin(run, &mut self.text);
+        }
+    }
+
+    fn write(&mut self) -> Result<(), Diagnostic> {
+        self.file.append(&self.text)?;
+        self.text.clear();
+        Ok(())
+    }
+}
+
+/// Rows that become text between two looks at its length.
+const ROWS_AT_ONCE: usize = 256;
+
+impl<T: TableText> Sink for TextSink<T> {
+    fn rows(&mut self, run: &Run, rows: Range<usize>) -> Result<(), Diagnostic> {
+        self.begin(run);
+        for from in rows.clone().step_by(ROWS_AT_ONCE) {
+            let some = from..rows.end.min(from + ROWS_AT_ONCE);
+            self.table.rows(run, some, &mut self.text);
+            if self.text.len() > BUFFER {
+                self.write()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self, _run: &Run) -> Result<(), Diagnostic> {
+        self.write()
+    }
+
+    fn finish(&mut self, run: &Run) -> Result<Finished, Diagnostic> {
+        self.begin(run);
+        self.table.end(run, &mut self.text);
+        self.write()?;
+        self.file.finish()
+    }
+}
+
+/// A file that is written when its run is over, from rows that the run has kept.
+pub struct WholeSink {
+    document: fn(&Run) -> String,
+    file: PartFile,
+}
+
+impl WholeSink {
+    /// Prepares the file of a document.
+    pub fn new(document: fn(&Run) -> String, place: &Path) -> Self {
+        let file = PartFile::new(place);
+        Self { document, file }
+    }
+}
+
+impl Sink for WholeSink {
+    fn may_release(&self) -> bool {
+        false
+    }
+    fn rows(&mut self, _run: &Run, _rows: Range<usize>) -> Result<(), Diagnostic> {
+        Ok(())
+    }
+    fn flush(&mut self, _run: &Run) -> Result<(), Diagnostic> {
+        Ok(())
+    }
+    fn finish(&mut self, run: &Run) -> Result<Finished, Diagnostic> {
+        self.file.append((self.document)(run).as_bytes())?;
+        self.file.finish()
+    }
+}

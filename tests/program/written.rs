@@ -1,0 +1,257 @@
+//! Tables of a run: written while it goes on, in every format with the same numbers, and there
+//! whatever ends it.
+
+use crate::command::{cognate, path, scratch};
+
+use cognate::results::{self, Run};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const PENDULUM: &str = "a pendulum\nPART/1, GROUND\nMARKER/1, PART=1\n\
+    PART/2, MASS=1, CM=20, IP=1,1,1, QG=1,0,0\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=-1,0,0\n\
+    JOINT/1, REVOLUTE, I=21, J=1\nACCGRAV/JGRAV=-9.81\nREQUEST/1, DISPLACEMENT, I=20, J=1\n\
+    RESULTS/\nEND\n";
+
+/// An empty folder with the dataset of a pendulum: the folder, the dataset.
+fn pendulum(name: &str) -> (PathBuf, PathBuf) {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    let file = scratch(name, "p.adm", PENDULUM);
+    (folder, file)
+}
+
+fn run(file: &Path, end: &str, steps: &str, more: &[&str]) {
+    let folder = file.parent().unwrap();
+    let mut args = vec![
+        "run",
+        path(file),
+        "--end",
+        end,
+        "--steps",
+        steps,
+        "--out",
+        path(folder),
+    ];
+    args.extend(more);
+    let done = cognate(&args);
+    assert_eq!(done.code, 0, "{}", done.err);
+}
+
+fn read(file: &Path) -> Run {
+    results::read(file).unwrap_or_else(|d| panic!("{d}"))
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn every_format_has_the_same_numbers_however_many_rows_there_are() {
+    // the second run is longer than what is held in memory
+    for (name, steps) in [("formats_short", "50"), ("formats_long", "62000")] {
+        let (folder, file) = pendulum(name);
+        run(
+            &file,
+            "5",
+            steps,
+            &["--format", "csv,parquet,res", "--quiet"],
+        );
+        let res = read(&folder.join("p.res"));
+        let rows: usize = steps.parse().unwrap();
+        assert_eq!((res.rows(), res.columns.len()), (rows + 1, 33));
+        let others = ["csv", "parquet"].map(|e| read(&folder.join(format!("p.{e}"))));
+        for table in others {
+            assert_eq!(table.rows(), res.rows());
+            for column in &table.columns {
+                let in_res = res.columns.iter().find(|c| c.name == column.name);
+                let in_res = in_res.unwrap_or_else(|| panic!("{}", column.name));
+                assert!(
+                    bits(&column.values) == bits(&in_res.values),
+                    "{}",
+                    column.name
+                );
+                assert_eq!(column.unit, in_res.unit, "{}", column.name);
+            }
+        }
+        let parquet = read(&folder.join("p.parquet"));
+        assert_eq!(parquet.sequences, res.sequences);
+        assert_eq!(parquet.columns.len(), res.columns.len());
+    }
+}
+
+#[test]
+fn tables_for_other_tools_have_no_units_or_decimal_commas() {
+    let (folder, file) = pendulum("styles");
+    let text = |more: &[&str]| {
+        run(&file, "1", "4", more);
+        std::fs::read_to_string(folder.join("p.csv")).unwrap()
+    };
+    let usual = text(&[]);
+    let lines: Vec<&str> = usual.lines().collect();
+    assert_eq!((lines.len(), lines[1].split(',').next()), (7, Some("sec")));
+    let bare = text(&["--no-units"]);
+    let without: Vec<&str> = lines
+        .iter()
+        .enumerate()
+        .filter(|l| l.0 != 1)
+        .map(|l| *l.1)
+        .collect();
+    assert_eq!(bare.lines().collect::<Vec<_>>(), without);
+    let comma = text(&["--decimal-comma"]);
+    assert_eq!(comma.replace(',', ".").replace(';', ","), usual);
+    let back = read(&folder.join("p.csv"));
+    assert_eq!(back.columns[0].values, [0.0, 0.25, 0.5, 0.75, 1.0]);
+    let done = cognate(&["run", path(&file), "--end", "1", "--format", "hdf5"]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("csv, parquet, res, json"), "{}", done.err);
+}
+
+/// A run that goes on for minutes, once some of its rows are on the disk.
+fn long_run(file: &Path, part: &Path) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+    command.args([
+        "run",
+        path(file),
+        "--end",
+        "1e5",
+        "--steps",
+        "5000000",
+        "--quiet",
+    ]);
+    command.args([
+        "--format",
+        "csv,parquet,res",
+        "--out",
+        path(file.parent().unwrap()),
+    ]);
+    let mut run = command.stderr(Stdio::null()).spawn().unwrap();
+    let begun = Instant::now();
+    while !part.exists() {
+        assert!(
+            begun.elapsed() < Duration::from_secs(60),
+            "no rows are on the disk"
+        );
+        assert!(run.try_wait().unwrap().is_none(), "the run has ended");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    run
+}
+
+/// Checks that a table holds outputs from the first one on, without a gap.
+fn assert_is_a_beginning(table: &Run) {
+    assert!(table.rows() > 100, "{} rows", table.rows());
+    let time = table.column("time").unwrap();
+    let expected = (0..table.rows()).map(|k| 1e5 * k as f64 / 5e6);
+    assert!(time.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9));
+    assert!(table.columns.iter().all(|c| c.values.len() == table.rows()));
+}
+
+#[test]
+fn the_rows_of_a_run_that_is_killed_are_on_the_disk_and_stay_there() {
+    let (folder, file) = pendulum("killed");
+    let parts = ["csv", "res", "parquet"].map(|e| folder.join(format!("p.{e}.part1")));
+    let mut killed = long_run(&file, &parts[2].join("0001.parquet"));
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    for part in &parts {
+        assert_is_a_beginning(&read(part));
+    }
+    let table = folder.join("saved.csv");
+    let done = cognate(&["convert", path(&parts[2]), path(&table)]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_is_a_beginning(&read(&table));
+    let record = std::fs::read_to_string(folder.join("p.json")).unwrap();
+    assert!(record.contains("being written"), "{record}");
+    // the next run writes beside it
+    let size = |part: &Path| std::fs::metadata(part).unwrap().len();
+    let sizes = [size(&parts[0]), size(&parts[1])];
+    let done = cognate(&["run", path(&file), "--end", "1", "--out", path(&folder)]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(
+        done.err.contains("p.csv.part1 holds rows of a run"),
+        "{}",
+        done.err
+    );
+    assert_eq!([size(&parts[0]), size(&parts[1])], sizes);
+    assert_eq!(read(&folder.join("p.csv")).rows(), 51);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_asked_to_end_keeps_its_results_and_says_so() {
+    for signal in ["TERM", "HUP", "INT"] {
+        let (folder, file) = pendulum(&format!("asked_by_{signal}"));
+        let mut asked = long_run(&file, &folder.join("p.csv.part1"));
+        let kill = Command::new("kill")
+            .args([format!("-{signal}"), asked.id().to_string()])
+            .status();
+        assert!(kill.unwrap().success());
+        assert_eq!(asked.wait().unwrap().code(), Some(130), "{signal}");
+        let record = std::fs::read_to_string(folder.join("p.json")).unwrap();
+        let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+        assert_eq!(record["status"], "interrupted", "{signal}");
+        for ending in ["csv", "res", "parquet"] {
+            assert_is_a_beginning(&read(&folder.join(format!("p.{ending}"))));
+            assert!(
+                !folder.join(format!("p.{ending}.part1")).exists(),
+                "{ending}"
+            );
+        }
+    }
+}
+
+#[test]
+fn other_programs_read_parquet_files() {
+    let script = "import sys, pandas, pyarrow.parquet\n\
+        table = pandas.read_parquet(sys.argv[1])\n\
+        units = pyarrow.parquet.read_metadata(sys.argv[1]).metadata[b'cognate.units']\n\
+        print(table.shape, repr(float(table['REQUEST_1.DY'].iloc[-1])), units.decode())\n";
+    let (folder, file) = pendulum("pandas");
+    let script = scratch("pandas", "read.py", script);
+    let available = Command::new("python3")
+        .args(["-c", "import pandas, pyarrow"])
+        .output();
+    if !available.is_ok_and(|a| a.status.success()) {
+        println!("skipped: python3 has no pandas or pyarrow");
+        return;
+    }
+    run(&file, "2", "20000", &["--format", "parquet", "--quiet"]);
+    let table = folder.join("p.parquet");
+    let output = Command::new("python3")
+        .args([&script, &table])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    let last = *read(&table).column("REQUEST_1.DY").unwrap().last().unwrap();
+    assert!(
+        said.starts_with(&format!("(20001, 33) {last:?} ")),
+        "{said}"
+    );
+    assert!(said.contains("\"REQUEST_1.DY\":\"meter\""), "{said}");
+}
+
+#[test]
+fn a_damaged_parquet_file_is_an_error_or_a_table_and_never_a_panic() {
+    let (folder, file) = pendulum("damaged");
+    run(&file, "1", "20", &["--format", "parquet", "--quiet"]);
+    let good = std::fs::read(folder.join("p.parquet")).unwrap();
+    let attempt = |bytes: &[u8]| {
+        let _ = results::parquet::read(bytes);
+    };
+    (0..good.len())
+        .step_by(7)
+        .for_each(|cut| attempt(&good[..cut]));
+    let mut state = 1_u64;
+    for _ in 0..3000 {
+        let mut bad = good.clone();
+        for _ in 0..3 {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            let place = (state >> 33) as usize % bad.len();
+            bad[place] = (state >> 20) as u8;
+        }
+        attempt(&bad);
+    }
+}
