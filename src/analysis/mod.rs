@@ -7,9 +7,9 @@
 //! verify       freedoms, redundancy; what becomes of a model
 //! time         kinematics and dynamics: the loop over steps, switches, ranks
 //! statics      rest                      linear   eigenvalues, state matrices
+//! watch        the hooks of a caller     trajectory   states at output times
 //! system       a scene as ẏ = f(t, y) and as F(t, y, ẏ) = 0; everything its programs read
 //! start        assembly, placement, initial conditions
-//! watch        the hooks of a caller
 //! ```
 
 pub mod direction;
@@ -20,6 +20,7 @@ pub mod start;
 pub mod statics;
 pub mod system;
 pub mod time;
+pub mod trajectory;
 pub mod verify;
 pub mod warning;
 pub mod watch;

@@ -1,7 +1,7 @@
 //! Hooks through which a caller follows a long analysis and can end it.
 
 use super::system::System;
-use super::time::trajectory::Trajectory;
+use super::trajectory::Trajectory;
 use crate::numeric::Stats;
 
 /// Hooks called while an analysis goes on, after each step of it.

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 /// Convert results from one format into another
 ///
-/// The names of the files tell the formats: .res (XML and old text form), .gra, .csv and .parquet are
-/// read, also as parts of a run that was ended from outside (.part1); .csv, .parquet, .json and .res
-/// are written.
+/// The names of the files tell the formats: .res (XML and old text form), .gra, .csv and
+/// .parquet are read, also as parts of a run that was ended from outside (.part1); .csv,
+/// .parquet, .json and .res are written.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -3,10 +3,11 @@
 use super::{Failure, linear, remark, summary};
 use crate::analysis::session::Session;
 use crate::diagnostic::Diagnostic;
+use crate::model::SettingsStatement;
 use crate::results::format::{Format, Sink, Style};
 use crate::results::output_folder::OutputFolder;
 use crate::results::{Run, json, msg};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -87,17 +88,20 @@ struct Growing {
 }
 
 impl Tables {
-    /// Opens the tables of a run called `base`; `full`: RESULTS asks for every element.
+    /// Opens the tables of a session in a folder (`None`: this one), and lets it fill them.
     ///
     /// # Errors
-    /// When a folder cannot be made.
+    /// When no file can be made there.
     pub fn open(
         args: &FileArgs,
-        folder: OutputFolder,
-        base: &str,
-        full: bool,
+        dir: Option<&Path>,
+        session: &mut Session,
     ) -> Result<Self, Diagnostic> {
+        let base = session.run.name.as_str();
+        let folder = OutputFolder::open(dir.unwrap_or(Path::new(".")), base)?;
         let asked = !args.formats.is_empty();
+        let settings = &session.model.settings;
+        let full = settings.contains_key(&SettingsStatement::Results);
         let formats = match (asked, full) {
             (true, _) => args.formats.clone(),
             (false, true) => vec![Format::Csv, Format::Res],
@@ -116,7 +120,7 @@ impl Tables {
                 most: if is_limited { MOST_IN_RES } else { usize::MAX },
             });
         }
-        Ok(Self(Arc::new(Mutex::new(Growing {
+        let tables = Self(Arc::new(Mutex::new(Growing {
             folder,
             tables,
             taken: 0,
@@ -124,7 +128,10 @@ impl Tables {
             is_claimed: false,
             overview: summary::Overview::default(),
             failed: None,
-        }))))
+        })));
+        let receiver = tables.clone();
+        session.receive(Box::new(move |run| receiver.look(run)));
+        Ok(tables)
     }
 
     fn growing(&self) -> MutexGuard<'_, Growing> {

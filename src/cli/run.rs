@@ -13,7 +13,6 @@ use crate::diagnostic::{Cause, Diagnostic, Severity};
 use crate::model::{ElementKind, Model, SettingsStatement};
 use crate::numeric::Stats;
 use crate::results::format::Format;
-use crate::results::output_folder::OutputFolder;
 use crate::results::{Event, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -127,17 +126,9 @@ pub fn run(args: &Args) -> Outcome {
     check_columns(args, &model, &steps)?;
     let mut session = open(args, model, &base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
-    let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    let folder = OutputFolder::open(&dir, &session.run.name)?;
-    let full = session
-        .model
-        .settings
-        .contains_key(&SettingsStatement::Results);
-    let tables = output::Tables::open(&args.output, folder, &session.run.name, full)?;
+    let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
 
     // solve
-    let receiver = tables.clone();
-    session.receive(Box::new(move |run| receiver.look(run)));
     let (status, failure) = match solve(args, &mut session, &steps, &tables) {
         Ok(status) => (status, None),
         Err(errors) => {

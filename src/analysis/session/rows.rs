@@ -9,7 +9,7 @@ use super::growth::Looks;
 use super::spline_range::Readings;
 use super::{Session, columns};
 use crate::analysis::system::System;
-use crate::analysis::time::trajectory::Trajectory;
+use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::{Program, Work};

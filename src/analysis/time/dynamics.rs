@@ -6,7 +6,7 @@
 use crate::analysis::system::System;
 use crate::analysis::time::leg::{Finished, Leg, Limits};
 use crate::analysis::time::options::Options;
-use crate::analysis::time::trajectory::{Ended, Takeover, Trajectory};
+use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{self, Method, Ode, Reason, Stop};
 use crate::scene::layout::Layout;

@@ -4,7 +4,7 @@
 use super::counting::Counting;
 use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
-use crate::analysis::time::trajectory::{Ended, Trajectory};
+use crate::analysis::trajectory::{Ended, Trajectory};
 
 /// Part of a step of the path between looks at the sensors.
 const LOOKS_IN_STEP: f64 = 8.0;

@@ -11,7 +11,7 @@ use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::kinematic_sensors::{Followed, trigger};
 use crate::analysis::time::options::Options;
 use crate::analysis::time::ranks;
-use crate::analysis::time::trajectory::{Ended, Takeover, Trajectory};
+use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{Failure, Reason, Stop};
 use crate::scene::layout::Layout;

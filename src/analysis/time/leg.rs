@@ -16,7 +16,7 @@ use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
 use crate::analysis::time::ranks::Sides;
 use crate::analysis::time::switches::{Switches, Verdict};
-use crate::analysis::time::trajectory::{Ended, Trajectory};
+use crate::analysis::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{Method, Reason, Step, Stop};
 use crate::scene::broken::Broken;

@@ -28,5 +28,4 @@ pub mod output;
 pub mod ranks;
 pub mod states;
 pub mod switches;
-pub mod trajectory;
 pub(super) mod valueless;

@@ -73,7 +73,7 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// Adds a state.
-    pub(super) fn push(&mut self, t: f64, row: Vec<f64>) {
+    pub(in crate::analysis) fn push(&mut self, t: f64, row: Vec<f64>) {
         self.t.push(t);
         self.rows.push(row);
     }
@@ -87,7 +87,7 @@ impl Trajectory {
     }
 
     /// Notes that a row left out within tolerance is off by more.
-    pub(super) fn note_beyond(&mut self, t: f64, (row, value): (usize, f64)) {
+    pub(in crate::analysis) fn note_beyond(&mut self, t: f64, (row, value): (usize, f64)) {
         match self.beyond.iter_mut().find(|b| b.1 == row) {
             Some(known) if known.2.abs() < value.abs() => (known.0, known.2) = (t, value),
             Some(_) => {}
@@ -96,19 +96,19 @@ impl Trajectory {
     }
 
     /// Returns whether the last state is earlier than `t`, or there is none.
-    pub(super) fn ends_before(&self, t: f64) -> bool {
+    pub(in crate::analysis) fn ends_before(&self, t: f64) -> bool {
         self.t.last().is_none_or(|&last| last < t)
     }
 
     /// Notes that a method works from `t` on, unless it did so far.
-    pub(super) fn begin_method(&mut self, t: f64, name: &str, why: Takeover) {
+    pub(in crate::analysis) fn begin_method(&mut self, t: f64, name: &str, why: Takeover) {
         if self.methods.last().is_none_or(|m| m.1 != name) {
             self.methods.push((t, name.to_string(), why));
         }
     }
 
     /// Adds the cost of a method.
-    pub(super) fn add_cost(&mut self, more: &Stats) {
+    pub(in crate::analysis) fn add_cost(&mut self, more: &Stats) {
         let sum = &mut self.stats;
         sum.steps += more.steps;
         sum.rejected += more.rejected;
