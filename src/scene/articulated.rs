@@ -15,6 +15,7 @@ use super::Scene;
 use super::sweep::{LinkState, Wrench, to_parent};
 use crate::scalar::Scalar;
 use crate::space::{Mat3, Vec3};
+use std::collections::BTreeMap;
 
 /// The factors.
 pub struct ArticulatedFactor<'s, S> {
@@ -146,6 +147,40 @@ impl<'s, S: Scalar> ArticulatedFactor<'s, S> {
                 load[p].torque += up.torque;
             }
         }
+    }
+
+    /// Returns `L⁻ᵀ x` where it is not known to be zero, by ascending places: only links from those
+    /// that x moves inward are visited.
+    pub fn half_sparse(&self, mut x: BTreeMap<usize, S>) -> Vec<(usize, S)> {
+        let scene = self.scene;
+        let mut loads: BTreeMap<usize, Wrench<S>> = BTreeMap::new();
+        for &v in x.keys() {
+            let mut next = Some(scene.freedoms[self.free[v]].link);
+            while let Some(l) = next.filter(|l| !loads.contains_key(l)) {
+                loads.insert(l, Wrench::zero());
+                next = scene.links[l].parent;
+            }
+        }
+        while let Some((l, mut load)) = loads.pop_last() {
+            for &k in self.of_link[l].iter().rev() {
+                let f = &scene.freedoms[k];
+                let Some(v) = f.v else { continue };
+                let x_v = x.entry(v).or_insert_with(S::zero);
+                *x_v -= f.component(&load);
+                if x_v.is_known_zero() {
+                    continue;
+                }
+                let s = *x_v * self.inverse_d[k];
+                load.force += self.u[k].force.times(s);
+                load.torque += self.u[k].torque.times(s);
+            }
+            if let Some(on_parent) = scene.links[l].parent.and_then(|p| loads.get_mut(&p)) {
+                let up = to_parent(&self.states[l].X_PL, load);
+                on_parent.force += up.force;
+                on_parent.torque += up.torque;
+            }
+        }
+        x.into_iter().filter(|e| !e.1.is_known_zero()).collect()
     }
 
     /// `x ← L⁻¹ D⁻¹ x`   (n_v)

@@ -250,11 +250,15 @@ impl<'m> Builder<'m> {
                 in_ball,
             });
         }
+        let mut of_link: Vec<Vec<usize>> = vec![Vec::new(); s.links.len()];
+        for (k, freedom) in s.freedoms.iter().enumerate() {
+            of_link[freedom.link].push(k);
+        }
         let mut last = vec![None; s.links.len()];
         s.carrier = vec![None; s.freedoms.len()];
         for l in 0..s.links.len() {
             let mut nearest = s.links[l].parent.and_then(|p| last[p]);
-            for k in (0..s.freedoms.len()).filter(|&k| s.freedoms[k].link == l) {
+            for &k in &of_link[l] {
                 s.carrier[k] = nearest;
                 nearest = Some(k);
             }
@@ -327,10 +331,8 @@ impl<'m> Builder<'m> {
                 found.insert(scene.angle_id(d));
             }
         }
-        let draws = (!found.is_empty()).then(|| Draws::of(scene));
-        let counted = found
-            .into_iter()
-            .map(|id| counted(scene, draws.as_ref(), id));
+        let draws = Draws::default();
+        let counted = found.into_iter().map(|id| counted(scene, &draws, id));
         self.scene.counted = counted.collect();
         self.scene.layout.n_turns = self.scene.counted.len();
     }
@@ -338,7 +340,7 @@ impl<'m> Builder<'m> {
 
 /// Returns a counted angle with the coordinates that know its turns: of AX, AY and AZ, which are
 /// analytic functions of the coordinates, between markers of parts.
-fn counted(scene: &Scene, draws: Option<&Draws<'_>>, id: AngleId) -> CountedAngle {
+fn counted(scene: &Scene, draws: &Draws, id: AngleId) -> CountedAngle {
     let (reading, [i, j]) = match id {
         AngleId::Measure(Measure::Orient, [.., i, j]) => (None, [i, j]),
         AngleId::Measure(measure, [i, j, ..]) => (Some(Reading::Measure(measure)), [i, j]),
@@ -351,7 +353,7 @@ fn counted(scene: &Scene, draws: Option<&Draws<'_>>, id: AngleId) -> CountedAngl
     match (marker(i), marker(j)) {
         (Some(i), Some(j)) => CountedAngle {
             id,
-            coordinates: (draws.zip(reading)).and_then(|(draws, reading)| draws.sum(reading, i, j)),
+            coordinates: reading.and_then(|reading| draws.sum(scene, reading, i, j)),
             between: coordinate_sums::turns_between(scene, i, j),
         },
         // a marker that floats along a curve

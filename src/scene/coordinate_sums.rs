@@ -17,6 +17,7 @@ use crate::physics::coupler::Gauge;
 use crate::physics::kinematic::kinematic;
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::space::{Frame, MarkerState};
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
 /// Gradients that differ by less, as parts of their size, are the same but for rounding.
@@ -55,40 +56,46 @@ impl Reading {
 }
 
 /// Returns a distance or an angle between two markers, as a sum of coordinates where it is one.
-pub(super) fn displacement(scene: &Scene, gauge: Gauge, i: usize, j: usize) -> Displacement {
+pub(super) fn displacement(
+    scene: &Scene,
+    draws: &Draws,
+    gauge: Gauge,
+    i: usize,
+    j: usize,
+) -> Displacement {
     Displacement {
         gauge,
         i,
         j,
-        coordinates: Draws::of(scene).sum(Reading::Gauge(gauge), Some(i), Some(j)),
+        coordinates: draws.sum(scene, Reading::Gauge(gauge), Some(i), Some(j)),
     }
 }
 
-/// Configurations of a scene at which gradients are compared, the same on every run.
-pub(super) struct Draws<'s> {
-    scene: &'s Scene,
+/// Configurations at which gradients are compared, the same on every run. They are drawn when the
+/// first sum is asked for: of one scene, whose links, coordinates and motions are complete.
+#[derive(Default)]
+pub(super) struct Draws {
     /// all coordinates zero, then at random
-    all: Vec<Draw>,
+    all: OnceCell<Vec<Draw>>,
 }
 
-impl<'s> Draws<'s> {
-    /// Draws the configurations of a scene whose links and coordinates are complete.
-    pub(super) fn of(scene: &'s Scene) -> Self {
-        let all = (0..=RANDOM_DRAWS).map(|seed| Draw::new(scene, seed));
-        let all = all.collect();
-        Self { scene, all }
+impl Draws {
+    fn all(&self, scene: &Scene) -> &[Draw] {
+        let draw = |seed| Draw::new(scene, seed);
+        self.all
+            .get_or_init(|| (0..=RANDOM_DRAWS).map(draw).collect())
     }
 
     /// Returns the sum of coordinates that a reading between two markers is in every configuration;
     /// `None`: it is none. Without a marker there is ground.
     pub(super) fn sum(
         &self,
+        scene: &Scene,
         reading: Reading,
         i: Option<usize>,
         j: Option<usize>,
     ) -> Option<CoordinateSum> {
-        let scene = self.scene;
-        let (first, others) = self.all.split_first()?;
+        let (first, others) = self.all(scene).split_first()?;
         let moving = Moving::between(scene, i, j);
         let start = first.value_of(scene, reading, i, j);
         let gradient = first.gradient(scene, reading, (i, j), &moving);

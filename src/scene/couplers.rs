@@ -3,7 +3,7 @@
 
 use super::build::Builder;
 use super::compile::Compiler;
-use super::coordinate_sums::displacement;
+use super::coordinate_sums::{Draws, displacement};
 use super::{ConstraintElement, Displacement, JointVariable, Row, RowKind, Sum};
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, ElementKind, Joint, MarkerOwner};
@@ -30,9 +30,10 @@ impl Builder<'_> {
     /// Rows for all equations between displacements.
     pub(super) fn couplers(&mut self, c: &mut Compiler, strict: bool) {
         let model = self.model;
+        let draws = &Draws::default();
         for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
             if let Some(relation) = Tie::Joint(joint.kind).relation() {
-                self.single(c, id, joint, relation, strict);
+                self.single((c, draws), id, joint, relation, strict);
             }
         }
         for (id, coupler) in model.active(ElementKind::Coupler, &model.couplers) {
@@ -43,7 +44,7 @@ impl Builder<'_> {
             }
             let joints = coupler.joints.iter().zip(&coupler.rotational);
             let displacements: Option<Vec<Displacement>> = joints
-                .map(|(&joint, &turn)| self.joint_displacement(c, name, joint, turn))
+                .map(|(&joint, &turn)| self.joint_displacement((c, draws), name, joint, turn))
                 .collect();
             let Some(displacements) = displacements else {
                 continue;
@@ -58,13 +59,14 @@ impl Builder<'_> {
             self.relation(name, None, receiver, receiver, sum);
         }
         for (id, gear) in model.active(ElementKind::Gear, &model.gears) {
-            self.gear(c, id, gear.joints, gear.cv);
+            self.gear((c, draws), id, gear.joints, gear.cv);
         }
     }
 
     /// Adds the variables of joints, for those who ask to see them.
     pub(super) fn joint_variables(&mut self, c: &mut Compiler) {
         let model = self.model;
+        let draws = &Draws::default();
         for (id, joint) in model.active(ElementKind::Joint, &model.joints) {
             let name = ElementKind::Joint.id(id);
             let variables = joint.kind.row().variables;
@@ -75,7 +77,7 @@ impl Builder<'_> {
                 continue;
             };
             for &(name, gauge) in variables {
-                let displacement = displacement(&self.scene, gauge, i, j);
+                let displacement = displacement(&self.scene, draws, gauge, i, j);
                 self.scene.joint_variables.push(JointVariable {
                     joint: id,
                     name,
@@ -88,7 +90,7 @@ impl Builder<'_> {
     /// SCREW and RACKPIN: one equation between the two markers.
     fn single(
         &mut self,
-        c: &mut Compiler,
+        (c, draws): (&mut Compiler, &Draws),
         id: u32,
         joint: &Joint,
         relation: Relation,
@@ -106,8 +108,8 @@ impl Builder<'_> {
             c.error(name, format!("needs {argument}"));
             return;
         };
-        let distance = displacement(&self.scene, Gauge::Distance, i, j);
-        let angle = displacement(&self.scene, Gauge::Angle(relation.axis()), i, j);
+        let distance = displacement(&self.scene, draws, Gauge::Distance, i, j);
+        let angle = displacement(&self.scene, draws, Gauge::Angle(relation.axis()), i, j);
         let sum = Sum {
             terms: vec![(1.0, distance), (-per_radian, angle)],
             constant: 0.0,
@@ -121,7 +123,7 @@ impl Builder<'_> {
     /// where it must be said.
     fn joint_displacement(
         &self,
-        c: &mut Compiler,
+        (c, draws): (&mut Compiler, &Draws),
         name: ElementId,
         id: u32,
         turn: Option<bool>,
@@ -155,11 +157,11 @@ impl Builder<'_> {
         } else {
             Gauge::Distance
         };
-        Some(displacement(&self.scene, gauge, i, j))
+        Some(displacement(&self.scene, draws, gauge, i, j))
     }
 
     /// Adds the row of a GEAR, with factors from where CV stands in the carrier.
-    fn gear(&mut self, c: &mut Compiler, id: u32, joints: [u32; 2], cv: u32) {
+    fn gear(&mut self, (c, draws): (&mut Compiler, &Draws), id: u32, joints: [u32; 2], cv: u32) {
         let name = ElementKind::Gear.id(id);
         let Some(cv_marker) = c.marker(cv, name) else {
             return;
@@ -175,7 +177,7 @@ impl Builder<'_> {
         for (body, sign) in [(&first, 1.0), (&second, -1.0)] {
             for (factor, gauge) in body.factors.into_iter().zip(GearBody::GAUGES) {
                 if factor != 0.0 {
-                    let shown = displacement(&self.scene, gauge, body.i, body.j);
+                    let shown = displacement(&self.scene, draws, gauge, body.i, body.j);
                     terms.push((sign * factor, shown));
                 }
             }

@@ -110,7 +110,7 @@ impl Builder<'_> {
                 let RowKind::Formula { .. } = row.kind else {
                     return None;
                 };
-                let gradient = at.row(r).gradient;
+                let gradient = at.row(r).gradient.clone();
                 let size = gradient
                     .iter()
                     .map(|&(v, g)| g.abs() * weights[v].sqrt())

@@ -126,12 +126,12 @@ fn inputs<'b>(scene: &Scene, builder: &'b RefCell<Builder>) -> Vec<Sym<'b>> {
     numbers
 }
 
-/// ρ with unknowns as inputs, and ∂ρ/∂z by rows.
+/// ρ with unknowns as inputs, and ∂ρ/∂z by rows where it is not zero.
 fn residuals<'b>(
     scene: Configured<'_>,
     numbers: &[Sym<'b>],
     builder: &'b RefCell<Builder>,
-) -> (Vec<Sym<'b>>, Vec<Vec<Sym<'b>>>) {
+) -> (Vec<Sym<'b>>, Vec<Vec<(usize, Value)>>) {
     let n = scene.loops.len();
     let z: Vec<Sym<'b>> = (0..n)
         .map(|k| Sym::input(Input::Slot(PLACEHOLDER + k as u32), builder))
@@ -140,21 +140,8 @@ fn residuals<'b>(
     let rho = at.loop_residuals();
     let recorder = &mut *builder.borrow_mut();
     let variables: Vec<Value> = z.iter().map(|z| z.value(recorder)).collect();
-    let gradients: Vec<Vec<Value>> = rho
-        .iter()
-        .map(|r| {
-            let r = r.value(recorder);
-            recorder.gradient(r, &variables)
-        })
-        .collect();
-    let number = |v: Value| match recorder.constant_of(v) {
-        Some(c) => Sym::Constant(c),
-        None => Sym::Recorded(v, builder),
-    };
-    let jacobian = gradients
-        .into_iter()
-        .map(|row| row.into_iter().map(number).collect())
-        .collect();
+    let values: Vec<Value> = rho.iter().map(|r| r.value(recorder)).collect();
+    let jacobian = recorder.jacobian(&values, &variables);
     (rho, jacobian)
 }
 
@@ -163,24 +150,22 @@ fn linear(scene: Configured<'_>) -> Result<bool, Vec<Unsupported>> {
     let builder = RefCell::new(Builder::new(Folding::Structural));
     let numbers = inputs(&scene, &builder);
     let (_, jacobian) = residuals(scene, &numbers, &builder);
-    let recorder = &mut *builder.borrow_mut();
+    let recorder = builder.borrow();
+    let mut determined = vec![false; scene.loops.len()];
+    for &(place, _) in jacobian.iter().flatten() {
+        determined[place] = true;
+    }
     let mut lost = Vec::new();
     for (k, u) in scene.loops.iter().enumerate() {
         // an equation that determines nothing, or an unknown that no equation determines
-        let zero = |s: &Sym<'_>| matches!(s, Sym::Constant(c) if *c == 0.0);
-        let column = jacobian.iter().all(|row| zero(&row[k]));
-        if jacobian[k].iter().all(zero) || column {
+        if jacobian[k].is_empty() || !determined[k] {
             lost.push(Unsupported::new(u.asker.clone(), Lack::LoopEquation));
         }
     }
     if !lost.is_empty() {
         return Err(lost);
     }
-    let entries: Vec<Value> = jacobian
-        .iter()
-        .flatten()
-        .map(|s| s.value(recorder))
-        .collect();
+    let entries: Vec<Value> = jacobian.iter().flatten().map(|e| e.1).collect();
     let program = recorder.finish(&entries);
     Ok(!program
         .inputs()
@@ -198,7 +183,15 @@ pub(super) fn eliminated<'b>(
     if n == 0 || !scene.loops_linear {
         return Vec::new();
     }
-    let (_, jacobian) = residuals(scene, numbers, builder);
+    let (_, rows) = residuals(scene, numbers, builder);
+    let dense = |row: Vec<(usize, Value)>| {
+        let mut dense = vec![Sym::Constant(0.0); n];
+        for (place, value) in row {
+            dense[place] = Sym::of(value, builder);
+        }
+        dense
+    };
+    let jacobian: Vec<Vec<Sym<'b>>> = rows.into_iter().map(dense).collect();
     let at = Equations::with_unknowns(scene, numbers, vec![Sym::Constant(0.0); n], false);
     let rhs: Vec<Sym<'b>> = at.loop_residuals().into_iter().map(|r| -r).collect();
     solve(jacobian, rhs)

@@ -6,7 +6,7 @@ use super::configuration::Configured;
 use super::equations::{Equations, STATIC, Unsupported};
 use super::layout::{Layout, LongRow};
 use super::loops;
-use super::solve::{gram, solve_symmetric};
+use super::solve::{SymmetricFactor, gram};
 use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value};
 use crate::scalar::Scalar;
 use std::cell::{Cell, RefCell};
@@ -347,11 +347,11 @@ pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &
     let u: Vec<Vec<(usize, S)>> = rows
         .iter()
         .map(|row| match &factor {
-            Some(factor) => factor.half_row(&row.gradient, n),
+            Some(factor) => factor.half_row(&row.gradient),
             None => row.gradient.clone(),
         })
         .collect();
-    let gram = gram(&u, &inverse_d);
+    let gram = SymmetricFactor::new(gram(&u, &inverse_d), &[]);
     let position: Vec<S> = rows.iter().map(|r| -r.value).collect();
     let velocity: Vec<S> = rows
         .iter()
@@ -363,7 +363,7 @@ pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &
         .collect();
     let mut out = Vec::with_capacity(2 * n);
     for rhs in [position, velocity] {
-        let lambda = solve_symmetric(gram.clone(), rhs, &[]).x;
+        let lambda = gram.solve(rhs);
         let mut change = vec![S::zero(); n];
         for (row, &l) in u.iter().zip(&lambda) {
             for &(v, x) in row {

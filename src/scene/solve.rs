@@ -14,7 +14,7 @@
 use super::articulated::ArticulatedFactor;
 use super::configuration::Elimination;
 use crate::scalar::Scalar;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// `M = Lᵀ D L` of a forest.
 pub struct MassFactor<S> {
@@ -47,17 +47,17 @@ impl<S: Scalar> Factor<'_, S> {
             Factor::Articulated(m) => m.finish(x),
         }
     }
-    /// `L⁻ᵀ g` of a sparse row of G, by ascending places.
-    pub fn half_row(&self, row: &[(usize, S)], n: usize) -> Vec<(usize, S)> {
-        let mut x = vec![S::zero(); n];
+    /// `L⁻ᵀ g` of a sparse row of G, by ascending places. Only freedoms that carry those of the row
+    /// are visited.
+    pub fn half_row(&self, row: &[(usize, S)]) -> Vec<(usize, S)> {
+        let mut x: BTreeMap<usize, S> = BTreeMap::new();
         for &(k, value) in row {
-            x[k] += value;
+            *x.entry(k).or_insert_with(S::zero) += value;
         }
-        self.half(&mut x);
-        x.into_iter()
-            .enumerate()
-            .filter(|e| !e.1.is_known_zero())
-            .collect()
+        match self {
+            Factor::Matrix(m) => m.half_sparse(x),
+            Factor::Articulated(m) => m.half_sparse(x),
+        }
     }
     /// 1/D
     pub fn inverse_d(&self) -> Vec<S> {
@@ -110,6 +110,23 @@ impl<S: Scalar> MassFactor<S> {
                 x[j] -= t;
             }
         }
+    }
+
+    /// Returns `L⁻ᵀ x` where it is not known to be zero, by ascending places.
+    fn half_sparse(&self, mut x: BTreeMap<usize, S>) -> Vec<(usize, S)> {
+        let mut half = Vec::with_capacity(x.len());
+        while let Some((i, x_i)) = x.pop_last() {
+            if x_i.is_known_zero() {
+                continue;
+            }
+            for &(j, l) in &self.l[i] {
+                let t = l * x_i;
+                *x.entry(j).or_insert_with(S::zero) -= t;
+            }
+            half.push((i, x_i));
+        }
+        half.reverse();
+        half
     }
 
     /// `x ← L⁻¹ D⁻¹ x`
@@ -212,10 +229,9 @@ fn accelerations_once<S: Scalar>(
     f: &mut [S],
     usual: &[f64],
 ) -> Solution<S> {
-    let n = f.len();
     let inverse_d = m.inverse_d();
     m.half(f);
-    let u: Vec<Vec<(usize, S)>> = g.iter().map(|row| m.half_row(row, n)).collect();
+    let u: Vec<Vec<(usize, S)>> = g.iter().map(|row| m.half_row(row)).collect();
     let s = gram(&u, &inverse_d);
     let rhs: Vec<S> = u
         .iter()
@@ -225,7 +241,7 @@ fn accelerations_once<S: Scalar>(
                 .fold(gamma, |s, &(k, x)| s - x * inverse_d[k] * f[k])
         })
         .collect();
-    let lambda = solve_symmetric(s, rhs, usual);
+    let lambda = SymmetricFactor::new(s, usual).solution(rhs);
     for (row, &l) in u.iter().zip(&lambda.x) {
         for &(k, x) in row {
             f[k] += x * l;
@@ -235,17 +251,53 @@ fn accelerations_once<S: Scalar>(
     lambda
 }
 
-/// `U D⁻¹ Uᵀ`, lower triangle by rows.
-pub fn gram<S: Scalar>(u: &[Vec<(usize, S)>], inverse_d: &[S]) -> Vec<Vec<S>> {
+/// Lower triangle of a symmetric matrix by rows: places that are not known to be zero, ascending,
+/// the diagonal last.
+pub type LowerRows<S> = Vec<Vec<(usize, S)>>;
+
+/// `U D⁻¹ Uᵀ`
+pub fn gram<S: Scalar>(u: &[Vec<(usize, S)>], inverse_d: &[S]) -> LowerRows<S> {
     let scaled: Vec<Vec<(usize, S)>> = u
         .iter()
         .map(|row| row.iter().map(|&(k, x)| (k, x * inverse_d[k])).collect())
         .collect();
-    let mut s: Vec<Vec<S>> = Vec::with_capacity(u.len());
-    for (r, row) in u.iter().enumerate() {
-        s.push((0..=r).map(|c| sparse_dot(row, &scaled[c])).collect());
+    let places = |r: usize| u[r].iter().map(|e| e.0);
+    products(u.len(), places, |r, c| sparse_dot(&u[r], &scaled[c]))
+}
+
+/// Returns the products of `n` sparse rows with each other. Rows that share no place are not
+/// visited: their product is zero.
+pub fn products<S: Scalar, P: Iterator<Item = usize>>(
+    n: usize,
+    places: impl Fn(usize) -> P,
+    product: impl Fn(usize, usize) -> S,
+) -> LowerRows<S> {
+    let mut rows_at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut seen = vec![usize::MAX; n];
+    let mut lower = Vec::with_capacity(n);
+    for r in 0..n {
+        let mut near = Vec::new();
+        for place in places(r) {
+            let there = rows_at.entry(place).or_default();
+            for &c in there.iter() {
+                if seen[c] != r {
+                    seen[c] = r;
+                    near.push(c);
+                }
+            }
+            if there.last() != Some(&r) {
+                there.push(r);
+            }
+        }
+        // the row itself may be among them, where a place stands in it twice
+        near.retain(|&c| c != r);
+        near.sort_unstable();
+        let before = near.into_iter().map(|c| (c, product(r, c)));
+        let mut row: Vec<(usize, S)> = before.filter(|e| !e.1.is_known_zero()).collect();
+        row.push((r, product(r, r)));
+        lower.push(row);
     }
-    s
+    lower
 }
 
 /// Product of two rows given by ascending indices.
@@ -279,71 +331,123 @@ pub struct Solution<S> {
 /// Pivots smaller than this times their usual size count as nearly singular.
 pub const NEAR_SINGULAR_PIVOT: f64 = 0.03;
 
-/// Solves `A x = b` for a symmetric positive semidefinite A (lower triangle by rows), by `L D Lᵀ`
-/// in the given order; what depends on earlier rows gets the value zero. Only places that are not
-/// known to be zero are visited. `reference`: what each
-/// pivot is compared with; empty: its own diagonal.
-pub fn solve_symmetric<S: Scalar>(
-    mut a: Vec<Vec<S>>,
-    mut b: Vec<S>,
-    reference: &[f64],
-) -> Solution<S> {
-    let n = b.len();
-    let mut strength = S::one();
-    let diagonal = (0..n).map(|i| a[i][i]).collect();
-    let mut inverse = vec![S::zero(); n];
-    let mut dependent = Vec::with_capacity(n);
-    // places of L that are not zero: columns by rows, rows by columns
-    let mut across: Vec<Vec<usize>> = vec![Vec::new(); n];
-    let mut down: Vec<Vec<usize>> = vec![Vec::new(); n];
-    // a[i][k] holds L_ik D_k until row i is finished, then L_ik
-    for i in 0..n {
-        let start = a[i][i];
-        let filled = (0..i).filter(|&k| !a[i][k].is_known_zero());
-        let mut open: BTreeSet<usize> = filled.collect();
+/// `A = L D Lᵀ` of a symmetric positive semidefinite matrix, in the given order. Only places that
+/// are not known to be zero are visited and kept.
+pub struct SymmetricFactor<S: Scalar> {
+    /// L before the diagonal, by rows
+    l: Vec<Vec<(usize, S)>>,
+    /// the same by columns
+    l_transposed: Vec<Vec<(usize, S)>>,
+    /// 1/D; 0 where a row depends on earlier ones
+    inverse: Vec<S>,
+    /// rows that depend on earlier ones
+    dependent: Vec<S::Mask>,
+    /// as that of [`Solution`]
+    strength: S,
+    /// diagonal of A
+    diagonal: Vec<S>,
+}
+
+impl<S: Scalar> SymmetricFactor<S> {
+    /// Factors A. `reference`: what each pivot is compared with; empty: its own diagonal.
+    pub fn new(a: LowerRows<S>, reference: &[f64]) -> Self {
+        let n = a.len();
+        let mut factor = Self {
+            l: Vec::with_capacity(n),
+            l_transposed: vec![Vec::new(); n],
+            inverse: Vec::with_capacity(n),
+            dependent: Vec::with_capacity(n),
+            strength: S::one(),
+            diagonal: Vec::with_capacity(n),
+        };
+        // L_ik D_k of the row i at hand; zero elsewhere
+        let mut work = vec![S::zero(); n];
+        for (i, row) in a.into_iter().enumerate() {
+            let mut start = S::zero();
+            let mut open = BTreeSet::new();
+            for (k, x) in row {
+                if k == i {
+                    start = x;
+                } else if !x.is_known_zero() {
+                    work[k] = x;
+                    open.insert(k);
+                }
+            }
+            let filled = factor.eliminate(&mut work, open);
+            let mut d = start;
+            let mut l_row = Vec::with_capacity(filled.len());
+            for k in filled {
+                let l = work[k] * factor.inverse[k];
+                d -= l * work[k];
+                work[k] = S::zero();
+                if !l.is_known_zero() {
+                    l_row.push((k, l));
+                    factor.l_transposed[k].push((i, l));
+                }
+            }
+            factor.l.push(l_row);
+            factor.finish_row(start, d, reference.get(i).copied());
+        }
+        factor
+    }
+
+    /// Turns the row in `work`, not zero at `open`, into `L_ik D_k`; returns the places k where it
+    /// is not zero.
+    fn eliminate(&self, work: &mut [S], mut open: BTreeSet<usize>) -> Vec<usize> {
+        let mut filled = Vec::with_capacity(open.len());
         while let Some(k) = open.pop_first() {
-            let mut s = a[i][k];
-            for &j in across[i]
-                .iter()
-                .filter(|j| across[k].binary_search(j).is_ok())
-            {
-                s -= a[i][j] * a[k][j];
+            let mut s = work[k];
+            for &(j, l) in &self.l[k] {
+                if !work[j].is_known_zero() {
+                    s -= work[j] * l;
+                }
             }
-            a[i][k] = s;
+            work[k] = s;
             if !s.is_known_zero() {
-                open.extend(down[k].iter().copied());
-                across[i].push(k);
+                open.extend(self.l_transposed[k].iter().map(|e| e.0));
+                filled.push(k);
             }
         }
-        let mut d = start;
-        for &k in &across[i] {
-            let l = a[i][k] * inverse[k];
-            d -= l * a[i][k];
-            b[i] = b[i] - l * b[k];
-            a[i][k] = l;
-        }
-        across[i].retain(|&k| !a[i][k].is_known_zero());
-        across[i].iter().for_each(|&k| down[k].push(i));
+        filled
+    }
+
+    /// Takes the pivot `d` of a row whose diagonal was `start`.
+    fn finish_row(&mut self, start: S, d: S, usual: Option<f64>) {
         let tiny = d.le(start.scale(RANK_TOLERANCE));
-        let part = match reference.get(i) {
-            Some(&usual) => d.scale(1.0 / usual),
+        let part = match usual {
+            Some(usual) => d.scale(1.0 / usual),
             None => d / start,
         };
-        strength = S::select(part.lt(strength), part, strength);
-        inverse[i] = S::choose(tiny, S::zero, || S::one() / d);
-        dependent.push(tiny);
+        self.strength = S::select(part.lt(self.strength), part, self.strength);
+        self.inverse.push(S::choose(tiny, S::zero, || S::one() / d));
+        self.dependent.push(tiny);
+        self.diagonal.push(start);
     }
-    for i in (0..n).rev() {
-        let mut x = b[i] * inverse[i];
-        for &k in &down[i] {
-            x -= a[k][i] * b[k];
+
+    /// Solves `A x = b`; what depends on earlier rows gets the value zero.
+    pub fn solve(&self, mut b: Vec<S>) -> Vec<S> {
+        for (i, row) in self.l.iter().enumerate() {
+            for &(k, l) in row {
+                b[i] = b[i] - l * b[k];
+            }
         }
-        b[i] = S::choose(dependent[i], S::zero, || x);
+        for i in (0..b.len()).rev() {
+            let mut x = b[i] * self.inverse[i];
+            for &(k, l) in &self.l_transposed[i] {
+                x -= l * b[k];
+            }
+            b[i] = S::choose(self.dependent[i], S::zero, || x);
+        }
+        b
     }
-    Solution {
-        x: b,
-        strength,
-        diagonal,
+
+    /// Solves `A x = b`, and tells how weak the pivots were.
+    pub fn solution(self, b: Vec<S>) -> Solution<S> {
+        Solution {
+            x: self.solve(b),
+            strength: self.strength,
+            diagonal: self.diagonal,
+        }
     }
 }
 
@@ -354,8 +458,12 @@ mod tests {
     #[test]
     fn dependent_rows_get_zero_and_the_rest_is_solved() {
         // rows 0 and 1 are the same equation
-        let a = vec![vec![2.0], vec![2.0, 2.0], vec![0.5, 0.5, 3.0]];
-        let x = solve_symmetric(a, vec![1.0, 1.0, 2.0], &[]).x;
+        let a = vec![
+            vec![(0, 2.0)],
+            vec![(0, 2.0), (1, 2.0)],
+            vec![(0, 0.5), (1, 0.5), (2, 3.0)],
+        ];
+        let x = SymmetricFactor::new(a, &[]).solve(vec![1.0, 1.0, 2.0]);
         assert_eq!(x[1], 0.0);
         approx::assert_relative_eq!(2.0 * x[0] + 0.5 * x[2], 1.0, max_relative = 1e-14);
         approx::assert_relative_eq!(0.5 * x[0] + 3.0 * x[2], 2.0, max_relative = 1e-14);

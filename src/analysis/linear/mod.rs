@@ -174,7 +174,7 @@ impl Small {
         let at = Equations::new(scene, &system.numbers);
         let mut g = DMatrix::zeros(active.len(), n);
         for (k, &r) in active.iter().enumerate() {
-            for (v, x) in at.row(r).gradient {
+            for &(v, x) in &at.row(r).gradient {
                 g[(k, v)] += x;
             }
         }

@@ -157,7 +157,7 @@ pub(super) fn explain(
         .collect();
     let dense = |&r: &usize| {
         let mut row = vec![0.0; w.len()];
-        for (v, x) in at.row(r).gradient {
+        for &(v, x) in &at.row(r).gradient {
             row[v] += x * w[v].sqrt() / scene.row_scale(r);
         }
         row
@@ -249,7 +249,7 @@ impl<'s> Search<'s> {
                 if is_length(scene, r) {
                     one[r] = size;
                 }
-                structure[r] = at.row(r).gradient;
+                structure[r] = at.row(r).gradient.clone();
                 for (v, _) in &structure[r] {
                     unit[*v] = unit[*v].max(size);
                 }
@@ -291,7 +291,7 @@ impl<'s> Search<'s> {
                 continue;
             }
             let row = at.row(r);
-            let mut entries = assemble::merged(row.gradient);
+            let mut entries = assemble::merged(&row.gradient);
             entries
                 .iter_mut()
                 .for_each(|(v, x)| *x *= self.unit[*v] / one);

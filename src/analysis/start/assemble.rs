@@ -177,15 +177,15 @@ pub fn rows_at(
         let row = at.row(r);
         g[r] = row.value;
         drift[r] = row.drift;
-        gradient[r] = merged(row.gradient);
+        gradient[r] = merged(&row.gradient);
     }
     (g, gradient, drift)
 }
 
 /// Adds up what stands in a row for the same velocity.
-pub(super) fn merged(entries: Vec<(usize, f64)>) -> SparseRow {
+pub(super) fn merged(entries: &[(usize, f64)]) -> SparseRow {
     let mut row: SparseRow = Vec::with_capacity(entries.len());
-    for (v, x) in entries {
+    for &(v, x) in entries {
         match row.last_mut() {
             Some(last) if last.0 == v => last.1 += x,
             _ => row.push((v, x)),

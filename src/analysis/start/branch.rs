@@ -451,7 +451,7 @@ pub fn turn(
         let mut a = gradient;
         let mut b = (-g).insert_rows(m, wanted.len(), 0.0);
         for (k, &((i, j), axis, by)) in wanted.iter().enumerate() {
-            a.push(merged(at.gradient_of(&against(i, j, axis))));
+            a.push(merged(&at.gradient_of(&against(i, j, axis))));
             b[m + k] = by;
         }
         // a step

@@ -302,7 +302,7 @@ pub fn approach(
         for (_, slopes) in &places {
             let mut slopes = slopes.clone();
             slopes.sort_by_key(|e| e.0);
-            a.push(assemble::merged(slopes));
+            a.push(assemble::merged(&slopes));
         }
         let all = g
             .iter()

@@ -63,7 +63,6 @@ pub fn velocities(
 ) -> Result<Vec<f64>, Vec<Diagnostic>> {
     let n = scene.layout.n_v;
     let (_, gradient, drift) = rows_at(scene, t, q, x);
-    let given = GivenVelocities::collect(scene, model, t, q, x);
     // v = v₀ + N z, with N the null space of the rows
     let w = vec![1.0; n];
     let firm = without_empty(scene, &gradient);
@@ -78,6 +77,7 @@ pub fn velocities(
             return Err(vec![prescribed_too_much(scene, &still, r, left)]);
         }
     }
+    let given = GivenVelocities::collect(scene, model, (t, q, x), (&gradient, &v));
     let levels = [&given.of_constraints, &given.of_parts, &given.rest];
     // what shares no velocity is looked at apart
     let all = levels.iter().flat_map(|level| &level.rows);
@@ -252,29 +252,51 @@ enum Level {
 }
 
 impl GivenVelocities {
-    fn collect(scene: Configured<'_>, model: &Model, t: f64, q: &[f64], x: &[f64]) -> Self {
+    /// Collects them at an instant `(t, q, x)`. Trees whose velocities in `v`, which the rows
+    /// permit, are those given already need no coefficients: a stored zero stands for them.
+    fn collect(
+        scene: Configured<'_>,
+        model: &Model,
+        (t, q, x): (f64, &[f64], &[f64]),
+        (gradient, v): (&[SparseRow], &DVector<f64>),
+    ) -> Self {
         let n = scene.layout.n_v;
         // velocities are linear in v: an evaluation for motions, and one for a coordinate of each
         // tree
         let (tree_of, coordinates) = trees(&scene, model);
-        let most = coordinates.iter().map(Vec::len).max().unwrap_or(0);
         let evaluate = |v: &[f64]| {
             let at = Equations::new(scene, &numbers(scene, t, q, v, x));
             part_velocities(&scene, model, &at)
         };
         let (zero, targets) = evaluate(&vec![0.0; n]);
+        let tree = |target: &Target| target.link.map(|link| tree_of[link]);
+        let mut open = vec![false; coordinates.len()];
+        for (target, zero) in targets.iter().zip(&zero) {
+            if let (Some(tree), true) = (tree(target), target.value != *zero) {
+                open[tree] = true;
+            }
+        }
+        open_beside(&mut open, &coordinates, gradient, v);
+        let lengths = coordinates.iter().zip(&open).filter(|(_, open)| **open);
+        let most = lengths.map(|(tree, _)| tree.len()).max().unwrap_or(0);
         let mut rows: Vec<SparseRow> = vec![Vec::new(); zero.len()];
+        for (row, target) in rows.iter_mut().zip(&targets) {
+            if let Some(tree) = tree(target).filter(|&tree| !open[tree]) {
+                row.extend(coordinates[tree].first().map(|&place| (place, 0.0)));
+            }
+        }
         for k in 0..most {
             let mut v = vec![0.0; n];
-            for tree in &coordinates {
+            for (tree, _) in coordinates.iter().zip(&open).filter(|(_, open)| **open) {
                 if let Some(&place) = tree.get(k) {
                     v[place] = 1.0;
                 }
             }
             let (values, _) = evaluate(&v);
             for (r, target) in targets.iter().enumerate() {
-                let tree = target.link.map(|link| &coordinates[tree_of[link]]);
-                if let Some(&place) = tree.and_then(|tree| tree.get(k)) {
+                let own = tree(target).filter(|&tree| open[tree]);
+                let place = own.and_then(|tree| coordinates[tree].get(k));
+                if let (Some(&place), true) = (place, values[r] != zero[r]) {
                     rows[r].push((place, values[r] - zero[r]));
                 }
             }
@@ -284,8 +306,7 @@ impl GivenVelocities {
             of_parts: Given::default(),
             rest: Given::default(),
         };
-        for ((mut row, target), zero) in rows.into_iter().zip(targets).zip(zero) {
-            row.retain(|e| e.1 != 0.0);
+        for ((row, target), zero) in rows.into_iter().zip(targets).zip(zero) {
             let level = match target.level {
                 Level::Constraint => &mut found.of_constraints,
                 Level::Part => &mut found.of_parts,
@@ -295,6 +316,27 @@ impl GivenVelocities {
             level.right.push(target.value - zero);
         }
         found
+    }
+}
+
+/// Opens the trees that move in `v`, and those that rows connect to open ones: what is given of one
+/// can change the velocities of the other.
+fn open_beside(
+    open: &mut [bool],
+    coordinates: &[Vec<usize>],
+    gradient: &[SparseRow],
+    v: &DVector<f64>,
+) {
+    let tied = |tree: &Vec<usize>| tree.iter().map(|&place| (place, 1.0)).collect();
+    let mut ties: Vec<SparseRow> = coordinates.iter().map(tied).collect();
+    ties.extend(gradient.iter().cloned());
+    let n_trees = coordinates.len();
+    for block in connected(&ties, v.len()) {
+        let trees = || block.rows.iter().filter(|&&r| r < n_trees);
+        let moves = block.columns.iter().any(|&k| v[k] != 0.0);
+        if moves || trees().any(|&tree| open[tree]) {
+            trees().for_each(|&tree| open[tree] = true);
+        }
     }
 }
 

@@ -38,7 +38,7 @@ impl Settler<'_> {
         let at = Equations::new(scene, numbers);
         let mut gradient = DMatrix::zeros(m, n);
         for (k, &r) in self.rows.iter().enumerate() {
-            for (v, g) in at.row(r).gradient {
+            for &(v, g) in &at.row(r).gradient {
                 gradient[(k, v)] += g;
             }
         }

@@ -256,10 +256,7 @@ fn watched_angles(scene: &Scene, switching: Option<&Switching>) -> Vec<WatchedAn
     };
     let angular = scene.coordinates.iter().filter(|c| c.angular);
     let watched = angular.filter_map(|c| match c.source {
-        Source::Free { q, v } => {
-            let bends = switches.bends(scene.layout.q_at(q));
-            bends.then_some(WatchedAngle::Free(v))
-        }
+        Source::Free { q, v } => Some((scene.layout.q_at(q), WatchedAngle::Free(v))),
         Source::Driven(m) => {
             let motion = &scene.motions[m];
             let x = motion.state?;
@@ -268,8 +265,11 @@ fn watched_angles(scene: &Scene, switching: Option<&Switching>) -> Vec<WatchedAn
                 Level::Velocity => WatchedAngle::Velocity(x),
                 Level::Acceleration => WatchedAngle::Acceleration(x),
             };
-            switches.bends(scene.layout.x_at(x)).then_some(angle)
+            Some((scene.layout.x_at(x), angle))
         }
     });
-    watched.collect()
+    let (positions, angles): (Vec<usize>, Vec<WatchedAngle>) = watched.unzip();
+    let bends = switches.bends(&positions).into_iter();
+    let bent = bends.zip(angles).filter(|(bends, _)| *bends);
+    bent.map(|(_, angle)| angle).collect()
 }

@@ -61,7 +61,8 @@ impl Pulses {
         let time = Input::Slot(Layout::TIME as u32);
         let mut builder = Builder::new(Folding::Strict);
         let mut watched = values.record(&mut builder);
-        watched.retain(|v| builder.inputs_of(&[*v]) == [time]);
+        let mut of_time = builder.read_alone(time, &watched).into_iter();
+        watched.retain(|_| of_time.next() == Some(true));
         let program = builder.finish_with_inputs(&watched, &[time]);
         Ok(Self {
             program: (!watched.is_empty()).then_some(program),

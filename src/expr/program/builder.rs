@@ -34,8 +34,8 @@ pub struct Builder {
     pub(super) inputs: Vec<Input>,
     pub(super) tables: Vec<Arc<dyn Table>>,
     input_nodes: HashMap<Input, Value>,
-    /// open addressing; `EMPTY` or the index of a node
-    slots: Vec<u32>,
+    /// open addressing: the hash of a node, and `EMPTY` or its index
+    slots: Vec<(u32, u32)>,
     /// how often a slot was looked at: tests see that recording is linear
     pub(super) probes: u64,
 }
@@ -52,7 +52,7 @@ impl Builder {
             inputs: Vec::new(),
             tables: Vec::new(),
             input_nodes: HashMap::new(),
-            slots: vec![EMPTY; 64],
+            slots: vec![(0, EMPTY); 64],
             probes: 0,
         }
     }
@@ -517,16 +517,17 @@ impl Builder {
             self.grow();
         }
         let mask = self.slots.len() - 1;
-        let mut slot = self.hash(&node) as usize & mask;
+        let hash = self.hash(&node) as u32;
+        let mut slot = hash as usize & mask;
         loop {
-            let found = self.slots[slot];
+            let (known, found) = self.slots[slot];
             self.probes += 1;
             if found == EMPTY {
                 let v = self.push(node);
-                self.slots[slot] = v.0;
+                self.slots[slot] = (hash, v.0);
                 return v;
             }
-            if self.equal(&self.nodes[found as usize], &node) {
+            if known == hash && self.equal(&self.nodes[found as usize], &node) {
                 if let Some(range) = self.list(&node) {
                     self.arguments.truncate(range.start);
                 }
@@ -537,14 +538,14 @@ impl Builder {
     }
 
     fn grow(&mut self) {
-        let mut slots = vec![EMPTY; self.slots.len() * 2];
+        let mut slots = vec![(0, EMPTY); self.slots.len() * 2];
         let mask = slots.len() - 1;
-        for &k in self.slots.iter().filter(|&&k| k != EMPTY) {
-            let mut slot = self.hash(&self.nodes[k as usize]) as usize & mask;
-            while slots[slot] != EMPTY {
+        for &(hash, k) in self.slots.iter().filter(|slot| slot.1 != EMPTY) {
+            let mut slot = hash as usize & mask;
+            while slots[slot].1 != EMPTY {
                 slot = (slot + 1) & mask;
             }
-            slots[slot] = k;
+            slots[slot] = (hash, k);
         }
         self.slots = slots;
     }

@@ -12,6 +12,7 @@
 use super::code::{Code, Core, Instruction};
 use super::operation::{BinaryOp, UnaryOp};
 use super::run::Program;
+use std::collections::HashMap;
 
 /// Directions per word.
 const BITS: usize = u64::BITS as usize;
@@ -56,62 +57,107 @@ impl Program {
         core.outputs.iter().map(members).collect()
     }
 
-    /// Returns whether an output depends on the input at a position otherwise than by straight
-    /// pieces, of which each formula has a few: by a sine it may come back to a value for ever, by
-    /// sums, multiples, comparisons and selections it may not.
-    pub fn bends(&self, position: usize) -> bool {
+    /// Returns of each position among the inputs whether an output depends on it otherwise than by
+    /// straight pieces, of which each formula has a few: by a sine it may come back to a value for
+    /// ever, by sums, multiples, comparisons and selections it may not.
+    pub fn bends(&self, positions: &[usize]) -> Vec<bool> {
         let core = self.core();
-        let mut shapes = vec![Shape::Free; core.size as usize];
-        let first = core.constants.len();
+        let words = positions.len().div_ceil(BITS);
+        let mut shapes = Shapes {
+            words,
+            reads: vec![0; words * core.size as usize],
+            bent: vec![0; words * core.size as usize],
+        };
+        let asked: HashMap<usize, usize> = (positions.iter().enumerate())
+            .map(|(k, &position)| (position, k))
+            .collect();
         for (k, &input) in core.used.iter().enumerate() {
-            if input as usize == position {
-                shapes[first + k] = Shape::Straight;
+            if let Some(&bit) = asked.get(&(input as usize)) {
+                let register = core.constants.len() + k;
+                shapes.reads[register * words + bit / BITS] |= 1 << (bit % BITS);
             }
         }
         for instruction in &core.code {
-            shapes[instruction.to as usize] = core.shape(instruction, |r| shapes[r as usize]);
+            core.shape(instruction, &mut shapes);
         }
-        let mut outputs = core.outputs.iter();
-        outputs.any(|&r| shapes[r as usize] == Shape::Bent)
+        let bent = |&position: &usize| {
+            let bit = asked[&position];
+            let of = |&r: &u32| shapes.bent[r as usize * words + bit / BITS];
+            let mut outputs = core.outputs.iter();
+            outputs.any(|r| of(r) >> (bit % BITS) & 1 == 1)
+        };
+        positions.iter().map(bent).collect()
     }
 }
 
-/// The form in which a register depends on an input.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Shape {
-    /// not at all
-    Free,
+/// The positions on which registers depend: a bit for each   (words × registers)
+struct Shapes {
+    words: usize,
+    /// at all
+    reads: Vec<u64>,
+    /// otherwise than by straight pieces
+    bent: Vec<u64>,
+}
+
+/// The way in which an operation passes its operands' shapes on.
+enum Passing<'a> {
     /// by straight pieces
-    Straight,
+    Straight(&'a [u32]),
     /// by any function
-    Bent,
+    Bent(&'a [u32]),
+    /// as a product: straight in each factor where the other does not depend on it
+    Product(u32, u32),
+    /// as a quotient: straight in the dividend where the divisor does not depend on it
+    Quotient(u32, u32),
+}
+
+impl Shapes {
+    /// Sets the shape of the result `to` of an operation.
+    fn set(&mut self, to: u32, passing: &Passing) {
+        for w in 0..self.words {
+            let at = |r: u32| r as usize * self.words + w;
+            let reads = |r: u32| self.reads[at(r)];
+            let bent = |r: u32| self.bent[at(r)];
+            let all_read = |all: &[u32]| all.iter().fold(0, |sum, &r| sum | reads(r));
+            let (read, is_bent) = match *passing {
+                Passing::Straight(all) => {
+                    (all_read(all), all.iter().fold(0, |sum, &r| sum | bent(r)))
+                }
+                Passing::Bent(all) => (all_read(all), all_read(all)),
+                Passing::Product(a, b) => {
+                    (reads(a) | reads(b), bent(a) | bent(b) | reads(a) & reads(b))
+                }
+                Passing::Quotient(a, b) => (reads(a) | reads(b), bent(a) | reads(b)),
+            };
+            let to = at(to);
+            (self.reads[to], self.bent[to]) = (read, is_bent);
+        }
+    }
 }
 
 impl Core {
-    /// Returns the shape of the result of an instruction, from those of its operands.
-    fn shape(&self, instruction: &Instruction, of: impl Fn(u32) -> Shape) -> Shape {
+    /// Sets the shape of the result of an instruction, from those of its operands.
+    fn shape(&self, instruction: &Instruction, shapes: &mut Shapes) {
         let Instruction {
             code, a, b, c, d, ..
         } = *instruction;
-        let joined = |all: &[u32]| all.iter().map(|&r| of(r)).fold(Shape::Free, Shape::max);
-        let bent = |all: &[u32]| match joined(all) {
-            Shape::Free => Shape::Free,
-            Shape::Straight | Shape::Bent => Shape::Bent,
-        };
+        let mut set = |passing: Passing| shapes.set(instruction.to, &passing);
         match code {
-            Code::Unary(UnaryOp::Neg | UnaryOp::Abs | UnaryOp::Not) => joined(&[a]),
+            Code::Unary(UnaryOp::Neg | UnaryOp::Abs | UnaryOp::Not) => set(Passing::Straight(&[a])),
             Code::Binary(
                 BinaryOp::Add | BinaryOp::Sub | BinaryOp::And | BinaryOp::Or | BinaryOp::Along,
             )
-            | Code::Compare(_) => joined(&[a, b]),
-            Code::Binary(BinaryOp::Mul) if of(a) == Shape::Free => joined(&[b]),
-            Code::Binary(BinaryOp::Mul | BinaryOp::Div) if of(b) == Shape::Free => joined(&[a]),
-            Code::Select => joined(&[a, b, c]),
-            Code::CompareSelect(_) | Code::If => joined(&[a, b, c, d]),
-            Code::Unary(_) | Code::Whole(_) | Code::Lookup { .. } => bent(&[a]),
-            Code::Binary(_) => bent(&[a, b]),
-            Code::HalfPower(_) => bent(&[a, b, c]),
-            Code::Call(_, count) | Code::Partial(_, count, _) => bent(self.arguments(a, count)),
+            | Code::Compare(_) => set(Passing::Straight(&[a, b])),
+            Code::Binary(BinaryOp::Mul) => set(Passing::Product(a, b)),
+            Code::Binary(BinaryOp::Div) => set(Passing::Quotient(a, b)),
+            Code::Select => set(Passing::Straight(&[a, b, c])),
+            Code::CompareSelect(_) | Code::If => set(Passing::Straight(&[a, b, c, d])),
+            Code::Unary(_) | Code::Whole(_) | Code::Lookup { .. } => set(Passing::Bent(&[a])),
+            Code::Binary(_) => set(Passing::Bent(&[a, b])),
+            Code::HalfPower(_) => set(Passing::Bent(&[a, b, c])),
+            Code::Call(_, count) | Code::Partial(_, count, _) => {
+                set(Passing::Bent(self.arguments(a, count)));
+            }
         }
     }
 

@@ -14,6 +14,7 @@ use super::node::{Node, Value};
 use super::operation::{BinaryOp, Comparison, UnaryOp, unary_operations};
 use crate::expr::functions::Function;
 use BinaryOp::{Add, Along, Div, Mul, Sub};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::f64::consts::LOG10_E;
 
 impl Builder {
@@ -21,12 +22,92 @@ impl Builder {
     ///
     /// At a switching point the derivative is that of the side that supplies the value.
     pub fn gradient(&mut self, output: Value, with_respect_to: &[Value]) -> Vec<Value> {
+        self.gradient_of_sum(&[output], with_respect_to)
+    }
+
+    /// Returns the partial derivatives of a sum of values with respect to others.
+    fn gradient_of_sum(&mut self, outputs: &[Value], with_respect_to: &[Value]) -> Vec<Value> {
         let folding = self.folding();
         self.set_folding(Folding::Structural);
-        let output = self.expanded(&[output], Expand::Partials)[0];
-        let gradient = Adjoint::new(self, output, with_respect_to).sweep(output, with_respect_to);
+        let outputs = self.expanded(outputs, Expand::Partials);
+        let gradient = Adjoint::new(self, &outputs, with_respect_to).sweep(with_respect_to);
         self.set_folding(folding);
         gradient
+    }
+
+    /// Returns the partial derivatives of values, by rows: places among `with_respect_to`,
+    /// ascending, and the derivatives that are not zero. Values that read none of these in common
+    /// share a sweep.
+    pub fn jacobian(
+        &mut self,
+        outputs: &[Value],
+        with_respect_to: &[Value],
+    ) -> Vec<Vec<(usize, Value)>> {
+        let reads = self.reads(outputs, with_respect_to);
+        // groups of outputs, and the places that they read
+        let mut groups: Vec<(Vec<usize>, HashSet<u32>)> = Vec::new();
+        for (k, own) in reads.iter().enumerate().filter(|(_, own)| !own.is_empty()) {
+            let apart = |group: &&mut (Vec<usize>, HashSet<u32>)| {
+                own.iter().all(|place| !group.1.contains(place))
+            };
+            match groups.iter_mut().find(apart) {
+                Some((members, places)) => {
+                    members.push(k);
+                    places.extend(own);
+                }
+                None => groups.push((vec![k], own.iter().copied().collect())),
+            }
+        }
+        let mut rows = vec![Vec::new(); outputs.len()];
+        for (members, _) in groups {
+            let group: Vec<Value> = members.iter().map(|&k| outputs[k]).collect();
+            let gradient = self.gradient_of_sum(&group, with_respect_to);
+            for k in members {
+                let places = reads[k].iter().map(|&place| place as usize);
+                let entries = places.map(|place| (place, gradient[place]));
+                rows[k] = entries
+                    .filter(|e| self.constant_of(e.1) != Some(0.0))
+                    .collect();
+            }
+        }
+        rows
+    }
+
+    /// Returns of each value the places among `inputs` of those that it is made of, ascending.
+    fn reads(&self, values: &[Value], inputs: &[Value]) -> Vec<Vec<u32>> {
+        let n = values.iter().map(|v| v.index() + 1).max().unwrap_or(0);
+        let mut sets: Vec<Vec<u32>> = vec![Vec::new()];
+        let mut index: HashMap<Vec<u32>, usize> = HashMap::from([(Vec::new(), 0)]);
+        let mut intern = |set: Vec<u32>, sets: &mut Vec<Vec<u32>>| {
+            *index.entry(set).or_insert_with_key(|set| {
+                sets.push(set.clone());
+                sets.len() - 1
+            })
+        };
+        let mut unions: HashMap<(usize, usize), usize> = HashMap::new();
+        let mut set_of = vec![0; n.max(inputs.iter().map(|v| v.index() + 1).max().unwrap_or(0))];
+        for (place, v) in inputs.iter().enumerate() {
+            set_of[v.index()] = intern(vec![place as u32], &mut sets);
+        }
+        for k in 0..n {
+            let mut own = set_of[k];
+            self.operands(&self.nodes[k], |v| {
+                let other = set_of[v.index()];
+                if other != own && other != 0 {
+                    let pair = (own.min(other), own.max(other));
+                    own = *unions.entry(pair).or_insert_with(|| {
+                        let both = sets[pair.0].iter().chain(&sets[pair.1]).copied();
+                        let both: BTreeSet<u32> = both.collect();
+                        intern(both.into_iter().collect(), &mut sets)
+                    });
+                }
+            });
+            set_of[k] = own;
+        }
+        values
+            .iter()
+            .map(|v| sets[set_of[v.index()]].clone())
+            .collect()
     }
 
     /// Records the `k`-th partial derivative of a call.
@@ -61,11 +142,11 @@ struct Adjoint<'b> {
 }
 
 impl<'b> Adjoint<'b> {
-    fn new(builder: &'b mut Builder, output: Value, with_respect_to: &[Value]) -> Self {
-        let n = output.index() + 1;
+    fn new(builder: &'b mut Builder, outputs: &[Value], with_respect_to: &[Value]) -> Self {
+        let n = outputs.iter().map(|v| v.index() + 1).max().unwrap_or(0);
         // what is differentiated by is wanted in any case, so that contributions from a side are
         // zero elsewhere
-        let wanted: Vec<Value> = [output].iter().chain(with_respect_to).copied().collect();
+        let wanted: Vec<Value> = outputs.iter().chain(with_respect_to).copied().collect();
         let guards = Guards::new(builder, &wanted);
         let mut active = vec![false; builder.nodes.len()];
         for v in with_respect_to {
@@ -76,17 +157,21 @@ impl<'b> Adjoint<'b> {
             builder.operands(&builder.nodes[k], |v| depends |= active[v.index()]);
             active[k] = depends;
         }
+        let one = builder.constant(1.0);
+        let mut bars = vec![None; n];
+        for output in outputs {
+            bars[output.index()] = Some(one);
+        }
         Self {
             builder,
             guards,
             active,
-            bars: vec![None; n],
+            bars,
         }
     }
 
-    fn sweep(mut self, output: Value, with_respect_to: &[Value]) -> Vec<Value> {
-        self.bars[output.index()] = Some(self.builder.constant(1.0));
-        for k in (0..=output.index()).rev() {
+    fn sweep(mut self, with_respect_to: &[Value]) -> Vec<Value> {
+        for k in (0..self.bars.len()).rev() {
             let (Some(bar), true) = (self.bars[k], self.active[k]) else {
                 continue;
             };

@@ -106,6 +106,12 @@ pub(super) fn inertia_fits_its_part(model: &Model, out: &mut Out) {
     let all = extent(model);
     let heaviest = model.bodies().fold(0.0, |m: f64, (_, b)| m.max(b.mass));
     let unit = model.units.as_ref().map_or("", |u| u.length.as_str());
+    let mut markers_of: BTreeMap<ElementId, Vec<&Marker>> = BTreeMap::new();
+    for marker in model.markers.values() {
+        if let Some(body) = marker.owner.body() {
+            markers_of.entry(body).or_default().push(marker);
+        }
+    }
     for (id, part) in model.bodies() {
         let moment = part.ip[..3].iter().fold(0.0_f64, |m, x| m.max(*x));
         let radius = (moment / part.mass).sqrt();
@@ -113,10 +119,7 @@ pub(super) fn inertia_fits_its_part(model: &Model, out: &mut Out) {
         let (Some(cm), true) = (cm, radius.is_finite() && radius > 0.0 && !part.ground) else {
             continue;
         };
-        let own = model
-            .markers
-            .values()
-            .filter(|m| m.owner.body() == Some(id));
+        let own = markers_of.get(&id).into_iter().flatten();
         let reach = own.map(|m| (Vec3(m.qp) - Vec3(cm.qp)).norm());
         let reach = reach.fold(0.0, f64::max);
         let size = all.max(reach);

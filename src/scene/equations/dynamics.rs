@@ -6,10 +6,11 @@ use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
 use crate::scene::articulated::ArticulatedFactor;
 use crate::scene::layout::{replace, several};
-use crate::scene::solve::{Factor, MassFactor, Solution, accelerations, solve_symmetric};
+use crate::scene::solve::{Factor, MassFactor, Solution, SymmetricFactor, accelerations, products};
 use crate::scene::sweep::{self, LinkState, Wrench};
 use crate::scene::{LinkMotion, Source, programs};
 use crate::space::{Mat3, Vec3};
+use std::rc::Rc;
 
 impl<S: Scalar> Equations<'_, S> {
     /// Returns true if a row takes part (it does not where it depends on earlier ones).
@@ -82,7 +83,7 @@ impl<S: Scalar> Equations<'_, S> {
             .filter(|f| f.v.is_some())
             .map(|f| -f.component(&bias[f.link]))
             .collect();
-        let rows: Vec<(usize, RowValue<S>)> = (0..scene.rows.len())
+        let rows: Vec<(usize, Rc<RowValue<S>>)> = (0..scene.rows.len())
             .filter(|&r| self.is_active(r))
             .map(|r| (r, self.row(r)))
             .collect();
@@ -167,10 +168,11 @@ impl<S: Scalar> Equations<'_, S> {
             }
             sum
         };
-        let gram: Vec<Vec<S>> = (0..g.len())
-            .map(|r| (0..=r).map(|c| dot(&g[r], &g[c])).collect())
-            .collect();
-        let z = solve_symmetric(gram.clone(), gamma.to_vec(), &[]).x;
+        let places = |r: usize| g[r].iter().map(|e| e.0);
+        let gram = products(g.len(), places, |r, c| dot(&g[r], &g[c]));
+        let usual_pivots = &self.configuration.elimination.usual_pivots;
+        let gram = SymmetricFactor::new(gram, usual_pivots);
+        let z = gram.solve(gamma.to_vec());
         f.fill(S::zero());
         for (row, &z) in g.iter().zip(&z) {
             for &(v, x) in row {
@@ -190,8 +192,7 @@ impl<S: Scalar> Equations<'_, S> {
             .iter()
             .map(|row| row.iter().fold(S::zero(), |s, &(v, x)| s + x * missing[v]))
             .collect();
-        let usual_pivots = &self.configuration.elimination.usual_pivots;
-        solve_symmetric(gram, rhs, usual_pivots)
+        gram.solution(rhs)
     }
 
     /// Multipliers that balance the loads `f` as well as rows can; accelerations (into `f`) are
@@ -202,23 +203,18 @@ impl<S: Scalar> Equations<'_, S> {
     /// ```
     pub(super) fn supporting(&self, g: &[Vec<(usize, S)>], f: &mut [S]) -> Solution<S> {
         let w = programs::weights(self.scene);
-        let gram: Vec<Vec<S>> = (0..g.len())
-            .map(|r| {
-                (0..=r)
-                    .map(|c| {
-                        let mut sum = S::zero();
-                        for &(i, x) in &g[r] {
-                            for &(j, y) in &g[c] {
-                                if i == j {
-                                    sum += (x * y).scale(w[i]);
-                                }
-                            }
-                        }
-                        sum
-                    })
-                    .collect()
-            })
-            .collect();
+        let places = |r: usize| g[r].iter().map(|e| e.0);
+        let gram = products(g.len(), places, |r, c| {
+            let mut sum = S::zero();
+            for &(i, x) in &g[r] {
+                for &(j, y) in &g[c] {
+                    if i == j {
+                        sum += (x * y).scale(w[i]);
+                    }
+                }
+            }
+            sum
+        });
         let rhs = g
             .iter()
             .map(|row| {
@@ -227,7 +223,7 @@ impl<S: Scalar> Equations<'_, S> {
             })
             .collect();
         f.fill(S::zero());
-        solve_symmetric(gram, rhs, &[])
+        SymmetricFactor::new(gram, &[]).solution(rhs)
     }
 
     /// Loads along the free coordinates, gravity included, with the forces of the active rows at
@@ -239,7 +235,7 @@ impl<S: Scalar> Equations<'_, S> {
         let mut f: Vec<S> = free.map(|f| -f.component(&carried[f.link])).collect();
         let active = (0..self.scene.rows.len()).filter(|&r| self.is_active(r));
         for (r, &l) in active.zip(multipliers) {
-            for (v, g) in self.row(r).gradient {
+            for &(v, g) in &self.row(r).gradient {
                 f[v] += g * l;
             }
         }
@@ -256,9 +252,9 @@ impl<S: Scalar> Equations<'_, S> {
         let (mut wrenches, _) = self.scratch.while_solving(|| self.loads());
         let active = (0..self.scene.rows.len()).filter(|&r| self.is_active(r));
         for (r, &l) in active.zip(multipliers) {
-            for (m, action) in self.row(r).actions {
-                let point = self.marker(m).p_GM;
-                let link = self.scene.markers[m].link;
+            for (m, action) in &self.row(r).actions {
+                let point = self.marker(*m).p_GM;
+                let link = self.scene.markers[*m].link;
                 let (force, torque) = (action.force.times(l), action.torque.times(l));
                 sweep::apply(&mut wrenches, &self.links, link, point, force, torque);
             }

@@ -90,11 +90,11 @@ impl<S: Scalar> Equations<'_, S> {
             if l.is_known_zero() {
                 continue;
             }
-            for (m, a) in self.row(r).actions {
-                if element.acts_on.contains(&m) {
+            for (m, a) in &self.row(r).actions {
+                if element.acts_on.contains(m) {
                     let force = a.force.times(l);
-                    let arm = self.marker(m).p_GM - p_I;
-                    let torque = if m == about && self.cam_of(element).is_none() {
+                    let arm = self.marker(*m).p_GM - p_I;
+                    let torque = if *m == about && self.cam_of(element).is_none() {
                         a.torque.times(l)
                     } else {
                         a.torque.times(l) + arm.cross(force)

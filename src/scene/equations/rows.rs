@@ -6,10 +6,23 @@ use crate::physics::row::{Drive, Law};
 use crate::scalar::{Dual, Jet, Scalar};
 use crate::scene::{CoordinateSum, Displacement, Row, RowKind, Source, Sum};
 use crate::space::{Frame, MarkerState, Mat3, Vec3};
+use std::rc::Rc;
 
 impl<S: Scalar> Equations<'_, S> {
-    /// A row with its gradient and right sides.
-    pub fn row(&self, r: usize) -> RowValue<S> {
+    /// A row with its gradient and right sides: evaluated once, but for formulas, which may ask for
+    /// what is not known while the accelerations are being solved for.
+    pub fn row(&self, r: usize) -> Rc<RowValue<S>> {
+        if let Some(row) = &self.scratch.rows.borrow()[r] {
+            return Rc::clone(row);
+        }
+        let row = Rc::new(self.row_value(r));
+        if !matches!(self.scene.rows[r].kind, RowKind::Formula { .. }) {
+            self.scratch.rows.borrow_mut()[r] = Some(Rc::clone(&row));
+        }
+        row
+    }
+
+    fn row_value(&self, r: usize) -> RowValue<S> {
         match &self.scene.rows[r].kind {
             RowKind::Markers { law, i, j, motion } => {
                 let drive = motion.map(|m| self.row_drive(m));

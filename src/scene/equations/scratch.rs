@@ -1,11 +1,12 @@
 //! Results kept within one instant: each thing is computed when it is first asked for.
 
 use super::formulas::Opened;
-use super::{Share, Solved, Unsupported};
+use super::{RowValue, Share, Solved, Unsupported};
 use crate::scene::Scene;
 use crate::scene::loops::Key;
 use crate::space::MarkerState;
 use std::cell::{Cell, OnceCell, RefCell};
+use std::rc::Rc;
 
 /// Results found so far, and questions that are open.
 pub(super) struct Scratch<S> {
@@ -13,6 +14,8 @@ pub(super) struct Scratch<S> {
     pub markers: RefCell<Vec<Option<MarkerState<S>>>>,
     /// values of formulas   (n_formulas)
     pub formulas: RefCell<Vec<Option<S>>>,
+    /// rows but for formulas   (n_rows)
+    pub rows: RefCell<Vec<Option<Rc<RowValue<S>>>>>,
     /// formulas being evaluated: a formula that asks for itself is a loop
     pub open: RefCell<Opened>,
     /// accelerations, multipliers and reactions
@@ -35,6 +38,7 @@ impl<S: Copy> Scratch<S> {
         Self {
             markers: RefCell::new(vec![None; scene.markers.len()]),
             formulas: RefCell::new(vec![None; scene.formulas.len()]),
+            rows: RefCell::new(vec![None; scene.rows.len()]),
             open: RefCell::new(Opened::none(scene.formulas.len())),
             solved: OnceCell::new(),
             solving: Cell::new(false),

@@ -18,7 +18,7 @@ use super::Equations;
 use crate::physics::action::Action;
 use crate::scalar::Scalar;
 use crate::scene::programs::weights;
-use crate::scene::solve::{gram, solve_symmetric};
+use crate::scene::solve::{SymmetricFactor, gram, products};
 use crate::scene::sweep::{self, Wrench};
 use crate::space::Vec3;
 
@@ -71,8 +71,9 @@ impl<S: Scalar> Equations<'_, S> {
         }
         let active: Vec<usize> = (0..n).filter(|&r| self.is_active(r)).collect();
         let w: Vec<S> = weights(scene).into_iter().map(S::constant).collect();
-        let rows: Vec<Vec<(usize, S)>> = active.iter().map(|&r| self.row(r).gradient).collect();
-        let products = gram(&rows, &w);
+        let gradient = |&r: &usize| self.row(r).gradient.clone();
+        let rows: Vec<Vec<(usize, S)>> = active.iter().map(gradient).collect();
+        let factor = SymmetricFactor::new(gram(&rows, &w), &[]);
         let solved = self.solved();
         let base: Vec<Action<S>> = (0..scene.constraints.len())
             .map(|c| self.reaction_to(c, &solved.lambda, &solved.carried))
@@ -80,9 +81,9 @@ impl<S: Scalar> Equations<'_, S> {
         let mut shares: Vec<Share<S>> = left_out
             .into_iter()
             .map(|row| {
-                let gradient = self.row(row).gradient;
-                let right = rows.iter().map(|g| weighted(g, &gradient, &w)).collect();
-                let factors = solve_symmetric(products.clone(), right, &[]).x;
+                let gradient = &self.row(row).gradient;
+                let right = rows.iter().map(|g| weighted(g, gradient, &w)).collect();
+                let factors = factor.solve(right);
                 let mut lambda = vec![S::zero(); n];
                 lambda[row] = S::one();
                 for (&r, f) in active.iter().zip(factors) {
@@ -96,27 +97,26 @@ impl<S: Scalar> Equations<'_, S> {
             })
             .collect();
         // least squares over the shares: A z = −b
-        let product = |a: &[Action<S>], b: &[Action<S>]| self.product(a, b);
-        let a = (0..shares.len())
-            .map(|k| {
-                (0..=k)
-                    .map(|l| product(&shares[k].stress, &shares[l].stress))
-                    .collect()
-            })
+        let base = self.weighted_actions(&base);
+        let all: Vec<_> = (shares.iter())
+            .map(|share| self.weighted_actions(&share.stress))
             .collect();
-        let b = shares.iter().map(|s| -product(&s.stress, &base)).collect();
-        let factors = solve_symmetric(a, b, &[]).x;
+        let places = |k: usize| all[k].iter().map(|a| a.0);
+        let a = products(all.len(), places, |k, l| product(&all[k], &all[l]));
+        let b = all.iter().map(|stress| -product(stress, &base)).collect();
+        let factors = SymmetricFactor::new(a, &[]).solve(b);
         for (share, factor) in shares.iter_mut().zip(factors) {
             share.factor = factor;
         }
         shares
     }
 
-    /// Scalar product of two sets of reactions.
-    fn product(&self, a: &[Action<S>], b: &[Action<S>]) -> S {
-        let per_length = 1.0 / self.scene.span;
-        let mut sum = S::zero();
-        for (c, element) in self.scene.constraints.iter().enumerate() {
+    /// Returns the reactions that are not known to be zero, by constraint elements: the force, and
+    /// the torque as it is weighed against forces.
+    fn weighted_actions(&self, actions: &[Action<S>]) -> Vec<(usize, [Vec3<S>; 2])> {
+        let per_length = S::constant(1.0 / self.scene.span);
+        let mut out = Vec::new();
+        for (c, (element, x)) in self.scene.constraints.iter().zip(actions).enumerate() {
             let arm = match (element.about, element.markers) {
                 // given about where it touches
                 _ if self.cam_of(element).is_some() => Vec3::zero(),
@@ -126,12 +126,26 @@ impl<S: Scalar> Equations<'_, S> {
                 }
                 _ => Vec3::zero(),
             };
-            let torque =
-                |x: &Action<S>| (x.torque + arm.cross(x.force)).times(S::constant(per_length));
-            sum += a[c].force.dot(b[c].force) + torque(&a[c]).dot(torque(&b[c]));
+            let pair = [x.force, (x.torque + arm.cross(x.force)).times(per_length)];
+            if !pair.iter().flat_map(|x| &x.0).all(Scalar::is_known_zero) {
+                out.push((c, pair));
+            }
         }
-        sum
+        out
     }
+}
+
+/// Scalar product of two sets of weighted reactions, by ascending elements.
+fn product<S: Scalar>(a: &[(usize, [Vec3<S>; 2])], b: &[(usize, [Vec3<S>; 2])]) -> S {
+    let mut sum = S::zero();
+    let mut others = b.iter().peekable();
+    for (c, x) in a {
+        while others.next_if(|other| other.0 < *c).is_some() {}
+        if let Some((_, y)) = others.next_if(|other| other.0 == *c) {
+            sum += x[0].dot(y[0]) + x[1].dot(y[1]);
+        }
+    }
+    sum
 }
 
 /// `Σ aᵢ wᵢ bᵢ` of two sparse rows.

@@ -62,7 +62,7 @@ impl Gradients {
         let program = record(scene, |at| {
             let mut values = Vec::new();
             for r in 0..scene.rows.len() {
-                for (v, x) in at.row(r).gradient {
+                for &(v, x) in &at.row(r).gradient {
                     places.push((r, v));
                     values.push(x);
                 }

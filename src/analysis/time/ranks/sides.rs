@@ -79,7 +79,7 @@ impl Sides {
         let program = record(scene, |at| {
             let mut values = Vec::new();
             for &r in &rows {
-                for (v, x) in at.row(r).gradient {
+                for &(v, x) in &at.row(r).gradient {
                     entries.push((r, v));
                     values.push(x);
                 }
