@@ -3,12 +3,16 @@
 use super::verify::model_of;
 use super::{Exit, Failure, Outcome, say};
 use super::{functions, statements};
+use crate::analysis::verify::idle::Idle;
 use crate::analysis::verify::outline::{Outline, outline};
 use crate::dataset::manual;
 use crate::diagnostic::codes::{all, code};
 use crate::diagnostic::{Cause, Diagnostic, near_names};
 use serde_json::{Value, json};
 use std::path::Path;
+
+/// Elements whose operations are printed one by one.
+const MOST_COSTS: usize = 12;
 
 /// Explain the code of a mistake, a statement, a name of the language, or what becomes of a model
 #[derive(clap::Args)]
@@ -121,11 +125,19 @@ fn as_json(o: &Outline) -> Value {
         "rows": o.rows,
         "inputs": o.inputs,
         "left_out": o.left_out,
+        "idle": o.idle.iter().map(idle_as_json).collect::<Vec<_>>(),
+        "costs": o.costs.iter().map(|(id, n)| json!({ "element": id.to_string(), "operations": n })).collect::<Vec<_>>(),
         "operations": { "rate": o.operations.0, "projection": o.operations.1 },
         "elimination": o.elimination,
         "switches": o.switches,
         "warnings": o.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
+}
+
+/// Returns the elements of a kind that take no part, as JSON.
+fn idle_as_json(idle: &Idle) -> Value {
+    let elements: Vec<String> = idle.elements.iter().map(ToString::to_string).collect();
+    json!({ "kind": idle.kind.keyword(), "why": idle.why.to_string(), "elements": elements })
 }
 
 /// Prints the outline of a model.
@@ -155,12 +167,24 @@ fn as_text(o: &Outline) -> String {
     list("rows", &o.rows);
     list("inputs that routines compute, zero here", &o.inputs);
     list("left out", &o.left_out);
+    let idle: Vec<String> = o.idle.iter().map(ToString::to_string).collect();
+    list("cost nothing while it moves", &idle);
     let warnings: Vec<String> = o.warnings.iter().map(ToString::to_string).collect();
     list("warnings", &warnings);
     out += &format!(
         "recorded\n  {} operations for the rates, by {}\n",
         o.operations.0, o.elimination
     );
+    for (element, operations) in o.costs.iter().take(MOST_COSTS) {
+        out += &format!("  {operations} operations of {element}\n");
+    }
+    if let Some(rest) = o.costs.get(MOST_COSTS..).filter(|rest| !rest.is_empty()) {
+        let operations: usize = rest.iter().map(|cost| cost.1).sum();
+        out += &format!(
+            "  {operations} operations of {} other elements\n",
+            rest.len()
+        );
+    }
     if o.operations.1 > 0 {
         out += &format!("  {} operations to project onto the rows\n", o.operations.1);
     }

@@ -8,8 +8,10 @@ use super::layout::{Layout, LongRow};
 use super::loops;
 use super::solve::{SymmetricFactor, gram};
 use crate::expr::program::{Builder, Folding, Input, Levels, Program, Sym, Value};
+use crate::model::ElementId;
 use crate::scalar::Scalar;
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 
 /// Records what `f` computes from the instant it is given. The program reads the row of numbers
 /// that [`Layout`] describes.
@@ -107,6 +109,39 @@ where
     let lists = end(recorder, values);
     let finish = |values: &Vec<Value>| recorder.finish_with_inputs(values, &layout);
     (lists.iter().map(finish).collect(), equations.complaints())
+}
+
+/// Returns how many operations each force, equation and row adds to the rates, the most first. An
+/// operation that several need counts for the first of them: forces, then equations, then rows.
+pub fn costs(scene: Configured<'_>) -> Vec<(ElementId, usize)> {
+    let builder = RefCell::new(Builder::new(Folding::Structural));
+    let inputs = (0..scene.layout.len()).map(|k| Input::Slot(k as u32));
+    let numbers: Vec<Sym<'_>> = inputs.map(|input| Sym::input(input, &builder)).collect();
+    let at = Equations::new(scene, &numbers);
+    let mut costs: BTreeMap<ElementId, usize> = BTreeMap::new();
+    let mut count = |element: ElementId, record: &dyn Fn()| {
+        let before = builder.borrow().len();
+        record();
+        *costs.entry(element).or_default() += builder.borrow().len() - before;
+    };
+    for force in &scene.forces {
+        count(force.id, &|| {
+            force.action(&at);
+        });
+    }
+    for equation in &scene.differentials {
+        count(equation.id.element, &|| {
+            at.formula(equation.formula);
+        });
+    }
+    for r in (0..scene.rows.len()).filter(|&r| at.is_active(r)) {
+        count(scene.rows[r].element, &|| {
+            at.row(r);
+        });
+    }
+    let mut costs: Vec<(ElementId, usize)> = costs.into_iter().collect();
+    costs.sort_by_key(|cost| std::cmp::Reverse(cost.1));
+    costs
 }
 
 /// Where loads, differential equations and motions change branch.

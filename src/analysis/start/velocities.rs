@@ -78,6 +78,9 @@ pub fn velocities(
         }
     }
     let given = GivenVelocities::collect(scene, model, (t, q, x), (&gradient, &v));
+    if given.are_met {
+        return Ok(v.iter().copied().collect());
+    }
     let levels = [&given.of_constraints, &given.of_parts, &given.rest];
     // what shares no velocity is looked at apart
     let all = levels.iter().flat_map(|level| &level.rows);
@@ -241,6 +244,8 @@ struct GivenVelocities {
     of_constraints: Given,
     of_parts: Given,
     rest: Given,
+    /// all of them are those that the rows permit
+    are_met: bool,
 }
 
 /// The origin of a velocity.
@@ -271,12 +276,15 @@ impl GivenVelocities {
         let (zero, targets) = evaluate(&vec![0.0; n]);
         let tree = |target: &Target| target.link.map(|link| tree_of[link]);
         let mut open = vec![false; coordinates.len()];
+        let mut are_met = true;
         for (target, zero) in targets.iter().zip(&zero) {
-            if let (Some(tree), true) = (tree(target), target.value != *zero) {
-                open[tree] = true;
+            if target.value != *zero {
+                are_met = false;
+                tree(target).into_iter().for_each(|tree| open[tree] = true);
             }
         }
         open_beside(&mut open, &coordinates, gradient, v);
+        are_met &= !open.contains(&true);
         let lengths = coordinates.iter().zip(&open).filter(|(_, open)| **open);
         let most = lengths.map(|(tree, _)| tree.len()).max().unwrap_or(0);
         let mut rows: Vec<SparseRow> = vec![Vec::new(); zero.len()];
@@ -305,6 +313,7 @@ impl GivenVelocities {
             of_constraints: Given::default(),
             of_parts: Given::default(),
             rest: Given::default(),
+            are_met,
         };
         for ((row, target), zero) in rows.into_iter().zip(targets).zip(zero) {
             let level = match target.level {

@@ -10,9 +10,10 @@
 //! loads, and ρ is rounded as these are. Where no step leads further, the residual counts as zero
 //! if positions moved by a few units in their last place change it as much.
 
+use super::loop_factors::LoopFactors;
 use super::recording::Recording;
 use crate::expr::program::{Program, Work};
-use crate::numeric::dense::Lu;
+use crate::numeric::pattern::Pattern;
 use crate::scalar::Dual;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
@@ -54,8 +55,10 @@ pub(in crate::analysis) struct AlgebraicLoops {
     rho: Vec<f64>,
     trial: Vec<f64>,
     step: Vec<f64>,
-    lu: Lu,
-    /// `lu` holds factors, of ∂ρ/∂z here or where it was last solved
+    /// places of the entries of ∂ρ/∂z
+    pattern: Pattern,
+    factors: LoopFactors,
+    /// `factors` are of ∂ρ/∂z here or where it was last solved
     factored: bool,
     /// sizes of positions: angles count from one, lengths from that of the mechanism   (n_q)
     sizes: Vec<f64>,
@@ -110,7 +113,15 @@ impl AlgebraicLoops {
     /// Prepares to solve for the unknowns at some places of a row, which zero a residual of it.
     pub(super) fn of(scene: &Scene, residual: Program, places: Range<usize>) -> Self {
         let n = places.len();
+        let mut along = vec![Vec::new(); places.end];
+        for (k, own) in along[places.clone()].iter_mut().enumerate() {
+            own.push(k as u32);
+        }
+        let rows = residual.dependence(&along);
+        let pattern = Pattern::of_rows(n, &rows);
         Self {
+            factors: LoopFactors::new(&rows, &pattern),
+            pattern,
             gradient: slopes::recorded(&residual, n, places.clone()).map(Recording::new),
             residual,
             places,
@@ -121,7 +132,6 @@ impl AlgebraicLoops {
             rho: vec![0.0; n],
             trial: vec![0.0; n],
             step: vec![0.0; n],
-            lu: Lu::new(n),
             factored: false,
             sizes: sizes_of_positions(scene),
             positions: scene.layout.q(),
@@ -139,29 +149,27 @@ impl AlgebraicLoops {
         let n = self.rho.len();
         if let Some(gradient) = &mut self.gradient {
             let entries = gradient.run(numbers);
-            for (i, row) in entries.chunks(n).enumerate() {
-                for (k, &entry) in row.iter().enumerate() {
-                    self.lu.matrix_mut()[i + n * k] = entry;
-                }
+            for (entry, (i, k)) in self.factors.entries.iter_mut().zip(self.pattern.entries()) {
+                *entry = entries[i * n + k];
             }
             return self.factors();
         }
         self.dual_numbers.clear();
         self.dual_numbers.extend(numbers.iter().map(|&x| lift(x)));
-        for first in (0..n).step_by(WIDTH) {
-            let last = (first + WIDTH).min(n);
-            let some = self.places.clone().skip(first).zip(0..last - first);
-            for (place, direction) in some.clone() {
-                self.dual_numbers[place].eps[direction] = 1.0;
+        for some in self.pattern.groups().chunks(WIDTH) {
+            for (k, group) in some.iter().enumerate() {
+                for &place in group {
+                    self.dual_numbers[self.places.clone()][place].eps[k] = 1.0;
+                }
             }
             self.residual
                 .eval(&self.dual_numbers, &mut self.dual_work, &mut self.dual_out);
-            for (place, direction) in some {
-                self.dual_numbers[place].eps[direction] = 0.0;
-            }
-            for k in first..last {
-                for (i, out) in self.dual_out.iter().enumerate() {
-                    self.lu.matrix_mut()[i + n * k] = out.eps[k - first];
+            for (k, group) in some.iter().enumerate() {
+                for &place in group {
+                    self.dual_numbers[self.places.clone()][place].eps[k] = 0.0;
+                    for (entry, i) in self.pattern.column(place) {
+                        self.factors.entries[entry] = self.dual_out[i].eps[k];
+                    }
                 }
             }
         }
@@ -169,7 +177,7 @@ impl AlgebraicLoops {
     }
 
     fn factors(&mut self) -> Result<(), usize> {
-        let outcome = self.lu.factor(1e-14);
+        let outcome = self.factors.factor();
         self.rounding = 0.0;
         self.factored = outcome.is_ok();
         outcome
@@ -203,7 +211,7 @@ impl AlgebraicLoops {
             // by factors of its own
             self.factor(numbers)?;
             self.step.copy_from_slice(&self.rho);
-            self.lu.solve(&mut self.step);
+            self.factors.solve(&mut self.step);
             let z = &numbers[self.places.clone()];
             let small = |(z, d): (&f64, &f64)| d.abs() <= ROUNDING * z.abs();
             let arrived = z.iter().zip(&self.step).all(small);
@@ -308,7 +316,7 @@ impl AlgebraicLoops {
     /// A step by the factors from where it was last solved.
     fn simplified(&mut self, numbers: &mut [f64], size: f64) -> Simplified {
         self.step.copy_from_slice(&self.rho);
-        self.lu.solve(&mut self.step);
+        self.factors.solve(&mut self.step);
         let z = &mut numbers[self.places.clone()];
         self.trial.copy_from_slice(z);
         for (z, d) in z.iter_mut().zip(&self.step) {
@@ -347,7 +355,7 @@ impl AlgebraicLoops {
             for (s, out) in self.step.iter_mut().zip(&self.dual_out) {
                 *s = -out.eps[direction];
             }
-            self.lu.solve(&mut self.step);
+            self.factors.solve(&mut self.step);
             for (z, s) in numbers[self.places.clone()].iter_mut().zip(&self.step) {
                 z.eps[direction] = *s;
             }
@@ -355,13 +363,19 @@ impl AlgebraicLoops {
         Ok(())
     }
 
-    /// Puts into the places of the unknowns along which directions they change: as they are solved
-    /// for together, those along which any loop does.
+    /// Puts into the places of the unknowns along which directions they change: those along which
+    /// any loop does that is solved with theirs.
     pub fn depend(&self, along: &mut [Vec<u32>]) {
-        let mut all: Vec<u32> = self.residual.dependence(along).concat();
-        all.sort_unstable();
-        all.dedup();
-        along[self.places.clone()].fill(all);
+        let rows = self.residual.dependence(along);
+        for part in self.factors.parts() {
+            let own = part.rows.iter().flat_map(|&r| &rows[r]);
+            let mut all: Vec<u32> = own.copied().collect();
+            all.sort_unstable();
+            all.dedup();
+            for column in &part.columns {
+                along[self.places.clone()][*column].clone_from(&all);
+            }
+        }
     }
 
     /// Takes the derivatives of the unknowns away again.

@@ -17,6 +17,7 @@ pub mod closures;
 pub mod external_inputs;
 pub mod implicit;
 mod jacobian;
+mod loop_factors;
 mod ode;
 pub mod past;
 pub(super) mod peaks;

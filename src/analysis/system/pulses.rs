@@ -16,10 +16,10 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Builder, Folding, Input, Program, Work};
 use crate::model::ElementKind;
-use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
+use crate::scene::{Entry, Scene};
 use std::collections::BTreeSet;
 
 /// Times at which functions are evaluated in search of pulses.
@@ -49,8 +49,9 @@ impl Pulses {
     /// Functions that cannot be recorded.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Diagnostic>> {
         let of_time = timed(&scene);
+        let is_read = read(&scene);
         let timed: Vec<usize> = (0..scene.formulas.len())
-            .filter(|&f| of_time[f] && acts(&scene, f))
+            .filter(|&f| of_time[f] && is_read[f] && acts(&scene, f))
             .collect();
         if timed.is_empty() {
             return Ok(Self::default());
@@ -112,6 +113,38 @@ fn acts(scene: &Scene, f: usize) -> bool {
     let element = scene.formulas[f].owner.owner();
     let acts = element.is_some_and(|e| !asks.contains(&e.kind));
     acts && scene.formulas[f].program.inputs().contains(&Input::Time)
+}
+
+/// Returns which formulas the motion or a sensor reads: all but those of requests and of VARIABLEs
+/// that only requests read   (n_formulas)
+fn read(scene: &Scene) -> Vec<bool> {
+    let reads_for_others = [ElementKind::Request, ElementKind::Variable];
+    let of = |f: usize| scene.formulas[f].owner.owner();
+    let is_root = |&f: &usize| of(f).is_none_or(|e| !reads_for_others.contains(&e.kind));
+    let listed = scene
+        .arrays
+        .values()
+        .flatten()
+        .filter_map(|entry| match entry {
+            Entry::Formula(f) => Some(*f),
+            Entry::Number(_) | Entry::State(_) => None,
+        });
+    let mut open: Vec<usize> = (0..scene.formulas.len())
+        .filter(is_root)
+        .chain(listed)
+        .collect();
+    let mut read = vec![false; scene.formulas.len()];
+    while let Some(f) = open.pop() {
+        if std::mem::replace(&mut read[f], true) {
+            continue;
+        }
+        for input in scene.formulas[f].program.inputs() {
+            if let Input::Measure(Measure::Varval, [id, ..]) = input {
+                open.extend(scene.variables.get(id));
+            }
+        }
+    }
+    read
 }
 
 /// Returns which formulas depend on time alone, if need be through VARIABLEs   (n_formulas)

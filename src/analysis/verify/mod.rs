@@ -15,6 +15,7 @@ mod axes;
 pub(in crate::analysis) mod culprit;
 pub(in crate::analysis) mod driving;
 mod free;
+pub mod idle;
 pub(crate) mod massless;
 pub mod outline;
 

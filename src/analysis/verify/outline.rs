@@ -5,13 +5,15 @@ use crate::analysis::start::dataset::Dataset;
 use crate::analysis::start::{assemble, misalignment, velocities};
 use crate::analysis::system::System;
 use crate::analysis::verify::culprit::blamed;
+use crate::analysis::verify::idle::{Idle, idle};
 use crate::analysis::verify::{stand_still, start};
 use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Diagnostic;
-use crate::model::{ElementKind, Family, Formula, Model};
+use crate::model::{ElementId, ElementKind, Family, Formula, Model};
 use crate::scene::build::Options;
 use crate::scene::configuration::Configuration;
 use crate::scene::equations::row_name;
+use crate::scene::programs;
 use crate::scene::{Scene, Source};
 use std::collections::BTreeSet;
 
@@ -45,6 +47,11 @@ pub struct Outline {
     pub inputs: Vec<String>,
     /// rows that depend on others, elements that are switched off or not solved
     pub left_out: Vec<String>,
+    /// elements that take no part in the motion
+    pub idle: Vec<Idle>,
+    /// operations that each element adds to one evaluation of the rates, the most first; those that
+    /// it shares with an earlier one count there
+    pub costs: Vec<(ElementId, usize)>,
     /// operations of one evaluation of the rates, and of one projection onto the rows
     pub operations: (usize, usize),
     /// values watched for a change of sign
@@ -70,6 +77,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     let mut model = model.clone();
     let mut taken_for_granted = Vec::new();
     let inputs = inputs(&model);
+    let idle = idle(&model);
     stand_still(&mut model, &mut taken_for_granted);
     let model = &model;
     let options = Options {
@@ -82,6 +90,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
     let mut configuration = Configuration::new(&scene);
     let mut out = Outline {
         inputs,
+        idle,
         warnings: warnings(misalignment::misaligned(&scene, model)),
         ..Outline::default()
     };
@@ -129,6 +138,7 @@ pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
         system.operations(),
         system.projection_operations().unwrap_or(0),
     );
+    out.costs = programs::costs(system.configured());
     out.switches = system.branches().len();
     out.elimination = if system.configuration.elimination.articulated {
         "articulated bodies"

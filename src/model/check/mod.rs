@@ -17,7 +17,7 @@ mod forces;
 mod held;
 mod magnitudes;
 mod output;
-mod references;
+pub(crate) mod references;
 mod signs;
 mod superseded;
 mod systems;

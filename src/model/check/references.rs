@@ -166,7 +166,7 @@ impl Known {
 }
 
 /// The elements an expression names: byte and element. Zeros that stand for ground are left out.
-pub(super) fn named(expr: &Expr) -> Vec<(usize, ElementId)> {
+pub(crate) fn named(expr: &Expr) -> Vec<(usize, ElementId)> {
     let ast = expr.ast();
     let mut all = Vec::new();
     for node in &ast.nodes {
