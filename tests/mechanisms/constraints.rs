@@ -230,7 +230,7 @@ fn motions_and_rows_of_every_tie_agree() {
                 assert!(row.value.abs() < 1e-13, "{name}: {}", row.value);
                 assert!(row.drift.abs() < 1e-12, "{name} drifts");
                 assert!(row.gamma.abs() < 1e-11, "{name}: γ {}", row.gamma);
-                for (_, g) in row.gradient {
+                for &(_, g) in &row.gradient {
                     assert!(g.abs() < 1e-12, "{name}: works on its own motion, {g}");
                 }
             }
