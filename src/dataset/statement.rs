@@ -715,7 +715,9 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         own "INACTIVE|INACTIVE_DURING" (Kind::Word(&["STATIC", "NEVER"]),
             |f, v| { f.inactive_in_statics = v == Value::Word("STATIC".into()); Ok(()) },
             |f| f.inactive_in_statics.then(|| Value::Word("STATIC".into())));
-        keep "FORMULATION" (WORD);
+        own "FORMULATION" (Kind::Word(&["ORIGINAL", "LUGRE"]),
+            |f, v| { f.lugre = v == Value::Word("LUGRE".into()); Ok(()) },
+            |f| f.lugre.then(|| Value::Word("LUGRE".into())));
     }),
     numbered!(Variable, variables: Variable, nothing, {
         field "IC" (ic);

@@ -229,6 +229,17 @@ fn mismatch() -> Result<(), String> {
     Err("the value has another form than this argument takes".into())
 }
 
+/// Fills the first places with the numbers of a value.
+fn fill<T>(places: &mut [T], value: Value, made: fn(f64) -> T) -> Result<(), String> {
+    let Value::Reals(xs) = value else {
+        return mismatch();
+    };
+    for (place, x) in places.iter_mut().zip(xs) {
+        *place = made(x.value());
+    }
+    Ok(())
+}
+
 impl Field for bool {
     const KIND: Kind = Kind::Flag;
     fn put(&mut self, _: Value) -> Result<(), String> {
@@ -289,14 +300,8 @@ impl<const N: usize> Field for [f64; N] {
         angle: false,
     };
     fn put(&mut self, value: Value) -> Result<(), String> {
-        let Value::Reals(xs) = value else {
-            return mismatch();
-        };
         *self = [0.0; N];
-        for (slot, x) in self.iter_mut().zip(xs) {
-            *slot = x.value();
-        }
-        Ok(())
+        fill(self, value, |x| x)
     }
     fn written(&self) -> Option<Value> {
         self.iter().any(|x| x.to_bits() != 0).then(|| numbers(self))
@@ -310,14 +315,8 @@ impl Field for [Option<f64>; 2] {
         angle: false,
     };
     fn put(&mut self, value: Value) -> Result<(), String> {
-        let Value::Reals(xs) = value else {
-            return mismatch();
-        };
         *self = [None; 2];
-        for (slot, x) in self.iter_mut().zip(xs) {
-            *slot = Some(x.value());
-        }
-        Ok(())
+        fill(self, value, Some)
     }
     fn written(&self) -> Option<Value> {
         let second = self[1].map(Number::plain);

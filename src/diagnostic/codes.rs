@@ -375,7 +375,7 @@ Splines; with z, y is a list of curves; end is natural, not-a-knot or periodic, 
 The run goes on, and its results are those of the simpler law, which the message names.
 
     BEAM, FORMULATION=STRING or NONLINEAR    the linear beam, which tension does not stiffen
-    FRICTION in a joint                      stiction by a steep smooth law of the velocity: what should stick creeps slowly
+    FRICTION, FORMULATION=LUGRE              the law of sticking and sliding, which does not lag behind the velocity
     CONTACT, POISSON                         the impulses of restitution as a damper that works while bodies overlap",
     },
     Code {

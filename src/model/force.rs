@@ -451,6 +451,8 @@ pub struct Friction {
     pub overlap_delta: Option<String>,
     /// INACTIVE=STATIC
     pub inactive_in_statics: bool,
+    /// FORMULATION=LUGRE: bristles that bend with the velocity, in place of sticking and sliding
+    pub lugre: bool,
 }
 
 impl Element for Friction {

@@ -9,7 +9,7 @@ use super::compile::Compiler;
 use super::equations::{KINEMATIC, STATIC};
 use super::forces::ForceLaw;
 use super::unknown::{DifferentialId, UnknownId};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{self, ElementKind};
 use crate::physics::friction::{Friction, Grip, Kind, Overlap};
 
@@ -33,6 +33,11 @@ impl Builder<'_> {
                 );
                 continue;
             };
+            if f.lugre {
+                let what = "FORMULATION=LUGRE is solved by the law of sticking and sliding: friction does not lag behind the velocity, and what sticks creeps by its own law";
+                let warning = Diagnostic::warning(Cause::Approximate, what).element(name);
+                self.scene.warnings.push(warning);
+            }
             match friction(f, kind) {
                 Ok(law) => {
                     let at_rest = self.scene.mode == STATIC;

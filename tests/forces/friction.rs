@@ -372,6 +372,24 @@ fn a_load_that_vibrates_within_the_cone_moves_nothing_on() {
     assert!((late - early).abs() < 2e-6, "{early} {late}");
 }
 
+/// The only law here is that of sticking and sliding; a dataset that asks for another one is told so.
+#[test]
+fn the_law_of_bristles_is_told_to_be_solved_by_that_of_sticking() {
+    let ran = |formulation: &str| {
+        let text = on_slope(0.15, "").replace("JOINT=1, MU", &format!("JOINT=1{formulation}, MU"));
+        let s = run(&text, &["DX(2,1)"], 0.1);
+        let told = (s.run.record.warned().iter()).any(|w| w.contains("FORMULATION=LUGRE"));
+        (told, last(&s, "DX(2,1)"))
+    };
+    let (plain, original, lugre) = (
+        ran(""),
+        ran(", FORMULATION=ORIGINAL"),
+        ran(", FORMULATION=LUGRE"),
+    );
+    assert_eq!((plain.0, original.0, lugre.0), (false, false, true));
+    assert_eq!((plain.1, plain.1), (original.1, lugre.1));
+}
+
 #[test]
 fn statics_tell_that_friction_holds_nothing_there() {
     let spring = "SPRINGDAMPER/1, TRANSLATION, I=2, J=4, K=1000, C=10, LENGTH=0\n";

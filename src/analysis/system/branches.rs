@@ -180,13 +180,14 @@ impl Branches {
         if self.with_sides(numbers).is_none() {
             return false;
         }
-        let Some(Switching {
-            held: Some(held), ..
-        }) = &self.switching
-        else {
+        if !run(
+            self.switching.as_ref(),
+            &self.numbers,
+            &mut self.held_work,
+            rates,
+        ) {
             return false;
-        };
-        held.run(&self.numbers, &mut self.held_work, rates);
+        }
         // beyond its end a branch may have no value
         rates.iter().map(|x| x * 0.0).sum::<f64>() == 0.0
     }
@@ -223,6 +224,20 @@ impl Branches {
         let times = self.watched_angles.iter().map(time);
         times.filter(|h| !h.is_nan()).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Runs the program of the rates with branches held; false where there is none.
+pub(super) fn run(
+    switching: Option<&Switching>,
+    numbers: &[f64],
+    work: &mut Work,
+    rates: &mut [f64],
+) -> bool {
+    let held = switching.and_then(|s| s.held.as_ref());
+    if let Some(held) = held {
+        held.run(numbers, work, rates);
+    }
+    held.is_some()
 }
 
 /// An angle that decides a branch again in every turn.

@@ -19,7 +19,7 @@
 //! Source: Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), §4;
 //! Piiroinen & Kuznetsov, ACM TOMS 34 (2008).
 
-use super::branches::Branches;
+use super::branches::{self, Branches};
 use crate::expr::program::Work;
 use crate::numeric::dense::Lu;
 use crate::scalar::Dual;
@@ -306,12 +306,6 @@ impl Branches {
             self.slides.unknowns.clear();
             return false;
         }
-        let Some(Switching {
-            held: Some(held), ..
-        }) = &self.switching
-        else {
-            return false;
-        };
         let s = &mut self.slides;
         s.unknowns[known].copy_from_slice(&self.numbers[places]);
         let n = s.base.len();
@@ -319,8 +313,12 @@ impl Branches {
             Some(k) => &mut s.changes[n * k..n * (k + 1)],
             None => &mut s.base[..],
         };
-        held.run(&self.numbers, &mut self.held_work, rates);
-        true
+        branches::run(
+            self.switching.as_ref(),
+            &self.numbers,
+            &mut self.held_work,
+            rates,
+        )
     }
 
     /// Evaluates the rates of σ along the base, with time, and along each change. False: a loop

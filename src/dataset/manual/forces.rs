@@ -186,7 +186,7 @@ pub(super) static PAGES: &[Page] = &[
             n("REACTION_ARM", "length", "1", "Arm at which a slide carries the torsional moment."),
             n("OVERLAP_DELTA", "", "CONSTANT", "The overlap may INCREASE or DECREASE with the displacement."),
             n("INACTIVE", "", "NEVER", "STATIC says that there is to be no friction in statics, as is the case anyway, without a warning."),
-            super::k("FORMULATION", "Law of newer versions; the one above is used."),
+            n("FORMULATION", "", "ORIGINAL", "LUGRE is solved by the law above, which is told."),
         ],
         example: "sledge",
     },

@@ -165,6 +165,12 @@ impl Reader<'_> {
         Err(Reported)
     }
 
+    /// Goes on to the next token of one of these kinds, or to the end.
+    fn skip_to(&mut self, ends: &[TokenKind]) {
+        let rest = self.tokens.iter().skip(self.at);
+        self.at += rest.take_while(|t| !ends.contains(&t.kind)).count();
+    }
+
     pub(super) fn words(
         &mut self,
         choices: &'static [&'static str],
@@ -172,18 +178,12 @@ impl Reader<'_> {
         let mut all = Vec::new();
         loop {
             let from = self.at;
-            while let Some(t) = self.tokens.get(self.at) {
-                if matches!(
-                    t.kind,
-                    TokenKind::Colon
-                        | TokenKind::Comma
-                        | TokenKind::Continuation
-                        | TokenKind::Backslash
-                ) {
-                    break;
-                }
-                self.at += 1;
-            }
+            self.skip_to(&[
+                TokenKind::Colon,
+                TokenKind::Comma,
+                TokenKind::Continuation,
+                TokenKind::Backslash,
+            ]);
             let span = self.between(from, self.at);
             let item = self.source.slice(span).to_owned();
             all.push(self.choose(&item, choices, span)?);
@@ -218,15 +218,11 @@ impl Reader<'_> {
         let mut all = Vec::new();
         loop {
             let from = self.at;
-            while let Some(t) = self.tokens.get(self.at) {
-                if matches!(
-                    t.kind,
-                    TokenKind::Comma | TokenKind::Continuation | TokenKind::Backslash
-                ) {
-                    break;
-                }
-                self.at += 1;
-            }
+            self.skip_to(&[
+                TokenKind::Comma,
+                TokenKind::Continuation,
+                TokenKind::Backslash,
+            ]);
             let text = self.source.slice(self.between(from, self.at));
             let inner = text.strip_prefix('"').and_then(|t| t.strip_suffix('"'));
             all.push(inner.unwrap_or(text).to_owned());

@@ -331,11 +331,14 @@ fn two_gradients(f: &Formula, x: &[f64; N]) -> Option<([f64; N], [f64; N])> {
         .then_some((got, want.eps))
 }
 
+/// Trees whose derivatives are compared: Miri takes half a second for one.
+const COMPARED_TREES: usize = if cfg!(miri) { 40 } else { 4000 };
+
 #[test]
 fn adjoints_agree_with_duals() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let (mut compared, mut varying) = (0, 0);
-    for _ in 0..4000 {
+    for _ in 0..COMPARED_TREES {
         let f = formula().new_tree(&mut runner).unwrap().current();
         let x = point().new_tree(&mut runner).unwrap().current();
         let Some((got, want)) = two_gradients(&f, &x) else {
@@ -351,7 +354,8 @@ fn adjoints_agree_with_duals() {
             );
         }
     }
-    assert!(compared > 2000 && varying > 700, "{compared} {varying}");
+    let enough = compared > COMPARED_TREES / 2 && varying > COMPARED_TREES * 7 / 40;
+    assert!(enough, "{compared} {varying}");
 }
 
 #[test]

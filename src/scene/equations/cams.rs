@@ -157,15 +157,7 @@ impl<S: Scalar> Equations<'_, S> {
             .contact
             .refined(&i, &j, self.cam_parameters(c).map(fixed), 1);
         let seeded = cam.contact.gaps(&i, &j, s)[component];
-        let actions = vec![(cam.i, twist(&seeded, 0)), (cam.j, twist(&seeded, 6))];
-        let gradient = self.gradient_of(&actions);
         let rates = cam.contact.gaps(&moving(&I), &moving(&J), self.cam_jets(c))[component];
-        RowValue {
-            value: seeded.re,
-            drift: rates.first - self.along(&gradient),
-            gradient,
-            gamma: -rates.second,
-            actions,
-        }
+        self.row_of((cam.i, cam.j), &seeded, rates)
     }
 }

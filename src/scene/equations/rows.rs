@@ -64,9 +64,19 @@ impl<S: Scalar> Equations<'_, S> {
                 })
             }),
         );
-        let actions = vec![(i, twist(&seeded, 0)), (j, twist(&seeded, 6))];
-        // rates: jets in time along the motion with v̇ = 0
         let rates = law.value(&moving(&I), &moving(&J), drive);
+        self.row_of((i, j), &seeded, rates)
+    }
+
+    /// Returns the row between two markers from its value over duals along their twists (0–5 of I,
+    /// 6–11 of J), and from its jet in time along the motion with v̇ = 0.
+    pub(super) fn row_of(
+        &self,
+        (i, j): (usize, usize),
+        seeded: &Dual<12, S>,
+        rates: Jet<S>,
+    ) -> RowValue<S> {
+        let actions = vec![(i, twist(seeded, 0)), (j, twist(seeded, 6))];
         let gradient = self.gradient_of(&actions);
         RowValue {
             value: seeded.re,
