@@ -5,12 +5,12 @@
 //! recording is linear in time. Nothing here depends on the order of a hash map; the same calls
 //! make the same program.
 
+use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, Comparison, UnaryOp, arithmetic_if};
 use crate::expr::functions::Function;
 use crate::scalar::{Scalar, Table};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The extent to which a builder may simplify.
@@ -51,7 +51,7 @@ impl Builder {
             arguments: Vec::new(),
             inputs: Vec::new(),
             tables: Vec::new(),
-            input_nodes: HashMap::new(),
+            input_nodes: HashMap::default(),
             slots: vec![(0, EMPTY); 64],
             probes: 0,
         }

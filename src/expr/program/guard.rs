@@ -6,8 +6,8 @@
 //! same guard share their sides.
 
 use super::builder::Builder;
+use super::hashing::HashMap;
 use super::node::{Node, Value};
-use std::collections::HashMap;
 
 /// Index into [`Guards`]; [`ALWAYS`] is the root.
 pub(super) type GuardIx = u32;
@@ -54,7 +54,7 @@ impl Guards {
             tree: vec![root],
             of: vec![NEVER; builder.nodes.len()],
             sides: vec![NEVER; n],
-            by_condition: HashMap::new(),
+            by_condition: HashMap::default(),
         };
         for output in outputs {
             guards.of[output.index()] = ALWAYS;

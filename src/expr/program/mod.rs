@@ -29,6 +29,7 @@ mod display;
 mod expand;
 mod gradient;
 mod guard;
+mod hashing;
 mod input;
 mod machine;
 mod node;

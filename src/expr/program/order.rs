@@ -8,9 +8,10 @@
 
 use super::builder::Builder;
 use super::guard::{ALWAYS, GuardIx, Guards, NEVER};
+use super::hashing::{HashMap, HashSet};
 use super::node::{Node, Value};
 use super::operation::UnaryOp;
-use std::collections::{HashMap, VecDeque};
+use std::collections::VecDeque;
 
 /// An element of the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +58,7 @@ impl Order {
             items: Vec::new(),
             uses: vec![0; builder.nodes.len()],
             inlined: vec![false; builder.nodes.len()],
-            groups: HashMap::new(),
+            groups: HashMap::default(),
             is_jumped: vec![false; builder.nodes.len()],
         };
         order.count(builder, outputs, &guards);
@@ -163,7 +164,7 @@ impl<'a> Walk<'a> {
             partners: partners(builder, guards),
             open: vec![ALWAYS],
             alike: alike(builder, guards),
-            groups: HashMap::new(),
+            groups: HashMap::default(),
             grouped: vec![false; builder.nodes.len()],
             tasks: Vec::new(),
             items: Vec::new(),
@@ -245,7 +246,7 @@ impl<'a> Walk<'a> {
 
     /// Visits what the sides need but others need as well.
     fn visit_shared(&mut self, v: Value, sides: &[Value]) {
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::default();
         let mut below: Vec<(Value, u8)> = sides
             .iter()
             .zip(0u8..)
@@ -322,7 +323,7 @@ impl<'a> Walk<'a> {
     /// where that is not seen soon.
     fn is_ready(&self, w: Value) -> bool {
         let here = self.open.last().copied().unwrap_or(ALWAYS);
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::default();
         let mut open = vec![w];
         let mut is_ready = true;
         while let (Some(x), true) = (open.pop(), is_ready) {
@@ -343,7 +344,7 @@ impl<'a> Walk<'a> {
     /// Returns whether neither value needs the other; `false` where that is not seen soon.
     fn are_independent(&self, a: Value, b: Value) -> bool {
         let (below, above) = (a.min(b), a.max(b));
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::default();
         let mut open = vec![above];
         while let Some(x) = open.pop() {
             if x == below || seen.len() > MOST_SEARCHED {
@@ -400,7 +401,7 @@ pub(super) fn side_operands(builder: &Builder, node: &Node) -> Vec<Value> {
 
 /// Returns needed selections by the guard of their first side.
 fn alike(builder: &Builder, guards: &Guards) -> HashMap<GuardIx, VecDeque<Value>> {
-    let mut alike: HashMap<GuardIx, VecDeque<Value>> = HashMap::new();
+    let mut alike: HashMap<GuardIx, VecDeque<Value>> = HashMap::default();
     for (k, node) in builder.nodes.iter().enumerate() {
         if guards.of[k] != NEVER && matches!(node, Node::Select(..) | Node::If(_)) {
             let v = Value(k as u32);
@@ -420,8 +421,8 @@ fn group(node: &Node) -> Option<Value> {
 
 /// Returns needed nodes that one operation yields together.
 fn partners(builder: &Builder, guards: &Guards) -> HashMap<Value, Vec<Value>> {
-    let mut partners: HashMap<Value, Vec<Value>> = HashMap::new();
-    let mut angles: HashMap<Value, Value> = HashMap::new();
+    let mut partners: HashMap<Value, Vec<Value>> = HashMap::default();
+    let mut angles: HashMap<Value, Value> = HashMap::default();
     for (k, node) in builder.nodes.iter().enumerate() {
         if guards.of[k] == NEVER {
             continue;

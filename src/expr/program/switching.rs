@@ -101,7 +101,7 @@ impl Builder {
     /// their contraries, and choices of such.
     fn watched(&self, differences: &[Value], n: usize) -> Vec<bool> {
         let mut watched = vec![false; n];
-        let mut contrary = std::collections::HashSet::new();
+        let mut contrary = super::hashing::HashSet::default();
         for v in differences {
             if let Some(w) = watched.get_mut(v.index()) {
                 *w = true;
@@ -139,8 +139,8 @@ impl Builder {
         let n = self.nodes.len();
         let needed = self.needed(outputs, n);
         let mut differences: Vec<Value> = Vec::new();
-        let mut places = std::collections::HashMap::new();
-        let mut by_operands = std::collections::HashMap::new();
+        let mut places = super::hashing::HashMap::default();
+        let mut by_operands = super::hashing::HashMap::default();
         let mut asked = vec![None; n];
         for k in (0..n).filter(|&k| needed[k]) {
             let difference = match self.nodes[k] {

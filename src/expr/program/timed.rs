@@ -4,9 +4,9 @@
 use super::breaks::{Break, Levels};
 use super::builder::Builder;
 use super::expand::Expand;
+use super::hashing::HashMap;
 use super::input::Input;
 use super::node::{Node, Value};
-use std::collections::HashMap;
 
 /// Most knots of a table that was drawn by hand.
 const FEW: usize = 64;
@@ -32,7 +32,7 @@ impl Builder {
         let timed = self.dependent_on(time);
         found.retain(|b| timed[b.value.index()] && !b.levels.are_many());
         let mut breaks: Vec<Break> = Vec::new();
-        let mut places: HashMap<Value, Vec<usize>> = HashMap::new();
+        let mut places: HashMap<Value, Vec<usize>> = HashMap::default();
         for b in found.into_iter().rev() {
             let known = places.entry(b.value).or_default();
             if !known.iter().any(|&k| breaks[k].levels.are(&b.levels)) {

@@ -10,9 +10,9 @@ use super::super::super::operation::{BinaryOp, UnaryOp};
 use super::super::super::record::Sym;
 use crate::expr::functions::prepared::{self, Prepared};
 use crate::expr::functions::step::{cubic, quintic};
+use crate::expr::program::hashing::HashMap;
 use crate::scalar::Dual;
 use std::cell::RefCell;
-use std::collections::HashMap;
 
 /// Longest list of parameters of a function that is written out.
 const MOST_PARAMETERS: usize = 32;
@@ -85,7 +85,7 @@ impl Formula {
         let mut list = List {
             builder: &cell.into_inner(),
             operations: Vec::new(),
-            known: HashMap::new(),
+            known: HashMap::default(),
         };
         let (value, slope) = (list.number(value)?, list.number(slope)?);
         Some(Formula {

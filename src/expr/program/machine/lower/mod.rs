@@ -11,8 +11,8 @@ use super::super::operation::{BinaryOp, Comparison, UnaryOp};
 use super::prepared::PreparedCall;
 use super::steps::{Extra, Step, Steps};
 use crate::expr::functions::Function;
+use crate::expr::program::hashing::HashMap;
 use results::Results;
-use std::collections::HashMap;
 
 /// Returns the steps of straight code.
 pub(super) fn lower(core: &Core) -> Steps {

@@ -2,7 +2,7 @@
 //! goes.
 
 use super::super::super::code::Core;
-use std::collections::HashMap;
+use crate::expr::program::hashing::HashMap;
 
 /// Where each instruction puts its result, and by whom that is read.
 pub(super) struct Results {
@@ -25,7 +25,7 @@ impl Results {
             chosen: vec![[None; 3]; core.sides.members.len()],
             is_jumped: vec![false; n],
         };
-        let mut members: HashMap<u32, usize> = HashMap::new();
+        let mut members: HashMap<u32, usize> = HashMap::default();
         for (k, &member) in core.sides.members.iter().enumerate() {
             members.insert(member, k);
             results.is_jumped[member as usize] = true;

@@ -18,9 +18,9 @@ mod translate;
 
 use super::super::code::Core;
 use super::steps::Steps;
+use crate::expr::program::hashing::HashMap;
 use calls::CalledStep;
 use memmap2::{Mmap, MmapMut};
-use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use translate::Call;

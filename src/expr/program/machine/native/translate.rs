@@ -12,7 +12,7 @@ use super::super::steps::{Step, Steps};
 use super::assembler::{self, Assembler, Instruction, Jump, Place, Relation, When, Xmm};
 use super::calls;
 use super::needs::{NEVER, Next, needs, targets};
-use std::collections::HashMap;
+use crate::expr::program::hashing::HashMap;
 
 /// Registers that hold values of slots; the two behind them are for what lies between two
 /// instructions.
@@ -96,7 +96,7 @@ pub(super) fn translate(steps: &Steps, core: &Core, calls: &HashMap<u32, Call>) 
         held: [None; N_HOLDING],
         places: vec![NOWHERE; steps.n_slots()],
         pinned: 0,
-        jumps: HashMap::new(),
+        jumps: HashMap::default(),
         calls,
     };
     for (k, (step, next)) in (0u32..).zip(steps.steps.iter().zip(&needs)) {
