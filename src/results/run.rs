@@ -236,8 +236,7 @@ impl Run {
     /// [`Column::values`].
     pub fn table_places(&self, rows: Range<usize>) -> impl Iterator<Item = usize> + '_ {
         let held = rows.start.max(self.released)..rows.end.min(self.rows());
-        held.filter(|row| self.is_in_table(*row))
-            .map(|row| row - self.released)
+        self.shown(held).map(|row| row - self.released)
     }
     /// Returns the indices of the columns that tables show: [`Run::table`], or all.
     pub fn table_columns(&self) -> Vec<usize> {
@@ -249,11 +248,12 @@ impl Run {
     }
     /// Returns the rows that tables show: all but the model as it was read.
     pub fn table_rows(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.rows()).filter(|row| self.is_in_table(*row))
+        self.shown(0..self.rows())
     }
-    fn is_in_table(&self, row: usize) -> bool {
-        let input = |s: &Sequence| s.kind == Kind::Input && s.rows.contains(&row);
-        !self.sequences.iter().any(input)
+    fn shown(&self, rows: Range<usize>) -> impl Iterator<Item = usize> + '_ {
+        let inputs = self.sequences.iter().filter(|s| s.kind == Kind::Input);
+        let inputs: Vec<Range<usize>> = inputs.map(|s| s.rows.clone()).collect();
+        rows.filter(move |row| !inputs.iter().any(|rows| rows.contains(row)))
     }
     /// Returns the index of the column with this name, without regard to blanks and case.
     pub fn find(&self, name: &str) -> Option<usize> {
