@@ -18,16 +18,17 @@ use std::collections::BTreeMap;
 #[test]
 fn every_scene_of_known_answer_comes_out_right() {
     let word = std::env::var("STABILITY").unwrap_or_default();
-    let mut counts: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
+    let mut counts: BTreeMap<&str, [usize; 4]> = BTreeMap::new();
     let mut wrong = Vec::new();
     for one in families::all() {
         if !one.family.contains(&word) && !one.name.contains(&word) {
             continue;
         }
-        let (outcome, sentence) = one.run();
+        let found = one.run_at(one.error, one.method, None);
+        let (outcome, sentence, steps) = (found.outcome, found.sentence, found.steps);
         counts.entry(one.family).or_default()[outcome as usize] += 1;
         let line = format!(
-            "{:<14} {:<46} {outcome:?}: {sentence}",
+            "{:<14} {:<46} {outcome:?}: {sentence}; {steps} steps",
             one.family, one.name
         );
         println!("{line}");
@@ -35,8 +36,10 @@ fn every_scene_of_known_answer_comes_out_right() {
             wrong.push(line);
         }
     }
-    for (family, [right, stopped, wrong]) in &counts {
-        println!("{family:<14} {right} right, {stopped} stopped, {wrong} wrong");
+    for (family, [right, stopped, limited, wrong]) in &counts {
+        println!(
+            "{family:<14} {right} right, {stopped} stopped, {limited} at a limit, {wrong} wrong"
+        );
     }
     assert!(
         wrong.is_empty(),

@@ -3,11 +3,13 @@
 //! Each folder is a room; its files name those of the rooms below it, and of none above:
 //!
 //! ```text
+//! work_precision   a model at many requests by all methods: error against time
 //! session      one simulation after another; commands; columns of results
 //! verify       freedoms, redundancy; what becomes of a model
 //! time         kinematics and dynamics: the loop over steps, switches, ranks
 //! statics      rest                      linear   eigenvalues, state matrices
 //! watch        the hooks of a caller     trajectory   states at output times
+//! work_limit   processor time that may be used
 //! system       a scene as ẏ = f(t, y) and as F(t, y, ẏ) = 0; everything its programs read
 //! start        assembly, placement, initial conditions
 //! ```
@@ -24,3 +26,5 @@ pub mod trajectory;
 pub mod verify;
 pub mod warning;
 pub mod watch;
+pub mod work_limit;
+pub mod work_precision;

@@ -67,6 +67,8 @@ pub struct Trajectory {
     /// rows left out within tolerance that went beyond it: when each was farthest off, its index,
     /// and its value
     pub beyond: Vec<(f64, usize, f64)>,
+    /// end and length of the last step that was kept
+    pub last_step: Option<(f64, f64)>,
     /// `None`: all output times were reached
     pub ended: Option<Ended>,
 }

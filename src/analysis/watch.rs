@@ -3,6 +3,7 @@
 use super::system::System;
 use super::trajectory::Trajectory;
 use crate::numeric::Stats;
+use crate::results::Run;
 
 /// Hooks called while an analysis goes on, after each step of it.
 pub trait Watch {
@@ -15,6 +16,8 @@ pub trait Watch {
     /// Takes states that have been put out; all but the last may be
     /// [released](Trajectory::release).
     fn collect(&mut self, _system: &System, _trajectory: &mut Trajectory) {}
+    /// Takes note of the results after a simulation.
+    fn simulated(&mut self, _run: &Run) {}
 }
 
 /// The hooks of a caller who does not look.

@@ -16,12 +16,14 @@ mod fmt;
 pub mod formula;
 mod functions;
 pub mod interrupt;
+mod limit;
 mod linear;
 mod output;
 mod plot;
 pub mod progress;
 pub mod render;
 mod repl;
+mod report;
 mod run;
 mod statements;
 mod summary;
@@ -54,6 +56,7 @@ enum Verb {
     Linear(linear::Args),
     Plot(plot::Args),
     Repl(repl::Args),
+    Report(report::Args),
     Run(run::Args),
     Statements(statements::Args),
     Verify(verify::Args),
@@ -191,6 +194,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Linear(args) => linear::run(args),
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),
+        Verb::Report(args) => report::run(args),
         Verb::Run(args) => run::run(args),
         Verb::Statements(args) => statements::run(args),
         Verb::Verify(args) => verify::run(args),

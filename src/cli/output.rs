@@ -169,6 +169,20 @@ impl Tables {
         Ok(growing.complete(session, picture)?)
     }
 
+    /// Writes what is left of a run that another thread still works on, as [`Tables::complete`], but
+    /// for what only its session knows; returns the names of the files.
+    ///
+    /// # Errors
+    /// When a file cannot be written, or could not be while the run went on.
+    pub fn complete_early(&self, run: &mut Run) -> Result<Vec<PathBuf>, Diagnostic> {
+        let mut growing = self.growing();
+        if let Some(failed) = growing.failed.take() {
+            return Err(failed);
+        }
+        growing.finish(run, Vec::new(), false)?;
+        Ok(growing.folder.files().to_vec())
+    }
+
     /// Prints a few rows of the table.
     pub fn overview(&self, run: &Run) -> String {
         summary::table(self.growing().overview.of(run))
@@ -231,8 +245,20 @@ impl Growing {
         session: &mut Session,
         picture: bool,
     ) -> Result<(Vec<PathBuf>, String), Diagnostic> {
+        let mut texts = linear::files(session);
+        texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));
+        let record = self.finish(&mut session.run, texts, picture)?;
+        Ok((self.folder.files().to_vec(), record))
+    }
+
+    /// Writes what is left of the tables, further texts, and the record, which it returns.
+    fn finish(
+        &mut self,
+        run: &mut Run,
+        more: Vec<(String, String)>,
+        picture: bool,
+    ) -> Result<String, Diagnostic> {
         let clock = Instant::now();
-        let run = &session.run;
         // tables
         self.take(run)?;
         let mut files = Vec::new();
@@ -243,8 +269,7 @@ impl Growing {
         // texts
         let own = |ending: &str| format!("{}.{ending}", run.name);
         let mut texts = vec![(own("msg"), msg::write(run))];
-        texts.extend(linear::files(session));
-        texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));
+        texts.extend(more);
         if picture && let Some(text) = summary::picture(self.overview.of(run)) {
             texts.push((own("svg"), text));
         }
@@ -259,8 +284,8 @@ impl Growing {
         mine.extend(["msg", "svg"].map(own));
         self.folder.remove_stale(&mine)?;
         // the record
-        session.run.record.write_seconds = clock.elapsed().as_secs_f64();
-        let record = json::with_files(json::record(&session.run), self.folder.written());
+        run.record.write_seconds = clock.elapsed().as_secs_f64();
+        let record = json::with_files(json::record(run), self.folder.written());
         let record = json::text(&record);
         self.folder.put_record(&record)?;
         for (was, is) in self.folder.kept() {
@@ -278,6 +303,6 @@ impl Growing {
                 ));
             }
         }
-        Ok((self.folder.files().to_vec(), record))
+        Ok(record)
     }
 }

@@ -1,5 +1,6 @@
 //! `cognate run`: a model with its commands, from file to results.
 
+use super::limit::{self, Guard};
 use super::progress::Progress;
 use super::render::Sources;
 use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
@@ -13,7 +14,7 @@ use crate::diagnostic::{Cause, Diagnostic, Severity};
 use crate::model::{ElementKind, Model, SettingsStatement};
 use crate::numeric::Stats;
 use crate::results::format::Format;
-use crate::results::{Event, Status, json};
+use crate::results::{Event, Run, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -69,6 +70,9 @@ pub struct Args {
     max_steps: Option<usize>,
     #[command(flatten)]
     output: output::FileArgs,
+    /// Processor time after which the run ends with its results so far and exit code 7: 60s, 2min
+    #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
+    limit: Option<f64>,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -78,7 +82,7 @@ pub struct Args {
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum KindName {
+pub(super) enum KindName {
     Dynamic,
     Kinematic,
     Static,
@@ -90,6 +94,7 @@ enum KindName {
 struct Terminal<'a> {
     progress: &'a std::cell::RefCell<Progress>,
     tables: output::Tables,
+    guard: Option<&'a Guard>,
 }
 
 impl Watch for Terminal<'_> {
@@ -100,6 +105,11 @@ impl Watch for Terminal<'_> {
         interrupt::results_begin();
         self.progress.borrow().at(t, stats.steps);
     }
+    fn simulated(&mut self, run: &Run) {
+        if let Some(guard) = self.guard {
+            guard.keep(run);
+        }
+    }
 }
 
 /// Runs a model with its commands and writes its results.
@@ -109,6 +119,7 @@ impl Watch for Terminal<'_> {
 pub fn run(args: &Args) -> Outcome {
     let clock = Instant::now();
     interrupt::install_for_run();
+    let guard = args.limit.map(Guard::set);
 
     // read
     let is_command = has_commands(&args.model);
@@ -119,7 +130,13 @@ pub fn run(args: &Args) -> Outcome {
     } = if is_command {
         script(&args.model, args.dataset.as_deref())?
     } else {
-        alone(args)?
+        alone(&Single {
+            model: &args.model,
+            dataset: args.dataset.as_deref(),
+            kind: args.kind,
+            end: args.end,
+            steps: args.steps,
+        })?
     };
     let doubts = remark_on_warnings(args, &reading);
     let (model, dataset) = (reading.model, reading.dataset);
@@ -127,20 +144,11 @@ pub fn run(args: &Args) -> Outcome {
     let mut session = open(args, model, &base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
     let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
+    guard.iter().for_each(|g| g.follow(&session, &tables));
 
     // solve
-    let (status, failure) = match solve(args, &mut session, &steps, &tables) {
-        Ok(status) => (status, None),
-        Err(errors) => {
-            let record = &mut session.run.record;
-            record.status = Status::Model;
-            record.stop_code = errors.first().map_or("", |d| d.code);
-            record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
-            let events = errors.iter().map(|e| Event::Error(e.to_string()));
-            session.run.log.extend(events);
-            (Status::Model, Some(errors))
-        }
-    };
+    let outcome = solve(args, &mut session, &steps, (&tables, guard.as_ref()));
+    let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
     session.run.log.push(Event::Finished {
         elapsed,
@@ -148,6 +156,7 @@ pub fn run(args: &Args) -> Outcome {
     });
 
     // write and report
+    guard.iter().for_each(Guard::done);
     let shown = !args.json && !args.quiet;
     let is_refused = failure.is_some() && session.run.rows() == 0;
     let (written, record) = if is_refused {
@@ -183,6 +192,24 @@ pub fn run(args: &Args) -> Outcome {
         remark(&session.run.record.stop_reason);
     }
     Ok(exit(status))
+}
+
+/// Notes in the record why a model could not be run; returns the status, and the mistakes.
+fn told(
+    session: &mut Session,
+    outcome: Result<Status, Vec<Diagnostic>>,
+) -> (Status, Option<Vec<Diagnostic>>) {
+    let errors = match outcome {
+        Ok(status) => return (status, None),
+        Err(errors) => errors,
+    };
+    let record = &mut session.run.record;
+    record.status = Status::Model;
+    record.stop_code = errors.first().map_or("", |d| d.code);
+    record.stop_reason = errors.first().map(ToString::to_string).unwrap_or_default();
+    let events = errors.iter().map(|e| Event::Error(e.to_string()));
+    session.run.log.extend(events);
+    (Status::Model, Some(errors))
 }
 
 /// Remarks on the number of warnings about a dataset; returns them.
@@ -244,6 +271,7 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
         skip: args.skip.iter().copied().collect(),
         zero_user: args.zero_user,
         max_steps: args.max_steps,
+        limit: args.limit,
     };
     let mut session = Session::new(model, base, options);
     session.run.record.model = args.model.display().to_string();
@@ -259,7 +287,7 @@ fn solve(
     args: &Args,
     session: &mut Session,
     steps: &[Step],
-    tables: &output::Tables,
+    (tables, guard): (&output::Tables, Option<&Guard>),
 ) -> Result<Status, Vec<Diagnostic>> {
     let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
     let begin = |start: f64, end: f64| {
@@ -269,6 +297,7 @@ fn solve(
     let mut terminal = Terminal {
         progress: &progress,
         tables: tables.clone(),
+        guard,
     };
     let outcome = obey(session, steps, begin, &mut terminal);
     progress.borrow().done();
@@ -297,13 +326,27 @@ pub(super) fn exit(status: Status) -> Exit {
     }
 }
 
+/// A dataset with one simulation that the command line describes.
+pub(super) struct Single<'a> {
+    /// the dataset
+    pub model: &'a Path,
+    /// a second file, which is a mistake
+    pub dataset: Option<&'a Path>,
+    /// kind of the simulation
+    pub kind: Option<KindName>,
+    /// its end
+    pub end: Option<f64>,
+    /// its output steps
+    pub steps: Option<usize>,
+}
+
 /// Prepares a dataset with one simulation given by options.
-fn alone(args: &Args) -> Result<Job, Failure> {
+pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
     if args.dataset.is_some() {
         let what = "a second file is the dataset of a command file (.acf) or of a log (.msg)";
         return Err(Failure::usage(what));
     }
-    let reading = read(&args.model)?;
+    let reading = read(args.model)?;
     let kind = match args.kind.unwrap_or(KindName::Transient) {
         KindName::Dynamic => SimulationKind::Dynamic,
         KindName::Kinematic => SimulationKind::Kinematic,
@@ -335,7 +378,7 @@ fn alone(args: &Args) -> Result<Job, Failure> {
     };
     Ok(Job {
         reading,
-        base: stem(&args.model),
+        base: stem(args.model),
         steps: vec![step],
     })
 }

@@ -89,6 +89,8 @@ pub struct Record {
     pub read_seconds: f64,
     /// solving alone, median of the repeats, in s
     pub solve_seconds: f64,
+    /// processor time of solving, mean of the repeats, in s; `None`: it was solved once
+    pub repeated_seconds: Option<f64>,
     /// writing results, in s
     pub write_seconds: f64,
     /// how often it was solved to time it

@@ -12,6 +12,7 @@ mod running;
 
 mod allocations;
 mod integrators;
+mod limits;
 mod linear;
 mod loops;
 mod messages;

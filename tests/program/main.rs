@@ -11,5 +11,6 @@ mod cli;
 mod cli_eval;
 mod manual;
 mod readme;
+mod report;
 mod results;
 mod written;

@@ -1,7 +1,8 @@
 //! A scene of known answer: a model of a few lines, how it is run, and what must come out.
 
-use crate::running::{self, Analysis, Options};
+use crate::running::{self, Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
+use cognate::diagnostic::Diagnostic;
 use cognate::results::Status;
 
 /// What must come out of a scene.
@@ -21,8 +22,19 @@ pub enum Outcome {
     Right,
     /// not as claimed, but said so: stopped or refused with a reason
     Stopped,
+    /// ended at its limit of steps or of processor time
+    Limited,
     /// not as claimed, without a word
     Wrong,
+}
+
+/// How a scene came out at some request.
+pub struct Found {
+    pub outcome: Outcome,
+    /// the worst of it, or why it stopped
+    pub sentence: String,
+    /// accepted steps
+    pub steps: u64,
 }
 
 /// A scene.
@@ -30,11 +42,11 @@ pub struct Scene {
     pub family: &'static str,
     pub name: String,
     text: String,
-    analysis: Analysis,
+    pub analysis: Analysis,
     end: f64,
     steps: usize,
-    error: f64,
-    method: Option<&'static str>,
+    pub error: f64,
+    pub method: Option<&'static str>,
     claims: Vec<Claim>,
 }
 
@@ -101,36 +113,61 @@ impl Scene {
         self
     }
 
-    /// Runs the scene: how it came out, and a sentence about the worst of it.
-    pub fn run(&self) -> (Outcome, String) {
+    /// Runs the scene at a requested error by a method, within a limit of processor time in s.
+    ///
+    /// At a larger request than the scene's own the permitted error grows in proportion, up to the swing of what is expected.
+    pub fn run_at(&self, error: f64, method: Option<&str>, limit: Option<f64>) -> Found {
         let follows = self.claims.iter().filter_map(|c| match c {
             Claim::Follows(column, ..) => Some(column.clone()),
             Claim::Ends(_) | Claim::Tells(_) => None,
         });
         let options = Options {
             columns: follows.collect(),
-            error: Some(self.error),
-            method: self.method.map(str::to_owned),
+            error: Some(error),
+            method: method.map(str::to_owned),
+            limit,
             ..Options::default()
         };
         let model = running::model(&self.text);
         let mut session = running::begin(model, "scene", options);
         let status = session.simulate(self.analysis, self.end, self.steps, &mut Unwatched);
-        let (ended, said): (bool, Vec<String>) = match status {
-            Err(errors) => (true, errors.iter().map(ToString::to_string).collect()),
-            Ok(Status::Completed) => (false, Vec::new()),
-            Ok(_) => (true, vec![session.run.record.stop_reason.to_string()]),
+        let (outcome, sentence) = self.judged(status, &session, error);
+        let steps = session.run.record.counts.steps;
+        Found {
+            outcome,
+            sentence,
+            steps,
+        }
+    }
+
+    /// How a session that has ended came out, and a sentence about the worst of it.
+    fn judged(
+        &self,
+        status: Result<Status, Vec<Diagnostic>>,
+        session: &Session,
+        error: f64,
+    ) -> (Outcome, String) {
+        let (ended, said): (Outcome, Vec<String>) = match status {
+            Err(errors) => (
+                Outcome::Stopped,
+                errors.iter().map(ToString::to_string).collect(),
+            ),
+            Ok(Status::Completed) => (Outcome::Right, Vec::new()),
+            Ok(Status::Limit) => (
+                Outcome::Limited,
+                vec![session.run.record.stop_reason.clone()],
+            ),
+            Ok(_) => (
+                Outcome::Stopped,
+                vec![session.run.record.stop_reason.clone()],
+            ),
         };
-        if ended {
+        if ended != Outcome::Right {
             let expected = self
                 .claims
                 .iter()
                 .any(|c| matches!(c, Claim::Ends(words) if said.iter().any(|s| s.contains(words))));
-            let outcome = if expected {
-                Outcome::Right
-            } else {
-                Outcome::Stopped
-            };
+            let outcome = if expected { Outcome::Right } else { ended };
             return (outcome, said.join("; "));
         }
         let mut worst = (0.0, String::new());
@@ -146,41 +183,71 @@ impl Scene {
                     }
                 }
                 Claim::Follows(column, expected, tolerance) => {
-                    let times = session.run.column("TIME").unwrap_or_default();
-                    let values = session.run.column(column).unwrap_or_default();
-                    // rest is what a search ends with
-                    let first = if self.analysis == Analysis::Static {
-                        values.len().saturating_sub(1)
-                    } else {
-                        0
-                    };
-                    for (&t, &x) in times.iter().zip(values).skip(first) {
-                        let off = (x - expected(t)).abs() / tolerance;
-                        let off = if off.is_nan() { f64::INFINITY } else { off };
-                        if off >= worst.0 {
-                            worst = (
-                                off,
-                                format!("{column} = {x:e} at {t}, expected {:e}", expected(t)),
-                            );
-                        }
-                    }
-                    if values.len() < 2 {
-                        return (
-                            Outcome::Wrong,
-                            format!("{column} has {} rows", values.len()),
-                        );
+                    let permitted = tolerance * self.slack(session, expected, *tolerance, error);
+                    match self.followed(session, (column, expected), permitted) {
+                        Ok(found) if found.0 >= worst.0 => worst = found,
+                        Ok(_) => {}
+                        Err(sentence) => return (Outcome::Wrong, sentence),
                     }
                 }
             }
         }
-        let sentence = format!(
-            "{:.1e} of what is permitted; {}; {} steps",
-            worst.0, worst.1, session.run.record.counts.steps
-        );
+        let sentence = format!("{:.1e} of what is permitted; {}", worst.0, worst.1);
         if worst.0 <= 1.0 {
             (Outcome::Right, sentence)
         } else {
             (Outcome::Wrong, sentence)
         }
+    }
+
+    /// The factor by which the tolerance of a claim grows at a requested error: as the request does, but no further than the swing of what
+    /// is expected.
+    fn slack(
+        &self,
+        session: &Session,
+        expected: &dyn Fn(f64) -> f64,
+        tolerance: f64,
+        error: f64,
+    ) -> f64 {
+        let times = session.run.column("TIME").unwrap_or_default();
+        let values = || times.iter().map(|&t| expected(t));
+        let high = values().fold(f64::NEG_INFINITY, f64::max);
+        let low = values().fold(f64::INFINITY, f64::min);
+        let size = values().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let swing = if high > low { high - low } else { size };
+        let whole = (swing / tolerance).max(1.0);
+        (error / self.error).clamp(1.0, whole)
+    }
+
+    /// The largest difference of a column from what is expected, over what is permitted, with its sentence.
+    fn followed(
+        &self,
+        session: &Session,
+        (column, expected): (&str, &dyn Fn(f64) -> f64),
+        permitted: f64,
+    ) -> Result<(f64, String), String> {
+        let times = session.run.column("TIME").unwrap_or_default();
+        let values = session.run.column(column).unwrap_or_default();
+        // rest is what a search ends with
+        let first = if self.analysis == Analysis::Static {
+            values.len().saturating_sub(1)
+        } else {
+            0
+        };
+        let mut worst = (0.0, String::new());
+        for (&t, &x) in times.iter().zip(values).skip(first) {
+            let off = (x - expected(t)).abs() / permitted;
+            let off = if off.is_nan() { f64::INFINITY } else { off };
+            if off >= worst.0 {
+                worst = (
+                    off,
+                    format!("{column} = {x:e} at {t}, expected {:e}", expected(t)),
+                );
+            }
+        }
+        if values.len() < 2 {
+            return Err(format!("{column} has {} rows", values.len()));
+        }
+        Ok(worst)
     }
 }

@@ -93,7 +93,12 @@ impl Session {
             let found = match settle_at(system, &settings, t, watch, &mut all.stats) {
                 Ok(found) => found,
                 Err(why) => {
-                    all.failed = Some(stop_reason(t, why));
+                    all.failed = Some(match why {
+                        NoEquilibrium::Interrupted => self.ended_at_rest(t, &all.stats),
+                        NoEquilibrium::Unbalanced(imbalance) => {
+                            StopReason::NoEquilibrium { at: t, imbalance }
+                        }
+                    });
                     break;
                 }
             };
@@ -154,12 +159,4 @@ fn settle_at(
         }
     }
     rest(system, t)
-}
-
-/// Returns why a search for an equilibrium at time `at` ended without one.
-fn stop_reason(at: f64, why: NoEquilibrium) -> StopReason {
-    match why {
-        NoEquilibrium::Interrupted => StopReason::Interrupted,
-        NoEquilibrium::Unbalanced(imbalance) => StopReason::NoEquilibrium { at, imbalance },
-    }
 }

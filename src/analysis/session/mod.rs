@@ -8,6 +8,7 @@ mod at_rest;
 mod carried;
 pub mod columns;
 mod growth;
+mod limit;
 mod outcome;
 mod over_time;
 mod preview;
@@ -24,15 +25,18 @@ mod stop_reason;
 
 use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;
-use crate::analysis::system::closures;
+use crate::analysis::system::{System, closures};
 use crate::analysis::time::output::Output;
 use crate::analysis::watch::Watch;
+use crate::analysis::work_limit::WorkLimit;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::{ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
 use carried::Carried;
+pub use limit::Activity;
+use limit::SetUp;
 use outcome::units;
 use rows::Gaps;
 pub use rows::Receiver;
@@ -77,6 +81,10 @@ pub struct Options {
     /// steps that one integration may try, accepted or not, before it ends with [`Status::Limit`];
     /// `None`: any number
     pub max_steps: Option<usize>,
+    /// processor time of this session, in s, after which it ends with [`Status::Limit`] and the
+    /// results so far; `None`: any time. It is looked at after each step, each iteration of statics
+    /// and each phase of setting up
+    pub limit: Option<f64>,
 }
 
 /// A model and its clock.
@@ -109,6 +117,10 @@ pub struct Session {
     gaps: Gaps,
     /// takes rows while simulations go on
     receiver: Option<Receiver>,
+    /// the processor time that may be used, and what was going on when it had been
+    limit: Option<WorkLimit>,
+    used_up: Option<SetUp>,
+    activity: Activity,
     shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
 }
 
@@ -128,6 +140,7 @@ impl Session {
             false
         });
         run.record.repeats = options.repeat.max(1) as u32;
+        let limit = options.limit.map(WorkLimit::begin);
         Self {
             model,
             run,
@@ -145,6 +158,9 @@ impl Session {
             halted: false,
             gaps: Gaps::default(),
             receiver: None,
+            limit,
+            used_up: None,
+            activity: Activity::default(),
             shells: None,
         }
     }
@@ -191,6 +207,16 @@ impl Session {
     /// Returns true if a sensor has ended the run.
     pub fn halted(&self) -> bool {
         self.halted
+    }
+
+    /// Returns what the session is doing, as another thread may ask.
+    pub fn activity(&self) -> Activity {
+        self.activity.clone()
+    }
+
+    /// Returns the system of the last simulation as it was left, if it is still there.
+    pub(in crate::analysis) fn kept_system(&mut self) -> Option<&mut System> {
+        self.kept.as_mut().map(|kept| kept.system_mut())
     }
 
     /// The clock.

@@ -142,11 +142,12 @@ impl Session {
     /// Why a simulation over time ended early; `None`: all was done.
     pub(super) fn stop_reason(
         &self,
-        system: &System,
+        system: &mut System,
         trajectory: &Trajectory,
+        end: f64,
     ) -> Option<StopReason> {
         Some(match trajectory.ended.as_ref()? {
-            Ended::Interrupted => StopReason::Interrupted,
+            Ended::Interrupted => self.ended_on_the_way(system, trajectory, end),
             Ended::Sensor(k) => StopReason::Sensor {
                 id: system.scene.sensors[*k].id,
                 at: trajectory.t.last().copied().unwrap_or(self.time()),

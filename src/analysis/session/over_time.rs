@@ -12,6 +12,7 @@ use crate::analysis::time::{dynamics, kinematics};
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
+use crate::analysis::work_limit::ProcessorClock;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::ElementKind;
@@ -51,7 +52,7 @@ impl Session {
         self.run.log.push(Event::End);
         self.rank_changes(system, chosen, &trajectory);
         self.note_sensors(system, &trajectory);
-        let stopped = self.stop_reason(system, &trajectory);
+        let stopped = self.stop_reason(system, &trajectory, span.end);
         self.note_drift(system, &seen.balance);
         let last = trajectory.rows.last().cloned();
         let grown = last
@@ -123,8 +124,9 @@ impl Session {
             false => None,
         };
         let mut seconds = Vec::new();
-        let mut trajectory = Trajectory::default();
         let repeat = self.options.repeat.max(1);
+        let processor = (repeat > 1).then(ProcessorClock::start);
+        let mut trajectory = Trajectory::default();
         for k in 1..=repeat {
             if !trajectory.selections.is_empty() {
                 if system.reselect(chosen.clone()).is_err() {
@@ -140,6 +142,10 @@ impl Session {
                 None => dynamics::integrate(system, &outputs, settings, &mut follower),
             };
             seconds.push(clock.elapsed().as_secs_f64() - seen.seconds);
+        }
+        if let Some(clock) = processor {
+            let mean = clock.seconds() / seconds.len() as f64;
+            *self.run.record.repeated_seconds.get_or_insert(0.0) += mean;
         }
         seconds.sort_by(f64::total_cmp);
         let median = seconds[seconds.len() / 2];

@@ -1,5 +1,6 @@
 //! One simulation: what it is, whether it can be run, and what is told before and after it.
 
+use super::limit::SetUp;
 use super::start::Kept;
 use super::{Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
 use crate::analysis::start::assemble::Assembly;
@@ -30,11 +31,11 @@ pub(super) struct Span {
 }
 
 impl Session {
-    /// Runs one simulation up to `end` with output steps as they are asked for.
+    /// Runs one simulation, whose hooks know of the limit of work where there is one.
     ///
     /// # Errors
-    /// Mistakes in the model. A numerical failure is no error: see the record.
-    pub fn simulate_with(
+    /// Mistakes in the model.
+    pub(super) fn simulate_within(
         &mut self,
         analysis: Analysis,
         end: f64,
@@ -53,6 +54,7 @@ impl Session {
         self.first_facts(&system, &assembly);
         self.warn_of_start(&system, &assembly);
         let program = self.columns_program(&system)?;
+        self.within_limit(SetUp::Columns)?;
         if self.carried.is_none() || analysis == Analysis::InitialConditions {
             self.show_start(&system, &assembly, &program);
         }
@@ -72,6 +74,7 @@ impl Session {
             // reactions are others
             self.columns_program = None;
         }
+        watch.simulated(&self.run);
         // what the next simulation may go on with
         if self.hooks.is_empty() && analysis == Analysis::Dynamic && status == Status::Completed {
             self.kept = Some(Box::new(Kept::new(&self.model, DYNAMIC, system, assembly)));

@@ -2,6 +2,7 @@
 //! simulation left or that is assembled.
 
 use super::carried::{has_new_unknowns, moved};
+use super::limit::SetUp;
 use super::shells;
 use super::spline_range::{SplineCall, spline_calls};
 use super::state_at_start::Start;
@@ -42,6 +43,11 @@ impl Kept {
             system,
             assembly,
         }
+    }
+
+    /// Returns the system, to be looked at.
+    pub(super) fn system_mut(&mut self) -> &mut System {
+        &mut self.system
     }
 }
 
@@ -98,7 +104,9 @@ impl Session {
             return Ok(again);
         }
         (self.columns_program, self.account) = (None, None);
+        self.within_limit(SetUp::Reading)?;
         let (scene, moved) = self.compile(mode, inputs)?;
+        self.within_limit(SetUp::Compiling)?;
         let mut start = Start::new(scene, mode, self.time());
         let first = self.carried.is_none();
         let mut assembly = if first {
@@ -106,6 +114,7 @@ impl Session {
         } else {
             self.go_on(&mut start)?
         };
+        self.within_limit(SetUp::Assembling)?;
         (start.configuration).begin_states(&start.scene, &mut start.x);
         start.begin_turns(self.carried.as_ref());
         let v = self.velocities(&mut start, moved.as_ref())?;
@@ -116,7 +125,9 @@ impl Session {
                 .warnings
                 .extend(unmet.into_iter().map(Warning::from));
         }
+        self.within_limit(SetUp::Velocities)?;
         let system = self.system(start, v)?;
+        self.within_limit(SetUp::Recording)?;
         Ok((system, assembly))
     }
 

@@ -1,6 +1,7 @@
 //! Why a simulation ended before all was done that was asked for: as data, and as the code, the
 //! status and the sentence of its record.
 
+use super::limit::Reached;
 use crate::analysis::quantity::place;
 use crate::analysis::statics::Imbalance;
 use crate::analysis::time::ranks::Lock;
@@ -15,6 +16,13 @@ use std::fmt;
 pub(super) enum StopReason {
     /// the user asked to stop
     Interrupted,
+    /// the permitted processor time had been used
+    WorkLimit {
+        /// permitted, in s
+        seconds: f64,
+        /// where it was
+        reached: Reached,
+    },
     /// a SENSOR asked to stop
     Sensor {
         /// user's number
@@ -130,6 +138,7 @@ impl StopReason {
     pub(super) fn code(&self) -> &'static str {
         match self {
             StopReason::Interrupted => "interrupted",
+            StopReason::WorkLimit { .. } => "work_limit",
             StopReason::Sensor { .. } => "sensor",
             StopReason::Contact { broken, .. } => broken.code(),
             StopReason::Function { .. } => "no_finite_value",
@@ -143,6 +152,7 @@ impl StopReason {
     pub(super) fn status(&self) -> Status {
         match self {
             StopReason::Interrupted => Status::Interrupted,
+            StopReason::WorkLimit { .. } => Status::Limit,
             // the model asked for it
             StopReason::Sensor { .. } => Status::Completed,
             StopReason::Contact { .. }
@@ -168,6 +178,10 @@ impl StopReason {
     pub(super) fn worst(&self) -> Vec<String> {
         let name = match self {
             StopReason::Interrupted | StopReason::Sensor { .. } => "",
+            StopReason::WorkLimit { reached, .. } => match reached {
+                Reached::SetUp(_) | Reached::Rest { .. } => "",
+                Reached::Motion { fastest, .. } => fastest,
+            },
             StopReason::Contact { broken, .. } => return vec![broken.element.to_string()],
             StopReason::Function { lost, .. } => return vec![lost.function.to_string()],
             StopReason::Locked { lock, .. } => &lock.row,
@@ -183,6 +197,10 @@ impl fmt::Display for StopReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             StopReason::Interrupted => f.write_str("interrupted; the results so far are kept"),
+            StopReason::WorkLimit { seconds, reached } => write!(
+                f,
+                "the limit of {seconds} s of processor time was reached {reached}; the results so far are kept"
+            ),
             StopReason::Sensor { id, at } => {
                 let sensor = ElementKind::Sensor.id(*id);
                 write!(f, "{sensor} ended the simulation at time {at}")

@@ -145,6 +145,9 @@ pub fn settle(
     watch: &mut dyn Watch,
     stats: &mut Stats,
 ) -> Result<Equilibrium, NoEquilibrium> {
+    if watch.interrupted() {
+        return Err(NoEquilibrium::Interrupted);
+    }
     let mut settler = Settler::new(system, settings)?;
     let moving = settler.moving.take();
     let begin = settler.system.numbers.clone();

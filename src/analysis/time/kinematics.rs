@@ -74,7 +74,9 @@ impl Tracer<'_> {
                     return Err(Ended::Interrupted);
                 }
                 self.advance(landing)?;
-                watch.progress(self.path.now().t, self.path.step(), &self.out.stats);
+                let last = (self.path.now().t, self.path.step());
+                self.out.last_step = Some(last);
+                watch.progress(last.0, last.1, &self.out.stats);
             }
             match self.path.within(self.system, target) {
                 Ok(y) => break y,

@@ -360,6 +360,7 @@ impl<'a> Leg<'a> {
         self.repeated = 0;
         self.system.recorded.peaks.keep();
         self.emit(method, step, anew);
+        self.out.last_step = Some((step.t1, step.h));
         self.watch.progress(step.t1, step.h, method.stats());
         self.watch.collect(self.system, self.out);
         anew

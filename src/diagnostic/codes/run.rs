@@ -10,6 +10,14 @@ pub static RUN_CODES: &[Code] = &[
         explanation: "Ctrl-C, or the caller of the library, asked to stop. All rows up to that time are written.",
     },
     Code {
+        name: "work_limit",
+        summary: "the permitted processor time was used",
+        explanation: "\
+--limit (Options::limit in the library) permits so much processor time. The message says where the run was then: which phase of
+setting up, or at which time, with which method and step, and what kept the steps short. All rows up to that time are written.
+A larger --error, or the method that the message names, may come further in the same time.",
+    },
+    Code {
         name: "sensor",
         summary: "a SENSOR stopped the simulation",
         explanation: "A SENSOR with HALT or RETURN was triggered. That is no failure: the model asked for it.",

@@ -1,0 +1,173 @@
+//! A limit of work: processor time that may be used, and the clock that measures it.
+
+use super::system::System;
+use super::trajectory::Trajectory;
+use super::watch::Watch;
+use crate::numeric::Stats;
+use crate::results::Run;
+use std::thread::ThreadId;
+use std::time::{Duration, Instant};
+
+/// Shortest time between two looks at the clock of the processor, whose reading takes microseconds.
+const SHORTEST_LOOK: Duration = Duration::from_millis(1);
+
+/// Resolution of the clock of the processor, in s: systems count by ticks of 1 to 10 ms.
+const RESOLUTION: f64 = 0.01;
+
+/// Returns the processor time that a thread of this process has used, in s, where the system tells
+/// it; `None` as the thread: the one that asks.
+fn thread_seconds(thread: Option<&std::path::Path>) -> Option<f64> {
+    let folder = thread.unwrap_or_else(|| std::path::Path::new("/proc/thread-self"));
+    let text = std::fs::read_to_string(folder.join("schedstat")).ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
+}
+
+/// Returns the processor time of all threads of this process that are still there, in s, where the
+/// system tells it.
+pub fn process_seconds() -> Option<f64> {
+    let threads = std::fs::read_dir("/proc/self/task").ok()?;
+    let seconds = threads.filter_map(|t| thread_seconds(Some(&t.ok()?.path())));
+    Some(seconds.sum())
+}
+
+/// The processor time that a thread uses from some moment on. Where the system does not tell it,
+/// time that passes is taken for it.
+#[derive(Clone, Copy, Debug)]
+pub struct ProcessorClock {
+    thread: ThreadId,
+    /// processor time of the thread at the beginning, in s; `None`: not known here
+    start: Option<f64>,
+    begin: Instant,
+}
+
+impl ProcessorClock {
+    /// Starts a clock for the thread that asks.
+    pub fn start() -> Self {
+        Self {
+            thread: std::thread::current().id(),
+            start: thread_seconds(None),
+            begin: Instant::now(),
+        }
+    }
+
+    /// Returns the processor time since the start, in s; asked by another thread, the time that has
+    /// passed.
+    pub fn seconds(&self) -> f64 {
+        let passed = self.begin.elapsed().as_secs_f64();
+        let own = std::thread::current().id() == self.thread;
+        let used = || Some(thread_seconds(None)? - self.start?);
+        let used = own.then(used).flatten();
+        used.map_or(passed, |used| used.clamp(0.0, passed))
+    }
+}
+
+/// Processor time that may be used from some moment on.
+#[derive(Clone, Copy, Debug)]
+pub struct WorkLimit {
+    /// permitted processor time, in s
+    pub seconds: f64,
+    clock: ProcessorClock,
+}
+
+impl WorkLimit {
+    /// Permits so many seconds of processor time to the thread that asks, from now on.
+    pub fn begin(seconds: f64) -> Self {
+        let clock = ProcessorClock::start();
+        Self { seconds, clock }
+    }
+
+    /// Returns the processor time that is left, in s; zero or less: none. Of limits that the clock
+    /// of the processor is too coarse for, the time that has passed is taken away.
+    pub fn left(&self) -> f64 {
+        let used = if self.seconds < RESOLUTION {
+            self.clock.begin.elapsed().as_secs_f64()
+        } else {
+            self.clock.seconds()
+        };
+        self.seconds - used
+    }
+}
+
+/// The hooks of a caller, who is asked to stop when a limit is reached as well.
+pub(in crate::analysis) struct Limited<'a> {
+    caller: &'a mut dyn Watch,
+    limit: WorkLimit,
+    /// when the limit can be reached at the earliest
+    look: Instant,
+}
+
+impl<'a> Limited<'a> {
+    /// Adds a limit to the hooks of a caller.
+    pub(in crate::analysis) fn new(caller: &'a mut dyn Watch, limit: WorkLimit) -> Self {
+        let look = Instant::now();
+        Self {
+            caller,
+            limit,
+            look,
+        }
+    }
+
+    /// Looks at the clock, no earlier than the limit can have been reached: a thread uses no more
+    /// processor time than passes.
+    fn is_reached(&mut self) -> bool {
+        let now = Instant::now();
+        if now < self.look {
+            return false;
+        }
+        let left = self.limit.left();
+        if left <= 0.0 {
+            return true;
+        }
+        let left = Duration::try_from_secs_f64(left).unwrap_or(Duration::MAX);
+        let next = now.checked_add(left.max(SHORTEST_LOOK));
+        self.look = next.unwrap_or(now + Duration::from_secs(3600));
+        false
+    }
+}
+
+impl Watch for Limited<'_> {
+    fn interrupted(&mut self) -> bool {
+        self.caller.interrupted() || self.is_reached()
+    }
+    fn progress(&mut self, t: f64, h: f64, stats: &Stats) {
+        self.caller.progress(t, h, stats);
+    }
+    fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {
+        self.caller.collect(system, trajectory);
+    }
+    fn simulated(&mut self, run: &Run) {
+        self.caller.simulated(run);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::watch::Unwatched;
+
+    #[test]
+    fn a_limit_is_reached_by_work_and_not_by_waiting() {
+        let limit = WorkLimit::begin(0.05);
+        std::thread::sleep(Duration::from_millis(80));
+        // where the system does not tell processor time, waiting counts
+        let told = thread_seconds(None).is_some();
+        assert_eq!(limit.left() > 0.0, told);
+        let mut caller = Unwatched;
+        let mut limited = Limited::new(&mut caller, limit);
+        let clock = Instant::now();
+        while !limited.interrupted() {
+            assert!(clock.elapsed().as_secs_f64() < 60.0, "a limit ends work");
+        }
+        assert!(limit.left() <= 0.0);
+    }
+
+    #[test]
+    fn a_limit_of_any_size_can_be_kept() {
+        for seconds in [0.0, 1e-300, 1e300, f64::INFINITY] {
+            let mut caller = Unwatched;
+            let mut limited = Limited::new(&mut caller, WorkLimit::begin(seconds));
+            assert_eq!(limited.interrupted(), seconds < 1.0);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Limits of work: a run always ends, with what it has so far, and says where it was.
+
+use crate::running::{Analysis, Options, Session, begin, model, values};
+use cognate::analysis::watch::Unwatched;
+use cognate::results::Status;
+use std::time::{Duration, Instant};
+
+/// A limit that is short beside what these models would take, in s.
+const LIMIT: f64 = 0.3;
+/// Time in which a run of that limit must have ended on a machine that does much else.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A pendulum that swings for ever.
+const PENDULUM: &str = "ACCGRAV/JGRAV=-9.81\nPART/2, MASS=1, CM=2, IP=1,1,1\n\
+    MARKER/2, PART=2, QP=1,0,0\nMARKER/3, PART=2\nJOINT/1, REVOLUTE, I=3, J=1\n";
+
+fn limited(text: &str, method: &str, limit: f64) -> Session {
+    let options = Options {
+        method: Some(method.to_string()),
+        error: Some(1e-6),
+        columns: vec!["TIME".into()],
+        limit: Some(limit),
+        max_steps: Some(usize::MAX),
+        ..Options::default()
+    };
+    begin(model(text), "limited", options)
+}
+
+#[test]
+fn every_method_ends_at_its_limit_with_the_rows_so_far() {
+    for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+        let clock = Instant::now();
+        let mut session = limited(PENDULUM, method, LIMIT);
+        let status = session.simulate(Analysis::Dynamic, 1e7, 1_000_000_000, &mut Unwatched);
+        assert!(status.is_err(), "so many outputs are refused");
+        let status = session.simulate(Analysis::Dynamic, 1e7, 1_000_000, &mut Unwatched);
+        assert_eq!(status.expect("a run"), Status::Limit, "{method}");
+        assert!(clock.elapsed() < PATIENCE, "{method}");
+        let record = &session.run.record;
+        assert_eq!(record.stop_code, "work_limit");
+        let simulation = record.simulations.last().expect("a simulation");
+        assert!(simulation.end > 0.0, "{method}: {}", record.stop_reason);
+        assert!(values(&session, "time").len() > 1, "{method}");
+        let says = [
+            "0.3 s of processor time",
+            "at time ",
+            "of 10000000",
+            "steps",
+        ];
+        for word in says {
+            assert!(
+                record.stop_reason.contains(word),
+                "{method}: {}",
+                record.stop_reason
+            );
+        }
+    }
+}
+
+#[test]
+fn a_limit_names_stiffness_where_it_makes_steps_short() {
+    let stiff = "DIFF/1, IC=1, FUNCTION=-1E7*(DIF(1)-COS(TIME))\n";
+    let mut session = limited(stiff, "DOP853", LIMIT);
+    let status = session.simulate(Analysis::Dynamic, 1e6, 10, &mut Unwatched);
+    assert_eq!(status.expect("a run"), Status::Limit);
+    let reason = &session.run.record.stop_reason;
+    for word in ["stability limited", "RADAU5", "DIFF/1"] {
+        assert!(reason.contains(word), "{reason}");
+    }
+}
+
+#[test]
+fn a_limit_holds_while_setting_up_in_kinematics_and_at_rest() {
+    let driven = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=2\n\
+        JOINT/1, REVOLUTE, I=3, J=1\nMOTION/1, JOINT=1, ROTATION, FUNCTION=SIN(1000*TIME)\n";
+    let cases = [
+        (driven, Analysis::Kinematic, 1e6, LIMIT, "KINEMATIC"),
+        (PENDULUM, Analysis::Static, 1e6, LIMIT, "equilibrium"),
+        (PENDULUM, Analysis::Dynamic, 1.0, 1e-12, "had not begun"),
+        (PENDULUM, Analysis::Static, 0.0, 1e-12, "had not begun"),
+    ];
+    for (text, analysis, end, limit, word) in cases {
+        let clock = Instant::now();
+        let mut session = limited(text, "AUTO", limit);
+        let status = session.simulate(analysis, end, 1_000_000, &mut Unwatched);
+        assert_eq!(status.expect("a run"), Status::Limit, "{analysis:?}");
+        assert!(clock.elapsed() < PATIENCE, "{analysis:?}");
+        let reason = &session.run.record.stop_reason;
+        assert!(reason.contains(word), "{analysis:?}: {reason}");
+    }
+}
+
+#[test]
+fn a_limit_that_is_not_reached_changes_no_bit() {
+    let run = |limit| {
+        let options = Options {
+            columns: vec!["DX(2,1)".into()],
+            limit,
+            ..Options::default()
+        };
+        let mut session = begin(model(PENDULUM), "limited", options);
+        let status = session.simulate(Analysis::Dynamic, 1.0, 10, &mut Unwatched);
+        assert_eq!(status.expect("a run"), Status::Completed);
+        values(&session, "DX(2,1)").to_vec()
+    };
+    assert_eq!(run(None), run(Some(3600.0)));
+}
