@@ -169,8 +169,8 @@ impl Tables {
         Ok(growing.complete(session, picture)?)
     }
 
-    /// Writes what is left of a run that another thread still works on, as [`Tables::complete`], but
-    /// for what only its session knows; returns the names of the files.
+    /// Writes what is left of a run that another thread still works on, as [`Tables::complete`],
+    /// but for what only its session knows; returns the names of the files.
     ///
     /// # Errors
     /// When a file cannot be written, or could not be while the run went on.
