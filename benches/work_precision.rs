@@ -53,7 +53,10 @@ fn study(problem: &str, budget: f64) -> Study {
         name: problem.to_string(),
         model: &model,
         steps: &script.steps,
-        options: Options::default(),
+        options: Options {
+            columns: asked,
+            ..Options::default()
+        },
         folders: Vec::new(),
         requests: (2..=12).map(|k| 10f64.powi(-k)).collect(),
         methods: Vec::new(),

@@ -14,7 +14,7 @@ mod running;
 mod scene;
 
 use cognate::analysis::work_limit::ProcessorClock;
-use scene::{Found, Outcome, Scene};
+use scene::{Claim, Found, Outcome, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -63,10 +63,13 @@ fn plain(scene: &Scene) -> String {
 fn surveyed(scene: &Scene) -> Surveyed {
     // without integration a method changes nothing
     let integrated = scene.analysis == running::Analysis::Dynamic;
-    let methods = if integrated {
-        &METHODS[..]
-    } else {
-        &METHODS[..1]
+    let is_told = |c: &Claim| matches!(c, Claim::Tells(_));
+    // what is told of a method is told of no other
+    let own = (scene.method).filter(|_| scene.claims.iter().any(is_told));
+    let methods: Vec<&'static str> = match (integrated, own) {
+        (_, Some(own)) => vec![own],
+        (true, None) => METHODS.to_vec(),
+        (false, None) => METHODS[..1].to_vec(),
     };
     let mut cells = Vec::new();
     for method in methods {

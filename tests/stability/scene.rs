@@ -47,7 +47,7 @@ pub struct Scene {
     steps: usize,
     pub error: f64,
     pub method: Option<&'static str>,
-    claims: Vec<Claim>,
+    pub claims: Vec<Claim>,
 }
 
 /// A scene of a family; ground with MARKER/1 at its origin is there, what else there is stands in `text`.
