@@ -30,6 +30,9 @@ pub struct Args {
     /// Of a model: print the outline as JSON
     #[arg(long)]
     json: bool,
+    /// Print all codes as Markdown, as docs/codes.md
+    #[arg(long, conflicts_with_all = ["what", "json"])]
+    markdown: bool,
 }
 
 /// Explains a code, a name or a model.
@@ -38,6 +41,7 @@ pub struct Args {
 /// When there is no such code or name, or the model has mistakes.
 pub fn run(args: &Args) -> Outcome {
     match &args.what {
+        None if args.markdown => say(&markdown()),
         None => say(&list()),
         Some(what) if is_model(what) => {
             let (model, dataset) = model_of(Path::new(what))?;
@@ -58,6 +62,31 @@ fn list() -> String {
     all()
         .map(|c| format!("{:width$}  {}\n", c.name, c.summary))
         .collect()
+}
+
+/// Returns all codes as a page of Markdown.
+fn markdown() -> String {
+    let mut page = String::from(
+        "# Codes of mistakes and warnings\n\n\
+         Every message has a code: `error[bad_number]`. `cognate explain CODE` prints one of these,\n\
+         with an example and its remedy. This page is made by `cognate explain --markdown`.\n",
+    );
+    for code in all() {
+        page += &format!(
+            "\n## {}\n\n{}.\n\n```text\n{}\n```\n",
+            code.name,
+            sentence(code.summary),
+            code.explanation
+        );
+    }
+    page
+}
+
+/// Returns a text with a capital at its beginning.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// Returns the explanation of a code, or else the page of a statement and the card of a name of the

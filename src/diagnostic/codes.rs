@@ -16,7 +16,7 @@ pub struct Code {
     pub name: &'static str,
     /// one line
     pub summary: &'static str,
-    /// when it is given, its cause, and the remedy; with examples
+    /// when it is given, its cause, and the remedy; then an example with its remedy, indented
     pub explanation: &'static str,
 }
 
@@ -96,7 +96,10 @@ Names are those of the language alone: constants (TIME, PI, DTOR, RTOD, MODE), I
 `cognate functions` lists them. There are no variables of one's own; a VARIABLE of the model is read by VARVAL(id).
 
 Upper and lower case are the same. Names of other languages are answered with what to write: LN is LOG, INT is AINT. The two
-languages keep their names apart: time is TIME in direct-entry functions and t in expression functions.",
+languages keep their names apart: time is TIME in direct-entry functions and t in expression functions.
+
+    LN(TIME)       write LOG(TIME)
+    omega*TIME     write VARVAL(7)*TIME, with VARIABLE/7, FUNCTION=12.5",
     },
     Code {
         name: "not_callable",
@@ -179,63 +182,88 @@ avoid a domain, guard it so: SQRT(MAX(x, 0)), x/MAX(ABS(y), 1E-9).",
         summary: "functions and parentheses lie too deep inside one another",
         explanation: "\
 A level is a function call, an IF, or a group in parentheses. The reader takes 256 levels, so that no text can exhaust it;
-I-DEAS took 10, which the profile `ideas` enforces. Divide the expression among VARIABLEs, read by VARVAL(id).",
+I-DEAS took 10, which the profile `ideas` enforces. Divide the expression among VARIABLEs, read by VARVAL(id).
+
+    VARIABLE/1, FUNCTION=the inner part
+    VARIABLE/2, FUNCTION=ABS(VARVAL(1))     reads it",
     },
     Code {
         name: "limit_symbols",
         summary: "more than 1000 operators, brackets, functions and numbers (profile ideas)",
         explanation: "\
 I-DEAS refused longer expressions. The limit is enforced in the profile `ideas` only. Divide the expression among VARIABLEs,
-read by VARVAL(id).",
+read by VARVAL(id).
+
+    VARIABLE/1, FUNCTION=the first terms
+    VARIABLE/2, FUNCTION=VARVAL(1) + the others",
     },
     Code {
         name: "limit_elements",
         summary: "more than 25 different elements of one kind (profile ideas)",
         explanation: "\
 I-DEAS took at most 25 different markers, 25 different joints, and so on in one expression. The limit is enforced in the
-profile `ideas` only. Divide the expression among VARIABLEs, read by VARVAL(id).",
+profile `ideas` only. Divide the expression among VARIABLEs, read by VARVAL(id).
+
+    VARIABLE/1, FUNCTION=what reads the first 25 markers
+    VARIABLE/2, FUNCTION=VARVAL(1) + the rest",
     },
     Code {
         name: "limit_length",
         summary: "the text has too many characters",
         explanation: "\
 The reader takes a million characters; I-DEAS took 500, which the profile `ideas` enforces. The column is that of the first
-character too many.",
+character too many.
+
+    cognate eval '1+1' --profile ideas     with the limits of I-DEAS
+    cognate eval '1+1'                     without them",
     },
     Code {
         name: "limit_lines",
         summary: "the text has more than 20 lines (profile ideas)",
         explanation: "\
 I-DEAS took 20 lines. The limit is enforced in the profile `ideas` only. The column is that of the first character of line
-21, counted from the beginning of the text.",
+21, counted from the beginning of the text.
+
+    VARIABLE/1, FUNCTION=the first twenty lines
+    VARIABLE/2, FUNCTION=VARVAL(1) + the others",
     },
     Code {
         name: "missing_value",
         summary: "an input of the expression was not given a value",
         explanation: "\
 TIME, MODE and the measures of a model come from outside. At a prompt they are given: --time for TIME, marker states for DX
-and its relatives, or by name.",
+and its relatives, or by name.
+
+    cognate eval 'SIN(TIME)' --time 0.5
+    cognate eval 'DX(1,2)' --markers m.json      m.json: {\"1\": {\"r\": [3,0,0]}, \"2\": {}}",
     },
     Code {
         name: "needs_history",
         summary: "the value depends on the past, which is not known here",
         explanation: "\
 DELAY reads values of earlier times, and AX, AY, AZ and INCANG count turns. In a simulation the solver keeps that history. A
-single evaluation has none: DELAY is refused, and the angles are principal values between -PI and PI.",
+single evaluation has none: DELAY is refused, and the angles are principal values between -PI and PI.
+
+    cognate run model.acf --column 'DELAY(DX(1,2), 0.1, 0)'      in a run there is a past",
     },
     Code {
         name: "unknown_element",
         summary: "a spline or curve is named that does not exist",
         explanation: "\
 AKISPL, CUBSPL, INTERP, CURVE and INVPSD read data by identifier. The data must be there: a SPLINE or CURVE of the model, or
-the file given with --splines.",
+the file given with --splines.
+
+    AKISPL(TIME, 0, 7, 0)     needs SPLINE/7, X=0,1,2,3, Y=0,1,4,9",
     },
     Code {
         name: "spline_data",
         summary: "the data of a spline make no curve",
         explanation: "\
 A spline has at least four points, x increases from point to point, and so does z from curve to curve; every curve has as
-many values as there are x.",
+many values as there are x.
+
+    SPLINE/1, X=0,1,1,2, Y=0,1,2,3     x must grow: 0,1,1.001,2
+    SPLINE/1, X=0,1,2, Y=0,1,2         four points at least",
     },
     Code {
         name: "degrees_or_radians",
@@ -243,7 +271,10 @@ many values as there are x.",
         explanation: "\
 Direct-entry functions take and give radians; a literal with the suffix D is degrees: SIN(30D). Expression functions take and
 give degrees: sin(30). SIN(30) is a legal direct-entry function, but thirty radians are rarely meant. The same holds for
-REULER, IC and ANGLE of a dataset and for the FUNCTION of a MOTION that turns: 90D is a quarter of a turn, 90 are 14.3 turns.",
+REULER, IC and ANGLE of a dataset and for the FUNCTION of a MOTION that turns: 90D is a quarter of a turn, 90 are 14.3 turns.
+
+    SIN(30)                    write SIN(30D)
+    MARKER/1, REULER=90,0,0    write REULER=90D,0,0",
     },
     Code {
         name: "doubtful_precedence",
@@ -280,14 +311,19 @@ with D, the function language does not:
         explanation: "\
 AX, AY and AZ are angles of projections: each is the angle of turning if the markers turn about that axis alone. Two of
 them together describe an orientation only while both are small. YAW, PITCH and ROLL, or PSI, THETA and PHI, are the
-angles of one sequence of turns.",
+angles of one sequence of turns.
+
+    AX(1,2) + AY(1,2)          write PITCH(1,2), ROLL(1,2)",
     },
     Code {
         name: "no_model",
         summary: "a command file names no dataset",
         explanation: "\
 A command file begins with FILE/MODEL=name, after blank lines or comments; or, as answers to the old prompts, with the
-name of the dataset on its first line and that of the results on its second.",
+name of the dataset on its first line and that of the results on its second.
+
+    FILE/MODEL=slider_crank
+    SIMULATE/DYNAMIC, END=1",
     },
     Code {
         name: "no_end",
@@ -304,21 +340,27 @@ The clock goes on from one simulation to the next. END is a time of that clock, 
         summary: "a file cannot be read",
         explanation: "\
 It does not exist, is a folder, or may not be read by this user; the message has the system's own words. Names of
-files are taken from where the command runs.",
+files are taken from where the command runs.
+
+    cognate run modell.acf     is it called model.acf? ls shows the files",
     },
     Code {
         name: "file_unwritable",
         summary: "a file cannot be written",
         explanation: "\
 The folder does not exist, or this user may not write there, or the disk is full; the message has the system's own
-words. A file is written beside its place and then moved there, so that a failure leaves the old one as it was.",
+words. A file is written beside its place and then moved there, so that a failure leaves the old one as it was.
+
+    cognate run model.acf --out /tmp/results",
     },
     Code {
         name: "result_format",
         summary: "the name of a file tells no format of results that is known",
         explanation: "\
 The ending of a file's name tells its format. Read are .res (XML and the old text form), .gra and .csv; written are .csv,
-.json, .res and .msg.",
+.json, .res and .msg.
+
+    cognate convert run.res run.csv",
     },
     Code {
         name: "result_syntax",
@@ -327,33 +369,45 @@ The ending of a file's name tells its format. Read are .res (XML and the old tex
 The message has the line, where there is one. In .csv files every row has as many cells as the first, which holds the
 names; a second row may hold units; all else are numbers. In .res files every component has a number of its own, and
 every step has as many values as there are components. A file that a program was still writing ends too early: convert
-it again when it is complete.",
+it again when it is complete.
+
+    time,x
+    0,1
+    0.1           a cell is missing: 0.1,2",
     },
     Code {
         name: "unknown_column",
         summary: "the results have no column of this name",
         explanation: "\
 Columns are called by the text of their expression, or ENTITY.COMPONENT as in PART_2_XFORM.X. Blanks and upper or
-lower case do not matter. The advice names columns that are spelled alike, or the first of all.",
+lower case do not matter. The advice names columns that are spelled alike, or the first of all.
+
+    cognate plot run.csv --y slider.x       cognate plot run.csv --list prints the names",
     },
     Code {
         name: "unknown_sequence",
         summary: "the results have no sequence of this name",
         explanation: "\
 A sequence holds the rows of one simulation: modelInput_001, initialConditions_001, static_001, kinematic_001,
-dynamic_001 and so on. The advice names those that are there.",
+dynamic_001 and so on. The advice names those that are there.
+
+    cognate convert run.res run.csv --sequence dynamic_001",
     },
     Code {
         name: "empty_plot",
         summary: "there is nothing to plot",
         explanation: "\
-The columns have no rows, or no value in them is finite.",
+The columns have no rows, or no value in them is finite.
+
+    SQRT(DX(1,2))     has no value while DX is negative: SQRT(MAX(0, DX(1,2)))",
     },
     Code {
         name: "plot_failed",
         summary: "a plot could not be drawn",
         explanation: "\
-The drawing library refused; the message has its words. Please report it with the data.",
+The drawing library refused; the message has its words. Please report it with the data.
+
+    cognate plot run.csv --y slider.X        in the terminal works without the library",
     },
     Code {
         name: "bad_data",
@@ -383,14 +437,20 @@ The run goes on, and its results are those of the simpler law, which the message
         summary: "a range of times that has no samples, or too many",
         explanation: "\
 A range is first:last:step, as in 0:2:0.01. The step leads from the first to the last time: it is negative when time runs
-backwards, and never zero. There are at most ten million samples.",
+backwards, and never zero. There are at most ten million samples.
+
+    0:2:-0.01         write 0:2:0.01
+    2:0:0.01          write 2:0:-0.01",
     },
     Code {
         name: "bad_definition",
         summary: "a name that cannot be defined with :let",
         explanation: "\
 A name begins with a letter and goes on with letters, digits and underscores. Names of the language cannot be given another
-meaning. What is defined stands for its whole expression: after `:let w = 1+1`, w*3 is 6.",
+meaning. What is defined stands for its whole expression: after `:let w = 1+1`, w*3 is 6.
+
+    :let 2x = 1       write :let x2 = 1
+    :let sin = 1      SIN is a name of the language",
     },
     Code {
         name: "motion_reads",
@@ -441,7 +501,9 @@ FUNCTION=USER needs a routine that is not part of the dataset: tabulate the curv
         explanation: "\
 PTCV and CVCV hold the contact on the curve; an open curve ends. The message says at which end and by how much it is missed.
 Extend the curve well past the expected contact (about 20% on each side), or make it CLOSED where it returns to itself.
-In a run the same stops the simulation; results up to the end of the curve are kept.",
+In a run the same stops the simulation; results up to the end of the curve are kept.
+
+    CURVE/1, OPEN, CURVE_POINTS, MATRIX=1        add points at both ends, or CLOSED",
     },
     Code {
         name: "no_common_tangent",
@@ -449,7 +511,9 @@ In a run the same stops the simulation; results up to the end of the curve are k
         explanation: "\
 A CVCV makes two curves touch: in one point, with one tangent there. Where no pair of places has parallel tangents square to
 the line between them, there is nothing to hold. Bring the parts nearer to where they touch, or name the places of the first
-contact with IDISP and JDISP. Two straight lines touch everywhere and nowhere: one of the curves has to be curved.",
+contact with IDISP and JDISP. Two straight lines touch everywhere and nowhere: one of the curves has to be curved.
+
+    CVCV/1, ICURVE=1, IRM=11, JCURVE=2, JRM=21, IDISP=0,20,0, JDISP=0,0,0",
     },
     Code {
         name: "curves_not_coplanar",
@@ -457,7 +521,9 @@ contact with IDISP and JDISP. Two straight lines touch everywhere and nowhere: o
         explanation: "\
 The curves of a CVCV lie in the x-y planes of IRM and JRM, z = 0, those of a CONTACT in the planes of the markers of their
 GRAPHICS (CRM, CM), and these planes must be one and the same all the time.
-Neither turns parts to make them so: that is up to joints, such as PLANAR, or REVOLUTE with parallel axes.",
+Neither turns parts to make them so: that is up to joints, such as PLANAR, or REVOLUTE with parallel axes.
+
+    MARKER/21, PART=2, QP=0,0,5      the plane z = 0 of this marker is 5 off: QP=0,0,0",
     },
     Code {
         name: "motion_jumps",
@@ -479,7 +545,9 @@ jumps it runs, with a warning, and forces jump.",
         explanation: "\
 `--method` and INTEGRATOR/… name a method: AUTO (the program chooses), DOP853, RADAU5, BDF, HHT, NEWMARK. The names
 of Adams are understood too: GSTIFF, WSTIFF, HASTIFF and CONSTANT_BDF are done by RADAU5, ABAM and RKF45 by DOP853.
-Where BDF, HHT or NEWMARK cannot take the functions of a model, RADAU5 takes their place and the run says so.",
+Where BDF, HHT or NEWMARK cannot take the functions of a model, RADAU5 takes their place and the run says so.
+
+    cognate run model.acf --method DOPRI     write --method DOP853",
     },
     Code {
         name: "user_routine",
@@ -508,25 +576,34 @@ solved together. That needs a solution, and one near where the search begins: th
         summary: "the model cannot be linearized in this state",
         explanation: "\
 LINEAR needs finite derivatives of everything that moves: a force along the line between two markers has none where they
-coincide, a square root none at zero. Settle the model first (SIMULATE/STATIC, `cognate linear --static`), or move it.",
+coincide, a square root none at zero. Settle the model first (SIMULATE/STATIC, `cognate linear --static`), or move it.
+
+    SIMULATE/STATIC
+    LINEAR/EIGENSOL",
     },
     Code {
         name: "usage",
         summary: "a command is not used as it can be used",
         explanation: "\
-`cognate --help` lists the commands, `cognate COMMAND --help` shows one with examples; in the REPL `:help`.",
+`cognate --help` lists the commands, `cognate COMMAND --help` shows one with examples; in the REPL `:help`.
+
+    cognate run --help",
     },
     Code {
         name: "terminal",
         summary: "the terminal cannot be used for the REPL",
         explanation: "\
-The message has the system's own words. Lines can be piped in instead: `cognate repl < session.txt`.",
+The message has the system's own words. Lines can be piped in instead: `cognate repl < session.txt`.
+
+    echo 'SIN(TIME)' | cognate repl",
     },
     Code {
         name: "bug",
         summary: "the program found a mistake of its own",
         explanation: "\
-Something happened that its authors held to be impossible. Please report the command, its input, and what was printed.",
+Something happened that its authors held to be impossible. Please report the command, its input, and what was printed.
+
+    cognate run model.acf 2> report.txt     and report.txt with model.acf and model.adm",
     },
 ];
 

@@ -103,7 +103,7 @@ fn every_code_in_the_sources_is_explained() {
 }
 
 #[test]
-fn codes_are_explained_once_and_in_full_sentences() {
+fn codes_are_explained_once_with_reason_and_example() {
     let mut names = BTreeSet::new();
     for code in all() {
         assert!(names.insert(code.name), "{} stands twice", code.name);
@@ -112,6 +112,8 @@ fn codes_are_explained_once_and_in_full_sentences() {
             "{}",
             code.name
         );
+        let example = code.explanation.lines().any(|l| l.starts_with("    "));
+        assert!(example, "{}: an example, indented, is missing", code.name);
         assert!(
             code.explanation.lines().all(|l| l.chars().count() <= 160),
             "{}",

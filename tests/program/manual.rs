@@ -88,6 +88,31 @@ fn the_page_of_statements_is_the_programs_own() {
 }
 
 #[test]
+fn the_page_of_codes_is_the_programs_own() {
+    is_made_by_the_program("codes.md", &cognate(&["explain", "--markdown"]).out);
+}
+
+#[test]
+fn every_field_of_the_record_is_explained() {
+    let model = manual::example("slider_crank").unwrap();
+    scratch("manual_record", "slider_crank.adm", model.dataset);
+    let commands = scratch("manual_record", "slider_crank.acf", model.commands);
+    let results = commands.with_file_name("results");
+    let done = cognate(&["run", path(&commands), "--out", path(&results), "--json"]);
+    let record: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    let text = std::fs::read_to_string(page("files.md")).unwrap();
+    let simulation = record["simulations"][0].as_object().unwrap();
+    let fields = record.as_object().unwrap().keys().chain(simulation.keys());
+    let missing: Vec<&String> = fields
+        .filter(|f| !text.contains(&format!("`{f}`")))
+        .collect();
+    assert!(
+        missing.is_empty(),
+        "explain these in docs/files.md: {missing:?}"
+    );
+}
+
+#[test]
 fn statements_are_explained_by_name_and_as_json() {
     let contact = cognate(&["explain", "CONTACT"]).out;
     assert!(

@@ -8,8 +8,11 @@ pub static MODEL_CODES: &[Code] = &[
     Code {
         name: "cannot_open",
         summary: "a file cannot be opened",
-        explanation: "The system's own words say why: it is not there, it is a folder, or it may not be read. The first line of a command
-file that is no command is taken as the name of the dataset; FILE/MODEL=name is the command that names one.",
+        explanation: "\
+The system's own words say why: it is not there, it is a folder, or it may not be read. The first line of a command
+file that is no command is taken as the name of the dataset; FILE/MODEL=name is the command that names one.
+
+    FILE/MODEL=slider_crank     means slider_crank.adm beside the command file",
     },
     Code {
         name: "no_mass",
@@ -26,7 +29,10 @@ fine where what they carry has mass, or where joints and motions hold them; stat
         summary: "a place where the text cannot be taken apart into statements",
         explanation: "\
 Statements consist of words, numbers, texts and separators (comma, =, /, \\, :). What stands here begins none of them; a file
-that is not text, or a sign pasted from a word processor, does this.",
+that is not text, or a sign pasted from a word processor, does this.
+
+    MARKER/1, QP=1;2;3          write QP=1,2,3
+    PART/2, MASS=“5”            write MASS=5",
     },
     Code {
         name: "statement_as_title",
@@ -39,94 +45,145 @@ The first line of a dataset is its title and is never read as a statement. A PAR
     Code {
         name: "missing_end",
         summary: "the dataset does not end with END",
-        explanation: "END as the last statement shows that the file is complete. Without it, it may have been cut off; all of it is read nevertheless.",
+        explanation: "\
+END as the last statement shows that the file is complete. Without it, it may have been cut off; all of it is read nevertheless.
+
+    END                         as the last line",
     },
     Code {
         name: "unknown_statement",
         summary: "a statement or kind of element that does not exist",
         explanation: "\
 Statements may be shortened as long as they stay unique (MARK for MARKER). A line that begins with a comma continues the
-statement before it; without the comma it begins a new one, so a lost comma makes an argument look like a statement.",
+statement before it; without the comma it begins a new one, so a lost comma makes an argument look like a statement.
+
+    MARKR/1, PART=1             write MARKER/1, PART=1
+    PART/2, MASS=1
+    CM=20                       the comma is lost: , CM=20",
     },
     Code {
         name: "ambiguous_statement",
         summary: "a shortened statement that may be one of several",
-        explanation: "Write as many letters as make it unique: `SPL` is SPLINE, `SP` may be SPLINE or SPRINGDAMPER.",
+        explanation: "\
+Write as many letters as make it unique: `SPL` is SPLINE, `SP` may be SPLINE or SPRINGDAMPER.
+
+    SP/1, X=0,1,2,3             write SPL/1 or SPLINE/1",
     },
     Code {
         name: "missing_identifier",
         summary: "a statement without the number of its element",
-        explanation: "Elements have numbers, written after a slash: PART/2, MARKER/21. They need not follow each other.",
+        explanation: "\
+Elements have numbers, written after a slash: PART/2, MARKER/21. They need not follow each other.
+
+    MARKER, PART=1              write MARKER/1, PART=1",
     },
     Code {
         name: "unexpected_identifier",
         summary: "a number for something of which there is only one",
-        explanation: "Settings such as UNITS, ACCGRAV or INTEGRATOR stand once in a model and take no number.",
+        explanation: "\
+Settings such as UNITS, ACCGRAV or INTEGRATOR stand once in a model and take no number.
+
+    ACCGRAV/1, JGRAV=-9.81      write ACCGRAV/JGRAV=-9.81",
     },
     Code {
         name: "not_an_identifier",
         summary: "something else where the number of an element should stand",
-        explanation: "Numbers of elements are whole numbers from 1 to 2147483647, without sign, point or exponent.",
+        explanation: "\
+Numbers of elements are whole numbers from 1 to 2147483647, without sign, point or exponent.
+
+    PART/-2                     write PART/2
+    MARKER/1.5                  write MARKER/15",
     },
     Code {
         name: "unknown_argument",
         summary: "an argument that this statement does not have",
         explanation: "\
 The message names near words where there are any. Arguments may be shortened as long as they stay unique. A statement
-goes on in the next line only when that line begins with a comma.",
+goes on in the next line only when that line begins with a comma.
+
+    PART/3, MASSE=1             write PART/3, MASS=1
+    cognate statements PART     shows all of its arguments",
     },
     Code {
         name: "ambiguous_argument",
         summary: "a shortened argument that may be one of several",
-        explanation: "Write as many letters as make it unique.",
+        explanation: "\
+Write as many letters as make it unique.
+
+    FRICTION/1, MU=0.3          write MU_STATIC=0.3",
     },
     Code {
         name: "given_twice",
         summary: "the same argument twice in one statement",
-        explanation: "Only one of them can be meant. Often the statement that should follow lost its name.",
+        explanation: "\
+Only one of them can be meant. Often the statement that should follow lost its name.
+
+    PART/2, MASS=1, MASS=2      write PART/2, MASS=2",
     },
     Code {
         name: "excluded_argument",
         summary: "two arguments of which only one may stand",
         explanation: "\
-For example END and DURATION of SIMULATE both say when it ends, STEPS and DTOUT both say how often there is output.",
+For example END and DURATION of SIMULATE both say when it ends, STEPS and DTOUT both say how often there is output.
+
+    SIMULATE/DYNAMIC, END=2, DURATION=1       write one of them",
     },
     Code {
         name: "unexpected_value",
         summary: "a value after a keyword that takes none, or none where one is needed",
-        explanation: "Some arguments are keywords alone (REVOLUTE, GROUND); the others need = and a value (I = 12).",
+        explanation: "\
+Some arguments are keywords alone (REVOLUTE, GROUND); the others need = and a value (I = 12).
+
+    JOINT/1, REVOLUTE=1, I=12, J=21           write JOINT/1, REVOLUTE, I=12, J=21",
     },
     Code {
         name: "unexpected_text",
         summary: "something left over in a statement",
         explanation: "\
-Arguments are separated by commas. A statement goes on in the next line when that line begins with a comma.",
+Arguments are separated by commas. A statement goes on in the next line when that line begins with a comma.
+
+    MARKER/1, PART=1 QP=1,2,3   write MARKER/1, PART=1, QP=1,2,3",
     },
     Code {
         name: "not_a_number",
         summary: "something else where a number should stand",
         explanation: "\
-Numbers are written 2, 2., .5, 1.5E-3. The suffix D makes degrees (30D); an exponent is written with E.",
+Numbers are written 2, 2., .5, 1.5E-3. The suffix D makes degrees (30D); an exponent is written with E.
+
+    MASS=1,5                    write MASS=1.5
+    MASS=1D3                    write MASS=1E3",
     },
     Code {
         name: "not_a_whole_number",
         summary: "something else where a whole number should stand",
-        explanation: "Counts and identifiers have neither point nor exponent.",
+        explanation: "\
+Counts and identifiers have neither point nor exponent.
+
+    JOINT/1, REVOLUTE, I=12.0, J=21           write I=12",
     },
     Code {
         name: "blank_before_suffix",
         summary: "a blank between a number and its suffix D",
-        explanation: "30 D is read as 30D, thirty degrees; other programs may refuse it.",
+        explanation: "\
+30 D is read as 30D, thirty degrees; other programs may refuse it.
+
+    REULER=90 D,0,0             write REULER=90D,0,0",
     },
     Code {
         name: "degrees_of_a_length",
         summary: "the suffix D at something that is not an angle",
-        explanation: "D means degrees, and turns the number into radians. At a length or a mass that is surely not meant: write E for an exponent.",
+        explanation: "\
+D means degrees, and turns the number into radians. At a length or a mass that is surely not meant: write E for an exponent.
+
+    QP=1D3,0,0                  write QP=1E3,0,0",
     },
     Code {
         name: "unknown_word",
         summary: "a word that is none of those that may stand here",
-        explanation: "The message lists them.",
+        explanation: "\
+The message lists them.
+
+    UNITS/FORCE=NEWTONS, …      write FORCE=NEWTON",
     },
     Code {
         name: "missing_backslash",
@@ -139,149 +196,240 @@ The text of a function goes on to the end of the statement. Where another argume
     Code {
         name: "wrong_count",
         summary: "more or fewer numbers than belong here",
-        explanation: "Points have three coordinates, inertias six components, a spline as many values as places, a matrix rows times columns.",
+        explanation: "\
+Points have three coordinates, inertias six components, a spline as many values as places, a matrix rows times columns.
+
+    QP=1,2                      write QP=1,2,0",
     },
     Code {
         name: "endless_calls",
         summary: "command files call each other too deeply",
-        explanation: "A command file may run another one. One that comes back to itself would never end.",
+        explanation: "\
+A command file may run another one. One that comes back to itself would never end.
+
+    a.acf: FILE/COMMAND=b.acf   and b.acf: FILE/COMMAND=a.acf",
     },
     Code {
         name: "defined_twice",
         summary: "two elements of a kind with the same number",
-        explanation: "The message names the line of the first. Numbers are unique within a kind of element: MARKER/1 and PART/1 are different.",
+        explanation: "\
+The message names the line of the first. Numbers are unique within a kind of element: MARKER/1 and PART/1 are different.
+
+    MARKER/1, PART=1
+    MARKER/1, PART=2            write MARKER/2, PART=2",
     },
     Code {
         name: "contradiction",
         summary: "arguments of a statement that do not go together",
-        explanation: "The message says which; two different types of a joint, for example, or a function and a constant for the same thing.",
+        explanation: "\
+The message says which; two different types of a joint, for example, or a function and a constant for the same thing.
+
+    JOINT/1, REVOLUTE, TRANSLATIONAL, I=12, J=21      write one type",
     },
     Code {
         name: "missing_argument",
         summary: "an argument without which the element means nothing",
-        explanation: "The message says which one is missing. Nothing is guessed.",
+        explanation: "\
+The message says which one is missing. Nothing is guessed.
+
+    JOINT/1, REVOLUTE, I=12     write JOINT/1, REVOLUTE, I=12, J=21",
     },
     Code {
         name: "unfit_value",
         summary: "a value that this argument cannot have",
-        explanation: "The message says why: negative where only positive numbers make sense, zero where it is divided by, infinite.",
+        explanation: "\
+The message says why: negative where only positive numbers make sense, zero where it is divided by, infinite.
+
+    SIMULATE/DYNAMIC, END=1, STEPS=0          write STEPS=100",
     },
     Code {
         name: "marker_without_part",
         summary: "a marker that does not say which part it belongs to",
-        explanation: "It is taken to belong to the last PART before it. Write PART = to be safe when statements are moved.",
+        explanation: "\
+It is taken to belong to the last PART before it. Write PART = to be safe when statements are moved.
+
+    MARKER/21, QP=1,0,0         write MARKER/21, PART=2, QP=1,0,0",
     },
     Code {
         name: "no_ground",
         summary: "no part is the ground",
-        explanation: "Every model has one part that does not move: PART/1, GROUND.",
+        explanation: "\
+Every model has one part that does not move: PART/1, GROUND.
+
+    PART/1, GROUND",
     },
     Code {
         name: "several_grounds",
         summary: "more than one part is the ground",
-        explanation: "There is one ground. Put the markers of both on it.",
+        explanation: "\
+There is one ground. Put the markers of both on it.
+
+    PART/1, GROUND
+    PART/9, GROUND              leave it out, and write PART=1 in its markers",
     },
     Code {
         name: "mass_of_ground",
         summary: "the ground has a mass",
-        explanation: "The ground never moves, so that its mass and inertia mean nothing. Perhaps GROUND stands at the wrong part.",
+        explanation: "\
+The ground never moves, so that its mass and inertia mean nothing. Perhaps GROUND stands at the wrong part.
+
+    PART/1, GROUND, MASS=5      write PART/1, GROUND",
     },
     Code {
         name: "negative_mass",
         summary: "a mass below zero",
-        explanation: "Masses are zero or positive.",
+        explanation: "\
+Masses are zero or positive.
+
+    PART/2, MASS=-2, CM=20      write MASS=2",
     },
     Code {
         name: "mass_without_cm",
         summary: "a part with a mass but without a centre of mass",
-        explanation: "CM = names the marker at the centre of mass.",
+        explanation: "\
+CM = names the marker at the centre of mass.
+
+    PART/2, MASS=2              write PART/2, MASS=2, CM=20 and MARKER/20, PART=2",
     },
     Code {
         name: "inertia_without_marker",
         summary: "moments of inertia about a point that is not given",
-        explanation: "IP are the moments about the marker IM, or about CM where there is no IM.",
+        explanation: "\
+IP are the moments about the marker IM, or about CM where there is no IM.
+
+    PART/2, IP=1,1,1            write PART/2, CM=20, IP=1,1,1",
     },
     Code {
         name: "negative_inertia",
         summary: "a moment of inertia below zero",
-        explanation: "Moments of inertia are zero or positive; products may have either sign.",
+        explanation: "\
+Moments of inertia are zero or positive; products may have either sign.
+
+    IP=-1,1,1                   write IP=1,1,1",
     },
     Code {
         name: "impossible_inertia",
         summary: "moments of inertia that no distribution of mass has",
         explanation: "\
 Each principal moment is at most the sum of the two others, and none is negative. IP is xx, yy, zz, xy, xz, yz, where
-products are the integrals of x y dm with positive sign; a tensor with negated products fails here.",
+products are the integrals of x y dm with positive sign; a tensor with negated products fails here.
+
+    IP=1,1,5                    5 is more than 1 + 1",
     },
     Code {
         name: "marker_of_another_part",
         summary: "CM or IM is a marker of another part",
-        explanation: "The centre of mass and the inertia of a part are given by markers of that part.",
+        explanation: "\
+The centre of mass and the inertia of a part are given by markers of that part.
+
+    PART/2, MASS=1, CM=30
+    MARKER/30, PART=3           write CM=20, with MARKER/20, PART=2",
     },
     Code {
         name: "floating_marker",
         summary: "a FLOATING marker where a fixed one is needed",
-        explanation: "A floating marker has no place of its own: it is moved by the one force or curve that names it as JFLOAT or IFLOAT.",
+        explanation: "\
+A floating marker has no place of its own: it is moved by the one force or curve that names it as JFLOAT or IFLOAT.
+
+    JOINT/1, REVOLUTE, I=19, J=21, where MARKER/19 is FLOATING: take a marker with a place",
     },
     Code {
         name: "floating_marker_shared",
         summary: "a floating marker with two owners",
-        explanation: "Each force or curve puts its floating marker somewhere else; every one needs its own.",
+        explanation: "\
+Each force or curve puts its floating marker somewhere else; every one needs its own.
+
+    VFORCE/1, I=20, JFLOAT=19, …
+    VFORCE/2, I=30, JFLOAT=19, …    write JFLOAT=29, with MARKER/29, PART=1, FLOATING",
     },
     Code {
         name: "not_floating",
         summary: "JFLOAT or IFLOAT names a marker that is not FLOATING",
-        explanation: "Write MARKER/id, PART = …, FLOATING for it; its position is found by the solver.",
+        explanation: "\
+Write MARKER/id, PART = …, FLOATING for it; its position is found by the solver.
+
+    MARKER/19, PART=1, FLOATING",
     },
     Code {
         name: "unknown_marker",
         summary: "a marker that is not there, or has no place",
-        explanation: "A marker must exist and belong to a part of the model.",
+        explanation: "\
+A marker must exist and belong to a part of the model.
+
+    JOINT/1, REVOLUTE, I=44, J=11     write MARKER/44, PART=4 or another I",
     },
     Code {
         name: "no_direction",
         summary: "points that give no direction",
-        explanation: "ZP and XP (ZG and XG) are points on the axes: different from the origin, from each other, and not in line with it.",
+        explanation: "\
+ZP and XP (ZG and XG) are points on the axes: different from the origin, from each other, and not in line with it.
+
+    MARKER/1, PART=1, QP=1,0,0, ZP=1,0,0      ZP is the origin: write ZP=1,0,1",
     },
     Code {
         name: "same_part",
         summary: "both markers belong to the same part",
-        explanation: "A joint between them would contradict or repeat what is rigid already; a spring between them never acts.",
+        explanation: "\
+A joint between them would contradict or repeat what is rigid already; a spring between them never acts.
+
+    JOINT/1, REVOLUTE, I=21, J=22, both on PART/2     one of them belongs to another part",
     },
     Code {
         name: "turns_point_mass",
         summary: "a point mass where something must be able to turn",
-        explanation: "POINT_MASS has no orientation. It takes SPHERICAL joints, and the primitives ATPOINT, INLINE and INPLANE.",
+        explanation: "\
+POINT_MASS has no orientation. It takes SPHERICAL joints, and the primitives ATPOINT, INLINE and INPLANE.
+
+    JOINT/1, REVOLUTE, I=30, J=11, MARKER/30 on a POINT_MASS     write SPHERICAL, or make it a PART",
     },
     Code {
         name: "driven_twice",
         summary: "two motions for the same freedom of a joint",
-        explanation: "One of them would contradict the other.",
+        explanation: "\
+One of them would contradict the other.
+
+    MOTION/1, JOINT=1, FUNCTION=TIME
+    MOTION/2, JOINT=1, FUNCTION=2*TIME        leave one out",
     },
     Code {
         name: "motion_on_wrong_joint",
         summary: "a motion at a joint that does not move this way",
-        explanation: "Motions drive REVOLUTE (rotation), TRANSLATIONAL (translation) and CYLINDRICAL (either) joints.",
+        explanation: "\
+Motions drive REVOLUTE (rotation), TRANSLATIONAL (translation) and CYLINDRICAL (either) joints.
+
+    MOTION/1, JOINT=1 of a SPHERICAL joint    write MOTION/1, I=21, J=11, B3, FUNCTION=…",
     },
     Code {
         name: "wrong_joint",
         summary: "a joint that this element cannot use",
-        explanation: "Couplers and gears take REVOLUTE, TRANSLATIONAL and CYLINDRICAL joints; FRICTION takes those that slide or turn.",
+        explanation: "\
+Couplers and gears take REVOLUTE, TRANSLATIONAL and CYLINDRICAL joints; FRICTION takes those that slide or turn.
+
+    COUPLER/1, JOINTS=1,2, where JOINT/2 is SPHERICAL    a REVOLUTE joint has one angle",
     },
     Code {
         name: "no_common_carrier",
         summary: "the joints of a gear do not share a carrier",
-        explanation: "The J markers of both joints and the marker CV must belong to the part that carries both wheels.",
+        explanation: "\
+The J markers of both joints and the marker CV must belong to the part that carries both wheels.
+
+    GEAR/1, JOINTS=1,2, CV=14: J of JOINT/1, J of JOINT/2 and MARKER/14 on one part",
     },
     Code {
         name: "gear_carrier",
         summary: "the joints of a gear do not share a carrier",
-        explanation: "The J markers of both joints and the marker CV must belong to the part that carries both wheels.",
+        explanation: "\
+The J markers of both joints and the marker CV must belong to the part that carries both wheels.
+
+    GEAR/1, JOINTS=1,2, CV=14: J of JOINT/1, J of JOINT/2 and MARKER/14 on one part",
     },
     Code {
         name: "gear_line_of_action",
         summary: "the wheels of a gear cannot push each other where CV stands",
-        explanation: "CV stands where the pitch circles touch, its z axis along the common velocity there.",
+        explanation: "\
+CV stands where the pitch circles touch, its z axis along the common velocity there.
+
+    MARKER/14, PART=1, QP=30,0,0, REULER=180D,90D,0D     z along y, for wheels side by side along x",
     },
     Code {
         name: "no_units",
@@ -297,12 +445,17 @@ Without UNITS a force is a mass times an acceleration (UCF = 1): right for kg, m
         summary: "a number that cannot be meant in these units",
         explanation: "\
 A gravity of 9.81 where lengths are millimetres, moments of inertia in kg m² among millimetres, a stiffness on which a mass
-oscillates faster than any step: the message says the number and what it means.",
+oscillates faster than any step: the message says the number and what it means.
+
+    UNITS/SYSTEM=MMKS and ACCGRAV/JGRAV=-9.81     write JGRAV=-9806.65",
     },
     Code {
         name: "negative_stiffness",
         summary: "a spring that pushes away from its free position",
-        explanation: "K, KT, KMATRIX and STIFFNESS are positive: the force is against the displacement without a sign of theirs.",
+        explanation: "\
+K, KT, KMATRIX and STIFFNESS are positive: the force is against the displacement without a sign of theirs.
+
+    SPRINGDAMPER/1, TRANSLATIONAL, I=30, J=20, K=-10     write K=10",
     },
     Code {
         name: "negative_damping",
@@ -317,41 +470,60 @@ C, CT, CMATRIX, DAMPING and friction coefficients are positive. In a FUNCTION th
         summary: "a part that falls for ever",
         explanation: "\
 No constraint, force or contact leads from the part to ground, and there is gravity. A part with an initial velocity is taken
-as thrown and not doubted.",
+as thrown and not doubted.
+
+    JOINT/4, REVOLUTE, I=40, J=13      between the part and what carries it",
     },
     Code {
         name: "forgotten_joint",
         summary: "two markers on each other that nothing uses",
         explanation: "\
 Markers of two parts lie on each other, no element uses them, and nothing ties the two parts: what is left where a JOINT
-was deleted, or is still to be written.",
+was deleted, or is still to be written.
+
+    JOINT/3, REVOLUTE, I=31, J=41      the markers that lie on each other",
     },
     Code {
         name: "stands_twice",
         summary: "two joints that are one",
-        explanation: "They are of the same type, between the same parts, at the same place: the second holds nothing, and reactions are not unique.",
+        explanation: "\
+They are of the same type, between the same parts, at the same place: the second holds nothing, and reactions are not unique.
+
+    JOINT/1, REVOLUTE, I=21, J=11
+    JOINT/2, REVOLUTE, I=22, J=12      leave it out, or CYLINDRICAL for the second bearing",
     },
     Code {
         name: "superseded",
         summary: "arguments of former releases that do nothing",
-        explanation: "JOINT once took MU_STAT_ROT, MU_DYN_ROT and others. They are kept when the dataset is written, and not computed; FRICTION is.",
+        explanation: "\
+JOINT once took MU_STAT_ROT, MU_DYN_ROT and others. They are kept when the dataset is written, and not computed; FRICTION is.
+
+    JOINT/1, REVOLUTE, I=21, J=11, MU_DYN_ROT=0.1     write FRICTION/1, JOINT=1, MU_DYNAMIC=0.1",
     },
     Code {
         name: "few_points",
         summary: "fewer points than a cubic spline needs",
-        explanation: "AKISPL, CUBSPL and CURVE need at least four.",
+        explanation: "\
+AKISPL, CUBSPL and CURVE need at least four.
+
+    SPLINE/1, X=0,1, Y=0,2     write X=0,0.3,0.7,1, Y=0,0.6,1.4,2",
     },
     Code {
         name: "not_increasing",
         summary: "places of a spline that do not increase",
-        explanation: "X, and Z of a family of curves, must grow from each to the next.",
+        explanation: "\
+X, and Z of a family of curves, must grow from each to the next.
+
+    SPLINE/1, X=0,2,1,3, Y=…   write X=0,1,2,3 with Y in the same order",
     },
     Code {
         name: "control_points",
         summary: "a CURVE that does not say what the rows of its MATRIX are",
         explanation: "\
 Without CURVE_POINTS they are control points of a B-spline, which passes near them, not through them. Say CURVE_POINTS or
-CONTROL_POINTS.",
+CONTROL_POINTS.
+
+    CURVE/1, CLOSED, MATRIX=1  write CURVE/1, CLOSED, CURVE_POINTS, MATRIX=1",
     },
     Code {
         name: "axes_not_aligned",
@@ -360,51 +532,75 @@ CONTROL_POINTS.",
 Pins of a UNIVERSAL (z and z) and of a HOOKE (x of I, y of J) cross at 90 degrees. A RACKPIN has the pinion as I, turning about z,
 and the rack as J, with x along that axis. A SCREW, a torsion spring and a rotational SFORCE have both z axes along the axis of
 the rotation. CV of a GEAR has z along the common velocity of both bodies where they mesh. The message says how far off they are as
-the dataset places the parts.",
+the dataset places the parts.
+
+    JOINT/1, HOOKE, I=12, J=21: turn MARKER/12 about its z until x of I is square to y of J",
     },
     Code {
         name: "open_ends",
         summary: "a CLOSED curve whose ends differ",
-        explanation: "The last point of a closed curve is its first one again.",
+        explanation: "\
+The last point of a closed curve is its first one again.
+
+    MATRIX/1, …, VALUES=1,0,0, 0,1,0, -1,0,0, 0,-1,0, 1,0,0       the first point once more",
     },
     Code {
         name: "wrong_array",
         summary: "an ARRAY of another kind than is needed here",
-        explanation: "States take ARRAY X, outputs ARRAY Y, inputs ARRAY U, initial conditions ARRAY IC.",
+        explanation: "\
+States take ARRAY X, outputs ARRAY Y, inputs ARRAY U, initial conditions ARRAY IC.
+
+    TFSISO/1, X=1, U=2, Y=3, …  with ARRAY/1, X  ARRAY/2, U, VARIABLES=7  ARRAY/3, Y",
     },
     Code {
         name: "improper_transfer_function",
         summary: "a transfer function with more zeros than poles",
-        explanation: "The degree of NUMERATOR must not be above that of DENOMINATOR; otherwise the output would need derivatives of the input.",
+        explanation: "\
+The degree of NUMERATOR must not be above that of DENOMINATOR; otherwise the output would need derivatives of the input.
+
+    NUMERATOR=1,2,3, DENOMINATOR=1,2     write DENOMINATOR=1,2,0.001",
     },
     Code {
         name: "unused_initial_condition",
         summary: "an initial condition that nothing uses",
-        explanation: "The joint does not have this freedom, or a motion prescribes it.",
+        explanation: "\
+The joint does not have this freedom, or a motion prescribes it.
+
+    JOINT/1, FIXED, I=12, J=21, IC=0,1   leave IC out",
     },
     Code {
         name: "no_effect",
         summary: "an element that does nothing",
-        explanation: "Usually a component or a component's marker was forgotten.",
+        explanation: "\
+Usually a component or a component's marker was forgotten.
+
+    VFORCE/1, I=20, JFLOAT=19, RM=20     write FX=…\\ FY=…\\ FZ=…",
     },
     Code {
         name: "model",
         summary: "something in the model stands in the way of solving it",
-        explanation: "The message says what.",
+        explanation: "\
+The message says what.
+
+    cognate verify model.adm             says more of what fits and what does not",
     },
     Code {
         name: "unsupported",
         summary: "something that is read but not solved yet",
         explanation: "\
 Every statement of a dataset is read, checked and written. Those that cannot be solved stop a run, lest a result be wrong.
---skip-unsupported KEYWORD leaves out all of a kind, knowingly.",
+--skip-unsupported KEYWORD leaves out all of a kind, knowingly.
+
+    cognate run model.acf --skip-unsupported TIRE",
     },
     Code {
         name: "skipped",
         summary: "an element left out because --skip-unsupported or --zero-user says so",
         explanation: "\
 The result is that of the model without it, and without what hangs on it: what is attached to a body that is left out, what drives
-or couples a joint. It exerts nothing, and functions read zero of it; each of these is named.",
+or couples a joint. It exerts nothing, and functions read zero of it; each of these is named.
+
+    cognate run model.acf --skip-unsupported CONTACT     leaves all contacts out",
     },
     Code {
         name: "not_a_state",
@@ -412,30 +608,44 @@ or couples a joint. It exerts nothing, and functions read zero of it; each of th
         explanation: "\
 SAVE/SYSTEM=name writes name.state.json beside the results: the model as the commands have left it, what is switched off, and where
 the last simulation ended, every number exactly. RELOAD/SYSTEM=name goes on from there. What Adams saves under the same command is an image of its
-memory, which no other program can read: obey the commands that led there, and SAVE anew.",
+memory, which no other program can read: obey the commands that led there, and SAVE anew.
+
+    SAVE/SYSTEM=before
+    RELOAD/SYSTEM=before",
     },
     Code {
         name: "assembly",
         summary: "the constraints cannot all be satisfied",
         explanation: "\
 Before a simulation the parts are moved so that every joint closes. The message names the equation that stays open and by how
-much: parts may start too far away, or two constraints contradict each other.",
+much: parts may start too far away, or two constraints contradict each other.
+
+    cognate verify model.adm             names the equations and what is off",
     },
     Code {
         name: "freedom",
         summary: "a kinematic simulation of a mechanism that is free to move",
-        explanation: "KINEMATIC computes motion from constraints alone. Drive the remaining freedoms by MOTION, or simulate DYNAMIC.",
+        explanation: "\
+KINEMATIC computes motion from constraints alone. Drive the remaining freedoms by MOTION, or simulate DYNAMIC.
+
+    MOTION/1, JOINT=1, ROTATIONAL, FUNCTION=TIME
+    SIMULATE/DYNAMIC, END=1              instead of KINEMATIC",
     },
     Code {
         name: "unavailable",
         summary: "something asked for that cannot be computed here",
-        explanation: "The message names the function or column; the run goes on without it where that is possible.",
+        explanation: "\
+The message names the function or column; the run goes on without it where that is possible.
+
+    cognate run model.acf --column 'ACCX(20)'     in statics there is no acceleration",
     },
     Code {
         name: "implicit_loop",
         summary: "a function that methods for implicit equations cannot take",
         explanation: "\
 BDF, HHT and the like need derivatives of all equations. Functions that read accelerations or forces which depend on
-them have none: choose an explicit method or RADAU5.",
+them have none: choose an explicit method or RADAU5.
+
+    cognate run model.acf --method RADAU5",
     },
 ];

@@ -7,7 +7,10 @@ pub static RUN_CODES: &[Code] = &[
     Code {
         name: "interrupted",
         summary: "the user stopped the run",
-        explanation: "Ctrl-C, or the caller of the library, asked to stop. All rows up to that time are written.",
+        explanation: "\
+Ctrl-C, or the caller of the library, asked to stop. All rows up to that time are written.
+
+    cognate plot run.csv                 shows what there is",
     },
     Code {
         name: "work_limit",
@@ -20,7 +23,10 @@ A larger --error, or the method that the message names, may come further in the 
     Code {
         name: "sensor",
         summary: "a SENSOR stopped the simulation",
-        explanation: "A SENSOR with HALT or RETURN was triggered. That is no failure: the model asked for it.",
+        explanation: "\
+A SENSOR with HALT or RETURN was triggered. That is no failure: the model asked for it.
+
+    SENSOR/1, FUNCTION=DZ(20,11)\\, VALUE=100, GE, HALT",
     },
     Code {
         name: "no_finite_value",
@@ -37,73 +43,97 @@ LOG of zero, a quotient whose divisor goes to zero. A column of results that has
         summary: "the mechanism is locked: its constraints cannot all be kept any longer",
         explanation: "\
 At the named position a row of the constraints has become dependent on others, and what drives the mechanism asks for more than
-that permits: a crank that pushes a rod beyond its length, a linkage in its dead centre. Prescribe less, or change the lengths.",
+that permits: a crank that pushes a rod beyond its length, a linkage in its dead centre. Prescribe less, or change the lengths.
+
+    JOINT/1 is driven by MOTION/1, FUNCTION=TIME, in a four-bar that cannot turn: FUNCTION=0.5*SIN(TIME)",
     },
     Code {
         name: "error_test",
         summary: "the error of an unknown stays above its tolerance however short the step",
         explanation: "\
 The named unknown is not smooth: a function of it jumps, or is noisy. Look at the functions that read it, or ask for a larger
-ERROR to see what it does.",
+ERROR to see what it does.
+
+    FUNCTION=IF(TIME-1: 0, 0, 10)        write STEP(TIME, 1, 0, 1.01, 10)",
     },
     Code {
         name: "no_convergence",
         summary: "Newton's iteration does not converge however short the step",
         explanation: "\
 The equations of an implicit method have no solution near the last state, or their derivatives are wrong there. The named row is
-worst. Functions that jump are the usual cause; --method DOP853 does without the iteration.",
+worst. Functions that jump are the usual cause; --method DOP853 does without the iteration.
+
+    cognate run model.acf --method DOP853",
     },
     Code {
         name: "singular",
         summary: "no equation determines an unknown",
         explanation: "\
 The matrix of Newton's iteration has no inverse: nothing that moves along the named unknown has mass, and no force depends on it.
-`cognate verify` names directions without mass.",
+`cognate verify` names directions without mass.
+
+    PART/2, MASS=1, CM=20                a part that turns freely needs IP=1,1,1",
     },
     Code {
         name: "endless_switching",
         summary: "a function changes its branch again and again in hardly any time",
         explanation: "\
 IF, SIGN, ABS and their like change branch where their argument passes zero. A relay that drives its own argument back across zero
-does so without end. Let the function change over a short way: STEP instead of IF.",
+does so without end. Let the function change over a short way: STEP instead of IF.
+
+    IF(VZ(20,11): 1, 0, -1)              write STEP(VZ(20,11), -0.01, 1, 0.01, -1)",
     },
     Code {
         name: "stalled",
         summary: "thousands of steps got hardly any further",
         explanation: "\
 The named unknown changes so fast that the run would take for ever: a stiffness too large by orders of magnitude, a mass
-nearly zero, or an explicit method for a stiff model. RADAU5 is for stiff models.",
+nearly zero, or an explicit method for a stiff model. RADAU5 is for stiff models.
+
+    cognate run model.acf --method RADAU5",
     },
     Code {
         name: "too_many_steps",
         summary: "the largest permitted number of steps was taken",
-        explanation: "The results so far are kept. Permit more steps, or ask for a larger ERROR.",
+        explanation: "\
+The results so far are kept. Permit more steps, or ask for a larger ERROR.
+
+    cognate run model.acf --max-steps 1000000 --error 1e-4",
     },
     Code {
         name: "no_equilibrium",
         summary: "no equilibrium was found",
         explanation: "\
 The message names the load that nothing balances, its direction in ground axes, and the part it acts on. A part that nothing holds
-falls for ever; a spring or a stop in that direction gives it a place to rest.",
+falls for ever; a spring or a stop in that direction gives it a place to rest.
+
+    SPRINGDAMPER/1, TRANSLATIONAL, I=20, J=11, K=10, LENGTH=50     gives it a place to rest",
     },
     Code {
         name: "unstable_equilibrium",
         summary: "the equilibrium that was found would be left after the smallest push",
-        explanation: "All loads balance, but in some directions a push is not answered by a force back: a pendulum on its head.",
+        explanation: "\
+All loads balance, but in some directions a push is not answered by a force back: a pendulum on its head.
+
+    PART/2, QG=0,-100,0, …               start on the other side of the hinge",
     },
     Code {
         name: "misaligned",
         summary: "the parts do not fit together as the dataset places them",
         explanation: "\
 The markers of a joint are apart, or turned against each other, by the amounts in the message. Assembly moves the parts until they fit.
-Typed numbers are off by little; much means a wrong QP, REULER or marker.",
+Typed numbers are off by little; much means a wrong QP, REULER or marker.
+
+    MARKER/31, PART=3, QP=299,200,0      the other marker of the joint is at 300,200,0",
     },
     Code {
         name: "initial_condition",
         summary: "an initial condition that cannot be met, or that is read in another way than documented",
         explanation: "\
 The constraints leave no room for what an IC or EXACT asks, or the two numbers of a joint's IC fit the parts better when they are
-exchanged: Adams View writes velocity, displacement.",
+exchanged: Adams View writes velocity, displacement.
+
+    JOINT/1, REVOLUTE, I=21, J=11, IC=90D,0        displacement, velocity",
     },
     Code {
         name: "turned",
@@ -111,50 +141,69 @@ exchanged: Adams View writes velocity, displacement.",
         explanation: "\
 Joints, primitives and motions hold only where these parts are turned by the angles in the message. Position equations may have
 several solutions: a linkage closes on either side. If it is not the one that is meant, place the parts nearer to where they should
-be, or give EXACT coordinates.",
+be, or give EXACT coordinates.
+
+    PART/3, QG=50,0,0, EXACT=X:Y:PSI, …",
     },
     Code {
         name: "held_sum",
         summary: "the displacements of a COUPLER or GEAR do not sum up to zero where they are assembled",
-        explanation: "The sum that the assembled position shows is held from there on. Initial conditions of its joints change it.",
+        explanation: "\
+The sum that the assembled position shows is held from there on. Initial conditions of its joints change it.
+
+    MARKER/22, PART=2, REULER=-90D,0D,0D  turn the marker until the sum begins at zero",
     },
     Code {
         name: "rank_change",
         summary: "the rank of the constraints changes during the run",
         explanation: "\
 At the named position a row follows from others, or no longer does: a linkage passes its dead centre, or joints that were redundant
-begin to hold. The run goes on; reactions may jump there.",
+begin to hold. The run goes on; reactions may jump there.
+
+    a parallelogram when all of its links are in one line",
     },
     Code {
         name: "outside_data",
         summary: "a spline is read outside its data",
         explanation: "\
 Beyond its first and last X a spline is extrapolated: by a parabola, which grows fast, or by a straight line with
-LINEAR_EXTRAPOLATE. Neither was measured. Give data as far as the mechanism goes.",
+LINEAR_EXTRAPOLATE. Neither was measured. Give data as far as the mechanism goes.
+
+    SPLINE/1, X=0,1,2,3, Y=…, LINEAR_EXTRAPOLATE",
     },
     Code {
         name: "below_rounding",
         summary: "the error that is asked for is smaller than what rounding leaves",
-        explanation: "The steps so far are as exact as rounding permits. A larger ERROR takes fewer steps for the same digits.",
+        explanation: "\
+The steps so far are as exact as rounding permits. A larger ERROR takes fewer steps for the same digits.
+
+    cognate run model.acf --error 1e-10  instead of 1e-15",
     },
     Code {
         name: "energy_grows",
         summary: "the motion grows without bound",
         explanation: "\
 Its kinetic energy grows exponentially from quarter to quarter of the run, beyond all energy that there was. The named force does the
-most work in the end: a damper or a controller whose force has the direction of the velocity it reads.",
+most work in the end: a damper or a controller whose force has the direction of the velocity it reads.
+
+    FUNCTION=0.5*VZ(20,11,11)            a damper pulls back: -0.5*VZ(20,11,11)",
     },
     Code {
         name: "stiff",
         summary: "stability, not accuracy, sets the steps of an explicit method",
         explanation: "\
 A fast motion that has died away still keeps the steps of an explicit method short. The results are as exact as was asked for.
-RADAU5, BDF and HHT take steps as long as the slow motion permits; AUTO changes to RADAU5 where that pays.",
+RADAU5, BDF and HHT take steps as long as the slow motion permits; AUTO changes to RADAU5 where that pays.
+
+    cognate run model.acf --method RADAU5",
     },
     Code {
         name: "unknown_constraint",
         summary: "a constraint that a routine computes, or whose curve is not in the dataset",
-        explanation: "`cognate verify` counts its equations, but cannot tell which motions it forbids: the freedom from the rank is without it.",
+        explanation: "\
+`cognate verify` counts its equations, but cannot tell which motions it forbids: the freedom from the rank is without it.
+
+    GCON/1, FUNCTION=USER(1)             write the equation as an expression",
     },
     Code {
         name: "redundant",
@@ -169,26 +218,42 @@ told with how far it is off. One that is off by more and locks its loop is refus
     Code {
         name: "wrong_way_round",
         summary: "a joint is assembled with axes that point against each other, or a motion at an opposite angle",
-        explanation: "Its equations hold either way. Turn one of its markers by 180 degrees, or the parts, if the other way is meant.",
+        explanation: "\
+Its equations hold either way. Turn one of its markers by 180 degrees, or the parts, if the other way is meant.
+
+    MARKER/31, PART=3, REULER=0D,180D,0D",
     },
     Code {
         name: "nothing_to_simulate",
         summary: "a SIMULATE command ends before it begins",
-        explanation: "The clock shows its end already: END = is a time, DURATION = counts from now.",
+        explanation: "\
+The clock shows its end already: END = is a time, DURATION = counts from now.
+
+    SIMULATE/DYNAMIC, END=1
+    SIMULATE/DYNAMIC, END=1              write DURATION=1",
     },
     Code {
         name: "reads_zero",
         summary: "a function reads something of what is left out",
-        explanation: "Left-out elements exert nothing and have no place: functions read zero of them. The message names the function and what it reads.",
+        explanation: "\
+Left-out elements exert nothing and have no place: functions read zero of them. The message names the function and what it reads.
+
+    FUNCTION=CONTACT(1,0,2,0) + 10       is 10 where CONTACT/1 is left out",
     },
     Code {
         name: "frictionless_statics",
         summary: "statics without the friction of a joint",
-        explanation: "In statics nothing has crept, so FRICTION holds nothing and loads move its part. To see it hold, let a dynamic simulation come to rest.",
+        explanation: "\
+In statics nothing has crept, so FRICTION holds nothing and loads move its part. To see it hold, let a dynamic simulation come to rest.
+
+    SIMULATE/DYNAMIC, DURATION=5         instead of SIMULATE/STATIC",
     },
     Code {
         name: "convex_hull",
         summary: "a contact takes the convex hull of a shell",
-        explanation: "Solids of contacts are convex. Hollows of the shell are filled; the message says how far it stands out of the hull.",
+        explanation: "\
+Solids of contacts are convex. Hollows of the shell are filled; the message says how far it stands out of the hull.
+
+    GRAPHICS/3, SHELL, RM=20, FILE=half.stl     a hollow body as two convex ones, both in IGEOM",
     },
 ];
