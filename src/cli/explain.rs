@@ -1,7 +1,7 @@
 //! `cognate explain`: the meaning of a code or a name, or the outline of a model.
 
 use super::verify::model_of;
-use super::{Exit, Failure, Outcome, say};
+use super::{Exit, Failure, Outcome, card, say, width};
 use super::{functions, statements};
 use crate::analysis::verify::idle::Idle;
 use crate::analysis::verify::outline::{Outline, outline};
@@ -169,9 +169,43 @@ fn idle_as_json(idle: &Idle) -> Value {
     json!({ "kind": idle.kind.keyword(), "why": idle.why.to_string(), "elements": elements })
 }
 
+/// Says in words what becomes of a model.
+fn in_words(o: &Outline) -> String {
+    let count = |n: usize, one: &str, many: &str| match n {
+        0 => format!("no {many}"),
+        1 => format!("1 {one}"),
+        n => format!("{n} {many}"),
+    };
+    let moving = o
+        .forest
+        .iter()
+        .filter(|c| c.by.is_none() || !c.coordinates.is_empty())
+        .count();
+    let coordinates: usize = o.forest.iter().map(|c| c.coordinates.len()).sum();
+    let mut text = format!(
+        "{}, with {} between them.",
+        count(moving, "part moves", "parts move"),
+        count(coordinates, "coordinate of joints", "coordinates of joints"),
+    );
+    text += &match o.prescribed.len() {
+        0 => String::new(),
+        1 => " A motion prescribes one of these.".to_owned(),
+        n => format!(" Motions prescribe {n} of these."),
+    };
+    text += &match o.rows.len() {
+        0 => " There is no closed loop.".to_owned(),
+        n => format!(
+            " Loops are closed by {}.",
+            count(n, "equation", "equations")
+        ),
+    };
+    card::wrapped(&text, 0, width::reading()) + "\n"
+}
+
 /// Prints the outline of a model.
 fn as_text(o: &Outline) -> String {
-    let mut out = String::from("forest\n");
+    let mut out = in_words(o);
+    out += "forest: what carries what\n";
     for c in &o.forest {
         let how = match &c.by {
             None => "moves freely in ground".to_string(),
@@ -191,9 +225,15 @@ fn as_text(o: &Outline) -> String {
     let unknowns: Vec<String> = (o.unknowns.iter())
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
-    list("unknowns", &unknowns);
-    list("prescribed", &o.prescribed);
-    list("rows", &o.rows);
+    list(
+        "unknowns that are integrated, with their values at the start",
+        &unknowns,
+    );
+    list("prescribed by motions", &o.prescribed);
+    list(
+        "rows: equations that close loops (D.Xg: offset of I from J along x of ground; Zi.Xj: z of I against x of J)",
+        &o.rows,
+    );
     list("inputs that routines compute, zero here", &o.inputs);
     list("left out", &o.left_out);
     let idle: Vec<String> = o.idle.iter().map(ToString::to_string).collect();

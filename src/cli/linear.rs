@@ -1,6 +1,6 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
-use super::{Exit, Failure, Outcome, interrupt, remark, run, say};
+use super::{Exit, Failure, Outcome, interrupt, modes, remark, run, say, width};
 use crate::analysis::linear::Wanted;
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
@@ -103,7 +103,8 @@ pub fn run(args: &Args) -> Outcome {
     if args.json {
         say(&json::text(&found.json()));
     } else {
-        say(&found.table());
+        let time = &session.run.units.time;
+        say(&modes::text(&found, time, width::columns()));
     }
     session.linear = vec![(None, true, found)];
     if let Some(dir) = &args.out {

@@ -18,6 +18,7 @@ mod functions;
 pub mod interrupt;
 mod limit;
 mod linear;
+mod modes;
 mod output;
 mod plot;
 pub mod progress;
@@ -27,6 +28,7 @@ mod report;
 mod run;
 mod statements;
 mod summary;
+mod table;
 mod verify;
 mod width;
 

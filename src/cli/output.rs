@@ -185,7 +185,9 @@ impl Tables {
 
     /// Prints a few rows of the table.
     pub fn overview(&self, run: &Run) -> String {
-        summary::table(self.growing().overview.of(run))
+        let n_rows = run.table_rows().count();
+        let width = super::width::columns();
+        summary::table(self.growing().overview.of(run), n_rows, width)
     }
 }
 

@@ -1,21 +1,30 @@
-//! `cognate plot`: columns of results as a picture, in the terminal or as SVG.
+//! `cognate plot`: columns of results as a picture, in the terminal or as a file.
 
 use super::convert::same_file;
-use super::{Exit, Failure, Outcome, remark, render, say};
+use super::table::Table;
+use super::{Exit, Failure, Outcome, remark, render, say, width};
+use crate::diagnostic::Diagnostic;
+use crate::report::channels::{Channels, Shown, Source, channels};
 use crate::report::terminal::{Style, terminal};
-use crate::report::{Plot, svg::svg};
-use crate::results;
+use crate::report::transform::{Statistics, statistics};
+use crate::report::{Curve, Plot, svg};
+use crate::results::{self, Run};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Plot columns of results in the terminal or as SVG
+/// Plot columns of results in the terminal or as a file
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
+  cognate plot run.csv --list
   cognate plot run.csv --y 'DX(12,21)'
-  cognate plot run.res --y PART_2_XFORM.X --y PART_2_XFORM.Y --svg out.svg
-  cognate plot run.csv --x 'DX(12,21)' --y 'VX(12,21)' --svg phase.svg")]
+  cognate plot run.csv --y slider.X --y slider.VX --out out.svg       two units: an axis at either side
+  cognate plot a/run.csv --over b/run.res --y slider.X                 two runs
+  cognate plot run.csv --x slider.X --y slider.VX --out phase.svg      a phase plot
+  cognate plot run.csv --y slider.VX --as spectrum
+  cognate plot run.csv --statistics")]
 pub struct Args {
-    /// Results to read: .csv, .res or .gra
+    /// Results to read: .csv, .json, .res or .gra
     input: PathBuf,
     /// Column to show (repeatable); the first few when none is given
     #[arg(long, value_name = "COLUMN")]
@@ -23,12 +32,54 @@ pub struct Args {
     /// Column to show them over; time when not given
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
+    /// Results of another run, shown over the first (repeatable)
+    #[arg(long, value_name = "FILE")]
+    over: Vec<PathBuf>,
+    /// Show the values, or what is made of them
+    #[arg(long = "as", value_enum, default_value = "values", value_name = "WHAT")]
+    shown: ShownName,
+    /// Draw each unit in a panel of its own
+    #[arg(long)]
+    panels: bool,
     /// Title above the picture
     #[arg(long)]
     title: Option<String>,
-    /// Write an SVG file instead of drawing in the terminal
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    /// Write a file instead of drawing in the terminal: .svg
+    #[arg(long, short, value_name = "FILE", alias = "svg")]
+    out: Option<PathBuf>,
+    /// Print ends, extremes and means of the columns instead
+    #[arg(long)]
+    statistics: bool,
+    /// Print the names and units of all columns instead
+    #[arg(long, conflicts_with = "statistics")]
+    list: bool,
+    /// Print the statistics as JSON
+    #[arg(long, requires = "statistics")]
+    json: bool,
+}
+
+/// What is shown of a column.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum ShownName {
+    /// the values
+    Values,
+    /// the slope over x
+    Derivative,
+    /// the integral over x
+    Integral,
+    /// the amplitudes over frequency
+    Spectrum,
+}
+
+impl From<ShownName> for Shown {
+    fn from(name: ShownName) -> Self {
+        match name {
+            ShownName::Values => Shown::Values,
+            ShownName::Derivative => Shown::Derivative,
+            ShownName::Integral => Shown::Integral,
+            ShownName::Spectrum => Shown::Spectrum,
+        }
+    }
 }
 
 /// Plots columns of results.
@@ -36,18 +87,140 @@ pub struct Args {
 /// # Errors
 /// When the results cannot be read, have no such column, or no finite value.
 pub fn run(args: &Args) -> Outcome {
-    let run = results::read(&args.input)?;
-    let mut plot = Plot::of_run(&run, args.x.as_deref(), &args.y)?;
+    let sources = sources(args)?;
+    if args.list {
+        say(&list(&sources[0].run));
+        return Ok(Exit::Done);
+    }
+    let names = match args.y.as_slice() {
+        [] if args.statistics => all_names(&sources[0].run, args.x.as_deref()),
+        names => names.to_vec(),
+    };
+    let mut found = channels(&sources, args.x.as_deref(), &names, args.shown.into())?;
+    if args.statistics {
+        say(&statistics_of(&found, args.json));
+        return Ok(Exit::Done);
+    }
     if let Some(title) = &args.title {
-        plot.title = title.clone();
+        found.title = title.clone();
     }
-    match &args.svg {
-        Some(file) if same_file(file, &args.input) => Err(Failure::usage(
-            "the output is the input, which is never overwritten",
-        )),
-        Some(file) => write_svg(&plot, file),
-        None => draw(&plot),
+    let plots = found.arranged(args.panels);
+    let inputs = args.over.iter().chain([&args.input]);
+    match &args.out {
+        Some(file) if inputs.into_iter().any(|input| same_file(file, input)) => Err(
+            Failure::usage("the output is the input, which is never overwritten"),
+        ),
+        Some(file) => write(&plots, file),
+        None => draw_all(plots),
     }
+}
+
+/// Reads all runs; each is named by its file, with its folder where files are called alike.
+fn sources(args: &Args) -> Result<Vec<Source>, Diagnostic> {
+    let files: Vec<&PathBuf> = [&args.input].into_iter().chain(&args.over).collect();
+    let stem = |file: &Path| {
+        let stem = file.file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    };
+    let alike = |file: &Path| files.iter().filter(|f| stem(f) == stem(file)).count() > 1;
+    (files.iter())
+        .map(|file| {
+            let folder = file.parent().filter(|_| alike(file));
+            let folder = folder
+                .map(|f| format!("{}/", f.display()))
+                .unwrap_or_default();
+            Ok(Source {
+                label: folder + &stem(file),
+                run: results::read(file)?,
+            })
+        })
+        .collect()
+}
+
+/// Returns the names of the columns of a table, but that of x.
+fn all_names(run: &Run, x: Option<&str>) -> Vec<String> {
+    let x = x.and_then(|x| run.find(x)).unwrap_or(0);
+    let columns = run.table_columns().into_iter().filter(|&c| c != x);
+    columns
+        .filter_map(|c| Some(run.columns.get(c)?.name.clone()))
+        .collect()
+}
+
+/// Prints the names and units of all columns, with their ranges.
+fn list(run: &Run) -> String {
+    let mut table = Table::new(["column", "unit", "least", "largest"]);
+    for column in &run.columns {
+        let points: Vec<(f64, f64)> = (column.values.iter().enumerate())
+            .map(|(k, &y)| (k as f64, y))
+            .collect();
+        let range = statistics(&points).map(|s| [s.least.0, s.largest.0]);
+        let range = range.map_or([String::new(), String::new()], |r| {
+            r.map(results::digits_of_six)
+        });
+        let [least, largest] = range;
+        table.push([column.name.clone(), column.unit.clone(), least, largest]);
+    }
+    table.text(width::columns())
+}
+
+/// Prints the statistics of channels.
+fn statistics_of(found: &Channels, as_json: bool) -> String {
+    let of = |c: &Curve| statistics(&c.points);
+    if as_json {
+        let all: Vec<Value> = (found.curves.iter())
+            .map(|c| statistics_as_json(c, of(c)))
+            .collect();
+        return results::json::text(&json!(all));
+    }
+    let heads = [
+        "column", "unit", "first", "last", "least", "at", "largest", "at", "mean", "rms",
+    ];
+    let mut table = Table::new(heads);
+    for curve in &found.curves {
+        let numbers = of(curve).map(|s| {
+            [
+                s.ends[0],
+                s.ends[1],
+                s.least.0,
+                s.least.1,
+                s.largest.0,
+                s.largest.1,
+                s.mean,
+                s.rms,
+            ]
+        });
+        let cells = numbers
+            .map(|all| all.map(results::digits_of_six))
+            .unwrap_or_default();
+        let mut row = vec![curve.name.clone(), curve.unit.clone()];
+        row.extend(cells);
+        table.push(row);
+    }
+    format!("over {}\n{}", found.x_label, table.text(width::columns()))
+}
+
+fn statistics_as_json(curve: &Curve, found: Option<Statistics>) -> Value {
+    let point = |p: (f64, f64)| json!({ "value": p.0, "at": p.1 });
+    json!({
+        "name": curve.name,
+        "unit": curve.unit,
+        "first": found.map(|s| s.ends[0]),
+        "last": found.map(|s| s.ends[1]),
+        "least": found.map(|s| point(s.least)),
+        "largest": found.map(|s| point(s.largest)),
+        "mean": found.map(|s| s.mean),
+        "rms": found.map(|s| s.rms),
+    })
+}
+
+/// Writes a picture of plots below each other to a file.
+///
+/// # Errors
+/// When there is nothing to draw, or the file cannot be written.
+fn write(plots: &[Plot], file: &Path) -> Outcome {
+    results::write_text(file, &svg::panels(plots)?)?;
+    remark(format!("plot in {}", file.display()));
+    Ok(Exit::Done)
 }
 
 /// Writes the picture to a file.
@@ -55,28 +228,23 @@ pub fn run(args: &Args) -> Outcome {
 /// # Errors
 /// When there is nothing to draw, or the file cannot be written.
 pub fn write_svg(plot: &Plot, file: &Path) -> Outcome {
-    results::write_text(file, &svg(plot)?)?;
-    remark(format!("plot in {}", file.display()));
+    write(std::slice::from_ref(plot), file)
+}
+
+/// Draws plots below each other on standard output; an axis at the right becomes a plot of its own.
+fn draw_all(plots: Vec<Plot>) -> Outcome {
+    let mut text = String::new();
+    for plot in plots.into_iter().flat_map(Plot::split) {
+        text += &terminal(&plot, terminal_style())?;
+    }
+    say(&text);
     Ok(Exit::Done)
 }
 
-/// Draws the picture on standard output.
-///
-/// # Errors
-/// When there is nothing to draw.
-pub fn draw(plot: &Plot) -> Outcome {
-    say(&terminal(plot, terminal_style())?);
-    Ok(Exit::Done)
-}
-
-/// Returns the style of a picture that fits an ordinary terminal; COLUMNS may make it narrower.
+/// Returns the style of a picture that fits the terminal.
 pub fn terminal_style() -> Style {
-    let columns = std::env::var("COLUMNS")
-        .ok()
-        .and_then(|c| c.parse().ok())
-        .unwrap_or(80);
     Style {
-        columns: usize::clamp(columns, 40, 120),
+        columns: width::picture(),
         lines: 16,
         colour: render::colour_on_stdout(),
     }

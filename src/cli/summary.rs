@@ -1,77 +1,145 @@
 //! The summary at the end of `cognate run`: a short table, the facts of the run and its files, and
 //! a picture of the results.
 
+use super::table::Table;
 use crate::report::{Plot, svg::panels};
-use crate::results::{Run, Warning};
+use crate::results::{Kind, Run, Warning, digits_of_six};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Rows of the table; results can have thousands.
+/// Rows of the table beside first and last rows of simulations; results can have thousands.
 const ROWS: usize = 9;
-/// Columns of the table; results can have thousands.
-const COLUMNS: usize = 7;
-/// Width of a column, in characters.
-const WIDTH: usize = 13;
+/// Most simulations whose first and last rows are shown.
+const SIMULATIONS: usize = 4;
 
-/// Prints a few rows of the table, from the first to the last at equal distances.
-pub fn table(run: &Run) -> String {
-    let columns: Vec<usize> = run
-        .table_columns()
-        .into_iter()
-        .filter(|&c| c < run.columns.len())
-        .collect();
+/// Prints a few rows of the table, from the first to the last at equal distances, and as many of
+/// its columns as fit into a width; says what is left out of `n_rows` in all.
+pub fn table(run: &Run, n_rows: usize, width: usize) -> String {
+    let mut columns = run.table_columns();
+    columns.retain(|&c| c < run.columns.len());
     let rows: Vec<usize> = run.table_rows().collect();
-    let shown: Vec<usize> = match rows.len() {
-        n if n <= ROWS => rows,
-        n => (0..ROWS).map(|k| rows[k * (n - 1) / (ROWS - 1)]).collect(),
-    };
+    let shown = selected(run, &rows);
     if shown.is_empty() || columns.len() < 2 {
         return String::new();
     }
-    let more = columns.len().saturating_sub(COLUMNS);
-    let columns = &columns[..columns.len().min(COLUMNS)];
-    let line = |cell: &dyn Fn(usize) -> String| {
-        columns
+    let phases = phases(run, &rows);
+    let mut cells: Vec<Vec<String>> = Vec::new();
+    for &c in &columns {
+        let column = &run.columns[c];
+        let values: Vec<f64> = shown.iter().map(|&row| column.values[row]).collect();
+        cells.push(
+            [
+                vec![column.name.clone(), column.unit.clone()],
+                aligned(&values),
+            ]
+            .concat(),
+        );
+        if c == columns[0] && phases.len() > 1 {
+            let phase = |row: &usize| kind_of_row(run, *row).map_or("", Kind::name).to_owned();
+            let head = vec!["phase".to_owned(), String::new()];
+            cells.push([head, shown.iter().map(phase).collect()].concat());
+        }
+    }
+    let line = |k: usize| {
+        cells
             .iter()
-            .map(|&c| format!("{:>WIDTH$}", cell(c)))
+            .map(|column| column[k].clone())
             .collect::<Vec<_>>()
-            .join(" ")
-            + "\n"
     };
-    let mut text = line(&|c| shortened(&run.columns[c].name));
+    let mut table = Table::new(line(0));
     if columns.iter().any(|&c| !run.columns[c].unit.is_empty()) {
-        text += &line(&|c| shortened(&run.columns[c].unit));
+        table.head(line(1));
     }
-    for row in shown {
-        text += &line(&|c| number(run.columns[c].values[row]));
+    (2..shown.len() + 2).for_each(|k| table.push(line(k)));
+    let n = table.n_fitting(width);
+    let hidden = cells.len() - n;
+    let mut left_out = Vec::new();
+    if shown.len() < n_rows {
+        left_out.push(format!("{} of {n_rows} rows", shown.len()));
     }
-    if more > 0 {
-        let columns = if more == 1 { "column" } else { "columns" };
-        text += &format!("… and {more} more {columns}\n");
+    if hidden > 0 {
+        left_out.push(format!(
+            "{} of {} columns",
+            columns.len() - hidden,
+            columns.len()
+        ));
+    }
+    let mut text = table.first(n);
+    if !left_out.is_empty() {
+        text += &format!("… {}; the files have all\n", left_out.join(", "));
     }
     text
 }
 
-/// Cuts a name to the width of a column.
-fn shortened(name: &str) -> String {
-    if name.chars().count() <= WIDTH {
-        name.to_owned()
-    } else {
-        name.chars().take(WIDTH - 1).chain(['…']).collect()
-    }
+/// Returns the kind of simulation that a row belongs to.
+fn kind_of_row(run: &Run, row: usize) -> Option<Kind> {
+    let mut sequences = run.sequences.iter();
+    sequences.find(|s| s.rows.contains(&row)).map(|s| s.kind)
 }
 
-/// Prints a number with six digits; the files have all of them.
-fn number(x: f64) -> String {
-    let size = x.abs();
-    if x == 0.0 {
-        "0".into()
-    } else if (1e-4..1e6).contains(&size) {
-        let decimals = 5 - size.log10().floor() as i32;
-        format!("{x:.*}", usize::try_from(decimals).unwrap_or(0))
-    } else {
-        format!("{x:.5e}")
+/// Returns the kinds of simulation that rows belong to, in their order; assembly counts as part of
+/// what follows it.
+fn phases(run: &Run, rows: &[usize]) -> Vec<Kind> {
+    let mut kinds: Vec<Kind> = Vec::new();
+    for kind in rows.iter().filter_map(|&row| kind_of_row(run, row)) {
+        if kind != Kind::InitialConditions && !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
     }
+    kinds
+}
+
+/// Returns the rows that are shown: some at equal distances, and where few simulations follow each
+/// other the first and last of each.
+fn selected(run: &Run, rows: &[usize]) -> Vec<usize> {
+    let n = rows.len();
+    if n <= ROWS {
+        return rows.to_vec();
+    }
+    let mut shown: Vec<usize> = (0..ROWS).map(|k| rows[k * (n - 1) / (ROWS - 1)]).collect();
+    let sequences = run
+        .sequences
+        .iter()
+        .filter(|s| s.kind != Kind::Input && !s.rows.is_empty());
+    let ends: Vec<usize> = sequences
+        .flat_map(|s| [s.rows.start, s.rows.end - 1])
+        .collect();
+    if ends.len() <= 2 * SIMULATIONS {
+        shown.extend(ends.into_iter().filter(|row| rows.contains(row)));
+    }
+    shown.sort_unstable();
+    shown.dedup();
+    shown
+}
+
+/// Prints the numbers of a column with as many decimals as its largest needs for six digits; the
+/// files have all of them. Very large and very small columns have exponents.
+fn aligned(values: &[f64]) -> Vec<String> {
+    let finite = values.iter().filter(|x| x.is_finite());
+    let largest = finite.fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    if largest != 0.0 && !(1e-3..1e6).contains(&largest) {
+        return values.iter().map(|&x| digits_of_six(x)).collect();
+    }
+    let size = if largest == 0.0 {
+        0
+    } else {
+        largest.log10().floor() as i32
+    };
+    let decimals = usize::try_from(5 - size).unwrap_or(0);
+    let written: Vec<String> = values.iter().map(|x| format!("{x:.decimals$}")).collect();
+    let needed = |text: &String| match text.split_once('.') {
+        Some((_, decimals)) => decimals.trim_end_matches('0').len(),
+        None => 0,
+    };
+    let needed = written.iter().map(needed).max().unwrap_or(0);
+    let number = |x: &f64| {
+        let text = format!("{x:.needed$}");
+        match text.strip_prefix('-') {
+            Some(size) if size.bytes().all(|b| matches!(b, b'0' | b'.')) => size.to_owned(),
+            _ => text,
+        }
+    };
+    values.iter().map(number).collect()
 }
 
 /// Prints the facts of a run, and the files that were written.
@@ -98,6 +166,7 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
             simulation.worst.join(", ")
         );
     }
+    text += &redundancy(&r.redundant);
     for line in warnings(&r.warnings) {
         text += &format!("warning: {line}\n");
     }
@@ -108,6 +177,29 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
         text += &format!("{}\n", file.display());
     }
     text
+}
+
+/// Tells which equations were left out, and what that means for reactions.
+fn redundancy(redundant: &[String]) -> String {
+    let Some(first) = redundant.first() else {
+        return String::new();
+    };
+    let named: Vec<&str> = redundant.iter().take(ALIKE).map(String::as_str).collect();
+    let more = match redundant.len() - named.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let what = match redundant.len() {
+        1 => format!("{first} follows from other equations and is left out"),
+        n => format!(
+            "{n} equations follow from others and are left out ({}{more})",
+            named.join(", ")
+        ),
+    };
+    format!(
+        "redundant: {what}; the motion is the same, but reactions of these joints are not unique, \
+         and the smallest are given\n"
+    )
 }
 
 /// Number of warnings of one kind that are shown.
@@ -197,23 +289,55 @@ mod tests {
     use crate::results::{Kind, Units};
 
     #[test]
-    fn the_table_has_the_first_and_the_last_row_and_fits() {
+    fn the_table_has_the_first_and_the_last_row_and_says_what_is_left_out() {
         let mut run = Run::new("r", "t", Units::default());
         run.add_column("a rather long expression", "mm");
         run.begin(Kind::Dynamic);
         (0..=1000).for_each(|k| run.push(&[f64::from(k) * 1e-3, -1e-7 * f64::from(k)]));
         run.end();
-        let text = table(&run);
+        let text = table(&run, 1001, 80);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.len(), 2 + ROWS);
-        assert!(lines[0].ends_with("a rather lon…") && lines[1].ends_with("mm"));
+        assert_eq!(lines.len(), 2 + ROWS + 1);
+        assert!(lines[0].ends_with("a rather long expression") && lines[1].ends_with("mm"));
         assert!(
-            lines[2].trim_start().starts_with('0')
-                && lines[10].trim_start().starts_with("1.00000")
-                && lines[10].ends_with("-1.00000e-4"),
+            lines[2].trim_start().starts_with("0.000") && lines[10].ends_with("-0.0001"),
             "{text}"
         );
-        assert_eq!(table(&Run::new("r", "t", Units::default())), "");
+        assert_eq!(lines[11], "… 9 of 1001 rows; the files have all");
+        assert_eq!(table(&Run::new("r", "t", Units::default()), 0, 80), "");
+    }
+
+    #[test]
+    fn a_static_row_and_a_dynamic_row_at_one_time_are_told_apart() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("x", "mm");
+        for kind in [Kind::Static, Kind::Dynamic] {
+            run.begin(kind);
+            run.push(&[0.0, 0.1 + 0.2]);
+            run.end();
+        }
+        let text = table(&run, 2, 80);
+        assert!(
+            text.contains("phase") && text.contains("static") && text.contains("dynamic"),
+            "{text}"
+        );
+        assert!(text.contains("0.3") && !text.contains("0.30"), "{text}");
+    }
+
+    #[test]
+    fn reactions_that_are_not_unique_are_told() {
+        assert_eq!(redundancy(&[]), "");
+        let one = redundancy(&["JOINT/2 Zi.Xj".into()]);
+        assert!(
+            one.contains("JOINT/2 Zi.Xj follows") && one.contains("not unique"),
+            "{one}"
+        );
+        let many: Vec<String> = (1..6).map(|k| format!("JOINT/{k} Zi.Xj")).collect();
+        assert!(
+            redundancy(&many).contains("and 2 more"),
+            "{}",
+            redundancy(&many)
+        );
     }
 
     #[test]
@@ -235,17 +359,10 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_six_digits() {
-        assert_eq!(
-            [3.25, 199.99999, 1e6, 1e-5, 0.0, 123456.7].map(number),
-            [
-                "3.25000",
-                "200.000",
-                "1.00000e6",
-                "1.00000e-5",
-                "0",
-                "123457"
-            ]
-        );
+    fn numbers_of_a_column_have_the_decimals_that_they_need() {
+        assert_eq!(aligned(&[0.0, 199.99999, 1.5]), ["0.0", "200.0", "1.5"]);
+        assert_eq!(aligned(&[0.95 + 1e-16, -8.106]), ["0.950", "-8.106"]);
+        assert_eq!(aligned(&[1e7, 0.0]), ["1e7", "0"]);
+        assert_eq!(aligned(&[-1e-14, 200.0]), ["0", "200"]);
     }
 }

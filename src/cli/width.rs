@@ -5,12 +5,23 @@ const PIPED: usize = 100;
 /// Narrowest and widest output, in characters.
 const LIMITS: (usize, usize) = (40, 240);
 
-/// Returns the width for tables, in characters.
-pub fn columns() -> usize {
+/// Returns the width that is named or that the terminal has; `None` where there is neither.
+fn known() -> Option<usize> {
     let named = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
     let terminal = || console::Term::stdout().size_checked();
-    let columns = named.or_else(|| terminal().map(|(_, columns)| usize::from(columns)));
-    columns.unwrap_or(PIPED).clamp(LIMITS.0, LIMITS.1)
+    named.or_else(|| terminal().map(|(_, columns)| usize::from(columns)))
+}
+
+/// Returns the width for tables, in characters.
+pub fn columns() -> usize {
+    known().unwrap_or(PIPED).clamp(LIMITS.0, LIMITS.1)
+}
+
+/// Returns the width for pictures, in characters.
+pub fn picture() -> usize {
+    /// Width where output goes to a file, and the widest.
+    const USUAL: (usize, usize) = (80, 120);
+    known().unwrap_or(USUAL.0).clamp(LIMITS.0, USUAL.1)
 }
 
 /// Returns the width for text that is read line by line, in characters.

@@ -21,6 +21,8 @@ pub struct Plot {
     pub y_label: String,
     /// the curves, in the order of the legend
     pub curves: Vec<Curve>,
+    /// curves with the axis at the right, of another unit
+    pub right: Vec<Curve>,
 }
 
 /// A curve of a plot.
@@ -32,6 +34,8 @@ pub struct Curve {
     pub unit: String,
     /// (x, y) in the order they are joined
     pub points: Vec<(f64, f64)>,
+    /// drawn with dashes: of another run, so that a curve below it is seen
+    pub is_dashed: bool,
 }
 
 /// Most curves of a plot when none are chosen.
@@ -73,6 +77,7 @@ impl Plot {
                 name: column.name.clone(),
                 unit: column.unit.clone(),
                 points,
+                ..Curve::default()
             }
         });
         let title = if run.title.is_empty() {
@@ -84,8 +89,8 @@ impl Plot {
         Ok(Plot {
             title,
             x_label,
-            y_label: String::new(),
             curves: curves.collect(),
+            ..Plot::default()
         })
     }
 
@@ -117,6 +122,35 @@ impl Plot {
         panels
     }
 
+    /// Returns the same without a second axis: its curves in a picture of their own, below.
+    pub fn split(self) -> Vec<Plot> {
+        let Plot { right, .. } = &self;
+        if right.is_empty() {
+            return vec![self];
+        }
+        let below = Plot {
+            title: String::new(),
+            curves: self.right.clone(),
+            right: Vec::new(),
+            ..self.clone()
+        };
+        let above = Plot {
+            right: Vec::new(),
+            ..self
+        };
+        vec![above, below]
+    }
+
+    /// Returns the curves of the axis at the right as a plot of their own, with the same x; `None`
+    /// without them.
+    pub fn at_right(&self) -> Option<Plot> {
+        (!self.right.is_empty()).then(|| Plot {
+            curves: self.right.clone(),
+            x_label: self.x_label.clone(),
+            ..Plot::default()
+        })
+    }
+
     /// Returns the common unit of the curves, if they have one.
     fn common_unit(&self) -> Option<&str> {
         let first = self.curves.first()?.unit.as_str();
@@ -140,8 +174,9 @@ impl Plot {
     /// named by the axis.
     pub fn legend(&self) -> Vec<String> {
         let units = self.common_unit().is_none();
+        let right = self.right.iter().map(|c| format!("{} (right)", c.name));
         match self.curves.as_slice() {
-            [_] if self.y_label.is_empty() => Vec::new(),
+            [_] if self.y_label.is_empty() && self.right.is_empty() => Vec::new(),
             curves => curves
                 .iter()
                 .map(|c| {
@@ -151,6 +186,7 @@ impl Plot {
                         c.name.clone()
                     }
                 })
+                .chain(right)
                 .collect(),
         }
     }

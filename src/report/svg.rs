@@ -23,6 +23,9 @@ const TITLE_LETTERS: u32 = 19 * DOTS;
 /// Width of an average letter of a common sans-serif face, as a part of its size.
 const LETTER_WIDTH: f64 = 0.56;
 
+/// Length of a dash and of the gap behind it, in dots.
+const DASH: u32 = 6 * DOTS;
+
 const INK: RGBColor = RGBColor(38, 38, 44);
 const AXIS: RGBColor = RGBColor(110, 110, 120);
 const GRID: RGBColor = RGBColor(226, 226, 230);
@@ -58,7 +61,7 @@ pub fn svg(plot: &Plot) -> Result<String, Diagnostic> {
 pub fn panels(plots: &[Plot]) -> Result<String, Diagnostic> {
     let ranges = plots
         .iter()
-        .map(Plot::ranges)
+        .map(Ranges::of)
         .collect::<Result<Vec<_>, _>>()?;
     if plots.is_empty() {
         return Err(super::plot::nothing_to_show());
@@ -80,20 +83,48 @@ pub fn panels(plots: &[Plot]) -> Result<String, Diagnostic> {
     Ok(text.replacen(&size(WIDTH * DOTS, height * DOTS), &size(WIDTH, height), 1))
 }
 
+/// The ranges of the axes of a plot.
+struct Ranges {
+    x: Range,
+    left: Range,
+    right: Option<Range>,
+}
+
+impl Ranges {
+    /// Returns the ranges of a plot, those of y with a margin.
+    ///
+    /// # Errors
+    /// When there is no finite point.
+    fn of(plot: &Plot) -> Result<Self, Diagnostic> {
+        let with_margin = |(low, high): Range| {
+            let margin = 0.04 * (high - low);
+            (low - margin, high + margin)
+        };
+        let (x, left) = plot.ranges()?;
+        let other = plot.at_right().map(|right| right.ranges()).transpose()?;
+        let x = other.map_or(x, |(also, _)| (x.0.min(also.0), x.1.max(also.1)));
+        Ok(Self {
+            x,
+            left: with_margin(left),
+            right: other.map(|(_, y)| with_margin(y)),
+        })
+    }
+}
+
 /// Draws all panels on a backend, with their axes aligned.
-fn draw(
-    plots: &[Plot],
-    ranges: &[(Range, Range)],
-    size: (u32, u32),
-    text: &mut String,
-) -> Drawn<()> {
+fn draw(plots: &[Plot], ranges: &[Ranges], size: (u32, u32), text: &mut String) -> Drawn<()> {
     let root = SVGBackend::with_string(text, size).into_drawing_area();
     root.fill(&WHITE)?;
     let mut area = root.margin(14 * DOTS, 12 * DOTS, 14 * DOTS, 26 * DOTS);
     // the axes of all panels are aligned
     let left = ranges
         .iter()
-        .map(|(_, y)| y_labels_width(*y, tick_step(*y)))
+        .map(|r| y_labels_width(r.left, tick_step(r.left)))
+        .max()
+        .unwrap_or(0);
+    let right = ranges
+        .iter()
+        .filter_map(|r| r.right.map(|y| y_labels_width(y, tick_step(y))))
         .max()
         .unwrap_or(0);
     if let Some(title) = plots
@@ -109,7 +140,7 @@ fn draw(
         area = area.split_vertically((TITLE_LETTERS + 8 * DOTS) as i32).1;
     }
     let last = plots.len() - 1;
-    for (k, (plot, &(x, y))) in plots.iter().zip(ranges).enumerate() {
+    for (k, (plot, ranges)) in plots.iter().zip(ranges).enumerate() {
         let height = area.dim_in_pixel().1 / (plots.len() - k) as u32;
         // the last panel has the name of x below it; all have curves of one height
         let name = 24 * DOTS;
@@ -119,7 +150,7 @@ fn draw(
             name * (plots.len() - k) as u32 / plots.len() as u32 / 2
         };
         let (panel, rest) = area.split_vertically(height.saturating_sub(shorter));
-        draw_panel(plot, &panel, (x, y), left, k == last)?;
+        draw_panel(plot, &panel, ranges, [left, right], k == last)?;
         area = rest;
     }
     root.present()?;
@@ -130,16 +161,16 @@ fn draw(
 fn draw_panel<B: DrawingBackend>(
     plot: &Plot,
     area: &DrawingArea<B, Shift>,
-    (x, y): (Range, Range),
-    left: u32,
+    ranges: &Ranges,
+    [left, right]: [u32; 2],
     named: bool,
 ) -> Drawn<()>
 where
     B::ErrorType: 'static,
 {
-    let (x_step, y_step) = (tick_step(x), tick_step(y));
-    let margin = 0.04 * (y.1 - y.0);
-    let y = (y.0 - margin, y.1 + margin);
+    let (x, y) = (ranges.x, ranges.left);
+    let second = ranges.right.unwrap_or(y);
+    let (x_step, y_step, second_step) = (tick_step(x), tick_step(y), tick_step(second));
     let top = draw_legend(area, &plot.legend(), left as i32, 4 * DOTS as i32)?;
     let (_, below) = area.split_vertically(top);
     let mut chart = (ChartBuilder::on(&below).set_label_area_size(
@@ -147,7 +178,9 @@ where
         if named { 52 } else { 30 } * DOTS,
     ))
     .set_label_area_size(LabelAreaPosition::Left, left)
-    .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
+    .set_label_area_size(LabelAreaPosition::Right, right)
+    .build_cartesian_2d(x.0..x.1, y.0..y.1)?
+    .set_secondary_coord(x.0..x.1, second.0..second.1);
     let lines = (below.dim_in_pixel().1 / (55 * DOTS)).clamp(3, 9) as usize;
     let mut mesh = chart.configure_mesh();
     (mesh
@@ -164,16 +197,37 @@ where
     .label_style(("sans-serif", LETTERS - DOTS).into_font().color(&INK))
     .axis_desc_style(("sans-serif", LETTERS).into_font().color(&INK))
     .draw()?;
-    for (curve, colour) in plot.curves.iter().zip(COLOURS.iter().cycle()) {
+    if let Some(other) = plot.at_right() {
+        (chart.configure_secondary_axes())
+            .axis_style(AXIS.stroke_width(DOTS))
+            .y_labels(lines)
+            .set_all_tick_mark_size(5 * DOTS)
+            .y_label_formatter(&|v| tick(*v, second_step))
+            .y_desc(other.y_axis())
+            .label_style(("sans-serif", LETTERS - DOTS).into_font().color(&INK))
+            .axis_desc_style(("sans-serif", LETTERS).into_font().color(&INK))
+            .draw()?;
+    }
+    let colours = COLOURS.iter().cycle();
+    let curves = (plot.curves.iter().map(|c| (c, y, false)))
+        .chain(plot.right.iter().map(|c| (c, second, true)));
+    for ((curve, y, at_right), colour) in curves.zip(colours) {
         for mut piece in pieces(&curve.points, x, WIDTH) {
             // the range may be narrower than the largest numbers, which have no place in pixels
             piece
                 .iter_mut()
                 .for_each(|p| *p = (p.0.clamp(x.0, x.1), p.1.clamp(y.0, y.1)));
-            if let [point] = piece.as_slice() {
-                chart.draw_series([Circle::new(*point, 2 * DOTS, colour.filled())])?;
-            } else {
-                chart.draw_series(LineSeries::new(piece, colour.stroke_width(2 * DOTS)))?;
+            let dot = |point| [Circle::new(point, 2 * DOTS, colour.filled())];
+            let style = colour.stroke_width(2 * DOTS);
+            let line = |piece| LineSeries::new(piece, style);
+            let dashes = |piece: Vec<_>| DashedLineSeries::new(piece, DASH, DASH, style);
+            match (piece.as_slice(), at_right, curve.is_dashed) {
+                ([point], false, _) => drop(chart.draw_series(dot(*point))?),
+                ([point], true, _) => drop(chart.draw_secondary_series(dot(*point))?),
+                (_, false, false) => drop(chart.draw_series(line(piece))?),
+                (_, true, false) => drop(chart.draw_secondary_series(line(piece))?),
+                (_, false, true) => drop(chart.draw_series(dashes(piece))?),
+                (_, true, true) => drop(chart.draw_secondary_series(dashes(piece))?),
             }
         }
     }

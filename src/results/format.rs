@@ -68,7 +68,7 @@ pub const FORMATS: &[Row] = &[
     Row {
         format: Format::Json,
         name: "json",
-        read: None,
+        read: Some(json::read),
         sink: Some(|_, path| Box::new(WholeSink::new(json::document, path))),
     },
     Row {

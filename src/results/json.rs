@@ -2,7 +2,8 @@
 //!
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
-use super::{Counts, Jump, RankChange, Run, Simulation};
+use super::{Column, Counts, Jump, Kind, RankChange, Run, Sequence, Simulation, malformed};
+use crate::diagnostic::Diagnostic;
 use crate::model::ElementKind;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -112,6 +113,52 @@ pub fn document(run: &Run) -> String {
     text(&document)
 }
 
+/// Reads the table of a document that [`document`] has written.
+///
+/// # Errors
+/// When it is no such document, or its columns differ in length.
+pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
+    let value: Value = serde_json::from_slice(bytes)
+        .map_err(|e| malformed(e.line(), format!("this is no JSON: {e}")))?;
+    let Some(columns) = value["columns"].as_array() else {
+        let what = "there is no \"columns\"; the record of a run has no table";
+        return Err(malformed(0, what)
+            .help("its .csv or .res has, and `cognate convert run.res run.json` makes one"));
+    };
+    let mut run = Run {
+        name: value["name"].as_str().unwrap_or_default().to_owned(),
+        title: value["title"].as_str().unwrap_or_default().to_owned(),
+        ..Run::default()
+    };
+    run.columns = (columns.iter().enumerate())
+        .map(|(k, c)| {
+            column(c).ok_or_else(|| malformed(0, format!("column {} is no list of numbers", k + 1)))
+        })
+        .collect::<Result<_, _>>()?;
+    let rows = run.rows();
+    if run.columns.iter().any(|c| c.values.len() != rows) {
+        return Err(malformed(0, "the columns differ in length"));
+    }
+    let (kind, rows) = (Kind::Dynamic, 0..rows);
+    let name = format!("{}_001", kind.name());
+    run.sequences.push(Sequence { name, kind, rows });
+    Ok(run)
+}
+
+/// Reads a column; `null` is a value that is not finite.
+fn column(value: &Value) -> Option<Column> {
+    let number = |x: &Value| x.as_f64().or_else(|| x.is_null().then_some(f64::NAN));
+    Some(Column {
+        name: value["name"].as_str()?.to_owned(),
+        unit: value["unit"].as_str().unwrap_or_default().to_owned(),
+        values: value["values"]
+            .as_array()?
+            .iter()
+            .map(number)
+            .collect::<Option<_>>()?,
+    })
+}
+
 /// Writes a value as indented text with a line break at its end.
 pub fn text(value: &Value) -> String {
     format!("{value:#}\n")
@@ -146,6 +193,24 @@ mod tests {
             ),
             (&json!(7), &json!(1), &json!("stopped"))
         );
+    }
+
+    #[test]
+    fn a_table_is_read_back_and_a_record_is_refused() {
+        let mut run = Run::new("r", "t", Units::default());
+        run.add_column("x", "mm");
+        run.begin(Kind::Dynamic);
+        run.push(&[0.0, 0.1 + 0.2]);
+        run.push(&[1.0, f64::NAN]);
+        run.end();
+        let back = read(document(&run).as_bytes()).unwrap();
+        assert_eq!(
+            (&back.columns[1].unit, back.columns[1].values[0]),
+            (&"mm".to_owned(), 0.1 + 0.2)
+        );
+        assert!(back.columns[1].values[1].is_nan() && back.title == "t");
+        let refused = read(text(&record(&run)).as_bytes()).unwrap_err();
+        assert!(refused.message.contains("no table"));
     }
 
     #[test]

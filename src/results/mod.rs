@@ -24,7 +24,7 @@ mod units;
 
 pub use file::{read, write, write_text};
 pub use log::Event;
-pub use number::digits;
+pub use number::{digits, digits_of_six};
 pub use record::{
     Counts, Jump, Quantity, RankChange, Record, RowChange, Simulation, Status, Warning,
 };

@@ -119,6 +119,10 @@ fn write_redundant(
             "   -  deactivating constraint equation  {equation} in model.{element}"
         )?;
     }
+    writeln!(
+        text,
+        "  The motion is the same without them; reactions of these joints are not unique."
+    )?;
     writeln!(text)
 }
 

@@ -40,6 +40,19 @@ pub fn push_digits(x: f64, text: &mut Vec<u8>) {
     }
 }
 
+/// Writes a number for reading: six digits, without the noise of rounding behind them.
+pub fn digits_of_six(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    if rounded == 0.0 {
+        return "0".into();
+    }
+    if (1e-4..1e6).contains(&rounded.abs()) {
+        digits(rounded)
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 /// Reads a number as result files of every age write it: `1.5`, `-2.18E-014`, `1.0D+00`,
 /// `Infinity`.
 pub(super) fn number(text: &str) -> Option<f64> {
@@ -51,6 +64,12 @@ pub(super) fn number(text: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn six_digits_have_no_noise() {
+        let written = [0.95 + 1e-16, -8.106, 0.1 + 0.2, 1e-7 / 3.0, 2e6, -0.0].map(digits_of_six);
+        assert_eq!(written, ["0.95", "-8.106", "0.3", "3.33333e-8", "2e6", "0"]);
+    }
 
     #[test]
     fn digits_are_the_shortest_that_read_back() {

@@ -1,0 +1,90 @@
+//! `cognate plot`: which curves, which axes, which numbers.
+
+use super::command::{cognate, path, scratch};
+
+/// A table of a fall: displacement, velocity, and a pure number.
+fn fall(test: &str, name: &str, g: f64) -> std::path::PathBuf {
+    let mut text = "time,drop.X,drop.V,n\nsec,mm,mm/sec,-\n".to_owned();
+    for k in 0..=100 {
+        let t = f64::from(k) * 0.01;
+        text += &format!("{t},{},{},{k}\n", 0.5 * g * t * t, g * t);
+    }
+    scratch(test, name, &text)
+}
+
+#[test]
+fn two_units_have_an_axis_at_either_side_and_three_have_panels() {
+    let table = fall("plot_axes", "a.csv", 9.0);
+    let picture = table.with_file_name("a.svg");
+    let draw = |columns: &[&str]| {
+        let mut arguments = vec!["plot", path(&table), "--out", path(&picture)];
+        columns.iter().for_each(|c| arguments.extend(["--y", c]));
+        let done = cognate(&arguments);
+        assert_eq!(done.code, 0, "{}", done.err);
+        std::fs::read_to_string(&picture).unwrap()
+    };
+    let two = draw(&["drop.X", "drop.V"]);
+    assert!(
+        two.contains("drop.X [mm]")
+            && two.contains("drop.V [mm/sec]")
+            && two.contains("drop.V (right)")
+    );
+    assert!(two.contains("height=\"540\""));
+    let three = draw(&["drop.X", "drop.V", "n"]);
+    assert!(!three.contains("(right)") && three.contains("height=\"750\""));
+}
+
+#[test]
+fn runs_are_laid_over_each_other_and_named_by_their_files() {
+    let a = fall("plot_over", "a.csv", 9.0);
+    let b = fall("plot_over", "b.csv", 8.0);
+    let picture = a.with_file_name("over.svg");
+    let done = cognate(&[
+        "plot",
+        path(&a),
+        "--over",
+        path(&b),
+        "--y",
+        "drop.X",
+        "--out",
+        path(&picture),
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let text = std::fs::read_to_string(&picture).unwrap();
+    assert!(text.contains("drop.X (a)") && text.contains("drop.X (b)"));
+    let same = cognate(&["plot", path(&a), "--over", path(&b), "--out", path(&b)]);
+    assert_eq!(same.code, 2, "an input is never overwritten");
+}
+
+#[test]
+fn slope_integral_and_statistics_are_those_of_the_fall() {
+    let table = fall("plot_numbers", "a.csv", 9.0);
+    let numbers = |arguments: &[&str]| -> serde_json::Value {
+        let mut all = vec!["plot", path(&table), "--statistics", "--json"];
+        all.extend(arguments);
+        let done = cognate(&all);
+        assert_eq!(done.code, 0, "{}", done.err);
+        serde_json::from_str(&done.out).unwrap()
+    };
+    let slope = numbers(&["--y", "drop.V", "--as", "derivative"]);
+    assert_eq!(slope[0]["unit"], "mm/sec**2");
+    assert!((slope[0]["mean"].as_f64().unwrap() - 9.0).abs() < 1e-9);
+    let way = numbers(&["--y", "drop.V", "--as", "integral"]);
+    assert_eq!(way[0]["unit"], "mm");
+    assert!((way[0]["last"].as_f64().unwrap() - 4.5).abs() < 1e-9);
+    let all = numbers(&[]);
+    assert_eq!(all.as_array().unwrap().len(), 3);
+    assert_eq!(all[1]["largest"]["at"], 1.0);
+}
+
+#[test]
+fn columns_are_listed_and_json_is_read_like_csv() {
+    let table = fall("plot_json", "a.csv", 9.0);
+    let document = table.with_file_name("a.json");
+    assert_eq!(cognate(&["convert", path(&table), path(&document)]).code, 0);
+    let [csv, json] = [&table, &document].map(|file| cognate(&["plot", path(file), "--list"]).out);
+    assert!(
+        csv == json && csv.contains("drop.V") && csv.contains("mm/sec"),
+        "{csv}{json}"
+    );
+}
