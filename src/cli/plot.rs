@@ -58,7 +58,7 @@ pub struct Args {
     json: bool,
 }
 
-/// What is shown of a column.
+/// The values of a column, or a curve made of them.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum ShownName {
     /// the values

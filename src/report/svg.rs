@@ -367,6 +367,7 @@ mod tests {
             name: name.into(),
             unit: "mm".into(),
             points: (0..50).map(|i| (f64::from(i), f64::from(i * i))).collect(),
+            ..Curve::default()
         };
         let plot = Plot {
             title: "a < b".into(),
