@@ -8,6 +8,7 @@ use crate::dataset::{self, Errors, Reading};
 use crate::diagnostic::{Cause, Diagnostic, Severity};
 use crate::model::{ElementKind, Model};
 use serde_json::json;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Find what is wrong with datasets and command files
@@ -35,10 +36,16 @@ pub fn run(args: &Args) -> Outcome {
     let mut all = Vec::new();
     let mut sources = Sources::default();
     let mut model_fails = false;
+    let mut told: BTreeSet<PathBuf> = args.files.iter().cloned().collect();
     for file in &args.files {
         let ending = file.extension().map(|e| e.to_ascii_lowercase());
         match ending.as_deref().and_then(std::ffi::OsStr::to_str) {
-            Some("acf") => all.extend(check_script(file, &mut sources, &mut model_fails)),
+            Some("acf") => all.extend(check_script(
+                file,
+                &mut sources,
+                &mut told,
+                &mut model_fails,
+            )),
             _ => match dataset::read(file) {
                 Ok(reading) => {
                     add(&mut sources, &reading);
@@ -139,8 +146,14 @@ fn assembled(
     (found.into_iter().map(|d| reading.dataset.locate(d))).collect()
 }
 
-/// Checks a command file, and the effect of its commands on the model it names.
-fn check_script(file: &Path, sources: &mut Sources, model_fails: &mut bool) -> Vec<Diagnostic> {
+/// Checks a command file, and the effect of its commands on the model it names; `told`: datasets
+/// that are spoken of elsewhere.
+fn check_script(
+    file: &Path,
+    sources: &mut Sources,
+    told: &mut BTreeSet<PathBuf>,
+    model_fails: &mut bool,
+) -> Vec<Diagnostic> {
     let script = match Script::read(file) {
         Ok(script) => script,
         Err(errors) => return errors.0,
@@ -177,7 +190,7 @@ fn check_script(file: &Path, sources: &mut Sources, model_fails: &mut bool) -> V
             ..d
         }));
     }
-    if reading.failed() {
+    if told.insert(path) || reading.failed() {
         all.extend(reading.diagnostics);
     }
     all

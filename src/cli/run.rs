@@ -127,6 +127,7 @@ pub fn run(args: &Args) -> Outcome {
         reading,
         base,
         steps,
+        remarks,
     } = if is_command {
         script(&args.model, args.dataset.as_deref())?
     } else {
@@ -138,7 +139,7 @@ pub fn run(args: &Args) -> Outcome {
             steps: args.steps,
         })?
     };
-    let doubts = remark_on_warnings(args, &reading);
+    let doubts = remark_on_warnings(args, &reading, &remarks);
     let (model, dataset) = (reading.model, reading.dataset);
     check_columns(args, &model, &steps)?;
     let mut session = open(args, model, &base);
@@ -212,8 +213,16 @@ fn told(
     (Status::Model, Some(errors))
 }
 
-/// Remarks on the number of warnings about a dataset; returns them.
-fn remark_on_warnings(args: &Args, reading: &Reading) -> Vec<Diagnostic> {
+/// Remarks on the number of warnings about a dataset, and on the notes about it and its commands;
+/// returns the warnings.
+fn remark_on_warnings(
+    args: &Args,
+    reading: &Reading,
+    of_commands: &[Diagnostic],
+) -> Vec<Diagnostic> {
+    if !args.quiet {
+        remark_on_notes(reading.diagnostics.iter().chain(of_commands));
+    }
     let is_warning = |d: &&Diagnostic| d.severity == Severity::Warning;
     let doubts: Vec<Diagnostic> =
         (reading.diagnostics.iter().filter(is_warning).cloned()).collect();
@@ -225,6 +234,14 @@ fn remark_on_warnings(args: &Args, reading: &Reading) -> Vec<Diagnostic> {
         ));
     }
     doubts
+}
+
+/// Remarks on notes about a dataset or its commands.
+fn remark_on_notes<'a>(found: impl Iterator<Item = &'a Diagnostic>) {
+    for note in found.filter(|d| d.severity == Severity::Note) {
+        let file = (note.file.as_deref()).map_or(String::new(), |file| format!("{file}: "));
+        remark(format!("{file}{}", note.message));
+    }
 }
 
 /// Checks the columns that the command line asks for, before anything is solved or written.
@@ -312,6 +329,8 @@ pub(super) struct Job {
     pub base: String,
     /// the commands
     pub steps: Vec<Step>,
+    /// warnings and notes about the commands
+    pub remarks: Vec<Diagnostic>,
 }
 
 /// Returns the exit of a status.
@@ -380,6 +399,7 @@ pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
         reading,
         base: stem(args.model),
         steps: vec![step],
+        remarks: Vec::new(),
     })
 }
 
@@ -423,6 +443,7 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
             reading: read(&file)?,
             base: format!("{}_replay", stem(path)),
             steps: script.steps,
+            remarks: script.diagnostics,
         });
     }
     let script = Script::read(path).map_err(failed)?;
@@ -445,6 +466,7 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
                 reading: dataset::read_text(&saved.model().to_text()),
                 base: script.output.clone().unwrap_or_else(|| stem(path)),
                 steps: script.steps,
+                remarks: script.diagnostics,
             });
         }
         let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
@@ -458,6 +480,7 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
         reading: read(&file)?,
         base,
         steps: script.steps,
+        remarks: script.diagnostics,
     })
 }
 

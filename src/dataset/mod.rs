@@ -9,6 +9,7 @@
 //! that knows arguments by name.
 
 pub mod command;
+mod idle;
 pub mod lens;
 pub mod manual;
 pub mod mesh;
@@ -21,6 +22,7 @@ pub mod write;
 
 use crate::diagnostic::{Cause, Diagnostic, Severity, Span};
 use crate::model::{ElementKind, MarkerOwner, Model};
+use idle::Idle;
 use read::Table;
 use row::Record;
 use std::collections::{BTreeMap, BTreeSet};
@@ -189,6 +191,9 @@ pub fn read_source(source: Source) -> Reading {
             }),
         }
     }
+    let mut without_effect = Idle::default();
+    records.iter().flatten().for_each(|r| without_effect.add(r));
+    out.extend(without_effect.told(&source));
     name_elements(&records, out);
     out.sort_by_key(|d| (d.line, d.column));
     reading.dataset = Dataset {

@@ -26,6 +26,8 @@ pub struct Argument {
     pub repeated: bool,
     /// bare keywords of one group exclude each other
     pub group: Option<&'static str>,
+    /// it is accepted and changes nothing, which is said
+    pub idle: bool,
 }
 
 impl Argument {
@@ -37,6 +39,7 @@ impl Argument {
             required: false,
             repeated: false,
             group: None,
+            idle: false,
         }
     }
 
@@ -73,6 +76,11 @@ impl<T> Binding<T> {
     /// It may be given several times.
     pub const fn repeated(mut self) -> Self {
         self.argument.repeated = true;
+        self
+    }
+    /// It is accepted and changes nothing, which is said.
+    pub const fn idle(mut self) -> Self {
+        self.argument.idle = true;
         self
     }
     /// It excludes the other keywords of this group.
@@ -179,6 +187,14 @@ pub trait Statement: Sync {
     /// Which settings it keeps by keyword; `None` for other statements.
     fn settings(&self) -> Option<SettingsStatement> {
         None
+    }
+    /// Returns true if arguments that no row describes have a meaning all the same.
+    fn reads_others(&self) -> bool {
+        false
+    }
+    /// Returns true if it is accepted and does nothing, whatever its arguments are.
+    fn is_idle(&self) -> bool {
+        false
     }
     /// Sets what a statement without a number sets back to what holds without it.
     fn reset(&self, _: &mut Model) {}
@@ -369,6 +385,9 @@ impl<T: Element> Statement for Single<T> {
     fn settings(&self) -> Option<SettingsStatement> {
         self.settings
     }
+    fn is_idle(&self) -> bool {
+        self.settings.is_some_and(SettingsStatement::is_idle)
+    }
     fn open(&self) -> bool {
         self.settings.is_some()
     }
@@ -431,6 +450,9 @@ impl Statement for Opaque {
     }
     fn open(&self) -> bool {
         true
+    }
+    fn is_idle(&self) -> bool {
+        !self.kind.is_unsolved()
     }
     fn arguments(&self) -> Vec<Argument> {
         Vec::new()

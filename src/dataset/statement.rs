@@ -374,7 +374,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "CM" (cm);
         field "IM" (im);
         lens "IP" (Inertia, ip);
-        keep "MATERIAL" (Kind::Text);
+        keep "MATERIAL" (Kind::Text).idle();
         field "VX" (velocity[0]); field "VY" (velocity[1]); field "VZ" (velocity[2]);
         angle "WX" (angular_velocity[0]); angle "WY" (angular_velocity[1]); angle "WZ" (angular_velocity[2]);
         field "VM" (vm);
@@ -388,7 +388,7 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         lens "XG" (PointOnX, orientation);
         field "MASS" (mass);
         field "CM" (cm);
-        keep "MATERIAL" (Kind::Text);
+        keep "MATERIAL" (Kind::Text).idle();
         field "VX" (velocity[0]); field "VY" (velocity[1]); field "VZ" (velocity[2]);
         field "VM" (vm);
         lens "EXACT" (Exact, exact);
@@ -482,22 +482,22 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "PITCH" (pitch);
         field "PD" (pd);
         lens "FRICTION" (Word, friction);
-        keep "DELTA_V" (REAL);
-        keep "MAXIMUM_DEFORMATION" (REAL);
+        keep "DELTA_V" (REAL).idle();
+        keep "MAXIMUM_DEFORMATION" (REAL).idle();
         keep "MU_DYN_ROT" (REAL);
         keep "MU_STAT_ROT" (REAL);
         keep "MU_DYN_TRANS" (REAL);
         keep "MU_STAT_TRANS" (REAL);
         keep "MAX_FRIC_ROT" (REAL);
         keep "MAX_FRIC_TRANS" (REAL);
-        keep "PRELOAD_RADIAL" (REAL);
-        keep "PRELOAD_AXIAL" (REAL);
-        keep "PRELOAD_X" (REAL);
-        keep "PRELOAD_Y" (REAL);
-        keep "INNER_RADIUS" (REAL);
-        keep "OUTER_RADIUS" (REAL);
-        keep "HEIGHT" (REAL);
-        keep "WIDTH" (REAL);
+        keep "PRELOAD_RADIAL" (REAL).idle();
+        keep "PRELOAD_AXIAL" (REAL).idle();
+        keep "PRELOAD_X" (REAL).idle();
+        keep "PRELOAD_Y" (REAL).idle();
+        keep "INNER_RADIUS" (REAL).idle();
+        keep "OUTER_RADIUS" (REAL).idle();
+        keep "HEIGHT" (REAL).idle();
+        keep "WIDTH" (REAL).idle();
     }),
     numbered!(Jprim, primitives: Primitive, nothing, PRIMITIVE_TYPES, {
         field "I" (i).required();
@@ -781,23 +781,23 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "NS" (ns);
         field "NO" (no);
         field "X" (x);
-        keep "XXFLAG" (WORD);
+        keep "XXFLAG" (WORD).idle();
         field "U" (u);
         field "Y" (y);
-        keep "XUFLAG" (WORD);
-        keep "YUFLAG" (WORD);
-        keep "YXFLAG" (WORD);
+        keep "XUFLAG" (WORD).idle();
+        keep "YUFLAG" (WORD).idle();
+        keep "YXFLAG" (WORD).idle();
         field "IC" (ic);
         field "XD" (xd);
         field "ND" (nd);
         field "ICD" (icd);
         field "SAMPLE_PERIOD" (sample_period);
-        keep "SAMPLE_OFFSET" (REAL);
+        keep "SAMPLE_OFFSET" (REAL).idle();
         field "STATIC_HOLD" (static_hold);
-        keep "IMPLICIT" (Kind::Flag);
+        keep "IMPLICIT" (Kind::Flag).idle();
         field "FUNCTION" (function);
         lens "ROUTINE" (Routine, function);
-        keep "INTERFACE" (Kind::Text);
+        keep "INTERFACE" (Kind::Text).idle();
     }),
     numbered!(Tfsiso, transfer_functions: TransferFunction, nothing, {
         field "X" (x).required();
@@ -820,15 +820,15 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         choice "LE" (comparison = Comparison::LessOrEqual).group("comparison");
         angle "ERRor" (error);
         field "ANGULAR" (angular);
-        field "BISECTION" (bisection);
+        field "BISECTION" (bisection).idle();
         field "HALT" (halt);
         field "RETURN" (end_simulation);
         field "PRINT" (print);
         field "DT" (dt);
         field "STEPSIZE" (stepsize);
         field "RESTART" (restart);
-        field "CODGEN" (codgen);
-        field "YYDUMP" (yydump);
+        field "CODGEN" (codgen).idle();
+        field "YYDUMP" (yydump).idle();
         field "FUNCTION" (function).required();
         lens "ROUTINE" (Routine, function);
         field "EVALUATE" (evaluate);
@@ -864,10 +864,10 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         choice "Velocity" (quantity = Quantity::Velocity).required().group("quantity");
         choice "Acceleration" (quantity = Quantity::Acceleration).required().group("quantity");
         choice "Force" (quantity = Quantity::Force).required().group("quantity");
-        own "PARTS" (WORDS, |r, v| r.parts.put(v), |r| words(&r.parts));
-        own "JOINTS" (WORDS, |r, v| r.joints.put(v), |r| words(&r.joints));
-        own "JPRIMS" (WORDS, |r, v| r.primitives.put(v), |r| words(&r.primitives));
-        own "APPFORS" (WORDS, |r, v| r.forces.put(v), |r| words(&r.forces));
+        own "PARTS" (WORDS, |r, v| r.parts.put(v), |r| words(&r.parts)).idle();
+        own "JOINTS" (WORDS, |r, v| r.joints.put(v), |r| words(&r.joints)).idle();
+        own "JPRIMS" (WORDS, |r, v| r.primitives.put(v), |r| words(&r.primitives)).idle();
+        own "APPFORS" (WORDS, |r, v| r.forces.put(v), |r| words(&r.forces)).idle();
         field "RM" (rm);
         field "Comment" (comment);
     }),
@@ -895,61 +895,61 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         field "HINit" (hinit);
         field "KMAX" (kmax);
         field "MAXIT" (maxit);
-        field "ALPHA" (alpha);
-        field "BETA" (beta);
-        field "GAMMA" (gamma);
-        set "PATTERN" (WORDS, |e| &mut e.rest, |e| &e.rest);
-        set "CORRECTOR" (Kind::Word(&["ORIGINAL", "MODIFIED"]), |e| &mut e.rest, |e| &e.rest);
-        set "INTERPOLATE" (ON_OFF, |e| &mut e.rest, |e| &e.rest);
-        set "ADAPTIVITY" (REAL, |e| &mut e.rest, |e| &e.rest);
-        set "SCALE" (REALS, |e| &mut e.rest, |e| &e.rest);
-        set "FIXIT" (REAL, |e| &mut e.rest, |e| &e.rest);
-        set "HRATIO" (REAL, |e| &mut e.rest, |e| &e.rest);
-        set "MAXERR" (REAL, |e| &mut e.rest, |e| &e.rest);
-        set "REPEAT" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
-        set "LIST" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
+        field "ALPHA" (alpha).idle();
+        field "BETA" (beta).idle();
+        field "GAMMA" (gamma).idle();
+        set "PATTERN" (WORDS, |e| &mut e.rest, |e| &e.rest).idle();
+        set "CORRECTOR" (Kind::Word(&["ORIGINAL", "MODIFIED"]), |e| &mut e.rest, |e| &e.rest).idle();
+        set "INTERPOLATE" (ON_OFF, |e| &mut e.rest, |e| &e.rest).idle();
+        set "ADAPTIVITY" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
+        set "SCALE" (REALS, |e| &mut e.rest, |e| &e.rest).idle();
+        set "FIXIT" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
+        set "HRATIO" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
+        set "MAXERR" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
+        set "REPEAT" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).idle();
+        set "LIST" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).idle();
     }),
     single!("EQUILIBRIUM", equilibrium: EquilibriumSettings, {
         set "STATICS" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).group("kind");
-        set "DYNAMICS" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).group("kind");
+        set "DYNAMICS" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).group("kind").idle();
         angle "ALimit" (alimit);
         field "TLimit" (tlimit);
         field "ERRor" (error);
         field "IMBALANCE" (imbalance);
         field "MAXIT" (maxit);
         field "STABILITY" (stability);
-        set "PATTERN" (WORDS, |e| &mut e.rest, |e| &e.rest);
-        set "ACCELERATION_ERROR|AERROR" (REAL, |e| &mut e.rest, |e| &e.rest);
-        set "KINETIC_ENERGY_ERROR" (REAL, |e| &mut e.rest, |e| &e.rest);
-        set "GLOBAL_DAMPING" (REAL, |e| &mut e.rest, |e| &e.rest);
-        set "SETTLING_TIME" (REAL, |e| &mut e.rest, |e| &e.rest);
+        set "PATTERN" (WORDS, |e| &mut e.rest, |e| &e.rest).idle();
+        set "ACCELERATION_ERROR|AERROR" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
+        set "KINETIC_ENERGY_ERROR" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
+        set "GLOBAL_DAMPING" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
+        set "SETTLING_TIME" (REAL, |e| &mut e.rest, |e| &e.rest).idle();
         set "DEFAULT" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
-        set "LIST" (Kind::Flag, |e| &mut e.rest, |e| &e.rest);
+        set "LIST" (Kind::Flag, |e| &mut e.rest, |e| &e.rest).idle();
     }),
     single!("KINEMATICS", kinematics: Settings, {
-        set "ERRor" (REAL);
+        set "ERRor" (REAL).idle();
         set "HMAX" (REAL);
-        set "ALimit" (ANGLE);
-        set "TLimit" (REAL);
-        set "MAXIT" (REAL);
-        set "PATTERN" (WORDS);
-        set "AERROR" (REAL);
-        set "AMAXIT" (REAL);
-        set "APATTERN" (WORDS);
-        set "VERROR" (REAL);
-        set "LIST" (Kind::Flag);
+        set "ALimit" (ANGLE).idle();
+        set "TLimit" (REAL).idle();
+        set "MAXIT" (REAL).idle();
+        set "PATTERN" (WORDS).idle();
+        set "AERROR" (REAL).idle();
+        set "AMAXIT" (REAL).idle();
+        set "APATTERN" (WORDS).idle();
+        set "VERROR" (REAL).idle();
+        set "LIST" (Kind::Flag).idle();
     }),
     single!("IC", initial_conditions: Settings, {
         set "ERRor" (REAL);
-        set "MAXIT" (REAL);
-        set "PATTERN" (WORDS);
-        set "TLimit" (REAL);
-        set "ALimit" (ANGLE);
-        set "AMAXIT" (REAL);
-        set "APATTERN" (WORDS);
-        set "VERROR" (REAL);
-        set "AERROR" (REAL);
-        set "LIST" (Kind::Flag);
+        set "MAXIT" (REAL).idle();
+        set "PATTERN" (WORDS).idle();
+        set "TLimit" (REAL).idle();
+        set "ALimit" (ANGLE).idle();
+        set "AMAXIT" (REAL).idle();
+        set "APATTERN" (WORDS).idle();
+        set "VERROR" (REAL).idle();
+        set "AERROR" (REAL).idle();
+        set "LIST" (Kind::Flag).idle();
     }),
     settings!(Preferences, {
         set "SOLVER" (WORD);
@@ -988,20 +988,20 @@ pub static STATEMENTS: &[&dyn Statement] = &[
     settings!(Results, {
         set "XRF" (Kind::Flag);
         set "FORMATTED" (Kind::Flag);
-        set "Comment" (Kind::Text);
-        set "DECIMAL_PLACES" (REAL);
-        set "NODISPLACEMENTS" (Kind::Flag);
-        set "NOVELOCITIES" (Kind::Flag);
-        set "NOACCELERATIONS" (Kind::Flag);
-        set "NOREACTIONFORCES" (Kind::Flag);
-        set "NOAPPLIEDFORCES" (Kind::Flag);
-        set "NODATASTRUCTURES" (Kind::Flag);
-        set "NOSYSTEMELEMENTS" (Kind::Flag);
-        set "NOLINEAR" (Kind::Flag);
-        set "NOFLOATINGMARKERS" (Kind::Flag);
-        set "NOTIRES" (Kind::Flag);
-        set "NOREQUESTS" (Kind::Flag);
-        set "NOCONTACTS" (Kind::Flag);
+        set "Comment" (Kind::Text).idle();
+        set "DECIMAL_PLACES" (REAL).idle();
+        set "NODISPLACEMENTS" (Kind::Flag).idle();
+        set "NOVELOCITIES" (Kind::Flag).idle();
+        set "NOACCELERATIONS" (Kind::Flag).idle();
+        set "NOREACTIONFORCES" (Kind::Flag).idle();
+        set "NOAPPLIEDFORCES" (Kind::Flag).idle();
+        set "NODATASTRUCTURES" (Kind::Flag).idle();
+        set "NOSYSTEMELEMENTS" (Kind::Flag).idle();
+        set "NOLINEAR" (Kind::Flag).idle();
+        set "NOFLOATINGMARKERS" (Kind::Flag).idle();
+        set "NOTIRES" (Kind::Flag).idle();
+        set "NOREQUESTS" (Kind::Flag).idle();
+        set "NOCONTACTS" (Kind::Flag).idle();
     }),
     settings!(List, {}),
     settings!(Nolist, {}),

@@ -102,6 +102,22 @@ settings_statements! {
     Nolist "NOLIST";
 }
 
+impl SettingsStatement {
+    /// Returns true if nothing that is computed or written depends on it.
+    pub const fn is_idle(self) -> bool {
+        match self {
+            Self::Preferences
+            | Self::Debug
+            | Self::Lsolver
+            | Self::Environment
+            | Self::Output
+            | Self::List
+            | Self::Nolist => true,
+            Self::Results => false,
+        }
+    }
+}
+
 /// KINEMATICS, IC and the like: numbers and words by full keyword; empty = defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {

@@ -504,10 +504,19 @@ fn matrices_are_by_rows_by_columns_or_sparse() {
 }
 
 #[test]
-fn arguments_without_mechanics_are_kept() {
-    let m = model(
+fn arguments_without_mechanics_are_kept_and_told() {
+    let Reading {
+        model: m,
+        diagnostics,
+        ..
+    } = reading(
         "JOINT/1, REVOLUTE, I=21, J=11, DELTA_V = 0.01, MU_DYN_ROT=0.3\nMATERIAL/1, NAME=steel, DENSITY=7.8E-6",
     );
+    let said: Vec<(&str, &str)> = (diagnostics.iter())
+        .map(|d| (d.code, d.message.as_str()))
+        .collect();
+    let what = "accepted, and without effect here: JOINT DELTA_V; MATERIAL";
+    assert_eq!(said, [("ignored", what)]);
     let extra = &m.joints[&1].place.extra;
     assert_eq!(extra[0], ("DELTA_V".to_owned(), "0.01".to_owned()));
     assert_eq!(

@@ -11,4 +11,5 @@ mod running;
 mod command_files;
 mod dataset;
 mod dataset_laws;
+mod effects;
 mod odd;

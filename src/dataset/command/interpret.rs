@@ -16,12 +16,23 @@ pub(super) trait Interpret: Statement {
     fn interpret(&self, record: &Record) -> Result<Command, Box<Diagnostic>>;
 }
 
+/// The treatment of arguments that no row describes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Others {
+    Refused,
+    /// they are let pass, which is said
+    Dropped,
+    /// they have a meaning: the kind of element
+    Read,
+}
+
 /// A command that is no statement: its arguments fill a `T`, of which it is made.
 struct CommandRow<T: 'static> {
     keyword: &'static str,
     bindings: &'static [Binding<T>],
-    /// other arguments are let pass
-    open: bool,
+    others: Others,
+    /// it asks for a print, and changes nothing
+    prints: bool,
     meant: Meant<T>,
 }
 
@@ -30,7 +41,13 @@ impl<T: Default> Statement for CommandRow<T> {
         self.keyword
     }
     fn open(&self) -> bool {
-        self.open
+        self.others != Others::Refused
+    }
+    fn reads_others(&self) -> bool {
+        self.others == Others::Read
+    }
+    fn is_idle(&self) -> bool {
+        self.prints
     }
     fn arguments(&self) -> Vec<Argument> {
         self.bindings.iter().map(|b| b.argument).collect()
@@ -77,11 +94,12 @@ struct Simulation {
 /// Writes a row of the table: keyword, what it fills, whether other arguments are let pass, its
 /// arguments with what they accept and the field that each fills, and what it means.
 macro_rules! command {
-    ($keyword:literal, $t:ty, open: $open:literal, { $($how:ident $name:literal ($($rest:tt)*);)* }, $meant:expr) => {
+    ($keyword:literal, $t:ty, others: $others:ident, { $($how:ident $name:literal ($($rest:tt)*) $(.$modifier:ident())*;)* }, $meant:expr) => {
         &CommandRow::<$t> {
             keyword: $keyword,
-            bindings: &[$($how!($t, $name, $($rest)*)),*],
-            open: $open,
+            bindings: &[$($how!($t, $name, $($rest)*)$(.$modifier())*),*],
+            others: Others::$others,
+            prints: false,
             meant: $meant,
         }
     };
@@ -134,12 +152,24 @@ macro_rules! system {
         }
     };
 }
+/// Writes the row of a command that asks for a print, whatever its arguments are.
+macro_rules! print {
+    ($keyword:literal) => {
+        &CommandRow::<()> {
+            keyword: $keyword,
+            bindings: &[],
+            others: Others::Dropped,
+            prints: true,
+            meant: show,
+        }
+    };
+}
 const REAL: Kind = Kind::Real { angle: false };
 
 /// Commands that control the run.
 #[rustfmt::skip]
 pub(super) static COMMANDS: &[&dyn Interpret] = &[
-    command!("SIMULATE", Simulation, open: false, {
+    command!("SIMULATE", Simulation, others: Refused, {
         one_of "KINEMATICS" ("kind", kind = Some(SimulationKind::Kinematic));
         one_of "DYNAMICS" ("kind", kind = Some(SimulationKind::Dynamic));
         one_of "STATICS" ("kind", kind = Some(SimulationKind::Static));
@@ -150,38 +180,38 @@ pub(super) static COMMANDS: &[&dyn Interpret] = &[
         argument "STEPS" (Kind::Id, steps);
         argument "DTOUT" (REAL, dtout);
     }, |given, _| simulate(&given).map(Command::Simulate)),
-    command!("FILE", Files, open: false, {
+    command!("FILE", Files, others: Refused, {
         text "MODEL" (Kind::Text, model);
         text "OUTPUT_PREFIX" (Kind::Text, output_prefix);
         text "COMMAND" (Kind::Text, command);
     }, |Files { model, output_prefix, command }, _| Ok(Command::File { model, output_prefix, command })),
-    command!("ACTIVATE", Named, open: true, {
+    command!("ACTIVATE", Named, others: Read, {
         argument "ID" (Kind::Ids { min: 1, max: usize::MAX }, ids);
         argument "RANGE" (Kind::Ids { min: 2, max: 2 }, range);
     }, |named, record| activate(record, named, true)),
-    command!("DEACTIVATE", Named, open: true, {
+    command!("DEACTIVATE", Named, others: Read, {
         argument "ID" (Kind::Ids { min: 1, max: usize::MAX }, ids);
         argument "RANGE" (Kind::Ids { min: 2, max: 2 }, range);
     }, |named, record| activate(record, named, false)),
-    command!("LINEAR", Linear, open: true, {
+    command!("LINEAR", Linear, others: Dropped, {
         one_of "EIGENSOL" ("task", eigensolution = true);
         one_of "STATEMAT" ("task", state_matrices = true);
         argument "NODAMPING" (Kind::Flag, no_damping);
         argument "COORDS" (Kind::Ids { min: 1, max: 2 }, coords);
-        argument "RM" (Kind::Id, rm);
+        argument "RM" (Kind::Id, rm).idle();
         text "FILE" (Kind::Text, file);
-        text "FORMAT" (Kind::Word(&[]), format);
+        text "FORMAT" (Kind::Word(&[]), format).idle();
         argument "PINPUT" (Kind::Id, pinput);
         argument "POUTPUT" (Kind::Id, poutput);
     }, |linear, _| Ok(Command::Linear(linear))),
-    command!("SAVE", Option<String>, open: true, { system "SYSTEM" (); }, |system, _| Ok(Command::Save(system))),
-    command!("RELOAD", Option<String>, open: true, { system "SYSTEM" (); }, |system, _| Ok(Command::Reload(system))),
-    command!("INFO", (), open: true, {}, show),
-    command!("SHOW", (), open: true, {}, show),
-    command!("TIME", (), open: true, {}, show),
-    command!("HELP", (), open: true, {}, show),
-    command!("MENU", (), open: true, {}, show),
-    command!("STOP", (), open: true, {}, |(), _| Ok(Command::Stop)),
+    command!("SAVE", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, _| Ok(Command::Save(system))),
+    command!("RELOAD", Option<String>, others: Dropped, { system "SYSTEM" (); }, |system, _| Ok(Command::Reload(system))),
+    print!("INFO"),
+    print!("SHOW"),
+    print!("TIME"),
+    print!("HELP"),
+    print!("MENU"),
+    command!("STOP", (), others: Dropped, {}, |(), _| Ok(Command::Stop)),
 ];
 
 /// A command that asks for a print.

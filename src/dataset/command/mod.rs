@@ -10,6 +10,7 @@ mod apply;
 mod interpret;
 mod message_log;
 
+use super::idle::Idle;
 use super::read::{self, Table};
 use super::row::{Argument, Meaning, Problem, Record, Statement, meaning, near_ids};
 use super::statement::STATEMENTS;
@@ -355,6 +356,7 @@ fn finish(mut script: Script, mut out: Vec<Diagnostic>) -> Result<Script, Errors
 }
 
 fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut Vec<Diagnostic>) {
+    let mut without_effect = Idle::default();
     for item in &syntax.items {
         let Item::Statement(tokens) = item else {
             continue;
@@ -364,6 +366,7 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
             continue;
         };
         let (line, span) = (record.place.line, record.head);
+        without_effect.add(&record);
         let command = match interpret(record) {
             Ok(command) => command,
             Err(d) => {
@@ -394,6 +397,7 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
             line,
         });
     }
+    out.extend(without_effect.told(source));
 }
 
 /// The first two lines, where they answer the old prompts instead of being commands.

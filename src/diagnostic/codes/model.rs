@@ -501,6 +501,25 @@ JOINT once took MU_STAT_ROT, MU_DYN_ROT and others. They are kept when the datas
     JOINT/1, REVOLUTE, I=21, J=11, MU_DYN_ROT=0.1     write FRICTION/1, JOINT=1, MU_DYNAMIC=0.1",
     },
     Code {
+        name: "ignored",
+        summary: "statements and arguments that are accepted and change nothing",
+        explanation: "\
+They belong to the methods, the prints and the files of other solvers: patterns of factorization, limits of iterations, what a
+log shows. They are kept where a dataset is written again. What the file asks for is computed without them, so results may
+differ from those of a program that obeys them.
+
+    INTEGRATOR/HHT, ALPHA=-0.2     HHT has its own damping
+    EQUILIBRIUM/DYNAMICS           equilibria are found by a damped descent and Newton's iteration
+    MREQUEST/1, FORCE, JOINTS=ALL  the results have all forces where RESULTS/XRF asks for them
+    INFO/JOINT, ID=3               `cognate explain` shows a model
+
+These are told in a note: nothing is wrong. An argument that the kind of its element does not read is a warning:
+
+    JOINT/1, REVOLUTE, PITCH=3     a screw has a pitch
+    MOTION/1, ICDISP=1, …          a displacement needs no beginning; VELOCITY and ACCELERATION do
+    CONTACT/1, POISSON, DMAX=1     penetration at full damping is for IMPACT",
+    },
+    Code {
         name: "few_points",
         summary: "fewer points than a cubic spline needs",
         explanation: "\

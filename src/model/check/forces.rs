@@ -37,6 +37,21 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
     ] {
         for (&id, f) in list {
             let none = f.force.iter().chain(&f.torque).all(Option::is_none);
+            if matches!(f.user, Some(Formula::Expression { .. })) {
+                error(
+                    out,
+                    "unfit_value",
+                    (kind.id(id), &f.place),
+                    "FUNCTION takes USER(…); each component has an expression of its own".into(),
+                );
+            } else if f.user.is_some() && !none {
+                error(
+                    out,
+                    "contradiction",
+                    (kind.id(id), &f.place),
+                    "FUNCTION=USER(…) says all components, and some are given".into(),
+                );
+            }
             if none && f.user.is_none() {
                 warn(
                     out,

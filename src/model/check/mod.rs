@@ -15,6 +15,7 @@ mod couplings;
 mod curves;
 mod forces;
 mod held;
+mod ignored;
 mod magnitudes;
 mod output;
 pub(crate) mod references;
@@ -87,6 +88,7 @@ pub const RULES: &[Rule] = &[
     ("laws resist", signs::laws_resist),
     ("contacts resist", signs::contacts_resist),
     ("shapes have sizes", signs::shapes_have_sizes),
+    ("arguments are read", ignored::arguments_are_read),
     ("functions can be read", references::functions_can_be_read),
 ];
 
