@@ -123,12 +123,7 @@ pub fn run(args: &Args) -> Outcome {
 
     // read
     let is_command = has_commands(&args.model);
-    let Job {
-        reading,
-        base,
-        steps,
-        remarks,
-    } = if is_command {
+    let job = if is_command {
         script(&args.model, args.dataset.as_deref())?
     } else {
         alone(&Single {
@@ -139,10 +134,10 @@ pub fn run(args: &Args) -> Outcome {
             steps: args.steps,
         })?
     };
-    let doubts = remark_on_warnings(args, &reading, &remarks);
-    let (model, dataset) = (reading.model, reading.dataset);
+    let doubts = remark_on_warnings(args, &job);
+    let (model, dataset, steps) = (job.reading.model, job.reading.dataset, job.steps);
     check_columns(args, &model, &steps)?;
-    let mut session = open(args, model, &base);
+    let mut session = open(args, model, &job.base);
     session.run.record.read_seconds = clock.elapsed().as_secs_f64();
     let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
     guard.iter().for_each(|g| g.follow(&session, &tables));
@@ -215,17 +210,13 @@ fn told(
 
 /// Remarks on the number of warnings about a dataset, and on the notes about it and its commands;
 /// returns the warnings.
-fn remark_on_warnings(
-    args: &Args,
-    reading: &Reading,
-    of_commands: &[Diagnostic],
-) -> Vec<Diagnostic> {
+fn remark_on_warnings(args: &Args, job: &Job) -> Vec<Diagnostic> {
     if !args.quiet {
-        remark_on_notes(reading.diagnostics.iter().chain(of_commands));
+        remark_on_notes(job.reading.diagnostics.iter().chain(&job.remarks));
     }
     let is_warning = |d: &&Diagnostic| d.severity == Severity::Warning;
     let doubts: Vec<Diagnostic> =
-        (reading.diagnostics.iter().filter(is_warning).cloned()).collect();
+        (job.reading.diagnostics.iter().filter(is_warning).cloned()).collect();
     let warnings = doubts.len();
     if !args.quiet && warnings > 0 {
         remark(format!(

@@ -8,17 +8,19 @@ use crate::analysis::direction::Direction;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::warning::ConditionWarning;
 use crate::diagnostic::{Cause, Diagnostic};
-use crate::model::{ElementKind, Model};
+use crate::model::{self, ElementKind, Model};
 use crate::numeric::connected::{Block, SparseRow, connected};
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
 use crate::scene::{LinkIx, Scene, Source};
-use crate::space::Mat3;
+use crate::space::{Mat3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
 /// Part of a rate by which it may be off and is met.
 const MET_TOLERANCE: f64 = 1e-6;
+/// Part of a part's velocity by which it may be off and is met: it was typed with few digits.
+const TYPED_DIGITS: f64 = 1e-3;
 
 /// Returns the error of motions that ask for a rate which a row forbids: by how much it would have
 /// to give way, and which motions there are.
@@ -108,7 +110,8 @@ pub fn velocities(
         .collect())
 }
 
-/// Returns warnings of the joints whose initial rate is not that of their IC.
+/// Returns warnings of the joints whose initial rate is not that of their IC, and of the parts whose
+/// velocity is not the one that they are given.
 pub fn unmet(
     scene: Configured<'_>,
     model: &Model,
@@ -128,7 +131,48 @@ pub fn unmet(
             },
         )
     });
-    told.collect()
+    told.chain(unmet_of_parts(&scene, model, &at)).collect()
+}
+
+/// Returns warnings of the parts whose velocity at the start is not the one that they are given.
+fn unmet_of_parts(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<ConditionWarning> {
+    const NAMES: [&str; 6] = ["VX", "VY", "VZ", "WX", "WY", "WZ"];
+    let mut told = Vec::new();
+    for part in &scene.parts {
+        let Some((data, [v, w])) = model.body(part.id).and_then(|data| {
+            let own = components(scene, data, at)?;
+            Some((data, own))
+        }) else {
+            continue;
+        };
+        let given = data.velocity.iter().chain(&data.angular_velocity);
+        for ((argument, given), found) in NAMES.into_iter().zip(given).zip(v.into_iter().chain(w)) {
+            let unmet = given.filter(|wanted| (found - wanted).abs() > TYPED_DIGITS * wanted.abs());
+            if let Some(wanted) = unmet.filter(|wanted| *wanted != 0.0) {
+                told.push(ConditionWarning::Unmet {
+                    element: part.id,
+                    argument,
+                    found,
+                    wanted,
+                });
+            }
+        }
+    }
+    told
+}
+
+/// Returns the velocity of a part's centre of mass in the axes of VM, and its angular velocity in
+/// those of WM; `None`: it has no CM.
+fn components(scene: &Scene, data: &model::Part, at: &Equations<'_, f64>) -> Option<[[f64; 3]; 2]> {
+    let frame = |m: Option<u32>| {
+        let &marker = scene.marker_of.get(&m?)?;
+        Some(at.marker(marker))
+    };
+    let cm = frame(data.cm)?;
+    let axes_v = frame(data.vm).map_or_else(Mat3::identity, |m| m.R_GM);
+    let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
+    let along = |axes: &Mat3<f64>, x: Vec3<f64>| [0, 1, 2].map(|k| axes.column(k).dot(x));
+    Some([along(&axes_v, cm.v_GM), along(&axes_w, cm.w_GM)])
 }
 
 /// Returns `row · v`.
@@ -415,21 +459,12 @@ fn part_velocities(
         let Some(data) = model.body(part.id) else {
             continue;
         };
-        let frame = |m: Option<u32>| {
-            m.and_then(|m| scene.marker_of.get(&m))
-                .map(|&m| at.marker(m))
+        let Some([v, w]) = components(scene, data, at) else {
+            continue;
         };
-        let Some(cm) = frame(data.cm) else { continue };
-        let axes_v = frame(data.vm).map_or_else(Mat3::identity, |m| m.R_GM);
-        let axes_w = frame(data.wm).map_or(cm.R_GM, |m| m.R_GM);
-        for k in 0..3 {
-            values.push(axes_v.column(k).dot(cm.v_GM));
-            targets.push(Target::of_part(data.velocity[k], part.link));
-        }
-        for k in 0..3 {
-            values.push(axes_w.column(k).dot(cm.w_GM));
-            targets.push(Target::of_part(data.angular_velocity[k], part.link));
-        }
+        values.extend(v.into_iter().chain(w));
+        let given = data.velocity.iter().chain(&data.angular_velocity);
+        targets.extend(given.map(|&given| Target::of_part(given, part.link)));
     }
     for (c, cam) in scene.cams.iter().enumerate() {
         for (k, along) in at.cam_speeds(c).into_iter().enumerate() {

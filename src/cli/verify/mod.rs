@@ -7,7 +7,7 @@ use super::{Exit, Failure, Outcome, complain_in_files, remark, say};
 use crate::analysis::verify::{Verification, verify};
 use crate::dataset::Dataset;
 use crate::dataset::command::Command;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::Model;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -34,12 +34,17 @@ pub struct Args {
 /// When a file cannot be read, or has mistakes.
 pub fn run(args: &Args) -> Outcome {
     let (model, dataset) = model_of(&args.model)?;
+    // what is doubted in the dataset may be why freedoms are not those that were meant
+    let doubted = model.check().into_iter();
+    let doubted = doubted.filter(|d| d.severity == Severity::Warning);
+    let doubted: Vec<Diagnostic> = doubted.map(|d| dataset.locate(d)).collect();
     let found = verify(&model).map_err(|d| Failure::in_model(&dataset, d))?;
     if args.json {
         say(&format!("{:#}\n", as_json(&found)));
     } else {
         say(&text::of(&found));
     }
+    complain_in_files(&doubted);
     if found.inconsistent.is_empty() {
         return Ok(Exit::Done);
     }

@@ -38,6 +38,11 @@ pub(super) fn joints_are_complete(model: &Model, out: &mut Out) {
                     "a SCREW needs PITCH = translation per turn".into(),
                 );
             }
+            JointKind::Screw if j.pitch == Some(0.0) => {
+                let message = "the PITCH is zero: it turns without advancing";
+                warn(out, "unfit_value", who, message.into());
+                at_argument(out, "PITCH");
+            }
             JointKind::Rackpin if j.pd.is_none() => {
                 error(
                     out,

@@ -27,8 +27,24 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
         if c.user.is_none() && !c.scales.is_empty() && c.scales.iter().all(|&s| s == 0.0) {
             error(out, "unfit_value", who, "all SCALES are zero".into());
             at_argument(out, "SCALES");
+        } else if let ([one], true) = (scaled(c).as_slice(), c.user.is_none()) {
+            let message = format!(
+                "SCALES couples nothing to {0}, the only joint whose scale is not zero: it locks {0}",
+                ElementKind::Joint.id(*one)
+            );
+            warn(out, "unfit_value", who, message);
+            at_argument(out, "SCALES");
         }
     }
+}
+
+/// Returns the joints of a coupler whose scales are not zero; none where there are no scales.
+fn scaled(coupler: &Coupler) -> Vec<u32> {
+    let joints = coupler.joints.iter().zip(&coupler.scales);
+    joints
+        .filter(|(_, s)| **s != 0.0)
+        .map(|(&j, _)| j)
+        .collect()
 }
 
 /// Tells why a displacement of a joint cannot be coupled.

@@ -24,6 +24,7 @@ pub(super) fn arguments_are_read(model: &Model, out: &mut Out) {
     frictions(model, out);
     damping(model, out);
     data(model, out);
+    grounds(model, out);
     if let Some(kmax) = model.integrator.kmax
         && model.integrator.method.as_deref() != Some("BDF")
     {
@@ -165,6 +166,24 @@ fn damping(model: &Model, out: &mut Out) {
     for (&id, f) in &model.nodal_forces {
         let who = (ElementKind::Nforce.id(id), &f.place);
         twice(who, f.damping_ratio, f.damping.is_some());
+    }
+}
+
+/// Ground does not move.
+fn grounds(model: &Model, out: &mut Out) {
+    for (&id, part) in model.parts.iter().filter(|(_, p)| p.ground) {
+        let [vx, vy, vz] = part.velocity.map(|v| v.is_some_and(|v| v != 0.0));
+        let [wx, wy, wz] = part.angular_velocity.map(|w| w.is_some_and(|w| w != 0.0));
+        let given = [
+            ("VX", vx),
+            ("VY", vy),
+            ("VZ", vz),
+            ("WX", wx),
+            ("WY", wy),
+            ("WZ", wz),
+        ];
+        let who = (ElementKind::Part.id(id), &part.place);
+        not_read(out, who, &given, "ground does not move");
     }
 }
 

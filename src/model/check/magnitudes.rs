@@ -88,6 +88,64 @@ pub(super) fn springs_have_their_length(model: &Model, out: &mut Out) {
     }
 }
 
+/// Length of a beam relative to the distance of its markers as drawn, and the reciprocal, that is
+/// doubted, at least.
+const STRAINED_BEAM: f64 = 2.0;
+/// Distance of the markers of a bushing that is doubted, at least, relative to the mechanism.
+const WIDE_BUSHING: f64 = 0.2;
+/// INTEGRATOR/ERROR, relative to the size of each unknown, that lets anything pass.
+const ANY_ERROR: f64 = 1.0;
+
+pub(super) fn beams_have_their_length(model: &Model, out: &mut Out) {
+    let apart = |i, j| {
+        let between = marker_frame(model, i)?.position - marker_frame(model, j)?.position;
+        Some(between.norm())
+    };
+    for (&id, b) in &model.beams {
+        let Some(drawn) = apart(b.i, b.j) else {
+            continue;
+        };
+        if b.length > STRAINED_BEAM * drawn || drawn > STRAINED_BEAM * b.length {
+            let message = format!(
+                "its LENGTH is {}, but its markers are {} apart",
+                short(b.length),
+                short(drawn)
+            );
+            let who = (ElementKind::Beam.id(id), &b.place);
+            warn(out, "unlikely_magnitude", who, message);
+            at_argument(out, "LENGTH");
+        }
+    }
+    let all = extent(model);
+    for (&id, b) in &model.bushings {
+        let stiffness = b.stiffness[..3].iter().fold(0.0_f64, |k, x| k.max(x.abs()));
+        let far = apart(b.i, b.j).filter(|d| *d > WIDE_BUSHING * all);
+        if let Some(far) = far.filter(|_| stiffness > 0.0 && b.preload[..3] == [0.0; 3]) {
+            let message = format!(
+                "its markers are {} apart, so that it begins with a force of up to {}",
+                short(far),
+                short(far * stiffness)
+            );
+            let who = (ElementKind::Bushing.id(id), &b.place);
+            warn(out, "unlikely_magnitude", who, message);
+            advise(
+                out,
+                "the markers of a BUSHING lie on each other where it has no load",
+            );
+        }
+    }
+}
+
+pub(super) fn errors_are_small(model: &Model, out: &mut Out) {
+    if let Some(error) = model.integrator.error.filter(|e| *e >= ANY_ERROR) {
+        let message = format!(
+            "ERROR = {error} is relative to the size of each unknown: no digit of the results is then right"
+        );
+        let d = Diagnostic::warning("unlikely_magnitude", message).element("INTEGRATOR");
+        out.push(d.help("1E-3 is three digits"));
+    }
+}
+
 /// The largest distance between two corners of the box that holds all markers as they are drawn.
 fn extent(model: &Model) -> f64 {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

@@ -82,6 +82,11 @@ pub const RULES: &[Rule] = &[
         magnitudes::springs_have_their_length,
     ),
     (
+        "beams have their length",
+        magnitudes::beams_have_their_length,
+    ),
+    ("errors are small", magnitudes::errors_are_small),
+    (
         "stiffness can be resolved",
         magnitudes::stiffness_can_be_resolved,
     ),

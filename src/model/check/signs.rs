@@ -55,10 +55,25 @@ pub(super) fn contacts_resist(model: &Model, out: &mut Out) {
         stiffness(out, who, ("PENALTY", ""), c.penalty);
         damping(out, who, ("DAMPING", ""), c.damping);
         friction(out, who, [c.mu_static, c.mu_dynamic]);
+        if c.friction != CoulombFriction::Off {
+            friction_falls(out, who, [c.mu_static, c.mu_dynamic]);
+        }
     }
     for (&id, f) in &model.frictions {
         let who = (ElementKind::Friction.id(id), &f.place);
         friction(out, who, [f.mu_static, f.mu_dynamic]);
+        friction_falls(out, who, [f.mu_static, f.mu_dynamic]);
+    }
+}
+
+/// Friction is not larger when surfaces slide than when they stick.
+fn friction_falls(out: &mut Out, who: Who, [fixed, sliding]: [f64; 2]) {
+    if sliding > fixed && fixed >= 0.0 {
+        let message = format!(
+            "MU_DYNAMIC = {sliding} is larger than MU_STATIC = {fixed}: friction grows where it begins to slide"
+        );
+        warn(out, "unlikely_magnitude", who, message);
+        at_argument(out, "MU_DYNAMIC");
     }
 }
 
@@ -100,6 +115,10 @@ fn friction(out: &mut Out, who: Who, coefficients: [f64; 2]) {
 }
 
 pub(super) fn shapes_have_sizes(model: &Model, out: &mut Out) {
+    let contacts = model.contacts.values();
+    let touching: BTreeSet<u32> = contacts
+        .flat_map(|c| c.i_geometry.iter().chain(&c.j_geometry).copied())
+        .collect();
     for (&id, g) in &model.graphics {
         let sizes: Vec<(&str, f64)> = match g.shape {
             Shape::Cylinder { radius, .. }
@@ -129,5 +148,51 @@ pub(super) fn shapes_have_sizes(model: &Model, out: &mut Out) {
             let who = (ElementKind::Graphics.id(id), &g.place);
             warn(out, "unfit_value", who, message);
         }
+        if touching.contains(&id) {
+            let missing = extents(&g.shape).into_iter().filter(|e| e.1 == 0.0);
+            let missing: Vec<&str> = missing.map(|e| e.0).collect();
+            if !missing.is_empty() {
+                let message = format!(
+                    "{} = 0: a CONTACT names this solid, which has no extent",
+                    missing.join(", ")
+                );
+                let who = (ElementKind::Graphics.id(id), &g.place);
+                warn(out, "unfit_value", who, message);
+            }
+        }
+    }
+}
+
+/// Returns the extents without which a solid is none, by their arguments.
+fn extents(shape: &Shape) -> Vec<(&'static str, f64)> {
+    match *shape {
+        Shape::Cylinder { length, radius, .. } => vec![("LENGTH", length), ("RADIUS", radius)],
+        Shape::Circle { radius, .. } | Shape::Arc { radius, .. } => vec![("RADIUS", radius)],
+        Shape::Frustum {
+            length,
+            top,
+            bottom,
+            ..
+        } => vec![
+            ("LENGTH", length),
+            ("TOP and BOTTOM", top.abs() + bottom.abs()),
+        ],
+        Shape::Ellipsoid {
+            diameters: [x, y, z],
+            ..
+        } => {
+            vec![("XSCALE", x), ("YSCALE", y), ("ZSCALE", z)]
+        }
+        Shape::Box {
+            size: [x, y, z], ..
+        } => vec![("X", x), ("Y", y), ("Z", z)],
+        Shape::Torus { tube, .. } => vec![("MINOR_RADIUS", tube)],
+        Shape::Plane { .. }
+        | Shape::Point { .. }
+        | Shape::Curve { .. }
+        | Shape::External { .. }
+        | Shape::Shell { .. }
+        | Shape::Other(_)
+        | Shape::Nothing => Vec::new(),
     }
 }
