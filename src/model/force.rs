@@ -30,6 +30,10 @@ impl Element for SingleForce {
     fn formulas(&self) -> Vec<(&'static str, &Formula)> {
         vec![("FUNCTION", &self.function)]
     }
+    // of a force without reaction, J says the direction only
+    fn ends(&self) -> Option<[u32; 2]> {
+        (!self.action_only).then_some([self.i, self.j])
+    }
 }
 
 /// Arguments that give the components of a force and a torque.

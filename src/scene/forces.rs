@@ -165,6 +165,21 @@ macro_rules! force_laws {
 }
 laws_of_two_markers!(force_laws);
 
+impl ForceElement {
+    /// Returns how deep the solids of a CONTACT stand in each other; `None`: it is another force,
+    /// or they do not touch.
+    pub fn depth(&self, at: &Equations<'_, f64>) -> Option<f64> {
+        let ForceLaw::Contact(contact) = &self.law else {
+            return None;
+        };
+        let i = at.marker(self.i);
+        let j = self.j.map_or_else(MarkerState::ground, |j| at.marker(j));
+        let touches = contact.0.touches(at, &i, &j).into_iter();
+        let deepest = touches.map(|touch| touch.depth).max_by(f64::total_cmp);
+        deepest.filter(|depth| *depth > 0.0)
+    }
+}
+
 impl Touching {
     /// Returns the touches of the solids of I and J.
     fn touches<S: Scalar>(

@@ -8,7 +8,9 @@ use super::spline_range::{SplineCall, spline_calls};
 use super::state_at_start::Start;
 use super::{DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, LINEAR, STATIC, Session};
 use crate::analysis::start::assemble::{self, Assembly};
-use crate::analysis::start::{coincident, initial_conditions, misalignment, placement, velocities};
+use crate::analysis::start::{
+    coincident, embedded, initial_conditions, misalignment, placement, velocities,
+};
 use crate::analysis::system::external_inputs::ExternalInputs;
 use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{closures, samples};
@@ -218,7 +220,8 @@ impl Session {
         let numbers = assemble::numbers(here, t, q, &still, x);
         let turned = misalignment::turned(here, &self.model, &numbers, moves);
         let coincident = coincident::lines(here, &numbers)?;
-        let of_assembly = turned.into_iter().chain(coincident);
+        let deep = embedded::contacts(here, &numbers);
+        let of_assembly = turned.into_iter().chain(coincident).chain(deep);
         warnings.extend(of_assembly.map(Warning::from));
         Ok(assembly)
     }

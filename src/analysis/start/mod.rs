@@ -6,6 +6,7 @@ pub mod assemble;
 pub mod branch;
 pub(super) mod coincident;
 pub mod dataset;
+pub(super) mod embedded;
 pub(super) mod initial_conditions;
 pub mod misalignment;
 pub mod nearby;

@@ -54,6 +54,15 @@ pub enum AssemblyWarning {
         /// users' numbers of its markers I and J
         markers: [u32; 2],
     },
+    /// the solids of a contact begin deep within each other
+    Embedded {
+        /// the contact
+        element: ElementId,
+        /// overlap of the solids
+        depth: f64,
+        /// unit of the depth
+        unit: String,
+    },
     /// an equation would follow from others if axes were aligned exactly, and is left out
     LeftOut {
         /// the joint
@@ -104,6 +113,7 @@ impl AssemblyWarning {
                 "wrong_way_round"
             }
             AssemblyWarning::Coincident { .. } => "coincident",
+            AssemblyWarning::Embedded { .. } => "embedded",
             AssemblyWarning::LeftOut { .. } => "redundant",
             AssemblyWarning::HeldSum { .. } => "held_sum",
         }
@@ -120,6 +130,7 @@ impl AssemblyWarning {
             | AssemblyWarning::WrongWayRound { element, .. }
             | AssemblyWarning::OppositeAngle { element, .. }
             | AssemblyWarning::Coincident { element, .. }
+            | AssemblyWarning::Embedded { element, .. }
             | AssemblyWarning::LeftOut { element, .. }
             | AssemblyWarning::HeldSum { element, .. } => element,
         }
@@ -180,6 +191,11 @@ impl fmt::Display for AssemblyWarning {
                  direction; its force is zero there, so that it can begin, but Adams refuses it",
                 ElementKind::Marker.id(*i),
                 ElementKind::Marker.id(*j)
+            ),
+            AssemblyWarning::Embedded { depth, unit, .. } => write!(
+                f,
+                "{name}: its solids begin within each other, {} deep: its force throws them apart",
+                length(*depth, unit)
             ),
             AssemblyWarning::LeftOut {
                 equation,

@@ -501,6 +501,13 @@ JOINT once took MU_STAT_ROT, MU_DYN_ROT and others. They are kept when the datas
     JOINT/1, REVOLUTE, I=21, J=11, MU_DYN_ROT=0.1     write FRICTION/1, JOINT=1, MU_DYNAMIC=0.1",
     },
     Code {
+        name: "default",
+        summary: "a length that is not given, and that results depend on",
+        explanation: "\
+FRICTION takes 1, in the unit of length, for each radius and arm that is not given, as Adams does: one metre or one
+millimetre. It is a note; give the length if it matters.",
+    },
+    Code {
         name: "ignored",
         summary: "statements and arguments that are accepted and change nothing",
         explanation: "\

@@ -64,6 +64,7 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
     }
     for (&id, f) in &model.frictions {
         let kind = model.joints.get(&f.joint).map(|j| j.kind);
+        lengths_of_friction(f, kind, (ElementKind::Friction.id(id), &f.place), out);
         if let Some(kind) = kind.filter(|k| k.row().friction.is_none()) {
             let message = format!(
                 "{} is {}: there is no friction law for it",
@@ -77,5 +78,32 @@ pub(super) fn forces_have_data(model: &Model, out: &mut Out) {
                 message,
             );
         }
+    }
+}
+
+/// Notes the radii and arms of friction that are not given, and for which 1 is taken.
+fn lengths_of_friction(f: &Friction, kind: Option<JointKind>, who: Who, out: &mut Out) {
+    let (pin, friction, bending) = (
+        ("PIN_RADIUS", f.pin_radius),
+        ("FRICTION_ARM", f.friction_arm),
+        ("BENDING_REACTION_ARM", f.bending_reaction_arm),
+    );
+    let read = match kind {
+        Some(JointKind::Revolute) => vec![pin, friction, bending],
+        Some(JointKind::Universal | JointKind::Hooke) => vec![pin, friction],
+        Some(JointKind::Cylindrical) => vec![pin],
+        Some(JointKind::Spherical) => vec![("BALL_RADIUS", f.ball_radius)],
+        Some(JointKind::Translational) => vec![("REACTION_ARM", f.reaction_arm)],
+        _ => Vec::new(),
+    };
+    let missing = read.into_iter().filter(|(_, x)| x.is_none());
+    let missing: Vec<&str> = missing.map(|(name, _)| name).collect();
+    if !missing.is_empty() {
+        let message = format!("1 is taken for {}, which is not given", missing.join(", "));
+        let note = Diagnostic {
+            severity: crate::diagnostic::Severity::Note,
+            ..Diagnostic::warning("default", message)
+        };
+        out.push(about(note, who));
     }
 }

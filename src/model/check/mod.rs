@@ -65,6 +65,7 @@ pub const RULES: &[Rule] = &[
         "systems have their arrays",
         systems::systems_have_their_arrays,
     ),
+    ("sensors watch something", systems::sensors_watch_something),
     ("curves have points", curves::curves_have_points),
     ("forces have data", forces::forces_have_data),
     ("contacts have their law", contacts::contacts_have_their_law),

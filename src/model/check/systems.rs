@@ -145,3 +145,14 @@ pub(super) fn systems_have_their_arrays(model: &Model, out: &mut Out) {
         }
     }
 }
+
+/// Sensors watch something that changes.
+pub(super) fn sensors_watch_something(model: &Model, out: &mut Out) {
+    for (&id, s) in &model.sensors {
+        if let Some(value) = s.function.constant() {
+            let who = (ElementKind::Sensor.id(id), &s.place);
+            let message = format!("its FUNCTION is {value} for ever: nothing triggers it");
+            warn(out, "no_effect", who, message);
+        }
+    }
+}
