@@ -7,6 +7,7 @@
 use crate::running::{self, Analysis};
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Unwatched;
+use cognate::dataset::manual::{self, Effect};
 use cognate::dataset::statement::STATEMENTS;
 use cognate::dataset::value::Kind;
 use cognate::dataset::{self, row::Argument};
@@ -851,4 +852,18 @@ fn accepted_arguments_have_an_effect_or_it_is_said_that_they_have_none() {
         silent.is_empty(),
         "accepted without effect, and not told: {silent:#?}"
     );
+}
+
+#[test]
+fn the_manual_says_kept_of_all_that_is_told_to_have_no_effect() {
+    for (_, page) in manual::all() {
+        let row = page.row().expect("a row of the tables");
+        if row.is_idle() {
+            assert_ne!(page.effect, Effect::Solved, "{}", page.keyword);
+        }
+        for entry in page.entries().iter().filter(|e| e.argument.idle) {
+            let (keyword, argument) = (page.keyword, entry.note.name);
+            assert_eq!(entry.note.effect, Effect::Kept, "{keyword} {argument}");
+        }
+    }
 }

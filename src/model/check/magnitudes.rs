@@ -105,7 +105,8 @@ pub(super) fn beams_have_their_length(model: &Model, out: &mut Out) {
         let Some(drawn) = apart(b.i, b.j) else {
             continue;
         };
-        if b.length > STRAINED_BEAM * drawn || drawn > STRAINED_BEAM * b.length {
+        let strained = b.length > STRAINED_BEAM * drawn || drawn > STRAINED_BEAM * b.length;
+        if b.length > 0.0 && strained {
             let message = format!(
                 "its LENGTH is {}, but its markers are {} apart",
                 short(b.length),
