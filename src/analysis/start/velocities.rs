@@ -110,8 +110,8 @@ pub fn velocities(
         .collect())
 }
 
-/// Returns warnings of the joints whose initial rate is not that of their IC, and of the parts whose
-/// velocity is not the one that they are given.
+/// Returns warnings of the joints whose initial rate is not that of their IC, and of the parts
+/// whose velocity is not the one that they are given.
 pub fn unmet(
     scene: Configured<'_>,
     model: &Model,

@@ -192,11 +192,10 @@ impl fmt::Display for AssemblyWarning {
                 ElementKind::Marker.id(*i),
                 ElementKind::Marker.id(*j)
             ),
-            AssemblyWarning::Embedded { depth, unit, .. } => write!(
-                f,
-                "{name}: its solids begin within each other, {} deep: its force throws them apart",
-                length(*depth, unit)
-            ),
+            AssemblyWarning::Embedded { depth, unit, .. } => {
+                let depth = length(*depth, unit);
+                write!(f, "{name}: its solids begin {depth} deep within each other")
+            }
             AssemblyWarning::LeftOut {
                 equation,
                 off,

@@ -501,6 +501,14 @@ JOINT once took MU_STAT_ROT, MU_DYN_ROT and others. They are kept when the datas
     JOINT/1, REVOLUTE, I=21, J=11, MU_DYN_ROT=0.1     write FRICTION/1, JOINT=1, MU_DYNAMIC=0.1",
     },
     Code {
+        name: "embedded",
+        summary: "a contact whose solids begin deep within each other",
+        explanation: "\
+The force of a CONTACT grows with the depth, so that these solids are thrown apart at once, with an energy that nothing
+brought in. Told beyond 2 % of the size of the mechanism. Usually a part or the marker of a shape stands elsewhere than
+meant, or a PLANE looks the other way: its z points out of the solid.",
+    },
+    Code {
         name: "default",
         summary: "a length that is not given, and that results depend on",
         explanation: "\
