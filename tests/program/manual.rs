@@ -67,8 +67,14 @@ fn models_of_the_manual_are_written_and_never_over_others() {
 fn every_statement_of_a_model_is_described_as_solved() {
     for model in manual::examples() {
         let reading = read_text(model.dataset);
+        // the statements that the manual describes as kept are told so, and nothing else
         let told = &reading.diagnostics;
-        assert!(told.is_empty(), "{}: {told:?}", model.name);
+        let kept = |page: &manual::Page| page.effect == Effect::Kept;
+        let mut records = reading.dataset.records.iter().flatten();
+        let has_kept = records.any(|r| manual::page(r.row.keyword()).is_some_and(kept));
+        let codes: Vec<&str> = told.iter().map(|d| d.code).collect();
+        let expected: &[&str] = if has_kept { &["ignored"] } else { &[] };
+        assert_eq!(codes, expected, "{}: {told:?}", model.name);
         for record in reading.dataset.records.iter().flatten() {
             let page = manual::page(record.row.keyword()).unwrap();
             assert_ne!(

@@ -96,7 +96,14 @@ fn lengths_of_friction(f: &Friction, kind: Option<JointKind>, who: Who, out: &mu
         Some(JointKind::Translational) => vec![("REACTION_ARM", f.reaction_arm)],
         _ => Vec::new(),
     };
-    let missing = read.into_iter().filter(|(_, x)| x.is_none());
+    let all = f.inputs.is_empty() || f.inputs.iter().any(|i| i == "ALL");
+    let takes = |input: &str| all || f.inputs.iter().any(|i| i == input);
+    let reads = |length: &str| match length {
+        "BENDING_REACTION_ARM" => takes("BENDING_MOMENT"),
+        "REACTION_ARM" => takes("TORSIONAL_MOMENT"),
+        _ => true,
+    };
+    let missing = (read.into_iter()).filter(|(name, x)| x.is_none() && reads(name));
     let missing: Vec<&str> = missing.map(|(name, _)| name).collect();
     if !missing.is_empty() {
         let message = format!("1 is taken for {}, which is not given", missing.join(", "));
