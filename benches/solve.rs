@@ -436,7 +436,7 @@ fn beside_hand_written(chosen: &dyn Fn(&str) -> bool, table: bool) {
             let (mut ea, mut eb) = (0.0, 0.0);
             for _ in 0..ROUNDS {
                 let (session, columns) = by_us(problem, error, None);
-                a.push(session.run.record.solve_seconds);
+                a.push(session.run.record.seconds.solve);
                 ea = true_error(&reference, &names, &columns);
                 let (seconds, columns) = by_hand(hand, times, error);
                 b.push(seconds);
@@ -489,7 +489,7 @@ fn chains(chosen: &dyn Fn(&str) -> bool) {
         }
         let runs = (0..3).map(|_| {
             let record = by_us(&problem, 1e-3, Some("DOP853")).0.run.record;
-            (record.solve_seconds, record.counts.evaluations)
+            (record.seconds.solve, record.counts.evaluations)
         });
         let runs: Vec<_> = runs.collect();
         let seconds = median(runs.iter().map(|r| r.0).collect());

@@ -14,6 +14,7 @@
 //! start        assembly, placement, initial conditions
 //! ```
 
+pub mod accuracy;
 pub mod direction;
 pub mod linear;
 pub(in crate::analysis) mod quantity;

@@ -3,6 +3,7 @@
 use crate::numeric::{Stats, Stop};
 use crate::scene::broken::Broken;
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// The reason why an analysis ended before the last output time.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,57 @@ pub enum Takeover {
     Slides,
 }
 
+/// Kinetic energy, and potential energy in gravity.
+pub type Energy = [f64; 2];
+/// Powers or works: given back by what stores energy, of damping and friction, of functions, of
+/// motions.
+pub type Powers = [f64; 4];
+
+/// Energies and works since an integration began.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnergyFlow {
+    /// kinetic and potential energy at the beginning; `None`: not watched
+    pub start: Option<Energy>,
+    /// the same at the last look
+    pub end: Energy,
+    /// works: given back by what stores energy, of damping and friction, of functions, of motions
+    pub works: Powers,
+    /// largest kinetic energy, change of potential energy, or work
+    pub scale: f64,
+    /// largest error of the balance
+    pub imbalance: f64,
+    /// time that the account itself took, which is no part of solving
+    pub spent: Duration,
+}
+
+impl EnergyFlow {
+    /// Compares the energy with what was put in so far.
+    pub(super) fn look(&mut self, energy: Energy) {
+        let Some(start) = self.start else {
+            return;
+        };
+        self.end = energy;
+        let put_in: f64 = self.works.iter().sum();
+        let change = energy[0] - start[0] + energy[1] - start[1];
+        let sizes = [energy[0], start[0], energy[1] - start[1]];
+        let sizes = sizes.iter().chain(&self.works);
+        self.scale = sizes.fold(self.scale, |m, x| m.max(x.abs()));
+        let imbalance = (change - put_in).abs();
+        if imbalance > self.imbalance || imbalance.is_nan() {
+            self.imbalance = imbalance;
+        }
+    }
+}
+
+/// Accepted steps that ended where they did for another reason than the permitted error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Limited {
+    /// at a change of a branch, a sample, a time event, or short of what might be passed unseen
+    pub events: usize,
+    /// at an output time at which the method had no value otherwise
+    pub outputs: usize,
+}
+
 /// States at the output times that were reached.
 #[derive(Clone, Debug, Default)]
 pub struct Trajectory {
@@ -53,6 +105,8 @@ pub struct Trajectory {
     pub methods: Vec<(f64, String, Takeover)>,
     /// number of switches that were located
     pub events: usize,
+    /// times at which the method began anew, in s
+    pub event_times: Vec<f64>,
     /// sensors that were triggered: when, and their places in the scene
     pub triggered: Vec<(f64, usize)>,
     /// states (all numbers) about positions where rows are nearly dependent; `None` separates what
@@ -69,6 +123,10 @@ pub struct Trajectory {
     pub beyond: Vec<(f64, usize, f64)>,
     /// end and length of the last step that was kept
     pub last_step: Option<(f64, f64)>,
+    /// where energy came from and where it went
+    pub energy: EnergyFlow,
+    /// steps that something else than the permitted error ended
+    pub limited: Limited,
     /// `None`: all output times were reached
     pub ended: Option<Ended>,
 }

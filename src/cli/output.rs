@@ -1,5 +1,6 @@
 //! The files of a run: tables that grow while it goes on, and what is written when it is over.
 
+use super::run::cpu_seconds;
 use super::{Failure, linear, remark, summary};
 use crate::analysis::session::Session;
 use crate::diagnostic::Diagnostic;
@@ -78,6 +79,8 @@ struct Growing {
     tables: Vec<Table>,
     /// rows that the tables have taken
     taken: usize,
+    /// when the run began
+    started: Instant,
     /// when rows last went to the disk
     flushed: Instant,
     /// whether the folder knows that this run is being written
@@ -124,6 +127,7 @@ impl Tables {
             folder,
             tables,
             taken: 0,
+            started: Instant::now(),
             flushed: Instant::now(),
             is_claimed: false,
             overview: summary::Overview::default(),
@@ -161,12 +165,13 @@ impl Tables {
         &self,
         session: &mut Session,
         picture: bool,
+        started: Instant,
     ) -> Result<(Vec<PathBuf>, String), Failure> {
         let mut growing = self.growing();
         if let Some(failed) = growing.failed.take() {
             return Err(failed.into());
         }
-        Ok(growing.complete(session, picture)?)
+        Ok(growing.complete(session, picture, started)?)
     }
 
     /// Writes what is left of a run that another thread still works on, as [`Tables::complete`],
@@ -246,7 +251,9 @@ impl Growing {
         &mut self,
         session: &mut Session,
         picture: bool,
+        started: Instant,
     ) -> Result<(Vec<PathBuf>, String), Diagnostic> {
+        self.started = started;
         let mut texts = linear::files(session);
         texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));
         let record = self.finish(&mut session.run, texts, picture)?;
@@ -286,7 +293,10 @@ impl Growing {
         mine.extend(["msg", "svg"].map(own));
         self.folder.remove_stale(&mine)?;
         // the record
-        run.record.write_seconds = clock.elapsed().as_secs_f64();
+        let seconds = &mut run.record.seconds;
+        seconds.write = clock.elapsed().as_secs_f64();
+        seconds.total = self.started.elapsed().as_secs_f64();
+        seconds.processor = cpu_seconds().unwrap_or(seconds.total);
         let record = json::with_files(json::record(run), self.folder.written());
         let record = json::text(&record);
         self.folder.put_record(&record)?;

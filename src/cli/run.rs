@@ -73,6 +73,9 @@ pub struct Args {
     /// Processor time after which the run ends with its results so far and exit code 7: 60s, 2min
     #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
     limit: Option<f64>,
+    /// Give every column bars of error (`name±`), from a further run at a smaller request
+    #[arg(long)]
+    accuracy: bool,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -138,7 +141,7 @@ pub fn run(args: &Args) -> Outcome {
     let (model, dataset, steps) = (job.reading.model, job.reading.dataset, job.steps);
     check_columns(args, &model, &steps)?;
     let mut session = open(args, model, &job.base);
-    session.run.record.read_seconds = clock.elapsed().as_secs_f64();
+    session.run.record.seconds.begin(clock, job.read_seconds);
     let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
     guard.iter().for_each(|g| g.follow(&session, &tables));
 
@@ -146,10 +149,8 @@ pub fn run(args: &Args) -> Outcome {
     let outcome = solve(args, &mut session, &steps, (&tables, guard.as_ref()));
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
-    session.run.log.push(Event::Finished {
-        elapsed,
-        cpu: cpu_seconds().unwrap_or(elapsed),
-    });
+    let cpu = cpu_seconds().unwrap_or(elapsed);
+    session.run.log.push(Event::Finished { elapsed, cpu });
 
     // write and report
     guard.iter().for_each(Guard::done);
@@ -159,7 +160,7 @@ pub fn run(args: &Args) -> Outcome {
         // what an earlier run has written stays
         (Vec::new(), json::text(&json::record(&session.run)))
     } else {
-        tables.complete(&mut session, shown)?
+        tables.complete(&mut session, shown, clock)?
     };
     if args.json {
         say(&record);
@@ -280,6 +281,7 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
         zero_user: args.zero_user,
         max_steps: args.max_steps,
         limit: args.limit,
+        accuracy: args.accuracy,
     };
     let mut session = Session::new(model, base, options);
     session.run.record.model = args.model.display().to_string();
@@ -322,6 +324,8 @@ pub(super) struct Job {
     pub steps: Vec<Step>,
     /// warnings and notes about the commands
     pub remarks: Vec<Diagnostic>,
+    /// time that the bytes of the dataset took, in s
+    pub read_seconds: f64,
 }
 
 /// Returns the exit of a status.
@@ -356,7 +360,7 @@ pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
         let what = "a second file is the dataset of a command file (.acf) or of a log (.msg)";
         return Err(Failure::usage(what));
     }
-    let reading = read(args.model)?;
+    let (reading, read_seconds) = timed_read(args.model)?;
     let kind = match args.kind.unwrap_or(KindName::Transient) {
         KindName::Dynamic => SimulationKind::Dynamic,
         KindName::Kinematic => SimulationKind::Kinematic,
@@ -391,6 +395,7 @@ pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
         base: stem(args.model),
         steps: vec![step],
         remarks: Vec::new(),
+        read_seconds,
     })
 }
 
@@ -401,7 +406,15 @@ pub(super) fn stem(path: &Path) -> String {
 
 /// Reads a dataset.
 pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
-    let reading = dataset::read(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
+    timed_read(path).map(|(reading, _)| reading)
+}
+
+/// Reads a dataset; also returns the time that its bytes took, in s.
+fn timed_read(path: &Path) -> Result<(Reading, f64), Failure> {
+    let clock = Instant::now();
+    let source = dataset::open(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
+    let seconds = clock.elapsed().as_secs_f64();
+    let reading = dataset::read_source(source);
     if reading.failed() {
         let errors = reading
             .diagnostics
@@ -409,7 +422,7 @@ pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
             .filter(|d| d.severity == Severity::Error);
         return Err(Failure::in_files(Exit::Input, errors.collect()));
     }
-    Ok(reading)
+    Ok((reading, seconds))
 }
 
 /// Returns whether a file holds commands: a command file, or the log of a run.
@@ -430,11 +443,13 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
         let file = (dataset.map(Path::to_path_buf))
             .or_else(|| script.model_file())
             .unwrap_or_else(|| path.with_extension("adm"));
+        let (reading, read_seconds) = timed_read(&file)?;
         return Ok(Job {
-            reading: read(&file)?,
+            reading,
             base: format!("{}_replay", stem(path)),
             steps: script.steps,
             remarks: script.diagnostics,
+            read_seconds,
         });
     }
     let script = Script::read(path).map_err(failed)?;
@@ -458,6 +473,7 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
                 base: script.output.clone().unwrap_or_else(|| stem(path)),
                 steps: script.steps,
                 remarks: script.diagnostics,
+                read_seconds: 0.0,
             });
         }
         let d = Diagnostic::error("no_model", format!("{} names no dataset", path.display()));
@@ -467,11 +483,13 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
     if !file.exists() {
         return Err(missing(&script, path, &file));
     }
+    let (reading, read_seconds) = timed_read(&file)?;
     Ok(Job {
-        reading: read(&file)?,
+        reading,
         base,
         steps: script.steps,
         remarks: script.diagnostics,
+        read_seconds,
     })
 }
 
@@ -499,7 +517,7 @@ fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
 }
 
 /// Returns the processor time of this process, in s, where the system tells it.
-fn cpu_seconds() -> Option<f64> {
+pub(super) fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
     Some(1e-9 * nanoseconds)

@@ -3,7 +3,7 @@
 
 use super::table::Table;
 use crate::report::{Plot, svg::panels};
-use crate::results::{Kind, Run, Warning, digits_of_six};
+use crate::results::{Accuracy, Kind, Run, Seconds, Warning, digits_of_six};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -154,10 +154,11 @@ pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     if !r.method.is_empty() {
         text += &format!(" of {}", r.method);
     }
-    text += &format!(", {:.3} ms\n", 1e3 * r.solve_seconds);
+    text += &format!(", solved in {}\n", times(&r.seconds));
     if !r.stop_reason.is_empty() {
         text += &format!("{}\n", r.stop_reason);
     }
+    text += &r.accuracy.as_ref().map(believed).unwrap_or_default();
     for simulation in r.simulations.iter().filter(|s| !s.worst.is_empty()) {
         text += &format!(
             "worst at the end of {} at time {}: {}\n",
@@ -200,6 +201,49 @@ fn redundancy(redundant: &[String]) -> String {
         "redundant: {what}; the motion is the same, but reactions of these joints are not unique, \
          and the smallest are given\n"
     )
+}
+
+/// Tells the time of solving, and how much the rest took: "1.200 ms of 30.1 ms (read 0.3, …)".
+fn times(s: &Seconds) -> String {
+    let phases = [
+        ("read", s.read),
+        ("set-up", s.set_up()),
+        ("accuracy", s.accuracy),
+        ("evaluate", s.evaluate),
+        ("write", s.write),
+    ];
+    let phases = phases.iter().filter(|(_, seconds)| *seconds > 0.0);
+    let phases: Vec<String> = phases
+        .map(|(name, seconds)| format!("{name} {:.1}", 1e3 * seconds))
+        .collect();
+    format!(
+        "{:.3} ms of {:.1} ms ({}; processor {:.1})",
+        1e3 * s.solve,
+        1e3 * s.total,
+        phases.join(", "),
+        1e3 * s.processor
+    )
+}
+
+/// Tells how many digits to believe, and of which channel the fewest.
+fn believed(accuracy: &Accuracy) -> String {
+    let Some(worst) = accuracy.worst() else {
+        return String::new();
+    };
+    let mut text = format!(
+        "believe {:.1} digits: {} is the worst, ±{:.1e} {}\n",
+        worst.digits(),
+        worst.channel,
+        worst.largest_bar,
+        worst.unit
+    );
+    let lost = accuracy.channels.iter();
+    let lost = lost.filter_map(|c| Some((c.lost_from?, &c.channel)));
+    if let Some((t, channel)) = lost.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        text +=
+            &format!("the phase is lost from time {t} on: {channel} may be anything it reaches\n");
+    }
+    text
 }
 
 /// Number of warnings of one kind that are shown.

@@ -120,9 +120,17 @@ impl std::error::Error for Errors {}
 /// # Errors
 /// Only when the file cannot be opened; everything else is in [`Reading::diagnostics`].
 pub fn read(path: impl AsRef<Path>) -> Result<Reading, Errors> {
+    open(path).map(read_source)
+}
+
+/// Opens a dataset: its text, not yet read.
+///
+/// # Errors
+/// When the file cannot be opened.
+pub fn open(path: impl AsRef<Path>) -> Result<Source, Errors> {
     let path = path.as_ref();
     let file = path.display().to_string();
-    Ok(read_source(Source::from_bytes(Some(&file), &load(path)?)))
+    Ok(Source::from_bytes(Some(&file), &load(path)?))
 }
 
 /// Reads a dataset from a text.

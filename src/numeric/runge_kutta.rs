@@ -35,12 +35,26 @@
 
 use super::control::{self, Attempts, Pi, Rejection, Weights, worst, worst_index};
 use super::noise::{self, Noise, Probed};
+use super::quadrature::{GAUSS_4, Node, over_interpolant};
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 
 /// Order of the method.
 const ORDER: usize = 8;
 /// s of (3); measured, see above.
 const ERROR_SCALE: f64 = 20.0;
+/// b₁ and b₆ … b₁₂ of (2); the others are zero.
+const B: [f64; 8] = [
+    0.054293734116568765,
+    4.450312892752409,
+    1.8915178993145003,
+    -5.801203960010585,
+    0.3111643669578199,
+    -0.1521609496625161,
+    0.20136540080403034,
+    0.04471061572777259,
+];
+/// Stages between the first and the next with a weight b.
+const UNWEIGHTED_STAGES: usize = 4;
 /// `h |λ|` at the edge of the stability region.
 const STABILITY_EDGE: f64 = 6.1;
 /// `h |λ|` from which on the interpolant is compared with the rate.
@@ -241,18 +255,32 @@ impl Dop853 {
         Ok(())
     }
 
-    /// Evaluates the twelve stages (1).
+    /// Evaluates the stages (1) after the first.
     fn evaluate_stages<P: Ode + ?Sized>(&mut self, problem: &mut P, h: f64) -> Result<(), Failure> {
+        let mut evaluations = 0;
+        let evaluated = self.each_stage(h, |t, stage, k| {
+            evaluations += 1;
+            problem.rate(t, stage, k)
+        });
+        self.stats.evaluations += evaluations;
+        evaluated
+    }
+
+    /// Visits the stages (1) after the first: time, argument, and its rate   (n).
+    #[inline(always)]
+    fn each_stage(
+        &mut self,
+        h: f64,
+        mut visit: impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let (t, n) = (self.t0, self.y0.len());
         let (y, stage) = (&self.y0[..n], &mut self.stage);
         let k1 = &self.f0;
         let [k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12] = &mut self.k;
-        let evaluations = &mut self.stats.evaluations;
         macro_rules! stage {
             ($out:ident at $c:literal: $($row:tt)*) => {
                 row!(stage = y + h * ($($row)*));
-                *evaluations += 1;
-                problem.rate(t + $c * h, &stage[..n], &mut $out[..n])?;
+                visit(t + $c * h, &stage[..n], &mut $out[..n])?;
             };
         }
         stage!(k2 at 0.05260015195876773: k1 0.05260015195876773);
@@ -288,14 +316,14 @@ impl Dop853 {
         let y1 = &mut self.y1[..n];
         let (mut worst5, mut worst3, mut sum) = (0.0, 0.0, 0.0);
         for i in 0..n {
-            let slope = 0.054293734116568765 * k1[i]
-                + 4.450312892752409 * k6[i]
-                + 1.8915178993145003 * k7[i]
-                - 5.801203960010585 * k8[i]
-                + 0.3111643669578199 * k9[i]
-                - 0.1521609496625161 * k10[i]
-                + 0.20136540080403034 * k11[i]
-                + 0.04471061572777259 * k12[i];
+            let slope = B[0] * k1[i]
+                + B[1] * k6[i]
+                + B[2] * k7[i]
+                + B[3] * k8[i]
+                + B[4] * k9[i]
+                + B[5] * k10[i]
+                + B[6] * k11[i]
+                + B[7] * k12[i];
             let e5 = e5_slope([k1[i], k6[i], k7[i], k8[i], k9[i], k10[i], k11[i], k12[i]]);
             let e3 = slope
                 - 0.2440944881889764 * k1[i]
@@ -689,6 +717,42 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
             *rate = self.dense_at(i, s).1 / self.h;
         }
         Ok(())
+    }
+
+    fn quadrature(
+        &mut self,
+        problem: &mut P,
+        ends: [f64; 2],
+        work: &mut [Vec<f64>; 2],
+        visit: &mut dyn FnMut(&mut P, Node<'_>),
+    ) -> Result<(), Failure> {
+        if !self.advanced {
+            return Ok(());
+        }
+        if self.dense_ready {
+            // the interpolant costs nothing any more, and has overwritten stages
+            return over_interpolant(self, problem, ends, &GAUSS_4, work, visit);
+        }
+        let h = self.h;
+        visit(
+            problem,
+            Node {
+                weight: B[0] * h,
+                t: self.t0,
+                y: &self.y0,
+                ydot: &self.f0,
+            },
+        );
+        let weights = [0.0; UNWEIGHTED_STAGES].iter().chain(&B[1..]);
+        let mut weights = weights.map(|b| b * h);
+        self.each_stage(h, |t, y, ydot| {
+            let weight = weights.next().unwrap_or(0.0);
+            if weight != 0.0 {
+                let node = Node { weight, t, y, ydot };
+                visit(problem, node);
+            }
+            Ok(())
+        })
     }
 
     fn propose(&mut self, h: f64) {

@@ -36,6 +36,8 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// drawn with dashes: of another run, so that a curve below it is seen
     pub is_dashed: bool,
+    /// bar of error of each point, drawn as a band; empty: none are known
+    pub bars: Vec<f64>,
 }
 
 /// Most curves of a plot when none are chosen.
@@ -58,7 +60,7 @@ impl Plot {
             [] => run
                 .table_columns()
                 .into_iter()
-                .filter(|&c| c != x)
+                .filter(|&c| c != x && run.columns[c].bar_of.is_none())
                 .take(MOST_CURVES)
                 .collect(),
             names => names
@@ -73,10 +75,13 @@ impl Plot {
                 .iter()
                 .map(|&row| (x_column.values[row], column.values[row]))
                 .collect();
+            let bars = run.bars(c).map(|bars| &run.columns[bars].values);
+            let bars = bars.map(|bars| rows.iter().map(|&row| bars[row]).collect());
             Curve {
                 name: column.name.clone(),
                 unit: column.unit.clone(),
                 points,
+                bars: bars.unwrap_or_default(),
                 ..Curve::default()
             }
         });
@@ -98,7 +103,9 @@ impl Plot {
     /// by themselves; at most `most`.
     pub fn by_unit(run: &Run, most: usize) -> Vec<Plot> {
         let mut panels: Vec<Plot> = Vec::new();
-        for column in run.table_columns().into_iter().skip(1) {
+        let is_bar = |c: &usize| run.columns.get(*c).is_some_and(|c| c.bar_of.is_some());
+        let columns = run.table_columns().into_iter().skip(1);
+        for column in columns.filter(|c| !is_bar(c)) {
             let Some(Ok(plot)) = run
                 .columns
                 .get(column)

@@ -1,7 +1,7 @@
 //! A [`Plot`] as an SVG file: light background, axes with units, ticks at round numbers, a legend
 //! above the curves.
 
-use super::plot::{Plot, Range, pieces};
+use super::plot::{Curve, Plot, Range, pieces};
 use crate::diagnostic::Diagnostic;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -157,7 +157,27 @@ fn draw(plots: &[Plot], ranges: &[Ranges], size: (u32, u32), text: &mut String) 
     Ok(())
 }
 
-/// Draws one panel: axes, legend, curves.
+/// Opacity of a band of error.
+const BAND_OPACITY: f64 = 0.25;
+
+/// Returns the bands of a curve, one for each stretch of points that have bars.
+fn bands(curve: &Curve, colour: &RGBColor, x: Range, y: Range) -> Vec<Polygon<(f64, f64)>> {
+    let band = colour.mix(BAND_OPACITY).filled();
+    let points: Vec<_> = curve.points.iter().zip(&curve.bars).collect();
+    let known = |p: &(&(f64, f64), &f64)| p.0.0.is_finite() && p.0.1.is_finite() && p.1.is_finite();
+    let stretches = points.chunk_by(|a, b| known(a) && known(b));
+    let place = |(p, bar): (&(f64, f64), f64)| (p.0.clamp(x.0, x.1), (p.1 + bar).clamp(y.0, y.1));
+    stretches
+        .filter(|stretch| stretch.len() > 1)
+        .map(|stretch| {
+            let above = stretch.iter().map(|(p, bar)| place((p, **bar)));
+            let below = stretch.iter().rev().map(|(p, bar)| place((p, -**bar)));
+            Polygon::new(above.chain(below).collect::<Vec<_>>(), band)
+        })
+        .collect()
+}
+
+/// Draws one panel: axes, legend, curves with their bands of error.
 fn draw_panel<B: DrawingBackend>(
     plot: &Plot,
     area: &DrawingArea<B, Shift>,
@@ -212,6 +232,11 @@ where
     let curves = (plot.curves.iter().map(|c| (c, y, false)))
         .chain(plot.right.iter().map(|c| (c, second, true)));
     for ((curve, y, at_right), colour) in curves.zip(colours) {
+        let bands = bands(curve, colour, x, y);
+        match at_right {
+            true => chart.draw_secondary_series(bands).map(drop)?,
+            false => chart.draw_series(bands).map(drop)?,
+        }
         for mut piece in pieces(&curve.points, x, WIDTH) {
             // the range may be narrower than the largest numbers, which have no place in pixels
             piece
@@ -328,7 +353,6 @@ fn y_labels_width(y: (f64, f64), step: f64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Curve;
 
     #[test]
     fn ticks_have_the_digits_their_distance_needs() {
@@ -367,6 +391,7 @@ mod tests {
             name: name.into(),
             unit: "mm".into(),
             points: (0..50).map(|i| (f64::from(i), f64::from(i * i))).collect(),
+            bars: vec![9.0; 50],
             ..Curve::default()
         };
         let plot = Plot {
@@ -383,6 +408,7 @@ mod tests {
             "[mm]",
             "DX(1,2)",
             "DY(1,2)",
+            "<polygon",
             "</svg>",
         ] {
             assert!(text.contains(part), "{part}");

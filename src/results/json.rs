@@ -2,7 +2,10 @@
 //!
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
-use super::{Column, Counts, Jump, Kind, RankChange, Run, Sequence, Simulation, malformed};
+use super::{
+    Accuracy, ChannelAccuracy, Column, Counts, Energy, Jump, Kind, RankChange, Run, Seconds,
+    Sequence, Simulation, malformed,
+};
 use crate::diagnostic::Diagnostic;
 use crate::model::ElementKind;
 use serde_json::{Map, Value, json};
@@ -20,16 +23,20 @@ pub fn record(run: &Run) -> Value {
         "title": run.title,
         "method": r.method,
         "error": r.error,
-        "solve_seconds": r.solve_seconds,
-        "read_seconds": r.read_seconds,
-        "write_seconds": r.write_seconds,
+        "solve_seconds": r.seconds.solve,
+        "read_seconds": r.seconds.read + r.seconds.parse,
+        "write_seconds": r.seconds.write,
+        "seconds": seconds(&r.seconds),
         "repeats": r.repeats,
         "freedom": r.freedom,
         "redundant_rows": r.redundant.len(),
         "redundant": r.redundant,
         "reactions": if r.redundant.is_empty() { "unique" } else { "smallest set: rows depend on each other" },
         "rank_changes": r.rank_changes.iter().map(rank_change).collect::<Vec<_>>(),
-        "energy_drift": r.energy_drift,
+        "energy": energy(&r.energy),
+        "energy_drift": r.energy.error(),
+        "accuracy": r.accuracy.as_ref().map(accuracy),
+        "limited_steps": limited(&r.counts),
         "constraint_drift": r.constraint_drift,
         "outputs": run.table_rows().count(),
         "warnings": r.warned(),
@@ -48,6 +55,55 @@ pub fn record(run: &Run) -> Value {
 pub fn with_files(mut record: Value, files: &BTreeMap<String, u64>) -> Value {
     record["files"] = json!(files);
     record
+}
+
+fn seconds(s: &Seconds) -> Value {
+    let named: Map<String, Value> = (s.named().into_iter())
+        .map(|(name, seconds)| (name.to_owned(), json!(seconds)))
+        .collect();
+    Value::Object(named)
+}
+
+fn energy(e: &Energy) -> Value {
+    json!({
+        "kinetic": { "start": e.kinetic[0], "end": e.kinetic[1] },
+        "potential": { "start": e.potential[0], "end": e.potential[1] },
+        "stored": e.stored,
+        "by_motions": e.by_motions,
+        "by_functions": e.by_functions,
+        "dissipated": e.dissipated,
+        "imbalance": e.imbalance,
+        "error": e.error(),
+    })
+}
+
+fn accuracy(a: &Accuracy) -> Value {
+    let channel = |c: &ChannelAccuracy| {
+        json!({
+            "channel": c.channel,
+            "unit": c.unit,
+            "largest_bar": c.largest_bar,
+            "relative": c.relative,
+            "digits": c.digits(),
+            "lost_from": c.lost_from,
+        })
+    };
+    json!({
+        "companion_errors": a.companions,
+        "digits": a.worst().map(ChannelAccuracy::digits),
+        "worst": a.worst().map(channel),
+        "channels": a.channels.iter().map(channel).collect::<Vec<_>>(),
+    })
+}
+
+/// Writes the shares of the accepted steps that something else than the permitted error limited.
+fn limited(c: &Counts) -> Value {
+    let share = |n: u64| n as f64 / c.steps.max(1) as f64;
+    json!({
+        "by_stability": share(c.stability_limited),
+        "by_events": share(c.event_limited),
+        "by_outputs": share(c.output_limited),
+    })
 }
 
 fn jump(j: &Jump) -> Value {
@@ -98,7 +154,12 @@ pub fn table(run: &Run) -> Value {
         .filter_map(|i| run.columns.get(i))
         .map(|c| {
             let values: Vec<f64> = rows.iter().map(|&row| c.values[row]).collect();
-            json!({ "name": c.name, "unit": c.unit, "values": values })
+            match c.bar_of.and_then(|of| run.columns.get(of)) {
+                Some(of) => {
+                    json!({ "name": c.name, "unit": c.unit, "bar_of": of.name, "values": values })
+                }
+                None => json!({ "name": c.name, "unit": c.unit, "values": values }),
+            }
         });
     json!({ "name": run.name, "title": run.title, "columns": columns.collect::<Vec<_>>() })
 }
@@ -156,6 +217,7 @@ fn column(value: &Value) -> Option<Column> {
             .iter()
             .map(number)
             .collect::<Option<_>>()?,
+        bar_of: None,
     })
 }
 

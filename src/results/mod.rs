@@ -20,15 +20,18 @@ mod part_file;
 mod record;
 pub mod res;
 mod run;
+mod seconds;
 mod units;
 
 pub use file::{read, write, write_text};
 pub use log::Event;
 pub use number::{digits, digits_of_six};
 pub use record::{
-    Counts, Jump, Quantity, RankChange, Record, RowChange, Simulation, Status, Warning,
+    Accuracy, ChannelAccuracy, Counts, Energy, Jump, Quantity, RankChange, Record, RowChange,
+    Simulation, Status, Warning,
 };
 pub use run::{Column, Component, Entity, Kind, Run, Sequence};
+pub use seconds::Seconds;
 pub use units::{Units, component_unit};
 
 use number::{malformed, number};

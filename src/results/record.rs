@@ -1,6 +1,6 @@
 //! The record of a run: how it ended, what it cost, and what the user should know.
 
-use super::Kind;
+use super::{Kind, Seconds};
 
 /// The way in which a run, or one simulation of it, ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,6 +58,12 @@ pub struct Counts {
     pub jacobians: u64,
     /// factorizations of a matrix
     pub factorizations: u64,
+    /// accepted steps that stability held short
+    pub stability_limited: u64,
+    /// accepted steps that ended at an event
+    pub event_limited: u64,
+    /// accepted steps that ended at an output time
+    pub output_limited: u64,
 }
 
 impl std::ops::AddAssign for Counts {
@@ -67,6 +73,85 @@ impl std::ops::AddAssign for Counts {
         self.evaluations += other.evaluations;
         self.jacobians += other.jacobians;
         self.factorizations += other.factorizations;
+        self.stability_limited += other.stability_limited;
+        self.event_limited += other.event_limited;
+        self.output_limited += other.output_limited;
+    }
+}
+
+/// The account of energy over all simulations that move something, in the model's units.
+///
+/// ```text
+/// ΔT + ΔV + stored = by_motions + by_functions − dissipated          up to the error
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// kinetic energy at the start and at the end
+    pub kinetic: [f64; 2],
+    /// potential energy in gravity at the start and at the end; zero at the origin of ground
+    pub potential: [f64; 2],
+    /// stored since the start in springs, fields and contacts
+    pub stored: f64,
+    /// put in by motions
+    pub by_motions: f64,
+    /// put in by forces that functions give
+    pub by_functions: f64,
+    /// lost in dampers, friction and contacts
+    pub dissipated: f64,
+    /// largest kinetic energy, change of potential energy, or work
+    pub scale: f64,
+    /// largest error of the balance
+    pub imbalance: f64,
+}
+
+impl Energy {
+    /// Returns the error of the balance, relative to the largest part of the account; zero where
+    /// nothing moved.
+    pub fn error(&self) -> f64 {
+        if self.scale == 0.0 {
+            0.0
+        } else {
+            self.imbalance / self.scale
+        }
+    }
+}
+
+/// The bars of error of a run, in short.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Accuracy {
+    /// requests of the further runs that bars come from, one per simulation that integrates
+    pub companions: Vec<f64>,
+    /// one per column that tables show, in order
+    pub channels: Vec<ChannelAccuracy>,
+}
+
+/// The bars of error of one column, in short.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelAccuracy {
+    /// name of the column
+    pub channel: String,
+    /// its unit
+    pub unit: String,
+    /// largest bar, in that unit
+    pub largest_bar: f64,
+    /// the same over the largest value of the column
+    pub relative: f64,
+    /// the time from which on bars are as large as the range of the values until the end
+    pub lost_from: Option<f64>,
+}
+
+impl ChannelAccuracy {
+    /// Returns how many digits of the largest value can be believed everywhere.
+    pub fn digits(&self) -> f64 {
+        (-self.relative.log10()).max(0.0)
+    }
+}
+
+impl Accuracy {
+    /// Returns the channel with the largest relative bar.
+    pub fn worst(&self) -> Option<&ChannelAccuracy> {
+        let known = self.channels.iter().filter(|c| !c.relative.is_nan());
+        known.max_by(|a, b| a.relative.total_cmp(&b.relative))
     }
 }
 
@@ -85,14 +170,10 @@ pub struct Record {
     pub method: String,
     /// requested error
     pub error: Option<f64>,
-    /// reading and compiling the model, in s
-    pub read_seconds: f64,
-    /// solving alone, median of the repeats, in s
-    pub solve_seconds: f64,
+    /// where the time went
+    pub seconds: Seconds,
     /// processor time of solving, mean of the repeats, in s; `None`: it was solved once
     pub repeated_seconds: Option<f64>,
-    /// writing results, in s
-    pub write_seconds: f64,
     /// how often it was solved to time it
     pub repeats: u32,
     /// totals of all simulations
@@ -103,8 +184,10 @@ pub struct Record {
     pub redundant: Vec<String>,
     /// when and where the rank of the rows changed
     pub rank_changes: Vec<RankChange>,
-    /// largest change of the energy balance, relative to its largest part; `None`: not watched
-    pub energy_drift: Option<f64>,
+    /// where energy came from and where it went
+    pub energy: Energy,
+    /// bars of error, where they were asked for
+    pub accuracy: Option<Accuracy>,
     /// largest residual of a constraint row over the run; `None`: there are no rows
     pub constraint_drift: Option<f64>,
     /// what the user should know although the run went on

@@ -38,6 +38,8 @@ pub struct Column {
     pub unit: String,
     /// one per row that is held: all but the first [`Run::released`]
     pub values: Vec<f64>,
+    /// index of the column whose errors it bounds, of a bar
+    pub bar_of: Option<usize>,
 }
 
 impl Column {
@@ -134,6 +136,7 @@ impl Run {
             name: "time".into(),
             unit: units.time.clone(),
             values: Vec::new(),
+            bar_of: None,
         };
         Self {
             name: name.into(),
@@ -149,8 +152,33 @@ impl Run {
             name: name.into(),
             unit: unit.into(),
             values: Vec::new(),
+            bar_of: None,
         });
         self.columns.len() - 1
+    }
+    /// Adds columns for the bars of error of all columns but time; tables show each beside its
+    /// column. They have no values so far.
+    pub fn add_bars(&mut self) {
+        let shown = self.table_columns();
+        let n = self.columns.len();
+        for of in 1..n {
+            let column = &self.columns[of];
+            let bar = Column {
+                name: format!("{}±", column.name),
+                unit: column.unit.clone(),
+                values: vec![f64::NAN; column.values.len()],
+                bar_of: Some(of),
+            };
+            self.columns.push(bar);
+        }
+        let bar_of = |of: usize| of.checked_sub(1).map(|k| n + k);
+        self.table = (shown.into_iter())
+            .flat_map(|of| std::iter::once(of).chain(bar_of(of)))
+            .collect();
+    }
+    /// Returns the index of the column of bars of a column, if it has one.
+    pub fn bars(&self, of: usize) -> Option<usize> {
+        self.columns.iter().position(|c| c.bar_of == Some(of))
     }
     /// Adds a row: time and one value for each further column, in order; missing ones are NaN.
     pub fn push(&mut self, row: &[f64]) {

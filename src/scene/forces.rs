@@ -157,7 +157,32 @@ macro_rules! force_laws {
                         law,
                         markers,
                         place,
-                    } => self.nodal(at, law, markers, *place, &j),
+                    } => self.nodal(at, law, markers, *place, false),
+                }
+            }
+
+            /// Returns the action on I if its markers stood still, in ground axes; `None` where
+            /// the law does not say what it stores: functions and friction.
+            pub fn action_at_rest<S: Scalar>(&self, at: &Equations<'_, S>) -> Option<Action<S>> {
+                let i = at.marker(self.i).stopped();
+                let j = self.j.map_or_else(MarkerState::ground, |j| at.marker(j)).stopped();
+                let angle = |measure: Measure| at.angle_between(measure, self.i, self.j);
+                match &self.law {
+                    ForceLaw::Single { .. }
+                    | ForceLaw::Vector { .. }
+                    | ForceLaw::Friction { .. } => None,
+                    $(ForceLaw::$kind(law) => Some(law.action(&i, &j, angle)),)*
+                    ForceLaw::Field(law) => Some(law.action(&i, &j, angle)),
+                    ForceLaw::Contact(contact) => {
+                        let (touching, law) = contact.as_ref();
+                        let touches = touching.touches(at, &i, &j);
+                        Some(contact::action(&touches, law, &i, &j))
+                    }
+                    ForceLaw::Nodal {
+                        law,
+                        markers,
+                        place,
+                    } => Some(self.nodal(at, law, markers, *place, true)),
                 }
             }
         }
@@ -196,19 +221,26 @@ impl Touching {
 }
 
 impl ForceElement {
-    /// Returns the action of an NFORCE on one of its markers.
+    /// Returns true if it is FRICTION in a joint.
+    pub fn is_friction(&self) -> bool {
+        matches!(self.law, ForceLaw::Friction { .. })
+    }
+
+    /// Returns the action of an NFORCE on one of its markers; `still`: as if none moved.
     fn nodal<S: Scalar>(
         &self,
         at: &Equations<'_, S>,
         law: &NodalForce,
         markers: &[usize],
         place: usize,
-        j: &MarkerState<S>,
+        still: bool,
     ) -> Action<S> {
+        let seen = |m: MarkerState<S>| if still { m.stopped() } else { m };
+        let j = &seen(self.j.map_or_else(MarkerState::ground, |j| at.marker(j)));
         let (mut x, mut rate) = (Vec::new(), Vec::new());
         for &m in markers {
             let angles = ALL_ANGLES.map(|measure| at.angle_between(measure, m, self.j));
-            let (displacement, velocity) = bushing::deformation(&at.marker(m), j, angles);
+            let (displacement, velocity) = bushing::deformation(&seen(at.marker(m)), j, angles);
             x.extend(displacement);
             rate.extend(velocity);
         }

@@ -42,6 +42,15 @@ impl<S: Scalar> MarkerState<S> {
         }
     }
 
+    /// Returns the same pose without velocities and accelerations.
+    pub fn stopped(&self) -> Self {
+        Self {
+            R_GM: self.R_GM,
+            p_GM: self.p_GM,
+            ..Self::ground()
+        }
+    }
+
     /// Returns the state of a marker at a frame that does not move.
     pub fn at_rest(X_GM: Frame<S>) -> Self {
         Self {

@@ -10,7 +10,9 @@ mod requests;
 #[path = "../common/running.rs"]
 mod running;
 
+mod accuracy;
 mod allocations;
+mod energy;
 mod integrators;
 mod limits;
 mod linear;

@@ -46,7 +46,7 @@ fn right_or_told(text: &str, column: &str, requests: &[f64]) {
                 .simulate(Analysis::Dynamic, 3.0, 60, &mut Unwatched)
                 .expect("it can be run");
             let record = &s.run.record;
-            let drift = record.energy_drift.expect("nothing but gravity acts");
+            let drift = record.energy.error();
             let off = values(&s, column)
                 .iter()
                 .fold(0.0, |m: f64, x| m.max(x.abs()));

@@ -2,10 +2,12 @@
 
 use super::Session;
 use super::outcome::counts;
+use super::phase::Phase;
 use super::simulate::Span;
 use super::stop_reason::StopReason;
 use crate::analysis::statics::{self, Equilibrium, NoEquilibrium, Settings};
 use crate::analysis::system::System;
+use crate::analysis::trajectory::Limited;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::Program;
@@ -13,7 +15,6 @@ use crate::numeric::Stats;
 use crate::results::{self, Event, Kind, Status};
 use crate::scene::broken::broken;
 use crate::scene::layout::Layout;
-use std::time::Instant;
 
 /// Way of the drives between equilibria, rad, where turns are counted from one to the next.
 const TURN_BETWEEN_EQUILIBRIA: f64 = 1.0;
@@ -50,10 +51,11 @@ impl Session {
         };
         let first = system.numbers.clone();
         // the equilibria
-        let clock = Instant::now();
+        let phase = Phase::begin();
         self.run.begin(kind);
         let found = self.equilibria(system, &times, program, watch);
-        let seconds = clock.elapsed().as_secs_f64();
+        let (seconds, translation) = phase.elapsed();
+        self.run.record.seconds.translate += translation;
         self.warn_of_gaps();
         let stopped = found.failed;
         // what the next simulation begins with
@@ -69,7 +71,7 @@ impl Session {
             outputs: found.count,
             method: found.method,
             solve_seconds: seconds,
-            counts: counts(&found.stats),
+            counts: counts(&found.stats, Limited::default()),
             ..results::Simulation::new(kind, span.start)
         };
         self.close(simulation, stopped)
@@ -84,7 +86,9 @@ impl Session {
         program: &Program,
         watch: &mut dyn Watch,
     ) -> Equilibria {
-        let settings = Settings::of(&self.model.equilibrium);
+        let mut settings = Settings::of(&self.model.equilibrium);
+        settings.error *= self.pace.rest;
+        settings.imbalance *= self.pace.rest;
         let mut all = Equilibria {
             method: "EQUILIBRIUM".into(),
             ..Equilibria::default()

@@ -7,10 +7,12 @@
 mod at_rest;
 mod carried;
 pub mod columns;
+mod companion;
 mod growth;
 mod limit;
 mod outcome;
 mod over_time;
+mod phase;
 mod preview;
 mod rows;
 pub mod script;
@@ -35,6 +37,7 @@ use crate::model::{ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
 use carried::Carried;
+use companion::{Integrated, Pace};
 pub use limit::Activity;
 use limit::SetUp;
 use outcome::units;
@@ -85,6 +88,8 @@ pub struct Options {
     /// results so far; `None`: any time. It is looked at after each step, each iteration of statics
     /// and each phase of setting up
     pub limit: Option<f64>,
+    /// give every column bars of error, from further runs at other requests
+    pub accuracy: bool,
 }
 
 /// A model and its clock.
@@ -100,9 +105,9 @@ pub struct Session {
     changing: BTreeSet<u32>,
     /// what the last simulation ran, for the next one
     kept: Option<Box<Kept>>,
-    /// programs of the present scene: of the columns; of energies and rows
+    /// programs of the present scene: of the columns; of the values of rows
     columns_program: Option<Program>,
-    account: Option<Program>,
+    row_values: Option<Program>,
     hooks: Vec<closures::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether
     /// matrices are wanted
@@ -122,6 +127,12 @@ pub struct Session {
     used_up: Option<SetUp>,
     activity: Activity,
     shells: Option<Arc<BTreeMap<u32, Result<Shell, String>>>>,
+    /// the same at another request, where bars of error are wanted
+    companion: Option<Box<Session>>,
+    /// how this session differs from the one whose companion it is
+    pace: Pace,
+    /// the last simulation over time
+    last: Integrated,
 }
 
 /// Values of MODE.
@@ -150,7 +161,7 @@ impl Session {
             changing: BTreeSet::new(),
             kept: None,
             columns_program: None,
-            account: None,
+            row_values: None,
             hooks: Vec::new(),
             linear: Vec::new(),
             saved: std::collections::BTreeMap::new(),
@@ -162,6 +173,9 @@ impl Session {
             used_up: None,
             activity: Activity::default(),
             shells: None,
+            companion: None,
+            pace: Pace::default(),
+            last: Integrated::default(),
         }
     }
 

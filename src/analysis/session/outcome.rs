@@ -7,7 +7,7 @@ use crate::analysis::start::alignment;
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::analysis::time::{ranks, valueless};
-use crate::analysis::trajectory::{Ended, Trajectory};
+use crate::analysis::trajectory::{Ended, EnergyFlow, Limited, Trajectory};
 use crate::analysis::warning::{RunWarning, Warning};
 use crate::model::{ElementId, Model};
 use crate::numeric::{Reason, Stop};
@@ -29,7 +29,7 @@ impl Session {
         }
         let record = &mut self.run.record;
         record.counts += simulation.counts;
-        record.solve_seconds += simulation.solve_seconds;
+        record.seconds.solve += simulation.solve_seconds;
         record.method.clone_from(&simulation.method);
         record.status = simulation.status;
         record.stop_code = simulation.stop_code;
@@ -162,15 +162,41 @@ impl Session {
             }
         })
     }
+
+    /// Adds the energies and works of a simulation to the account of the run.
+    pub(super) fn account(&mut self, flow: &EnergyFlow) {
+        let Some(start) = flow.start else {
+            return;
+        };
+        let moves = |s: &results::Simulation| {
+            matches!(s.kind, results::Kind::Dynamic | results::Kind::Kinematic)
+        };
+        let first = !self.run.record.simulations.iter().any(moves);
+        let energy = &mut self.run.record.energy;
+        if first {
+            (energy.kinetic[0], energy.potential[0]) = (start[0], start[1]);
+        }
+        (energy.kinetic[1], energy.potential[1]) = (flow.end[0], flow.end[1]);
+        let [given_back, of_damping, of_functions, of_motions] = flow.works;
+        energy.stored -= given_back;
+        energy.dissipated -= of_damping;
+        energy.by_functions += of_functions;
+        energy.by_motions += of_motions;
+        energy.scale = energy.scale.max(flow.scale);
+        energy.imbalance = energy.imbalance.max(flow.imbalance);
+    }
 }
 
-pub(super) fn counts(stats: &crate::numeric::Stats) -> Counts {
+pub(super) fn counts(stats: &crate::numeric::Stats, limited: Limited) -> Counts {
     Counts {
         steps: stats.steps as u64,
         rejected_steps: stats.rejected as u64,
         evaluations: stats.evaluations as u64,
         jacobians: stats.jacobians as u64,
         factorizations: stats.factorizations as u64,
+        stability_limited: stats.stability_limited as u64,
+        event_limited: limited.events as u64,
+        output_limited: limited.outputs as u64,
     }
 }
 

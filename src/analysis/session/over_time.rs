@@ -1,7 +1,9 @@
 //! A simulation over time: from its settings to its results and its place in the record.
 
+use super::companion::Integrated;
 use super::growth::Growth;
 use super::outcome::counts;
+use super::phase::Phase;
 use super::rows::{Follower, Seen};
 use super::simulate::Span;
 use super::{Analysis, Session};
@@ -17,7 +19,6 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::model::ElementKind;
 use crate::results::{self, Event, Kind, Status};
-use std::time::Instant;
 
 impl Session {
     /// Runs a kinematic or dynamic simulation and adds its rows to the run.
@@ -46,6 +47,7 @@ impl Session {
         let (mut trajectory, seconds) =
             self.timed(system, (kind, span), &settings, (&mut seen, watch))?;
         // its results
+        let phase = Phase::begin();
         let until = trajectory.t.len();
         self.see(&mut seen, system, &mut trajectory, until);
         self.warn_of_gaps();
@@ -54,6 +56,11 @@ impl Session {
         self.note_sensors(system, &trajectory);
         let stopped = self.stop_reason(system, &trajectory, span.end);
         self.note_drift(system, &seen.balance);
+        match trajectory.energy.start {
+            Some(_) => self.account(&trajectory.energy),
+            None => self.account(&seen.balance.driven.flow()),
+        }
+        self.last = Integrated::of(&trajectory, settings.error, span);
         let last = trajectory.rows.last().cloned();
         let grown = last
             .as_ref()
@@ -63,6 +70,7 @@ impl Session {
         // what the next simulation begins with
         let last = last.unwrap_or(first);
         self.keep(system, last);
+        phase.end(&mut self.run.record.seconds, |s| &mut s.evaluate);
         // the record
         self.warn_of_rounding(&trajectory, settings.error);
         self.warn_of_stability(&trajectory);
@@ -72,7 +80,7 @@ impl Session {
             outputs: trajectory.t.len(),
             method: methods(&trajectory),
             solve_seconds: seconds,
-            counts: counts(&trajectory.stats),
+            counts: counts(&trajectory.stats, trajectory.limited),
             ..results::Simulation::new(kind, span.start)
         };
         Ok(self.close(simulation, stopped))
@@ -82,7 +90,7 @@ impl Session {
     fn integration_of(&mut self, system: &mut System, kind: Kind, span: Span) -> Options {
         let mut settings = self.integration();
         if let (Kind::Kinematic, Some(longest)) = (kind, self.kinematic_hmax()) {
-            settings.h_max = longest;
+            settings.h_max = self.pace.longest_step(longest);
         }
         if settings.method == "AUTO" && kind == Kind::Dynamic {
             settings.first = options::first_method(system, span.end - span.start).into();
@@ -118,6 +126,9 @@ impl Session {
         let outputs = span.output.times(span.start, span.end);
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
+        let phase = Phase::begin();
+        system.prepare_energy();
+        phase.end(&mut self.run.record.seconds, |s| &mut s.record);
         let follows = kind == Kind::Kinematic && !is_integrated(system);
         let mut path = match follows {
             true => Some(Continuation::new(system)?),
@@ -135,13 +146,17 @@ impl Session {
                 path.iter_mut().for_each(|path| path.see_rows(system));
             }
             system.numbers.copy_from_slice(&first);
-            let clock = Instant::now();
+            let phase = Phase::begin();
             let mut follower = Follower::new(self, seen, watch, k == repeat);
             trajectory = match &mut path {
                 Some(path) => kinematics::trace(system, path, &outputs, settings, &mut follower),
                 None => dynamics::integrate(system, &outputs, settings, &mut follower),
             };
-            seconds.push(clock.elapsed().as_secs_f64() - seen.seconds);
+            let (own, translation) = phase.elapsed();
+            let spent = trajectory.energy.spent.as_secs_f64() + seen.seconds;
+            seconds.push((own - spent).max(0.0));
+            self.run.record.seconds.translate += translation;
+            self.run.record.seconds.evaluate += spent;
         }
         if let Some(clock) = processor {
             let mean = clock.seconds() / seconds.len() as f64;

@@ -9,12 +9,15 @@ use super::growth::Looks;
 use super::spline_range::Readings;
 use super::{Session, columns};
 use crate::analysis::system::System;
+use crate::analysis::time::energy::DrivenFlow;
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::{Program, Work};
 use crate::numeric::Stats;
 use crate::results::{Kind, Run};
+use crate::scene::equations::KINEMATIC;
+use crate::scene::layout::Layout;
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
@@ -41,17 +44,13 @@ pub(super) struct Seen {
     pub seconds: f64,
 }
 
-/// Energies and constraint rows over the rows of a simulation.
+/// Sums and maxima over the rows of a simulation.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Balance {
-    /// energy at the start
-    start: Option<f64>,
-    /// largest change of the energy
-    change: f64,
-    /// largest kinetic or potential energy
-    scale: f64,
     /// largest residual of a constraint row
     worst: f64,
+    /// energies and works of a mechanism that motions alone move
+    pub driven: DrivenFlow,
 }
 
 /// Columns that lack values in some rows.
@@ -106,7 +105,8 @@ impl Session {
     fn hand_over(&mut self, n: usize) {
         self.run.end();
         self.gaps.look(&self.run, n);
-        if let Some(receiver) = &mut self.receiver {
+        // bars of error are found when all rows are there
+        if let Some(receiver) = self.receiver.as_mut().filter(|_| !self.options.accuracy) {
             receiver(&mut self.run);
         }
     }
@@ -184,49 +184,49 @@ impl Session {
         trajectory.release(until);
     }
 
-    /// Watches energies and constraint rows over states.
+    /// Watches constraint rows over states, and energies where motions alone move the mechanism.
     fn weigh(&mut self, balance: &mut Balance, system: &System, rows: &[Vec<f64>]) {
         let n_rows = system.scene.rows.len();
-        if self.account.is_none() {
+        let is_driven = system.scene.mode == KINEMATIC;
+        if n_rows == 0 && !is_driven {
+            return;
+        }
+        if self.row_values.is_none() {
             let program = crate::scene::programs::record(system.configured(), |at| {
-                let [kinetic, potential] = at.energy();
-                let mut out = vec![kinetic, potential];
-                out.extend((0..n_rows).map(|r| at.row(r).value));
+                let mut out: Vec<_> = (0..n_rows).map(|r| at.row(r).value).collect();
+                if is_driven {
+                    let p = at.powers();
+                    out.extend(at.energy());
+                    out.extend([p.stored, p.dissipated, p.functions]);
+                }
                 out
             });
-            self.account = program.ok();
+            self.row_values = program.ok();
         }
-        let Some(program) = &self.account else {
+        let Some(program) = &self.row_values else {
             return;
         };
         let mut work = Work::default();
-        let mut out = vec![0.0; 2 + n_rows];
+        let mut out = vec![0.0; program.n_outputs()];
         for row in rows {
             program.run(row, &mut work, &mut out);
-            let energy = out[0] + out[1];
-            let start = *balance.start.get_or_insert(energy);
-            balance.change = balance.change.max((energy - start).abs());
-            balance.scale = balance.scale.max(out[0].abs()).max(out[1].abs());
-            balance.worst = out[2..].iter().fold(balance.worst, |m, g| m.max(g.abs()));
+            let (values, energies) = out.split_at(n_rows);
+            balance.worst = values.iter().fold(balance.worst, |m, g| m.max(g.abs()));
+            if let &[kinetic, potential, stored, dissipated, functions] = energies {
+                let powers = [stored, dissipated, functions];
+                (balance.driven).see(row[Layout::TIME], [kinetic, potential], powers);
+            }
         }
     }
 
-    /// Notes energy and constraint drift of a simulation.
+    /// Notes the constraint drift of a simulation.
     pub(super) fn note_drift(&mut self, system: &System, balance: &Balance) {
-        if balance.start.is_none() {
+        if system.scene.rows.is_empty() || self.row_values.is_none() {
             return;
         }
-        let scene = &system.scene;
-        let conservative = scene.forces.is_empty() && scene.motions.is_empty();
         let record = &mut self.run.record;
-        if conservative && balance.scale > 0.0 {
-            let drift = balance.change / balance.scale;
-            record.energy_drift = Some(record.energy_drift.unwrap_or(0.0).max(drift));
-        }
-        if !scene.rows.is_empty() {
-            let worst = record.constraint_drift.unwrap_or(0.0).max(balance.worst);
-            record.constraint_drift = Some(worst);
-        }
+        let worst = record.constraint_drift.unwrap_or(0.0).max(balance.worst);
+        record.constraint_drift = Some(worst);
     }
 }
 
@@ -268,6 +268,7 @@ impl Watch for Follower<'_> {
     fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {
         let n = trajectory.rows.len();
         let wait = self.session.receiver.is_none()
+            || self.session.options.accuracy
             || n < ROWS_AT_ONCE && (n < 2 || self.last.elapsed() < LONGEST_WAIT);
         if wait {
             return;

@@ -1,6 +1,8 @@
 //! One simulation: what it is, whether it can be run, and what is told before and after it.
 
+use super::companion::Integrated;
 use super::limit::SetUp;
+use super::phase::Phase;
 use super::start::Kept;
 use super::{Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
 use crate::analysis::start::assemble::Assembly;
@@ -42,6 +44,32 @@ impl Session {
         output: Output,
         watch: &mut dyn Watch,
     ) -> Result<Status, Vec<Diagnostic>> {
+        if !self.options.accuracy {
+            return self.simulate_alone(analysis, end, output, watch);
+        }
+        let begun = self.begin_companion();
+        let status = self.simulate_alone(analysis, end, output, watch)?;
+        let phase = Phase::begin();
+        self.follow(begun, |companion| {
+            companion.simulate_alone(analysis, end, output, watch)
+        });
+        let (own, translation) = phase.elapsed();
+        self.run.record.seconds.accuracy += own + translation;
+        Ok(status)
+    }
+
+    /// Runs one simulation.
+    ///
+    /// # Errors
+    /// Mistakes in the model.
+    fn simulate_alone(
+        &mut self,
+        analysis: Analysis,
+        end: f64,
+        output: Output,
+        watch: &mut dyn Watch,
+    ) -> Result<Status, Vec<Diagnostic>> {
+        self.last = Integrated::default();
         // what is asked for
         self.check_method()?;
         self.check_settings()?;
@@ -53,7 +81,9 @@ impl Session {
         // what is told before it moves
         self.first_facts(&system, &assembly);
         self.warn_of_start(&system, &assembly);
+        let phase = Phase::begin();
         let program = self.columns_program(&system)?;
+        phase.end(&mut self.run.record.seconds, |s| &mut s.record);
         self.within_limit(SetUp::Columns)?;
         if self.carried.is_none() || analysis == Analysis::InitialConditions {
             self.show_start(&system, &assembly, &program);

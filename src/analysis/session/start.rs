@@ -3,6 +3,7 @@
 
 use super::carried::{has_new_unknowns, moved};
 use super::limit::SetUp;
+use super::phase::Phase;
 use super::shells;
 use super::spline_range::{SplineCall, spline_calls};
 use super::state_at_start::Start;
@@ -105,10 +106,13 @@ impl Session {
         if let Some(again) = self.again(mode, inputs) {
             return Ok(again);
         }
-        (self.columns_program, self.account) = (None, None);
+        (self.columns_program, self.row_values) = (None, None);
         self.within_limit(SetUp::Reading)?;
+        let phase = Phase::begin();
         let (scene, moved) = self.compile(mode, inputs)?;
+        phase.end(&mut self.run.record.seconds, |s| &mut s.compile);
         self.within_limit(SetUp::Compiling)?;
+        let phase = Phase::begin();
         let mut start = Start::new(scene, mode, self.time());
         let first = self.carried.is_none();
         let mut assembly = if first {
@@ -127,8 +131,11 @@ impl Session {
                 .warnings
                 .extend(unmet.into_iter().map(Warning::from));
         }
+        phase.end(&mut self.run.record.seconds, |s| &mut s.assemble);
         self.within_limit(SetUp::Velocities)?;
+        let phase = Phase::begin();
         let system = self.system(start, v)?;
+        phase.end(&mut self.run.record.seconds, |s| &mut s.record);
         self.within_limit(SetUp::Recording)?;
         Ok((system, assembly))
     }

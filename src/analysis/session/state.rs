@@ -136,7 +136,7 @@ impl Session {
         let fresh = self.run.rows() == 0 && !same;
         self.model = model;
         self.carried = carried;
-        (self.kept, self.columns_program) = (None, None);
+        (self.kept, self.columns_program, self.companion) = (None, None, None);
         self.halted = false;
         if fresh {
             self.choose_columns();

@@ -14,6 +14,7 @@
 mod algebraic_loops;
 pub mod branches;
 pub mod closures;
+pub(super) mod energy;
 pub mod external_inputs;
 pub mod implicit;
 mod jacobian;
@@ -65,6 +66,8 @@ pub struct System {
     pub(super) recorded: Recorded,
     /// the closures that hooks of the scene refer to
     hooks: Vec<Hook>,
+    /// energy and powers, where they are watched
+    energy: Option<Box<energy::EnergyProgram>>,
     /// instants near which rows were dependent in the present step
     singular_steps: SingularSteps,
     /// the permitted local error: evaluations need not be much better
@@ -109,6 +112,7 @@ impl System {
         Ok(Self {
             recorded,
             hooks: hooks.to_vec(),
+            energy: None,
             singular_steps: SingularSteps::default(),
             precision: 1e-6,
             unsolved: None,
@@ -136,6 +140,9 @@ impl System {
         let before = std::mem::replace(&mut self.recorded, recorded);
         self.recorded.carry_on(before);
         self.configuration = configuration;
+        if self.energy.take().is_some() {
+            self.prepare_energy();
+        }
         Ok(())
     }
 

@@ -4,6 +4,7 @@
 //! with which rows, the next leg begins.
 
 use crate::analysis::system::System;
+use crate::analysis::time::energy;
 use crate::analysis::time::leg::{Finished, Leg, Limits};
 use crate::analysis::time::options::Options;
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
@@ -117,6 +118,7 @@ pub fn integrate(
         timeless(system, outputs, options.max_steps, &mut out);
         return out;
     }
+    energy::begin(&mut out.energy, system, t0, &y);
     let mut outputs = outputs.to_vec();
     let landings = system.landings(t0, end);
     let mut course = Course::new(options);

@@ -12,6 +12,7 @@
 use crate::analysis::system::System;
 use crate::analysis::system::past;
 use crate::analysis::time::counting::Counting;
+use crate::analysis::time::energy::Accountant;
 use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
 use crate::analysis::time::ranks::Sides;
@@ -103,6 +104,11 @@ pub(super) struct Leg<'a> {
     pub(super) peak: Option<Peak>,
     /// how often in a row the step was repeated because of peaks
     pub(super) repeated: usize,
+    accountant: Accountant,
+    /// how far the present step may go
+    limit: f64,
+    /// whether it has to end at an output time
+    lands_for_output: bool,
 }
 
 /// The decision about a step that was taken.
@@ -152,6 +158,9 @@ impl<'a> Leg<'a> {
             changes: 0,
             peak: None,
             repeated: 0,
+            accountant: Accountant::default(),
+            limit: limits.end,
+            lands_for_output: false,
             system,
             watch,
             limits,
@@ -233,6 +242,7 @@ impl<'a> Leg<'a> {
         let landings = self.limits.landings;
         let passed = landings.partition_point(|&l| l <= method.t());
         let limit = landings.get(passed).map_or(limit, |&l| limit.min(l));
+        self.limit = limit;
         if !self.before.is_empty() {
             self.before.copy_from_slice(method.y());
         }
@@ -317,7 +327,7 @@ impl<'a> Leg<'a> {
         // output times at which the method cannot say what the state was
         if let Some(t) = self.unreadable(method, step) {
             method.undo();
-            self.landing = t;
+            (self.landing, self.lands_for_output) = (t, true);
             return Ok(Judged::Undone);
         }
         // contacts of curves that end
@@ -360,10 +370,26 @@ impl<'a> Leg<'a> {
         self.repeated = 0;
         self.system.recorded.peaks.keep();
         self.emit(method, step, anew);
+        self.account(method, step);
         self.out.last_step = Some((step.t1, step.h));
         self.watch.progress(step.t1, step.h, method.stats());
         self.watch.collect(self.system, self.out);
         anew
+    }
+
+    /// Adds an accepted step to the accounts of energy and of what limited steps.
+    fn account(&mut self, method: &mut dyn Method<System>, step: &Step) {
+        let duration = (self.limits.start, self.limits.end);
+        self.accountant
+            .account(&mut self.out.energy, self.system, method, step, duration);
+        if step.t1 >= self.limit && self.limit < self.limits.end {
+            let limited = &mut self.out.limited;
+            match self.lands_for_output {
+                true => limited.outputs += 1,
+                false => limited.events += 1,
+            }
+        }
+        self.lands_for_output = false;
     }
 
     /// Takes the samples that are due; whether a discrete state has changed.
@@ -437,6 +463,7 @@ impl<'a> Leg<'a> {
         stepsize: Option<f64>,
     ) -> Result<(), Finished> {
         self.out.events += 1;
+        self.out.event_times.push(step.t1);
         let mut state = method.y().to_vec();
         self.switches.change(self.system, anew, &mut state);
         if let Some(worst) = self.switches.endless() {

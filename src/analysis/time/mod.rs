@@ -17,6 +17,7 @@ pub mod continuation;
 mod counting;
 pub mod drives;
 pub mod dynamics;
+pub mod energy;
 mod kinematic_sensors;
 pub mod kinematics;
 mod leg;

@@ -101,6 +101,11 @@ pub enum RunWarning {
         /// number of all steps
         steps: usize,
     },
+    /// the run that bars of error come from ended otherwise than the run itself
+    CompanionEnded {
+        /// its request
+        request: f64,
+    },
 }
 
 impl RunWarning {
@@ -121,6 +126,7 @@ impl RunWarning {
             RunWarning::BelowRounding { .. } => "below_rounding",
             RunWarning::StabilityLimited { .. } => "stiff",
             RunWarning::EnergyGrows { .. } => "energy_grows",
+            RunWarning::CompanionEnded { .. } => "accuracy_unknown",
         }
     }
 
@@ -145,7 +151,8 @@ impl RunWarning {
             | RunWarning::Rank(_)
             | RunWarning::Unstable { .. }
             | RunWarning::BelowRounding { .. }
-            | RunWarning::StabilityLimited { .. } => None,
+            | RunWarning::StabilityLimited { .. }
+            | RunWarning::CompanionEnded { .. } => None,
         }
     }
 }
@@ -216,6 +223,11 @@ impl fmt::Display for RunWarning {
                 f,
                 "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} \
                  steps, which are as exact as rounding permits"
+            ),
+            RunWarning::CompanionEnded { request } => write!(
+                f,
+                "a run at an error of {request:.1e} ends otherwise than this one: bars of error hold as \
+                 far as both go"
             ),
             RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, *fed_by, f),
             RunWarning::StabilityLimited { limited, steps } => write!(

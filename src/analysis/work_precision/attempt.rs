@@ -62,7 +62,7 @@ pub(super) fn attempt(
     };
     cost.write = writing(&session.run);
     if record.status == Status::Completed {
-        let repeats = (TIMED / record.solve_seconds.max(1e-9)).ceil();
+        let repeats = (TIMED / record.seconds.solve.max(1e-9)).ceil();
         let repeats = repeats.clamp(1.0, MOST_REPEATS);
         if repeats > 1.0 && seconds.all < 0.1 * limit {
             let (_, again) = once(question, options(1 + repeats as usize), watch)?;
@@ -100,7 +100,7 @@ fn profile_of(session: &mut Session, record: &Record, solve: f64) -> Option<Prof
     let mut counts = Counts::default();
     integrated().for_each(|s| counts += s.counts);
     let seconds: f64 = integrated().map(|s| s.solve_seconds).sum();
-    let share = seconds / record.solve_seconds.max(f64::MIN_POSITIVE);
+    let share = seconds / record.seconds.solve.max(f64::MIN_POSITIVE);
     let system = session.kept_system()?;
     Some(profile::of(system, &counts, share * solve))
 }
@@ -129,7 +129,7 @@ fn once(
     let (used, passed) = (clock.seconds(), passing.elapsed().as_secs_f64());
     let used_part = if passed > 0.0 { used / passed } else { 1.0 };
     let all = used;
-    let passing = record.solve_seconds * used_part;
+    let passing = record.seconds.solve * used_part;
     let solving = record.repeated_seconds.unwrap_or(passing);
     Ok((session, Seconds { all, solving }))
 }

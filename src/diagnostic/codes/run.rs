@@ -180,6 +180,15 @@ The steps so far are as exact as rounding permits. A larger ERROR takes fewer st
     cognate run model.acf --error 1e-10  instead of 1e-15",
     },
     Code {
+        name: "accuracy_unknown",
+        summary: "bars of error hold for a part of the run",
+        explanation: "\
+Bars of error come from the difference to a further run at another request (--accuracy). That run stopped earlier or later, or for another
+reason: the end itself depends on the request. Ask for a smaller ERROR and see which of the two stays.
+
+    cognate run model.acf --accuracy --error 1e-8",
+    },
+    Code {
         name: "energy_grows",
         summary: "the motion grows without bound",
         explanation: "\

@@ -51,7 +51,7 @@ pub use batch::Batch;
 pub(crate) use breaks::{Break, Levels};
 pub use builder::{Builder, Folding};
 pub use input::Input;
-pub use machine::Engine;
+pub use machine::{Engine, translation_time};
 pub use node::Value;
 pub use operation::{BinaryOp, Comparison, UnaryOp};
 pub use record::{Condition, Sym};

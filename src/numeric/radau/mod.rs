@@ -39,6 +39,7 @@ mod collocation;
 mod systems;
 
 use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};
+use super::quadrature::{Node, RADAU_3, over_interpolant};
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 use collocation::{
     ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, SQRT6, Stages,
@@ -680,6 +681,16 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
             *rate = self.polynomial.slope(i, s) / self.control.h;
         }
         Ok(())
+    }
+
+    fn quadrature(
+        &mut self,
+        problem: &mut P,
+        ends: [f64; 2],
+        work: &mut [Vec<f64>; 2],
+        visit: &mut dyn FnMut(&mut P, Node<'_>),
+    ) -> Result<(), Failure> {
+        over_interpolant(self, problem, ends, &RADAU_3, work, visit)
     }
 
     fn propose(&mut self, h: f64) {

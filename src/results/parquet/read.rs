@@ -54,6 +54,7 @@ fn table(bytes: &[u8]) -> Result<Run, ParquetError> {
                 name: column.path().string(),
                 unit: String::new(),
                 values,
+                bar_of: None,
             });
         }
     }

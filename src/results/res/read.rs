@@ -189,6 +189,7 @@ impl Reading {
             name: column,
             unit,
             values: Vec::new(),
+            bar_of: None,
         });
         entity.components.push(Component {
             name,

@@ -9,7 +9,7 @@ use crate::scene::layout::{replace, several};
 use crate::scene::solve::{Factor, MassFactor, Solution, SymmetricFactor, accelerations, products};
 use crate::scene::sweep::{self, LinkState, Wrench};
 use crate::scene::{LinkMotion, Source, programs};
-use crate::space::{Mat3, Vec3};
+use crate::space::Vec3;
 use std::rc::Rc;
 
 impl<S: Scalar> Equations<'_, S> {
@@ -359,23 +359,6 @@ impl<S: Scalar> Equations<'_, S> {
             out[places].copy_from_slice(&rates);
         }
         out
-    }
-
-    /// Kinetic energy, and potential energy in gravity.
-    pub fn energy(&self) -> [S; 2] {
-        let (mut kinetic, mut potential) = (S::zero(), S::zero());
-        for (link, s) in self.scene.links.iter().zip(&self.links) {
-            if link.mass == 0.0 && link.inertia == Mat3::zero() {
-                continue;
-            }
-            let mc = Vec3::constant(link.moment);
-            let momentum = s.v.times(S::constant(link.mass)) + s.w.cross(mc);
-            let spin = Mat3::constant(link.inertia).apply(s.w) + mc.cross(s.v);
-            kinetic += (momentum.dot(s.v) + spin.dot(s.w)).scale(0.5);
-            let weight = s.X_GL.position.times(S::constant(link.mass)) + s.X_GL.rotation.apply(mc);
-            potential -= self.gravity().dot(weight);
-        }
-        [kinetic, potential]
     }
 }
 

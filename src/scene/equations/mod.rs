@@ -12,6 +12,7 @@
 mod algebraic;
 mod cams;
 mod dynamics;
+mod energy;
 mod formulas;
 mod general;
 mod loops;
@@ -24,6 +25,7 @@ mod undetermined_reactions;
 mod unsupported;
 
 pub use dynamics::Solved;
+pub use energy::Powers;
 pub(in crate::scene) use reactions::element_of;
 pub use rows::{RowValue, row_name};
 pub use turns::TurnedAngle;

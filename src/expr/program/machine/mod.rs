@@ -32,8 +32,10 @@ mod steps;
 
 use super::code::Core;
 use native::Native;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
 use steps::{Extra, Steps};
 
 /// Interpreted runs that take as long as the translation of a long program.
@@ -41,6 +43,21 @@ const RUNS_PER_TRANSLATION: usize = 30;
 /// Interpreted steps that take as long as the part of a translation that does not grow with the
 /// program.
 const STEPS_PER_TRANSLATION: usize = 5000;
+
+thread_local! {
+    /// Time that this thread has spent on lowering and translating programs.
+    static TRANSLATION: Cell<Duration> = const { Cell::new(Duration::ZERO) };
+}
+
+/// Returns the time that this thread has spent so far on lowering and translating programs.
+pub fn translation_time() -> Duration {
+    TRANSLATION.get()
+}
+
+/// Adds the time since `clock` to [`translation_time`].
+fn translated_since(clock: Instant) {
+    TRANSLATION.set(TRANSLATION.get() + clock.elapsed());
+}
 
 /// An engine that runs programs over plain numbers. Both give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +135,9 @@ impl Machine {
 
     fn steps(&self) -> &Steps {
         self.steps.get_or_init(|| {
+            let clock = Instant::now();
             let steps = lower::lower(&self.core);
+            translated_since(clock);
             debug_assert!(steps.are_sound(&self.core), "{steps:?}");
             steps
         })
@@ -126,12 +145,15 @@ impl Machine {
 
     /// Translates the steps, once.
     fn translate(&self) {
-        if !self.is_decided.swap(true, Ordering::Relaxed)
-            && let Some(native) = Native::of(self.steps(), &self.core)
-        {
+        if self.is_decided.swap(true, Ordering::Relaxed) {
+            return;
+        }
+        let (steps, clock) = (self.steps(), Instant::now());
+        if let Some(native) = Native::of(steps, &self.core) {
             // nobody else gets so far
             let _ = self.native.set(native);
         }
+        translated_since(clock);
     }
 
     /// Runs as code of the processor, over a frame whose constants are in place; returns the first

@@ -1,0 +1,234 @@
+//! The companion of a session: the same simulations at another request, and the bars of error that
+//! the difference of the two gives.
+
+use super::Session;
+use super::simulate::Span;
+use crate::analysis::accuracy::{
+    Bars, Comparison, LEAST_SIZE, SHORTER_STEPS, TIGHTER_REST, companion_request, partners, safety,
+    shifts,
+};
+use crate::analysis::trajectory::Trajectory;
+use crate::analysis::warning::RunWarning;
+use crate::diagnostic::Diagnostic;
+use crate::results::{ChannelAccuracy, Run, Status};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Share of steps that end at events from which on these, not the request, set the steps.
+const SHARE_OF_EVENTS: f64 = 0.3;
+
+/// The pace of a companion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    /// factor of steps that are given
+    pub steps: f64,
+    /// longest step, in s
+    longest: f64,
+    /// factor of the tolerances of equilibria
+    pub rest: f64,
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Pace {
+            steps: 1.0,
+            longest: f64::INFINITY,
+            rest: 1.0,
+        }
+    }
+}
+
+impl Pace {
+    /// Returns the longest step where that of the model is given.
+    pub(super) fn longest_step(&self, given: f64) -> f64 {
+        (given * self.steps).min(self.longest)
+    }
+}
+
+/// The facts about a simulation over time that its companion is compared with.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Integrated {
+    /// names of the methods that worked
+    methods: Vec<String>,
+    /// request
+    error: Option<f64>,
+    /// times of events, in s
+    events: Vec<f64>,
+    /// mean step, in s, where events set the steps
+    step_between_events: Option<f64>,
+}
+
+impl Integrated {
+    /// Takes them from a trajectory.
+    pub(super) fn of(trajectory: &Trajectory, error: f64, span: Span) -> Self {
+        let steps = trajectory.stats.steps as f64;
+        let duration = trajectory.t.last().map_or(0.0, |t| t - span.start);
+        let at_events = trajectory.limited.events as f64 > SHARE_OF_EVENTS * steps;
+        Integrated {
+            methods: trajectory.methods.iter().map(|m| m.1.clone()).collect(),
+            error: Some(error),
+            events: trajectory.event_times.clone(),
+            step_between_events: (at_events && steps > 0.0).then(|| duration / steps),
+        }
+    }
+}
+
+/// Numbers of sequences of both runs before a simulation.
+pub(super) struct Begun {
+    own: usize,
+    companion: usize,
+}
+
+impl Session {
+    /// Brings the companion to where the session is, before both simulate.
+    pub(super) fn begin_companion(&mut self) -> Begun {
+        let mut companion = self.companion.take().unwrap_or_else(|| {
+            let mut options = self.options.clone();
+            (options.accuracy, options.repeat) = (false, 1);
+            let mut companion = Session::new(self.model.clone(), &self.run.name, options);
+            companion.hooks.clone_from(&self.hooks);
+            companion.carried.clone_from(&self.carried);
+            companion.folders.clone_from(&self.folders);
+            companion.limit = self.limit;
+            if !companion.hooks.is_empty() && companion.carried.is_none() {
+                companion.choose_columns();
+            }
+            Box::new(companion)
+        });
+        companion.model.clone_from(&self.model);
+        companion.changing.clone_from(&self.changing);
+        let begun = Begun {
+            own: self.run.sequences.len(),
+            companion: companion.run.sequences.len(),
+        };
+        self.companion = Some(companion);
+        begun
+    }
+
+    /// Runs the companion after the session, and compares.
+    pub(super) fn follow(
+        &mut self,
+        begun: Begun,
+        simulate: impl FnOnce(&mut Session) -> Result<Status, Vec<Diagnostic>>,
+    ) {
+        let Some(mut companion) = self.companion.take() else {
+            return;
+        };
+        let asked = self.last.error.unwrap_or_else(|| self.integration().error);
+        let request = companion_request(asked, &self.last.methods);
+        companion.options.error = Some(request);
+        companion.pace = Pace {
+            steps: SHORTER_STEPS,
+            longest: (self.last.step_between_events).map_or(f64::INFINITY, |h| SHORTER_STEPS * h),
+            rest: TIGHTER_REST,
+        };
+        let outcome = simulate(&mut companion);
+        let follows = outcome == Ok(self.run.record.status);
+        if !follows {
+            self.warn(RunWarning::CompanionEnded { request });
+        }
+        if self.run.record.accuracy.is_none() {
+            self.run.add_bars();
+        }
+        let accuracy = self.run.record.accuracy.get_or_insert_default();
+        if self.last.error.is_some() {
+            accuracy.companions.push(request);
+        }
+        let largest = largest_of_units(&self.run);
+        let own = begun.own..self.run.sequences.len();
+        for (own, other) in own.zip(begun.companion..) {
+            let rows = self.run.sequences[own].rows.clone();
+            let others = companion.run.sequences.get(other);
+            let others = others.map_or(0..0, |s| s.rows.clone());
+            self.compare(&companion, rows, others, &largest);
+        }
+        // one that ended otherwise would begin the next simulation elsewhere
+        self.companion = follows.then_some(companion);
+    }
+
+    /// Fills in the bars of the rows of a sequence.
+    fn compare(
+        &mut self,
+        companion: &Session,
+        rows: Range<usize>,
+        others: Range<usize>,
+        largest: &BTreeMap<String, f64>,
+    ) {
+        let values = |run: &Run, column: usize, rows: &Range<usize>| -> Vec<f64> {
+            let column = run.columns.get(column).map(|c| c.values.get(rows.clone()));
+            column.flatten().unwrap_or_default().to_vec()
+        };
+        let times = values(&self.run, 0, &rows);
+        let partners = partners(&times, &values(&companion.run, 0, &others));
+        let shifts = shifts(&self.last.events, &companion.last.events);
+        let comparison = Comparison {
+            safety: safety(&self.last.methods),
+            times: &times,
+            partners: &partners,
+            shifts: &shifts,
+        };
+        for bar in 0..self.run.columns.len() {
+            let Some(of) = self.run.columns[bar].bar_of else {
+                continue;
+            };
+            let own = values(&self.run, of, &rows);
+            let other = values(&companion.run, of, &others);
+            let unit = self.run.columns[of].unit.as_str();
+            let found = comparison.bars(&own, &other, largest.get(unit).copied().unwrap_or(0.0));
+            let least = LEAST_SIZE * largest.get(unit).copied().unwrap_or(0.0);
+            let column = &mut self.run.columns[bar];
+            if let Some(place) = column.values.get_mut(rows.clone()) {
+                place.copy_from_slice(&found.bars);
+            }
+            self.note_channel((of, least), &own, found);
+        }
+    }
+
+    /// Notes the largest bar of a channel, and when it is lost, if tables show it; relative to the
+    /// largest value of the channel, or to `least` if that is more.
+    fn note_channel(&mut self, (of, least): (usize, f64), values: &[f64], found: Bars) {
+        let largest = |of: &[f64]| of.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let Bars { bars, lost_from } = found;
+        let (bar, value) = (largest(&bars), largest(values));
+        let record = &mut self.run.record;
+        if !self.run.table.contains(&of) || bars.iter().all(|b| b.is_nan()) {
+            return;
+        }
+        let accuracy = record.accuracy.get_or_insert_default();
+        let column = &self.run.columns[of];
+        let found = accuracy
+            .channels
+            .iter()
+            .position(|c| c.channel == column.name);
+        let k = found.unwrap_or_else(|| {
+            accuracy.channels.push(ChannelAccuracy {
+                channel: column.name.clone(),
+                unit: column.unit.clone(),
+                largest_bar: 0.0,
+                relative: 0.0,
+                lost_from: None,
+            });
+            accuracy.channels.len() - 1
+        });
+        let channel = &mut accuracy.channels[k];
+        channel.largest_bar = channel.largest_bar.max(bar);
+        let all = largest(&column.values).max(value).max(least);
+        channel.relative = if all > 0.0 {
+            channel.largest_bar / all
+        } else {
+            0.0
+        };
+        channel.lost_from = channel.lost_from.or(lost_from);
+    }
+}
+
+/// Returns the largest value of all channels of each unit.
+fn largest_of_units(run: &Run) -> BTreeMap<String, f64> {
+    let mut largest = BTreeMap::new();
+    for column in run.columns.iter().skip(1).filter(|c| c.bar_of.is_none()) {
+        let most: &mut f64 = largest.entry(column.unit.clone()).or_default();
+        let finite = column.values.iter().filter(|x| x.is_finite());
+        *most = finite.fold(*most, |m, x| m.max(x.abs()));
+    }
+    largest
+}

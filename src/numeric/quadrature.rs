@@ -1,0 +1,83 @@
+//! Quadrature over an accepted step: integrals along a motion, with nodes of the method.
+
+use super::{Failure, Method};
+
+/// A node of a quadrature over a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<'a> {
+    /// weight, in s: those of a step add up to its length
+    pub weight: f64,
+    /// time, in s
+    pub t: f64,
+    /// solution   (n)
+    pub y: &'a [f64],
+    /// its rate   (n)
+    pub ydot: &'a [f64],
+}
+
+/// Abscissa and weight of each node of a rule over [0, 1].
+pub type Rule = [(f64, f64)];
+
+/// Gauss, exact to degree 5.
+pub const GAUSS_3: [(f64, f64); 3] = [
+    (0.1127016653792583, 5.0 / 18.0),
+    (0.5, 4.0 / 9.0),
+    (0.8872983346207417, 5.0 / 18.0),
+];
+
+/// Gauss, exact to degree 7.
+pub const GAUSS_4: [(f64, f64); 4] = [
+    (0.06943184420297371, 0.17392742256872692),
+    (0.33000947820757187, 0.3260725774312731),
+    (0.6699905217924281, 0.3260725774312731),
+    (0.9305681557970262, 0.17392742256872692),
+];
+
+/// Radau IIA, exact to degree 4: where that method is as good at its nodes as at the end.
+pub const RADAU_3: [(f64, f64); 3] = [
+    (0.1550510257216822, 0.376403062700467),
+    (0.644948974278318, 0.512485826188422),
+    (1.0, 1.0 / 9.0),
+];
+
+/// Visits the nodes of a rule on the interpolant of the last accepted step, which has these `ends`.
+///
+/// # Errors
+/// When a further evaluation that the interpolant needs fails.
+pub fn over_interpolant<P: ?Sized, M: Method<P> + ?Sized>(
+    method: &mut M,
+    problem: &mut P,
+    [t0, t1]: [f64; 2],
+    rule: &Rule,
+    work: &mut [Vec<f64>; 2],
+    visit: &mut dyn FnMut(&mut P, Node<'_>),
+) -> Result<(), Failure> {
+    let n = method.y().len();
+    let [y, ydot] = work;
+    y.resize(n, 0.0);
+    ydot.resize(n, 0.0);
+    for &(place, weight) in rule {
+        let t = t0 + place * (t1 - t0);
+        method.interpolate(problem, t, y)?;
+        method.interpolate_rate(problem, t, ydot)?;
+        let weight = weight * (t1 - t0);
+        visit(problem, Node { weight, t, y, ydot });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_are_exact_to_their_degrees() {
+        let rules: [(&Rule, i32); 3] = [(&GAUSS_3, 5), (&GAUSS_4, 7), (&RADAU_3, 4)];
+        for (rule, degree) in rules {
+            for power in 0..=degree {
+                let sum: f64 = rule.iter().map(|(x, w)| w * x.powi(power)).sum();
+                assert!((sum - 1.0 / f64::from(power + 1)).abs() < 1e-14, "{power}");
+            }
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The account of energy closes: what is put in is stored, moves, or is lost, by every method that keeps the request.
+
+use crate::running;
+
+use cognate::results::Energy;
+use running::{Analysis, go, session_by};
+
+const METHODS: [&str; 3] = ["DOP853", "RADAU5", "BDF"];
+
+/// The account of a dynamic run.
+fn account(text: &str, method: &str, (end, steps): (f64, usize), error: f64) -> Energy {
+    let mut s = session_by(text, &[], method, error);
+    go(&mut s, Analysis::Dynamic, end, steps);
+    let energy = s.run.record.energy;
+    println!("{method}: {energy:?}");
+    energy
+}
+
+/// The balance of the account at the end, written out by its definition.
+fn balance(e: &Energy) -> f64 {
+    let change = e.kinetic[1] - e.kinetic[0] + e.potential[1] - e.potential[0];
+    change + e.stored + e.dissipated - e.by_motions - e.by_functions
+}
+
+fn closes(e: &Energy, tolerance: f64) {
+    assert!(e.scale > 0.0);
+    assert!(e.error() < tolerance, "{e:?}");
+    assert!(balance(e).abs() <= e.imbalance + 1e-12 * e.scale, "{e:?}");
+}
+
+fn near(a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() < tolerance, "{a} instead of {b}");
+}
+
+/// A mass of 2 at x = 0.5 on a spring (k = 50) and damper along x to the origin, and what else acts.
+fn mass_on_a_spring(damping: f64, more: &str) -> String {
+    format!(
+        "PART/2, MASS=2, CM=2, IP=1,1,1, QG=1.5,0,0\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=3, J=4\n\
+         MARKER/3, PART=2, REULER=90D,90D,0\nMARKER/4, PART=1, REULER=90D,90D,0\n\
+         SPRINGDAMPER/1, TRANSLATION, I=2, J=1, K=50, C={damping:?}, LENGTH=1\n{more}"
+    )
+}
+
+#[test]
+fn without_damping_the_spring_gives_back_what_it_took() {
+    for method in METHODS {
+        // half a period: k = 50, m = 2
+        let e = account(
+            &mass_on_a_spring(0.0, ""),
+            method,
+            (0.5 * std::f64::consts::PI / 5.0, 7),
+            1e-9,
+        );
+        closes(&e, 1e-7);
+        near(e.kinetic[1], 0.5 * 50.0 * 0.25, 1e-6);
+        near(e.stored, -0.5 * 50.0 * 0.25, 1e-6);
+        near(e.dissipated + e.by_functions + e.by_motions, 0.0, 1e-12);
+    }
+}
+
+#[test]
+fn a_damper_dissipates_all_of_it_in_the_end() {
+    for method in METHODS {
+        let e = account(&mass_on_a_spring(8.0, ""), method, (20.0, 3), 1e-9);
+        closes(&e, 1e-6);
+        near(e.dissipated, 0.5 * 50.0 * 0.25, 1e-5);
+        near(e.kinetic[1], 0.0, 1e-8);
+    }
+}
+
+#[test]
+fn a_force_in_time_puts_in_its_work() {
+    // v = 3 t²/2 … on m = 2: F = 6 t, T = ½ 2 (1.5 t²)² at t = 2
+    let text = "PART/2, MASS=2, CM=2, IP=1,1,1\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/4, PART=1, REULER=90D,90D,0\n\
+         JOINT/1, TRANSLATIONAL, I=2, J=4\nSFORCE/1, TRANSLATION, I=2, J=4, ACTIONONLY, FUNCTION=6*TIME\n";
+    for method in METHODS {
+        let e = account(text, method, (2.0, 1), 1e-9);
+        closes(&e, 1e-7);
+        near(e.by_functions, 36.0, 1e-5);
+    }
+}
+
+#[test]
+fn a_motion_puts_in_what_its_mechanism_takes() {
+    // a driven crank with a pendulum on its end
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2, QP=0.5,0,0\nMARKER/3, PART=2\nMARKER/5, PART=2, QP=1,0,0\n\
+         PART/3, MASS=2, CM=6, IP=1,1,1\nMARKER/6, PART=3, QP=1,-1,0\nMARKER/7, PART=3, QP=1,0,0\n\
+         JOINT/1, REVOLUTE, I=3, J=1\nJOINT/2, REVOLUTE, I=7, J=5\nMOTION/1, JOINT=1, ROTATION, FUNCTION=3*TIME**2\n\
+         ACCGRAV/JGRAV=-9.81\n";
+    for method in METHODS {
+        let e = account(text, method, (2.0, 5), 1e-9);
+        closes(&e, 2e-6);
+        assert!(e.by_motions.abs() > 1.0, "{e:?}");
+        near(e.stored + e.dissipated + e.by_functions, 0.0, 1e-12);
+    }
+}
+
+#[test]
+fn a_contact_stores_and_dissipates_however_few_outputs_there_are() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1, QG=0,0,0.3\nMARKER/2, PART=2\nGRAPHICS/1, PLANE, RM=1\n\
+         GRAPHICS/2, ELLIPSOID, CM=2, XSCALE=0.2, YSCALE=0.2, ZSCALE=0.2\nACCGRAV/KGRAV=-9.81\n\
+         CONTACT/1, IGEOM=2, JGEOM=1, IMPACT, STIFFNESS=1E5, EXPONENT=1.5, DAMPING=50, DMAX=1E-3\n";
+    for method in ["AUTO", "DOP853", "RADAU5"] {
+        let e = account(text, method, (2.0, 3), 1e-8);
+        closes(&e, 1e-5);
+        assert!(e.dissipated > 0.1, "{e:?}");
+        near(e.by_functions, 0.0, 1e-12);
+    }
+}
+
+#[test]
+fn friction_in_a_joint_takes_the_energy_of_a_block() {
+    let text = "PART/2, MASS=2, CM=3, IP=1,1,1, VX=3\nMARKER/2, PART=2, REULER=90D,90D,0\nMARKER/3, PART=2\n\
+         MARKER/4, PART=1, REULER=90D,90D,0\nJOINT/1, TRANSLATIONAL, I=2, J=4\nACCGRAV/KGRAV=-9.81\n\
+         FRICTION/1, JOINT=1, MU_STATIC=0.3, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=0.01\n";
+    let e = account(text, "AUTO", (0.5, 2), 1e-8);
+    closes(&e, 1e-6);
+    let v = 3.0 - 0.2 * 9.81 * 0.5;
+    near(e.dissipated, 9.0 - v * v, 1e-5);
+}
+
+#[test]
+fn a_driven_mechanism_without_freedom_has_an_account_too() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2, QP=0.5,0,0\nMARKER/3, PART=2\n\
+         JOINT/1, REVOLUTE, I=3, J=1\nMOTION/1, JOINT=1, ROTATION, FUNCTION=3*TIME**2\n\
+         SPRINGDAMPER/1, ROTATION, I=3, J=1, KT=0, CT=2\n";
+    let mut s = running::session(text, &[], 1e-6);
+    go(&mut s, Analysis::Kinematic, 2.0, 2000);
+    let e = s.run.record.energy;
+    // ω = 6 t: ½ J ω², and ∫ 2 ω² dt
+    near(e.kinetic[1], 0.5 * 1.25 * 144.0, 1e-9);
+    near(e.dissipated, 2.0 * 36.0 * 8.0 / 3.0, 1e-3);
+    near(balance(&e), 0.0, 1e-9 * e.scale);
+}
