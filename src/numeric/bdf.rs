@@ -27,12 +27,16 @@
 //! (program DASSL); Hindmarsh et al., ACM TOMS 31 (2005) (program IDA).
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
-use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};
+use super::control::{
+    self, Attempts, Permitted, Rejection, Stagnation, Weights, worst, worst_index,
+};
 use super::corrector::{Corrector, Iterate};
 use super::{Dae, Failure, Method, Options, Reason, Stats, Step, Stop};
 
 /// Highest order that is stable enough.
 const MAX_ORDER: usize = 5;
+/// Smallest error permitted in a step: beside it the rounding of differences counts for nothing.
+const LEAST_TOLERANCE: f64 = 2e-13;
 
 /// Backward differentiation; see the file's card.
 #[derive(Clone, Debug)]
@@ -43,7 +47,7 @@ pub struct Bdf {
     /// highest order permitted
     max_order: usize,
     /// permitted error of a step
-    tolerance: f64,
+    permitted: Permitted,
     /// the past after the last step
     past: Past,
     /// the past before the last step, for undo
@@ -132,6 +136,15 @@ struct Errors {
     estimate: f64,
 }
 
+/// The end of an attempt that is not acceptable.
+struct Failed {
+    rejection: Rejection,
+    /// the order for the next attempt, after a failed error test
+    order: Option<usize>,
+    /// an error that may be rounding, as a part of that permitted
+    rounding: Option<f64>,
+}
+
 impl Bdf {
     /// Prepares the method for `n` unknowns.
     pub fn new(n: usize, options: &Options) -> Self {
@@ -152,7 +165,7 @@ impl Bdf {
         };
         Bdf {
             options: options.clone(),
-            tolerance: inner_tolerance(weights.tolerance()),
+            permitted: Permitted::new(inner_tolerance(weights.tolerance()), LEAST_TOLERANCE),
             weights,
             stats: Stats::default(),
             max_order: options.max_order.clamp(1, MAX_ORDER),
@@ -192,7 +205,7 @@ impl Bdf {
         let speed = worst((0..y.len()).map(|i| {
             self.controlled[i] * self.next.ydot[i] / self.next.y[i].abs().max(typical[i])
         }));
-        let guess = self.tolerance.sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
+        let guess = self.permitted.now().sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
         let h = self
             .options
             .h_initial
@@ -269,10 +282,12 @@ impl Bdf {
                 *ydot += gamma * phi;
             }
         }
+        let tolerance = self.permitted.now();
+        self.next.is_eased = self.permitted.is_raised();
         let Iterate { y, scale, .. } = &mut self.next;
         for (i, scale) in scale.iter_mut().enumerate() {
             let (m, y) = (self.weights.magnitude()[i], y[i].abs());
-            *scale = 1.0 / (self.tolerance * if y > m { y } else { m });
+            *scale = 1.0 / (tolerance * if y > m { y } else { m });
         }
     }
 
@@ -399,14 +414,13 @@ impl Bdf {
     /// Attempts a step of length `h` to `t1`; returns the errors of an acceptable one.
     ///
     /// # Errors
-    /// The rejection and, after a failed error test, the order for the next attempt; the past is
-    /// restored.
+    /// The reason why it is not; the past is restored.
     fn attempt<P: Dae + ?Sized>(
         &mut self,
         problem: &mut P,
-        h: f64,
-        t1: f64,
-    ) -> Result<Errors, (Rejection, Option<usize>)> {
+        (h, t1): (f64, f64),
+        stagnation: &mut Stagnation,
+    ) -> Result<Errors, Failed> {
         let (cj, c) = self.set_coefficients(h);
         self.predict();
         let corrected = self
@@ -419,7 +433,11 @@ impl Bdf {
                 recoverable: trouble.recoverable,
                 factor: 0.25,
             };
-            return Err((rejection, None));
+            return Err(Failed {
+                rejection,
+                order: None,
+                rounding: trouble.stagnant,
+            });
         }
         let errors = self.errors(c);
         if errors.step <= 1.0 {
@@ -445,7 +463,13 @@ impl Bdf {
             recoverable: true,
             factor,
         };
-        Err((rejection, Some(errors.k_new)))
+        // errors of several orders cannot be compared
+        let stagnates = self.past.k == 1 && stagnation.see(h, errors.step);
+        Err(Failed {
+            rejection,
+            order: Some(errors.k_new),
+            rounding: stagnates.then_some(errors.step),
+        })
     }
 
     /// Calls `term(j, value, slope)` for the factor of each φⱼ in the interpolant at `t`.
@@ -471,7 +495,7 @@ impl Bdf {
 /// than the request. Measured over pendulum, van der Pol, Robertson, HIRES and the stabilized
 /// index-2 pendulum, requests 1e-3 … 1e-10: the error at the end is 0.01 to 25 times the request.
 fn inner_tolerance(request: f64) -> f64 {
-    (0.05 * request.powf(1.1)).max(2e-13)
+    0.05 * request.powf(1.1)
 }
 
 impl<P: Dae + ?Sized> Method<P> for Bdf {
@@ -494,6 +518,7 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
         self.before.copy_from(&self.past);
         let mut attempts = Attempts::new(t0, t_limit, &self.options);
         let mut failed_tests = 0;
+        let mut stagnation = Stagnation::default();
         loop {
             let proposed = self.past.h.min(self.options.h_max);
             let too_fast = || control::too_fast(&self.past.ydot, &self.weights);
@@ -501,7 +526,7 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
             if self.past.steps == 0 {
                 self.past.set_first_step(h);
             }
-            match self.attempt(problem, h, t1) {
+            match self.attempt(problem, (h, t1), &mut stagnation) {
                 Ok(errors) => {
                     let order = self.past.k;
                     self.complete(t1, h, &errors);
@@ -510,14 +535,23 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                         self.past.h = self.past.h.max(proposed);
                     }
                     self.weights.see(t1, &self.next.y);
+                    self.stats.below_rounding += usize::from(self.permitted.accepted());
                     (self.t0, self.can_undo) = (t0, true);
                     return Ok(attempts.accepted(h, t1, order, &mut self.stats));
                 }
-                Err((rejection, order)) => {
-                    attempts.reject(rejection, h, &mut self.stats)?;
+                Err(failed)
+                    if failed
+                        .rounding
+                        .is_some_and(|size| self.permitted.raise(size)) =>
+                {
+                    attempts.repeat(&mut self.stats);
+                    stagnation = Stagnation::default();
+                }
+                Err(failed) => {
+                    attempts.reject(failed.rejection, h, &mut self.stats)?;
                     self.past.rising = false;
-                    let mut factor = rejection.factor;
-                    if let Some(k) = order {
+                    let mut factor = failed.rejection.factor;
+                    if let Some(k) = failed.order {
                         failed_tests += 1;
                         (self.past.k, factor) = match failed_tests {
                             1 => (k, factor),

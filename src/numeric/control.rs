@@ -29,6 +29,8 @@ const SMALLEST_TOLERANCE: f64 = 1e-14;
 pub struct Weights {
     /// E
     tolerance: f64,
+    /// whether a smaller one was asked for
+    raised: bool,
     /// φ
     floor: f64,
     /// typical magnitudes that the problem gave   (n)
@@ -121,6 +123,7 @@ impl Weights {
         let tolerance = options.tolerance.max(SMALLEST_TOLERANCE);
         Weights {
             tolerance,
+            raised: options.tolerance < SMALLEST_TOLERANCE,
             floor: options.floor,
             typical: vec![1.0; n],
             magnitude: vec![options.floor; n],
@@ -212,6 +215,11 @@ impl Weights {
         self.tolerance
     }
 
+    /// Returns whether a smaller error was asked for than double precision can control.
+    pub fn is_raised(&self) -> bool {
+        self.raised
+    }
+
     /// Returns `‖e‖` of a step that ends at `y`.
     pub fn norm(&self, e: &[f64], y: &[f64]) -> f64 {
         worst(self.relative(e, y)) / self.tolerance
@@ -224,6 +232,91 @@ impl Weights {
             .zip(y)
             .zip(magnitudes)
             .map(|((e, y), (m, most))| e / y.abs().min(*most).max(*m))
+    }
+}
+
+/// Error above which nothing that grows no smaller is taken for rounding, relative to magnitudes.
+const MOST_ROUNDING: f64 = 1e-8;
+/// Permitted error where rounding is felt, over that rounding: then it disturbs neither Newton's
+/// iteration nor the error test.
+const ABOVE_ROUNDING: f64 = 20.0;
+/// Factor of a permitted error that was raised with each further step.
+const FALLING_BACK: f64 = 0.8;
+
+/// The permitted error of a step, raised while rounding lets no smaller one be met.
+#[derive(Clone, Copy, Debug)]
+pub struct Permitted {
+    /// the one that the request asks for, as far as double precision goes
+    wanted: f64,
+    /// the one that holds now
+    now: f64,
+    /// whether the request asks for a smaller one
+    in_vain: bool,
+}
+
+impl Permitted {
+    /// Creates a permitted error for the one that a request asks for; `least`: the smallest that
+    /// the method can meet.
+    pub fn new(asked: f64, least: f64) -> Self {
+        let wanted = asked.max(least);
+        Permitted {
+            wanted,
+            now: wanted,
+            in_vain: asked < least,
+        }
+    }
+
+    /// Returns the permitted error that holds now.
+    pub fn now(&self) -> f64 {
+        self.now
+    }
+
+    /// Returns whether it is raised above rounding.
+    pub fn is_raised(&self) -> bool {
+        self.now > self.wanted
+    }
+
+    /// Returns whether an error, as a part of the permitted one, may be rounding.
+    pub fn may_be_rounding(&self, size: f64) -> bool {
+        size * self.now <= MOST_ROUNDING
+    }
+
+    /// Raises the permitted error above one that grows no smaller, as a part of the permitted one;
+    /// returns false where that is no rounding.
+    pub fn raise(&mut self, size: f64) -> bool {
+        let may = self.may_be_rounding(size);
+        if may {
+            self.now *= (ABOVE_ROUNDING * size).max(2.0);
+        }
+        may
+    }
+
+    /// Takes note of an accepted step; returns whether its request was below rounding.
+    pub fn accepted(&mut self) -> bool {
+        let in_vain = self.in_vain || self.is_raised();
+        self.now = (FALLING_BACK * self.now).max(self.wanted);
+        in_vain
+    }
+}
+
+/// Shortening of a step, over its first length, after which an error of truncation is far smaller.
+const MUCH_SHORTER: f64 = 1.0 / 16.0;
+/// Size of an error that has not become smaller, over the first.
+const AS_LARGE: f64 = 0.5;
+
+/// Errors of the attempts at one step: those of truncation fall as it is shortened.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stagnation {
+    /// length and error of the first attempt whose error was too large
+    first: Option<(f64, f64)>,
+}
+
+impl Stagnation {
+    /// Takes note of an attempt of length `h` whose error, as a part of the permitted one, was too
+    /// large; returns whether a much shorter step has not made it smaller.
+    pub fn see(&mut self, h: f64, error: f64) -> bool {
+        let (h0, first) = *self.first.get_or_insert((h, error));
+        h <= MUCH_SHORTER * h0 && error >= AS_LARGE * first
     }
 }
 

@@ -75,6 +75,8 @@ pub struct Iterate {
     pub e: Vec<f64>,
     /// 1/(error permitted in a step)   (n)
     pub scale: Vec<f64>,
+    /// whether that error was raised above rounding: corrections no larger need not fall
+    pub is_eased: bool,
     /// predicted solution and rate, kept for a second iteration   (n each)
     predicted: [Vec<f64>; 2],
 }
@@ -88,6 +90,7 @@ impl Iterate {
             ydot: zeros(),
             e: zeros(),
             scale: zeros(),
+            is_eased: false,
             predicted: [zeros(), zeros()],
         }
     }
@@ -112,6 +115,8 @@ pub struct Trouble {
     pub reason: Reason,
     /// whether a shorter step may help
     pub recoverable: bool,
+    /// the size of corrections that grow no smaller, as a part of the permitted error
+    pub stagnant: Option<f64>,
 }
 
 impl Trouble {
@@ -120,13 +125,16 @@ impl Trouble {
         Trouble {
             reason: Reason::Evaluation(failure),
             recoverable: failure.recoverable,
+            stagnant: None,
         }
     }
+
     /// Trouble that a shorter step may remove.
     fn may_pass(reason: Reason) -> Self {
         Trouble {
             reason,
             recoverable: true,
+            stagnant: None,
         }
     }
 }
@@ -245,6 +253,11 @@ impl Corrector {
             match self.iterate(problem, (t, cj), at, stats) {
                 Ok(()) => return Ok(()),
                 Err(trouble) if fresh || !trouble.recoverable => {
+                    // a permitted error that was raised above rounding
+                    let small = |size| size <= PERMITTED_REST && at.is_eased;
+                    if trouble.stagnant.is_some_and(small) {
+                        return Ok(());
+                    }
                     if fresh {
                         self.forget();
                     }
@@ -275,7 +288,7 @@ impl Corrector {
         } else {
             2.0 / (1.0 + cj / self.cj)
         };
-        let (mut first, mut worst_row) = (0.0, 0);
+        let (mut first, mut worst_row, mut stagnant) = (0.0, 0, None);
         for iteration in 0..self.allowed {
             // residual and correction
             stats.evaluations += 1;
@@ -311,6 +324,7 @@ impl Corrector {
             } else {
                 let rate = (size / first).powf(1.0 / iteration as f64);
                 if rate > SLOWEST_RATE {
+                    stagnant = Some(size);
                     break;
                 }
                 factor = rate / (1.0 - rate);
@@ -320,7 +334,10 @@ impl Corrector {
                 return Ok(());
             }
         }
-        Err(Trouble::may_pass(Reason::Newton(worst_row)))
+        Err(Trouble {
+            stagnant,
+            ..Trouble::may_pass(Reason::Newton(worst_row))
+        })
     }
 
     /// Adds the correction to the unknowns; returns its size, or `None` if it is not finite.

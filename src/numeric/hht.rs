@@ -28,7 +28,9 @@
 //! first-order systems; Arnold & Brüls, Multibody System Dynamics 18 (2007).
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
-use super::control::{self, Attempts, Pi, Rejection, Weights, worst, worst_index};
+use super::control::{
+    self, Attempts, Permitted, Pi, Rejection, Stagnation, Weights, worst, worst_index,
+};
 use super::corrector::{Corrector, Iterate};
 use super::{Dae, Failure, Kind, Method, Options, Reason, Stats, Step, Stop};
 
@@ -36,6 +38,8 @@ use super::{Dae, Failure, Kind, Method, Options, Reason, Stats, Step, Stop};
 const ORDER: usize = 2;
 /// ρ of (4) for HHT, which is its usual α = −0.3.
 const HHT_RHO: f64 = 0.7 / 1.3;
+/// Smallest error permitted in a step: beside it the rounding of a prediction counts for nothing.
+const LEAST_TOLERANCE: f64 = 5e-15;
 /// Growth of the step, as a factor, below which it stays as it is, for the sake of the matrix.
 const KEEP_STEP: f64 = 1.25;
 
@@ -47,7 +51,7 @@ pub struct Hht {
     control: Pi,
     stats: Stats,
     /// permitted error of a step
-    tolerance: f64,
+    permitted: Permitted,
     /// αf of (4)
     alpha_f: f64,
     /// αm of (4)
@@ -135,7 +139,7 @@ impl Hht {
         };
         Hht {
             options: options.clone(),
-            tolerance: inner_tolerance(weights.tolerance()),
+            permitted: Permitted::new(inner_tolerance(weights.tolerance()), LEAST_TOLERANCE),
             weights,
             control: Pi::new(3.0, 0.0, 0.9, 0.2, 4.0),
             stats: Stats::default(),
@@ -178,7 +182,7 @@ impl Hht {
         let speed = worst(
             (0..y.len()).map(|i| self.controlled[i] * now.ydot[i] / now.y[i].abs().max(typical[i])),
         );
-        let guess = self.tolerance.sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
+        let guess = self.permitted.now().sqrt() * if speed > 1e-8 { 0.1 / speed } else { 1e-3 };
         (now.t, now.h_used) = (t, 0.0);
         now.h = self
             .options
@@ -189,12 +193,15 @@ impl Hht {
     }
 
     /// Attempts a step of length `h` to `t1`; returns its error, as a part of that permitted.
+    ///
+    /// # Errors
+    /// The rejection, and an error that may be rounding, as a part of that permitted.
     fn attempt<P: Dae + ?Sized>(
         &mut self,
         problem: &mut P,
-        h: f64,
-        t1: f64,
-    ) -> Result<f64, Rejection> {
+        (h, t1): (f64, f64),
+        stagnation: &mut Stagnation,
+    ) -> Result<f64, (Rejection, Option<f64>)> {
         let now = &self.now;
         let (af, am, gamma) = (self.alpha_f, self.alpha_m, self.gamma);
         let moved = if now.h_used > 0.0 {
@@ -209,6 +216,8 @@ impl Hht {
         };
         // ẏ = cj (y − yₙ) + …, from (2) and (3)
         let cj = (1.0 - am) / ((1.0 - af) * gamma * h);
+        let tolerance = self.permitted.now();
+        self.next.is_eased = self.permitted.is_raised();
         for i in 0..self.next.y.len() {
             let a = now.ydot[i] + (now.a[i] - now.ydot[i]) * moved;
             let rise = self.differential[i]
@@ -217,14 +226,17 @@ impl Hht {
             self.next.ydot[i] =
                 cj * (rise - h * (1.0 - gamma) * a) + (am * a - af * now.ydot[i]) / (1.0 - af);
             let (m, y) = (self.weights.magnitude()[i], self.next.y[i].abs());
-            self.next.scale[i] = 1.0 / (self.tolerance * if y > m { y } else { m });
+            self.next.scale[i] = 1.0 / (tolerance * if y > m { y } else { m });
         }
         self.corrector
             .correct(problem, (t1, cj), &mut self.next, &mut self.stats)
-            .map_err(|trouble| Rejection {
-                reason: trouble.reason,
-                recoverable: trouble.recoverable,
-                factor: 0.25,
+            .map_err(|trouble| {
+                let rejection = Rejection {
+                    reason: trouble.reason,
+                    recoverable: trouble.recoverable,
+                    factor: 0.25,
+                };
+                (rejection, trouble.stagnant)
             })?;
         // (6); before the first step is done the prediction is of order 1
         let factor = if now.h_used > 0.0 {
@@ -239,11 +251,12 @@ impl Hht {
         if error <= 1.0 {
             return Ok(error);
         }
-        Err(Rejection {
+        let rejection = Rejection {
             reason: Reason::ErrorTest(worst_index(weighted)),
             recoverable: true,
             factor: self.control.rejected(error),
-        })
+        };
+        Err((rejection, stagnation.see(h, error).then_some(error)))
     }
 
     /// Advances the state over an accepted step.
@@ -296,11 +309,12 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
     fn step(&mut self, problem: &mut P, t_limit: f64) -> Result<Step, Stop> {
         self.before.copy_from(&self.now);
         let mut attempts = Attempts::new(self.now.t, t_limit, &self.options);
+        let mut stagnation = Stagnation::default();
         loop {
             let proposed = self.now.h.min(self.options.h_max);
             let too_fast = || control::too_fast(&self.now.ydot, &self.weights);
             let (h, t1) = attempts.next(proposed, &self.options, &self.stats, too_fast)?;
-            match self.attempt(problem, h, t1) {
+            match self.attempt(problem, (h, t1), &mut stagnation) {
                 Ok(error) => {
                     let calm = attempts.rejected() > 0;
                     let factor = self.control.accepted(error, calm, false);
@@ -317,10 +331,16 @@ impl<P: Dae + ?Sized> Method<P> for Hht {
                         grown
                     };
                     self.weights.see(t1, &self.next.y);
+                    self.stats.below_rounding += usize::from(self.permitted.accepted());
                     self.can_undo = true;
                     return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }
-                Err(rejection) => {
+                Err((_, Some(size))) if self.permitted.raise(size) => {
+                    attempts.repeat(&mut self.stats);
+                    stagnation = Stagnation::default();
+                    self.now.h = h;
+                }
+                Err((rejection, _)) => {
                     attempts.reject(rejection, h, &mut self.stats)?;
                     self.now.h = h * rejection.factor;
                 }

@@ -467,7 +467,7 @@ impl Dop853 {
         self.advanced = true;
         self.weights.see(t1, &self.y1);
         self.watch_stiffness();
-        self.stats.below_rounding += usize::from(self.noisy);
+        self.stats.below_rounding += usize::from(self.noisy || self.weights.is_raised());
     }
 
     /// Counts the steps in which `h |λ|` lies beyond the edge of the stability region.

@@ -126,9 +126,10 @@ impl Session {
             return;
         }
         let asked = self.model.integrator.formulation.as_deref();
-        // HHT holds positions alone; BDF and Newmark's rule are better off with velocities too
-        let formulation = match (asked, settings.method.as_str()) {
-            (Some("I3"), _) | (None, "HHT") => Formulation::Index3,
+        // with positions alone no error of a velocity is seen: where loops come near a singular
+        // position, energy would be lost without a word
+        let formulation = match asked {
+            Some("I3") => Formulation::Index3,
             _ => Formulation::Stabilized,
         };
         if let Err(why) = system.make_implicit(formulation) {

@@ -625,7 +625,8 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
                     (self.freshness.here, self.freshness.stale) = (false, !keep);
                     self.end.t = t1;
                     self.advanced = true;
-                    self.stats.below_rounding += usize::from(self.eased);
+                    let in_vain = self.eased || self.weights.is_raised();
+                    self.stats.below_rounding += usize::from(in_vain);
                     self.weights.see(t1, &self.end.y);
                     return Ok(attempts.accepted(h, t1, ORDER, &mut self.stats));
                 }
