@@ -506,14 +506,20 @@ JOINT once took MU_STAT_ROT, MU_DYN_ROT and others. They are kept when the datas
         explanation: "\
 The force of a CONTACT grows with the depth, so that these solids are thrown apart at once, with an energy that nothing
 brought in. Told beyond 2 % of the size of the mechanism. Usually a part or the marker of a shape stands elsewhere than
-meant, or a PLANE looks the other way: its z points out of the solid.",
+meant, or a PLANE looks the other way: its z points out of the solid.
+
+    MARKER/3, PART=1, REULER=0,180D,0
+    GRAPHICS/2, PLANE, RM=3            its z points down: the ball above it lies within",
     },
     Code {
         name: "default",
         summary: "a length that is not given, and that results depend on",
         explanation: "\
 FRICTION takes 1, in the unit of length, for each radius and arm that is not given, as Adams does: one metre or one
-millimetre. It is a note; give the length if it matters.",
+millimetre. It is a note; give the length if it matters.
+
+    FRICTION/1, JOINT=1, MU_DYNAMIC=0.1                    a pin of radius 1
+    FRICTION/1, JOINT=1, MU_DYNAMIC=0.1, PIN_RADIUS=0.02   the pin as it is",
     },
     Code {
         name: "ignored",

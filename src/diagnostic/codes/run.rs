@@ -18,7 +18,10 @@ Ctrl-C, or the caller of the library, asked to stop. All rows up to that time ar
         explanation: "\
 --limit (Options::limit in the library) permits so much processor time. The message says where the run was then: which phase of
 setting up, or at which time, with which method and step, and what kept the steps short. All rows up to that time are written.
-A larger --error, or the method that the message names, may come further in the same time.",
+A larger --error, or the method that the message names, may come further in the same time.
+
+    cognate run MODEL.acf --limit 60s
+    cognate run MODEL.acf --limit 60s --error 1e-4     the same run, with a larger permitted error",
     },
     Code {
         name: "sensor",
