@@ -42,8 +42,8 @@ use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};
 use super::quadrature::{Node, RADAU_3, over_interpolant};
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 use collocation::{
-    ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, SQRT6, Stages,
-    solve_collocation_system,
+    ALPHA, BETA, Begin, Convergence, FARTHEST_GROWTH, GAMMA, KEEP_JACOBIAN_RATE, Newton,
+    Polynomial, SQRT6, Stages, solve_collocation_system,
 };
 use systems::Systems;
 
@@ -611,7 +611,9 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
             let too_fast = || control::too_fast(&self.begin.f, &self.weights);
             let (h, t1) = attempts.next(proposed, &self.options, &self.stats, too_fast)?;
             self.control.h = h;
-            if self.freshness.stale {
+            // a Jacobian that a short step hardly felt says nothing about a long one
+            let grown = h > FARTHEST_GROWTH * self.control.h_accepted;
+            if self.freshness.stale || grown && !self.freshness.here {
                 self.evaluate_jacobian(problem)
                     .map_err(|reason| attempts.stop(reason, h))?;
             }
