@@ -57,6 +57,13 @@ const B: [f64; 8] = [
 const UNWEIGHTED_STAGES: usize = 4;
 /// `h |λ|` at the edge of the stability region.
 const STABILITY_EDGE: f64 = 6.1;
+/// Request below which steps are held shorter than the edge: there the errors that the fast modes
+/// magnify count before they grow.
+const FINE_REQUEST: f64 = 1e-10;
+/// `h |λ|` from which on stability counts as the limit at such requests. A damper of 10⁶ is
+/// stepped at 5.4, 4.3 and 3.7 at 1e-11, 1e-12 and 1e-13; a motion that is followed as exactly, at
+/// less than 1.
+const FINE_STABILITY_EDGE: f64 = 3.0;
 /// `h |λ|` from which on the interpolant is compared with the rate.
 const DENSE_EDGE: f64 = 2.0;
 /// Error of the interpolant there, at most, in units of that permitted in a step.
@@ -470,7 +477,8 @@ impl Dop853 {
         self.stats.below_rounding += usize::from(self.noisy || self.weights.is_raised());
     }
 
-    /// Counts the steps in which `h |λ|` lies beyond the edge of the stability region.
+    /// Counts the steps in which `h |λ|` lies beyond the edge of the stability region, and those
+    /// that stability holds short.
     fn watch_stiffness(&mut self) {
         let k12 = &self.k[10];
         let (mut rates, mut states) = (0.0, 0.0);
@@ -494,7 +502,10 @@ impl Dop853 {
                 self.beyond_edge = 0;
             }
         }
-        self.stats.stability_limited += usize::from(self.beyond_edge >= STIFF_STEPS);
+        let fine = self.weights.tolerance() < FINE_REQUEST;
+        let limited =
+            self.beyond_edge >= STIFF_STEPS || fine && self.h_lambda > FINE_STABILITY_EDGE;
+        self.stats.stability_limited += usize::from(limited);
     }
 
     /// Returns the unknown with the largest error estimate e₃.
