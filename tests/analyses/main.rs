@@ -12,6 +12,7 @@ mod running;
 
 mod accuracy;
 mod allocations;
+mod delays;
 mod energy;
 mod integrators;
 mod limits;

@@ -213,13 +213,11 @@ const TOLD_SHARE: f64 = 0.25;
 /// The least number of them that is told.
 const TOLD_STEPS: usize = 200;
 
-/// Returns whether a mechanism without freedom has states all the same: these go on by integration,
-/// which keeps positions on the rows as well.
+/// Returns whether a mechanism without freedom has states or a past all the same: these go on by
+/// integration, which keeps positions on the rows as well.
 fn is_integrated(system: &System) -> bool {
     let l = system.scene.layout;
-    l.n_x > 0
-        || l.n_q > 0 && !system.recorded.external.delays.is_empty()
-        || !system.recorded.samples.is_empty()
+    l.n_x > 0 || !system.recorded.external.delays.is_empty() || !system.recorded.samples.is_empty()
 }
 
 /// Most changes of method that a record names.

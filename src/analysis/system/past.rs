@@ -8,7 +8,16 @@
 //! ```
 //!
 //! Steps are kept no longer than the shortest delay, so that the last case is met only where a
-//! delay shrinks to nothing.
+//! delay shrinks to nothing. A step is kept in as many pieces as its polynomials need: where the
+//! last coefficients of one in Chebyshev form are not small, the step is halved.
+//!
+//! ```text
+//! e(t) = Σ aₖ Tₖ(2 (t − t₀)/(t₁ − t₀) − 1)      resolved:  |a₆| + |a₇| ≤ E max |e|
+//! ```
+//!
+//! In a model without unknowns an expression of time alone is evaluated at t* itself. One that
+//! reads more (another value of the past, a closure, SENVAL, an algebraic loop) is known at t* only
+//! from the past.
 
 use super::System;
 use crate::expr::program::{Program, Work};
@@ -23,6 +32,8 @@ use std::collections::BTreeMap;
 
 /// Points of a step at which the past is kept: those of Chebyshev and Lobatto.
 const NODES: usize = 8;
+/// How often a step is halved until its pieces are resolved, at most.
+const MAX_HALVINGS: usize = 6;
 
 /// One accepted step of a remembered value.
 #[derive(Clone, Debug)]
@@ -38,6 +49,27 @@ fn node(k: usize) -> f64 {
 }
 
 impl Piece {
+    /// Returns the largest absolute value at the nodes.
+    fn largest(&self) -> f64 {
+        self.values.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+    }
+
+    /// Returns whether the last two coefficients in Chebyshev form are at most `permitted`; values
+    /// that are not finite cannot be resolved better.
+    fn is_resolved(&self, permitted: f64) -> bool {
+        let n = (NODES - 1) as f64;
+        let coefficient = |order: usize| {
+            let terms = self.values.iter().enumerate().map(|(k, value)| {
+                let end = k == 0 || k == NODES - 1;
+                let weight = if end { 0.5 } else { 1.0 };
+                weight * value * (std::f64::consts::PI * (k * order) as f64 / n).cos()
+            });
+            2.0 / n * terms.sum::<f64>()
+        };
+        let last = 0.5 * coefficient(NODES - 1).abs() + coefficient(NODES - 2).abs();
+        last.is_nan() || last <= permitted
+    }
+
     /// Evaluates the polynomial through the nodes, by the barycentric formula.
     fn at(&self, t: f64) -> f64 {
         let u = (t - self.t0) / (self.t1 - self.t0);
@@ -63,6 +95,8 @@ pub struct Past {
     /// where it begins
     start: Option<f64>,
     pieces: Vec<Piece>,
+    /// the largest absolute value at a node
+    largest: f64,
 }
 
 impl Past {
@@ -87,9 +121,11 @@ impl Past {
                 values,
             })
         };
+        let pieces: Vec<Piece> = pieces.iter().map(piece).collect::<Option<_>>()?;
         Some(Self {
             start: start.first().copied(),
-            pieces: pieces.iter().map(piece).collect::<Option<_>>()?,
+            largest: pieces.iter().fold(0.0, |m, p| p.largest().max(m)),
+            pieces,
         })
     }
 }
@@ -103,14 +139,14 @@ struct Delay {
     expression: Program,
     delay: Program,
     history: Program,
+    /// the expression is one of time alone, and nothing else moves: it can be evaluated at any time
+    of_time: bool,
     past: Past,
 }
 
 /// The delayed values of a system.
 #[derive(Debug, Default)]
 pub struct Delays {
-    /// nothing moves but time, so that the past need not be kept
-    still: bool,
     all: Vec<Delay>,
     work: Work,
 }
@@ -121,20 +157,20 @@ impl Delays {
     /// # Errors
     /// Whatever the equations cannot supply.
     pub fn new(scene: Configured<'_>) -> Result<Self, Vec<Unsupported>> {
-        let mut this = Self {
-            still: scene.layout.y().is_empty(),
-            ..Self::default()
-        };
+        let mut this = Self::default();
         if scene.mode == STATIC {
             return Ok(this);
         }
         for (place, supplied) in scene.external_inputs.iter().enumerate() {
             if let ExternalInput::Delay(k) = *supplied {
                 let d = &scene.delays[k];
+                let expression = record(scene, |at| vec![at.formula(d.expression)])?;
                 this.all.push(Delay {
                     id: d.id.clone(),
                     place: scene.layout.external_at(place),
-                    expression: record(scene, |at| vec![at.formula(d.expression)])?,
+                    of_time: (0..scene.layout.len())
+                        .all(|place| place == Layout::TIME || !expression.reads(place)),
+                    expression,
                     delay: record(scene, |at| vec![at.formula(d.delay)])?,
                     history: record(scene, |at| vec![at.formula(d.history)])?,
                     past: Past::default(),
@@ -169,7 +205,7 @@ impl Delays {
                     numbers[Layout::TIME] = t;
                     value
                 }
-                _ if self.still => {
+                _ if delayed.of_time => {
                     numbers[Layout::TIME] = then;
                     let value = run(&delayed.expression, numbers);
                     numbers[Layout::TIME] = t;
@@ -195,11 +231,12 @@ impl Delays {
         }
     }
 
-    /// Returns the shortest positive delay at a row of numbers.
+    /// Returns the shortest positive delay at a row of numbers, of values that are known from the
+    /// past alone.
     pub fn shortest_delay(&mut self, numbers: &[f64]) -> f64 {
         let mut out = [0.0];
         let mut shortest = f64::INFINITY;
-        for delayed in &self.all {
+        for delayed in self.all.iter().filter(|d| !d.of_time) {
             delayed.delay.run(numbers, &mut self.work, &mut out);
             if out[0] > 0.0 {
                 shortest = shortest.min(out[0]);
@@ -234,7 +271,7 @@ impl Delays {
     }
 }
 
-/// Keeps the values of an accepted step for the past.
+/// Keeps the values of an accepted step for the past, in pieces that are resolved.
 ///
 /// # Errors
 /// Where the interpolant has no value.
@@ -243,26 +280,54 @@ pub fn remember(
     method: &mut dyn Method<System>,
     step: &Step,
 ) -> Result<(), Failure> {
+    let mut parts = vec![(step.t0, step.t1, 0)];
+    while let Some((t0, t1, halvings)) = parts.pop() {
+        let pieces = pieces(system, method, step, [t0, t1])?;
+        let middle = 0.5 * (t0 + t1);
+        let permitted = system.precision;
+        let all = &mut system.recorded.external.delays.all;
+        let mut pairs = all.iter_mut().zip(&pieces);
+        let resolved = pairs.all(|(delayed, piece)| {
+            delayed.past.largest = delayed.past.largest.max(piece.largest());
+            piece.is_resolved(permitted * delayed.past.largest)
+        });
+        if !resolved && halvings < MAX_HALVINGS && t0 < middle && middle < t1 {
+            parts.extend([(middle, t1, halvings + 1), (t0, middle, halvings + 1)]);
+            continue;
+        }
+        for (delayed, piece) in all.iter_mut().zip(pieces) {
+            delayed.past.pieces.push(piece);
+        }
+    }
+    Ok(())
+}
+
+/// Returns the polynomials of all delayed values over a part of a step.
+///
+/// # Errors
+/// Where the interpolant has no value.
+fn pieces(
+    system: &mut System,
+    method: &mut dyn Method<System>,
+    step: &Step,
+    [t0, t1]: [f64; 2],
+) -> Result<Vec<Piece>, Failure> {
     let n = system.recorded.external.delays.all.len();
-    let mut pieces = vec![
-        Piece {
-            t0: step.t0,
-            t1: step.t1,
-            values: [0.0; NODES],
-        };
-        n
-    ];
+    let values = [0.0; NODES];
+    let mut pieces = vec![Piece { t0, t1, values }; n];
     let mut state = method.y().to_vec();
     let mut out = [0.0];
     for k in 0..NODES {
         let t = if k == NODES - 1 {
-            state.copy_from_slice(method.y());
-            step.t1
+            t1
         } else {
-            let t = step.t0 + node(k) * (step.t1 - step.t0);
-            method.interpolate(system, t, &mut state)?;
-            t
+            t0 + node(k) * (t1 - t0)
         };
+        if t == step.t1 {
+            state.copy_from_slice(method.y());
+        } else {
+            method.interpolate(system, t, &mut state)?;
+        }
         // methods for implicit equations have multipliers behind it
         system.set(t, &state);
         let delays = &mut system.recorded.external.delays;
@@ -272,9 +337,5 @@ pub fn remember(
             piece.values[k] = out[0];
         }
     }
-    let delays = &mut system.recorded.external.delays;
-    for (delayed, piece) in delays.all.iter_mut().zip(pieces) {
-        delayed.past.pieces.push(piece);
-    }
-    Ok(())
+    Ok(pieces)
 }

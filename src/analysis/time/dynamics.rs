@@ -35,10 +35,15 @@ struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    fn new(options: &'a Options) -> Self {
+    /// Begins with the method that is asked for; without unknowns all are one, and any will do.
+    fn new(options: &'a Options, n: usize) -> Self {
+        let name = match n {
+            0 => "DOP853".into(),
+            _ => options.first_name(),
+        };
         Course {
             options,
-            name: options.first_name(),
+            name,
             why: Takeover::Begins,
             restarts: 0,
             patience: 0,
@@ -114,14 +119,10 @@ pub fn integrate(
     system.recorded.external.delays.begin(t0, &BTreeMap::new());
     system.restart_sampling();
     system.begin_sensing();
-    if n == 0 {
-        timeless(system, outputs, options.max_steps, &mut out);
-        return out;
-    }
     energy::begin(&mut out.energy, system, t0, &y);
     let mut outputs = outputs.to_vec();
     let landings = system.landings(t0, end);
-    let mut course = Course::new(options);
+    let mut course = Course::new(options, n);
     let mut t = t0;
     loop {
         // the method, and its state: that of an implicit one has multipliers, found anew
@@ -186,24 +187,4 @@ fn end_there(
         out.push(t, row);
     }
     out.ended = Some(why);
-}
-
-/// Lets time pass in a model without unknowns, in which only samples change.
-fn timeless(system: &mut System, outputs: &[f64], max_steps: usize, out: &mut Trajectory) {
-    for &t in outputs {
-        loop {
-            let due = system.recorded.samples.due();
-            if due > t {
-                break;
-            }
-            out.stats.steps += 1;
-            if out.stats.steps > max_steps {
-                out.ended = Some(gave_up(due));
-                return;
-            }
-            system.sample(due, &[]);
-        }
-        let row = system.row(t, &[]);
-        out.push(t, row);
-    }
 }

@@ -182,8 +182,9 @@ impl<'a> Leg<'a> {
             };
             let anew = self.accept(method, &step);
             let mut switched = switched || anew > step.t1;
-            switched |= self.sample(method, &step);
+            // before a sample changes what held during the step
             switched |= self.remember(method, &step);
+            switched |= self.sample(method, &step);
             let (reacted, stepsize) = self.sense(method, &step, switched)?;
             switched |= reacted;
             self.keep_rows(method, &step, violated)?;
