@@ -8,6 +8,7 @@ mod models;
 #[path = "../common/running.rs"]
 mod running;
 
+mod command_effects;
 mod command_files;
 mod dataset;
 mod dataset_laws;

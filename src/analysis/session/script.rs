@@ -46,7 +46,8 @@ impl Simulate {
             }
             return Ok((analysis, now, Output::Steps(1)));
         };
-        if over_time && (end <= now || !end.is_finite()) {
+        let goes_back = end < now && analysis == Analysis::Static;
+        if goes_back || over_time && (end <= now || !end.is_finite()) {
             let message = format!("the simulation should end at {end}, but the clock shows {now}");
             return Err(Diagnostic::error("no_end", message)
                 .help("END is absolute time; DURATION counts from here"));

@@ -9,6 +9,7 @@
 mod apply;
 mod interpret;
 mod message_log;
+mod unread;
 
 use super::idle::Idle;
 use super::read::{self, Table};
@@ -367,6 +368,7 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
         };
         let (line, span) = (record.place.line, record.head);
         without_effect.add(&record);
+        let others = unread::words(&record);
         let command = match interpret(record) {
             Ok(command) => command,
             Err(d) => {
@@ -374,6 +376,8 @@ fn take_steps(source: &Source, syntax: &Syntax, script: &mut Script, out: &mut V
                 continue;
             }
         };
+        let doubt = unread::arguments(&command, &others);
+        out.extend(doubt.map(|d| source.locate(d, span)));
         if let Command::File {
             model,
             output_prefix,

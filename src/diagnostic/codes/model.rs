@@ -610,11 +610,12 @@ The joint does not have this freedom, or a motion prescribes it.
     },
     Code {
         name: "no_effect",
-        summary: "an element that does nothing",
+        summary: "an element, or an argument of a command, that does nothing",
         explanation: "\
-Usually a component or a component's marker was forgotten.
+Usually a component or a component's marker was forgotten, or an argument belongs to another kind of simulation.
 
-    VFORCE/1, I=20, JFLOAT=19, RM=20     write FX=…\\ FY=…\\ FZ=…",
+    VFORCE/1, I=20, JFLOAT=19, RM=20     write FX=…\\ FY=…\\ FZ=…
+    SIMULATE/INITIAL_CONDITIONS, END=1   leave END out, or write SIMULATE/DYNAMIC, END=1",
     },
     Code {
         name: "model",
