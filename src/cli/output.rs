@@ -1,8 +1,8 @@
 //! The files of a run: tables that grow while it goes on, and what is written when it is over.
 
-use super::run::cpu_seconds;
 use super::{Failure, linear, remark, summary};
 use crate::analysis::session::Session;
+use crate::analysis::work_limit::process_seconds;
 use crate::diagnostic::Diagnostic;
 use crate::model::SettingsStatement;
 use crate::results::format::{Format, Sink, Style};
@@ -296,7 +296,7 @@ impl Growing {
         let seconds = &mut run.record.seconds;
         seconds.write = clock.elapsed().as_secs_f64();
         seconds.total = self.started.elapsed().as_secs_f64();
-        seconds.processor = cpu_seconds().unwrap_or(seconds.total);
+        seconds.processor = process_seconds().unwrap_or(seconds.total);
         let record = json::with_files(json::record(run), self.folder.written());
         let record = json::text(&record);
         self.folder.put_record(&record)?;

@@ -8,6 +8,7 @@ use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Options, Session};
 use crate::analysis::watch::Watch;
+use crate::analysis::work_limit::process_seconds;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Cause, Diagnostic, Severity};
@@ -149,7 +150,7 @@ pub fn run(args: &Args) -> Outcome {
     let outcome = solve(args, &mut session, &steps, (&tables, guard.as_ref()));
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
-    let cpu = cpu_seconds().unwrap_or(elapsed);
+    let cpu = process_seconds().unwrap_or(elapsed);
     session.run.log.push(Event::Finished { elapsed, cpu });
 
     // write and report
@@ -514,11 +515,4 @@ fn missing(script: &Script, path: &Path, file: &Path) -> Failure {
         "a first line that is no command is taken as the name of the dataset; the command is FILE/MODEL=name",
     );
     Failure::in_files(Exit::Input, vec![d])
-}
-
-/// Returns the processor time of this process, in s, where the system tells it.
-pub(super) fn cpu_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
 }
