@@ -32,7 +32,7 @@ use std::collections::BTreeMap;
 
 /// Points of a step at which the past is kept: those of Chebyshev and Lobatto.
 const NODES: usize = 8;
-/// How often a step is halved until its pieces are resolved, at most.
+/// Most halvings of a step until its pieces are resolved.
 const MAX_HALVINGS: usize = 6;
 
 /// One accepted step of a remembered value.
