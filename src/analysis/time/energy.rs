@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The integrals are taken step by step at the nodes of the method
-//! ([`Method::quadrature`](crate::numeric::Method::quadrature)), so that the balance is as good as
+//! ([`Method::quadrature`]), so that the balance is as good as
 //! the solution: what it lacks is an error of the solution. Nothing is integrated where gravity
 //! alone acts.
 

@@ -210,7 +210,7 @@ impl Row {
 
 impl Study {
     /// Returns the run whose largest error is at most `wanted` and that solves fastest, where the
-    /// reference can tell; of those that are as fast within [`AS_FAST`], the best.
+    /// reference can tell; of those that are as fast within `AS_FAST`, the best.
     pub fn recommended(&self, wanted: f64) -> Option<&Row> {
         let reference = self.reference.as_ref()?;
         if wanted < TOLD_FROM_REFERENCE * reference.trust() {

@@ -124,6 +124,7 @@ impl Builder {
     }
 
     /// Returns of each value whether it reads one input and no other.
+    #[cfg(feature = "solver")]
     pub(crate) fn read_alone(&self, input: Input, values: &[Value]) -> Vec<bool> {
         const IT: u8 = 1;
         const ANOTHER: u8 = 2;

@@ -1,7 +1,7 @@
 //! Parquet files: columns in compressed blocks, which pandas, MATLAB and databases read at once.
 //!
 //! Card: all columns of a run are required doubles under their names (a name that is there already
-//! gets a number). Rows come in groups of [`GROUP`]; bytes of equal significance stand together
+//! gets a number). Rows come in groups of `GROUP`; bytes of equal significance stand together
 //! (`BYTE_STREAM_SPLIT`) and are compressed by LZ4, without which doubles hardly become smaller.
 //! The metadata of the file hold, under keys that begin with `cognate.`: the title, the units by
 //! column, the system of units, and which rows belong to which simulation.
