@@ -51,10 +51,6 @@ const TI: [[f64; 3]; 3] = [
 
 /// Θ up to which the Jacobian is kept for the next step.
 pub(super) const KEEP_JACOBIAN_RATE: f64 = 0.02;
-/// Growth of the step, as a factor, beyond which nothing of the step before is used: neither its
-/// polynomial as a guess nor its Jacobian. Error control grows steps by 8 at most; a step that
-/// follows one that a limit cut short may be longer by any factor.
-pub(super) const FARTHEST_GROWTH: f64 = 10.0;
 /// Θ from which the iteration counts as divergent.
 const DIVERGENT_RATE: f64 = 0.99;
 
@@ -388,10 +384,9 @@ impl Polynomial {
         p1[i] + (a + s) * p2[i] + (a * b + s * b + s * a) * p3[i]
     }
 
-    /// Guesses the stages of the next step, of length `h` from `t`: by extrapolation, or zero where
-    /// that reaches too far.
+    /// Guesses the stages of the next step, of length `h` from `t`, by extrapolation.
     pub fn extrapolate(&self, t: f64, h: f64, stages: &mut Stages) {
-        if h > FARTHEST_GROWTH * self.h {
+        if self.h == 0.0 {
             return stages.clear();
         }
         let s = |c: f64| (t + c * h - self.end) / self.h;

@@ -42,8 +42,8 @@ use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};
 use super::quadrature::{Node, RADAU_3, over_interpolant};
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 use collocation::{
-    ALPHA, BETA, Begin, Convergence, FARTHEST_GROWTH, GAMMA, KEEP_JACOBIAN_RATE, Newton,
-    Polynomial, SQRT6, Stages, solve_collocation_system,
+    ALPHA, BETA, Begin, Convergence, GAMMA, KEEP_JACOBIAN_RATE, Newton, Polynomial, SQRT6, Stages,
+    solve_collocation_system,
 };
 use systems::Systems;
 
@@ -111,8 +111,6 @@ struct Freshness {
     stale: bool,
     /// step for which the matrices are factored, in s; 0: none
     h_factored: f64,
-    /// step for which the Jacobian was evaluated, in s
-    h_evaluated: f64,
 }
 
 /// Radau IIA of order 5 with projection; see the file's card.
@@ -228,7 +226,6 @@ impl Radau {
                 here: false,
                 stale: true,
                 h_factored: 0.0,
-                h_evaluated: 0.0,
             },
             error: zeros(),
             defect: zeros(),
@@ -246,7 +243,6 @@ impl Radau {
             here: false,
             stale: true,
             h_factored: 0.0,
-            h_evaluated: 0.0,
         };
         self.convergence.reset();
         self.polynomial.forget();
@@ -293,7 +289,6 @@ impl Radau {
             here: true,
             stale: false,
             h_factored: 0.0,
-            h_evaluated: self.control.h,
         };
         Ok(())
     }
@@ -616,9 +611,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
             let too_fast = || control::too_fast(&self.begin.f, &self.weights);
             let (h, t1) = attempts.next(proposed, &self.options, &self.stats, too_fast)?;
             self.control.h = h;
-            // a Jacobian that a short step hardly felt says nothing about a long one
-            let grown = h > FARTHEST_GROWTH * self.freshness.h_evaluated;
-            if self.freshness.stale || grown && !self.freshness.here {
+            if self.freshness.stale {
                 self.evaluate_jacobian(problem)
                     .map_err(|reason| attempts.stop(reason, h))?;
             }
@@ -626,9 +619,6 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
                 Ok((error, iterations)) => {
                     let keep = self.convergence.theta <= KEEP_JACOBIAN_RATE;
                     let allowed = self.convergence.allowed;
-                    if self.freshness.here {
-                        self.freshness.h_evaluated = h;
-                    }
                     self.control
                         .accept(error, iterations, allowed, proposed, keep);
                     self.control.h_next = self.control.h_next.max(self.placing.wanted);
