@@ -616,7 +616,7 @@ fn batches(cases: &[Case], rounds: usize) -> Table {
         let program = compiled(&case.text);
         let mut batch = program.batch();
         let (mut out, mut native_out) = (vec![0.0; BATCH], vec![0.0; BATCH]);
-        batch.run(&views, &mut [&mut out]);
+        (batch.run(&views, &mut [&mut out])).expect("columns that fit");
         (case.native_loop)(&columns, &mut native_out);
         for (got, want) in out.iter().zip(&native_out) {
             agree(&format!("batch of {}", case.name), *got, *want);
@@ -627,7 +627,7 @@ fn batches(cases: &[Case], rounds: usize) -> Table {
                 native_out[BATCH - 1]
             }),
             Box::new(|_| {
-                batch.run(black_box(&views), &mut [&mut out]);
+                (batch.run(black_box(&views), &mut [&mut out])).expect("columns that fit");
                 out[BATCH - 1]
             }),
         ];

@@ -16,7 +16,7 @@
 //! use cognate::expr::Expr;
 //! let f = Expr::parse("STEP5(TIME, 0, 0, 1, 10) * SIN(2*PI*TIME)")?;
 //! assert_eq!(f.eval(&[("TIME", 0.25)])?, 1.03515625);
-//! # Ok::<(), cognate::diagnostic::Diagnostic>(())
+//! # Ok::<(), cognate::Error>(())
 //! ```
 //!
 //! A model is read, simulated, and its results are read by the names of their columns:
@@ -70,9 +70,16 @@
 // names follow the monogram notation: capitals are frames and only frames (`p_JI_K`, `R_GP`)
 #![allow(non_snake_case)]
 
+/// Programs of the README, as doc tests.
+#[cfg(all(doctest, feature = "solver"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 // floor 0
 pub mod diagnostic;
 pub mod scalar;
+
+pub use diagnostic::Error;
 // floor 1
 pub mod expr;
 #[cfg(feature = "solver")]
@@ -83,6 +90,8 @@ pub mod physics;
 // floor 3
 #[cfg(feature = "solver")]
 pub mod model;
+#[cfg(feature = "solver")]
+pub use model::Model;
 // floor 4
 #[cfg(feature = "solver")]
 pub mod dataset;

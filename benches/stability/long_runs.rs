@@ -126,7 +126,7 @@ impl LongRun {
                 "{energy:.1e} | {motion:.1e} up to {:.0} s",
                 reached.unwrap_or(0.0)
             ),
-            Err(errors) => format!("- | {}", errors[0]),
+            Err(error) => format!("- | {}", error.first()),
         };
         format!(
             "| {} | {method} | {request:.0e} | {how} | {steps} | {seconds:.2} s |",

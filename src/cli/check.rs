@@ -4,8 +4,8 @@ use super::render::{self, Sources};
 use super::{Exit, Failure, Outcome, complain, remark, say};
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::dataset::command::{Command, Script, Simulate};
-use crate::dataset::{self, Errors, Reading};
-use crate::diagnostic::{Cause, Diagnostic, Severity};
+use crate::dataset::{self, Reading};
+use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::model::{ElementKind, Model};
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -54,7 +54,7 @@ pub fn run(args: &Args) -> Outcome {
                     all.extend(reading.diagnostics);
                     all.extend(begun);
                 }
-                Err(errors) => all.extend(errors.0),
+                Err(error) => all.extend(error),
             },
         }
     }
@@ -110,7 +110,7 @@ fn assembled(
     }
     let (analysis, end) = match simulate.map(|s| s.resolved(0.0)) {
         Some(Ok((analysis, end, _))) => (analysis, end),
-        Some(Err(d)) => return vec![d],
+        Some(Err(error)) => return error.into(),
         None => (Analysis::Transient, HORIZON),
     };
     let begin = |options: Options| {
@@ -156,7 +156,7 @@ fn check_script(
 ) -> Vec<Diagnostic> {
     let script = match Script::read(file) {
         Ok(script) => script,
-        Err(errors) => return errors.0,
+        Err(error) => return error.into(),
     };
     let mut all = script.diagnostics.clone();
     let Some(path) = script.model_file() else {
@@ -165,7 +165,7 @@ fn check_script(
     let reading = match dataset::read(&path) {
         Ok(reading) => reading,
         Err(errors) => {
-            all.extend(errors.0);
+            all.extend(errors);
             return all;
         }
     };
@@ -183,7 +183,7 @@ fn check_script(
         let Err(errors) = model.apply(&step.command) else {
             continue;
         };
-        all.extend(errors.0.into_iter().map(|d| Diagnostic {
+        all.extend(errors.into_iter().map(|d| Diagnostic {
             file: Some(file.display().to_string()),
             line: step.line,
             column: 1,
@@ -224,10 +224,10 @@ fn add(sources: &mut Sources, reading: &Reading) {
 }
 
 /// Turns mistakes of a file into the failure of a command.
-pub fn failure(errors: Errors) -> Failure {
+pub fn failure(error: Error) -> Failure {
     Failure {
         exit: Exit::Input,
-        diagnostics: errors.0,
+        diagnostics: error.into(),
         sources: Sources::default(),
     }
 }

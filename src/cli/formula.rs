@@ -5,7 +5,7 @@
 //! evaluation and names the part of the text that has no value, and the reason.
 
 use super::data::Data;
-use crate::diagnostic::{Cause, Diagnostic, Span};
+use crate::diagnostic::{Cause, Diagnostic, Error, Span};
 use crate::expr::ast::{Callee, Dialect, Node};
 use crate::expr::interpolation::Interpolation;
 use crate::expr::measures::Family;
@@ -48,8 +48,10 @@ impl Formula {
     /// # Errors
     /// The first mistake in it, with its place.
     pub fn new(text: &str, setting: &Setting) -> Result<Self, Diagnostic> {
-        let expr = Expr::parse_profile(text, setting.dialect, setting.profile)?;
-        let program = expr.compile(&setting.data.bindings).map_err(|d| {
+        let expr = Expr::parse_profile(text, setting.dialect, setting.profile)
+            .map_err(Error::into_first)?;
+        let program = expr.compile(&setting.data.bindings).map_err(|error| {
+            let d = error.into_first();
             let is_unknown = d.is(Cause::UnknownElement);
             match (is_unknown, asks_for_curve(&expr, &d)) {
                 (true, true) => {
@@ -133,7 +135,8 @@ impl Formula {
 
     /// Returns the reason why there is no finite number.
     fn trouble(&self, time: Option<f64>, data: &Data, sample: &Sample) -> Diagnostic {
-        match self.expr.eval_with(&TimedData { data, time }) {
+        let walked = self.expr.eval_with(&TimedData { data, time });
+        match walked.map_err(Error::into_first) {
             Err(d) if !d.is(Cause::MissingValue) => d,
             Err(d) if time.is_none() && self.program.inputs().contains(&Input::Time) => {
                 d.help("give the time: `--time 1.5`; in the REPL `:time 1.5`")

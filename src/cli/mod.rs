@@ -152,8 +152,8 @@ impl Failure {
         }
     }
     /// Creates a failure from mistakes in a model, each at the statement of its element.
-    pub fn in_model(dataset: &Dataset, diagnostics: Vec<Diagnostic>) -> Self {
-        let located = diagnostics.into_iter().map(|d| dataset.locate(d));
+    pub fn in_model(dataset: &Dataset, diagnostics: impl Into<Vec<Diagnostic>>) -> Self {
+        let located = diagnostics.into().into_iter().map(|d| dataset.locate(d));
         Self::in_files(Exit::Model, located.collect())
     }
     /// Creates a failure for a command that contradicts itself.

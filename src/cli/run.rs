@@ -11,7 +11,7 @@ use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::process_seconds;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
-use crate::diagnostic::{Cause, Diagnostic, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::model::{ElementKind, Model, SettingsStatement};
 use crate::numeric::Stats;
 use crate::results::format::Format;
@@ -180,7 +180,7 @@ pub fn run(args: &Args) -> Outcome {
         }
         // what is doubted may be why
         let said = doubts.into_iter().chain(diagnostics);
-        let all = said.chain(session.model.doubts()).collect();
+        let all: Vec<_> = said.chain(session.model.doubts()).collect();
         return Err(Failure::in_model(&dataset, all));
     }
     if status != Status::Completed {
@@ -195,11 +195,11 @@ pub fn run(args: &Args) -> Outcome {
 /// Notes in the record why a model could not be run; returns the status, and the mistakes.
 fn told(
     session: &mut Session,
-    outcome: Result<Status, Vec<Diagnostic>>,
+    outcome: Result<Status, Error>,
 ) -> (Status, Option<Vec<Diagnostic>>) {
     let errors = match outcome {
         Ok(status) => return (status, None),
-        Err(errors) => errors,
+        Err(error) => error.into_diagnostics(),
     };
     let record = &mut session.run.record;
     record.status = Status::Model;
@@ -299,7 +299,7 @@ fn solve(
     session: &mut Session,
     steps: &[Step],
     (tables, guard): (&output::Tables, Option<&Guard>),
-) -> Result<Status, Vec<Diagnostic>> {
+) -> Result<Status, Error> {
     let progress = std::cell::RefCell::new(Progress::new(true, 0.0, 1.0));
     let begin = |start: f64, end: f64| {
         progress.borrow().done();
@@ -413,7 +413,7 @@ pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
 /// Reads a dataset; also returns the time that its bytes took, in s.
 fn timed_read(path: &Path) -> Result<(Reading, f64), Failure> {
     let clock = Instant::now();
-    let source = dataset::open(path).map_err(|e| Failure::in_files(Exit::Input, e.0))?;
+    let source = dataset::open(path).map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
     let seconds = clock.elapsed().as_secs_f64();
     let reading = dataset::read_source(source);
     if reading.failed() {
@@ -435,7 +435,7 @@ pub(super) fn has_commands(path: &Path) -> bool {
 /// Reads a command file and the dataset it names, or the commands that a log echoes and the dataset
 /// beside it; `dataset`: this one instead.
 pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure> {
-    let failed = |e: crate::dataset::Errors| Failure::in_files(Exit::Input, e.0);
+    let failed = |e: Error| Failure::in_files(Exit::Input, e.into());
     if path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("msg"))
@@ -468,7 +468,7 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
                 let what = format!("{}: cannot be opened: {e}", file.display());
                 Diagnostic::error("cannot_open", what)
             })?;
-            let saved = Saved::read(&bytes)?;
+            let saved = Saved::read(&bytes).map_err(Error::into_first)?;
             return Ok(Job {
                 reading: dataset::read_text(&saved.model().to_text()),
                 base: script.output.clone().unwrap_or_else(|| stem(path)),

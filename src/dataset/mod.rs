@@ -8,6 +8,7 @@
 //! order; the Model says what it means. The table of statements (`statement.rs`) is the only place
 //! that knows arguments by name.
 
+mod check;
 pub mod command;
 mod idle;
 pub mod lens;
@@ -20,13 +21,12 @@ pub mod syntax;
 pub mod value;
 pub mod write;
 
-use crate::diagnostic::{Cause, Diagnostic, Severity, Span};
+use crate::diagnostic::{Cause, Diagnostic, Error, Severity, Span};
 use crate::model::{ElementKind, MarkerOwner, Model};
 use idle::Idle;
 use read::Table;
 use row::Record;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::path::Path;
 use syntax::{Item, Source, Syntax};
 
@@ -97,29 +97,11 @@ impl Reading {
     }
 }
 
-/// Everything that was wrong with a file.
-#[derive(Clone, Debug, Default)]
-pub struct Errors(pub Vec<Diagnostic>);
-
-impl fmt::Display for Errors {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (k, d) in self.0.iter().enumerate() {
-            if k > 0 {
-                writeln!(f)?;
-            }
-            write!(f, "{d}")?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for Errors {}
-
 /// Reads a dataset from a file.
 ///
 /// # Errors
 /// Only when the file cannot be opened; everything else is in [`Reading::diagnostics`].
-pub fn read(path: impl AsRef<Path>) -> Result<Reading, Errors> {
+pub fn read(path: impl AsRef<Path>) -> Result<Reading, Error> {
     open(path).map(read_source)
 }
 
@@ -127,7 +109,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Reading, Errors> {
 ///
 /// # Errors
 /// When the file cannot be opened.
-pub fn open(path: impl AsRef<Path>) -> Result<Source, Errors> {
+pub fn open(path: impl AsRef<Path>) -> Result<Source, Error> {
     let path = path.as_ref();
     let file = path.display().to_string();
     Ok(Source::from_bytes(Some(&file), &load(path)?))
@@ -139,11 +121,11 @@ pub fn read_text(text: &str) -> Reading {
 }
 
 /// The bytes of a file.
-fn load(path: &Path) -> Result<Vec<u8>, Errors> {
+fn load(path: &Path) -> Result<Vec<u8>, Error> {
     std::fs::read(path).map_err(|e| {
         let mut d = Diagnostic::error("cannot_open", format!("cannot be opened: {e}"));
         d.file = Some(path.display().to_string());
-        Errors(vec![d])
+        Error::from(d).with_source(e)
     })
 }
 
@@ -179,7 +161,7 @@ pub fn read_source(source: Source) -> Reading {
         let d = Diagnostic::warning("missing_end", "the dataset does not end with END");
         out.push(source.locate(d, Span::new(at, at)));
     }
-    for d in reading.model.check() {
+    for d in reading.model.contradictions() {
         // What seems to be missing may be what was not understood.
         let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));
         if excused && !d.is(Cause::UnknownElement) {
@@ -320,7 +302,7 @@ impl Model {
     ///
     /// # Errors Every mistake with its place and advice; printing the error prints them all.
     /// Warnings alone are no error: see [`read()`] for them.
-    pub fn read(path: impl AsRef<Path>) -> Result<Model, Errors> {
+    pub fn read(path: impl AsRef<Path>) -> Result<Model, Error> {
         into_model(read(path)?)
     }
 
@@ -334,18 +316,18 @@ impl Model {
     /// use cognate::model::Model;
     /// let model = Model::from_text("a falling ball\nPART/1, GROUND\nPART/2, MASS=1, CM=2\nMARKER/2, PART=2\nEND\n")?;
     /// assert_eq!(model.parts[&2].mass, 1.0);
-    /// # Ok::<(), cognate::dataset::Errors>(())
+    /// # Ok::<(), cognate::Error>(())
     /// ```
-    pub fn from_text(text: &str) -> Result<Model, Errors> {
+    pub fn from_text(text: &str) -> Result<Model, Error> {
         into_model(read_text(text))
     }
 }
 
-fn into_model(reading: Reading) -> Result<Model, Errors> {
+fn into_model(reading: Reading) -> Result<Model, Error> {
     if reading.failed() {
         let mut all = reading.diagnostics;
         all.retain(|d| d.severity == Severity::Error);
-        return Err(Errors(all));
+        return Err(all.into());
     }
     Ok(reading.model)
 }

@@ -2,11 +2,14 @@
 //!
 //! Every mistake a user can make becomes a [`Diagnostic`]: a stable code, a place, a sentence, and
 //! advice. All mistakes of a text are collected; reading continues after a mistake wherever it can.
+//! An [`Error`] holds them all.
 
 mod cause;
 pub mod codes;
+mod error;
 
 pub use cause::Cause;
+pub use error::Error;
 
 use std::fmt;
 

@@ -8,7 +8,7 @@ use super::parse::parse;
 use super::program::{Input, Program};
 use super::symbols::Profile;
 use super::walk::{self, Host};
-use crate::diagnostic::{Cause, Diagnostic, Span};
+use crate::diagnostic::{Cause, Diagnostic, Error, Span};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// let y = f.eval(&[("TIME", 0.25)])?;
 /// assert_eq!(y, 1.03515625);
 /// assert_eq!(f.to_string(), "STEP5(TIME, 0, 0, 1, 10)*SIN(2*PI*TIME)");
-/// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+/// # Ok::<(), cognate::Error>(())
 /// ```
 ///
 /// Inputs from a model are given by name:
@@ -33,7 +33,7 @@ use std::sync::Arc;
 /// let names: Vec<String> = spring.inputs().iter().map(|i| i.to_string()).collect();
 /// assert_eq!(names, ["DM(10, 20)", "VR(10, 20)"]);
 /// assert_eq!(spring.eval(&[("DM(10, 20)", 12.0), ("VR(10, 20)", 0.5)])?, -51.0);
-/// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+/// # Ok::<(), cognate::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
@@ -51,9 +51,9 @@ impl Expr {
     /// ```
     /// # use cognate::expr::Expr;
     /// let error = Expr::parse("2*SQRT(TIME").unwrap_err();
-    /// assert_eq!((error.code, error.column), ("unexpected_end", 12));
+    /// assert_eq!((error.code(), error.first().column), ("unexpected_end", 12));
     /// ```
-    pub fn parse(text: &str) -> Result<Self, Diagnostic> {
+    pub fn parse(text: &str) -> Result<Self, Error> {
         Self::parse_dialect(text, Dialect::Function)
     }
 
@@ -66,9 +66,9 @@ impl Expr {
     /// # use cognate::expr::{Expr, ast::Dialect};
     /// let motion = Expr::parse_dialect("180*sin(360*t)", Dialect::Expression)?;
     /// assert!((motion.eval(&[("t", 0.25)])? - 180.0).abs() < 1e-12);
-    /// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+    /// # Ok::<(), cognate::Error>(())
     /// ```
-    pub fn parse_dialect(text: &str, dialect: Dialect) -> Result<Self, Diagnostic> {
+    pub fn parse_dialect(text: &str, dialect: Dialect) -> Result<Self, Error> {
         Self::parse_profile(text, dialect, Profile::Adams)
     }
 
@@ -82,14 +82,13 @@ impl Expr {
     /// let deep = "(((((((((((1)))))))))))";
     /// assert!(Expr::parse(deep).is_ok());
     /// let error = Expr::parse_profile(deep, Dialect::Function, Profile::Ideas).unwrap_err();
-    /// assert_eq!((error.code, error.column), ("limit_nesting", 11));
+    /// assert_eq!((error.code(), error.first().column), ("limit_nesting", 11));
     /// ```
-    pub fn parse_profile(
-        text: &str,
-        dialect: Dialect,
-        profile: Profile,
-    ) -> Result<Self, Diagnostic> {
-        Self::from_ast(text, Arc::new(parse(text, dialect, profile)?))
+    pub fn parse_profile(text: &str, dialect: Dialect, profile: Profile) -> Result<Self, Error> {
+        Ok(Self::from_ast(
+            text,
+            Arc::new(parse(text, dialect, profile)?),
+        )?)
     }
 
     /// Takes a tree that was made of a text.
@@ -125,12 +124,12 @@ impl Expr {
     /// let f = Expr::parse("IF(TIME-1: 0, 0, LOG(2-TIME))")?;
     /// assert_eq!(f.eval(&[("TIME", 0.5)])?, 0.0);
     /// let error = f.eval(&[("TIME", 2.5)]).unwrap_err();
-    /// assert_eq!(error.column, 18);
+    /// assert_eq!(error.first().column, 18);
     /// let message = "LOG of -0.5 has no value at TIME = 2.5: LOG takes positive numbers";
-    /// assert_eq!(error.message, message);
-    /// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+    /// assert_eq!(error.first().message, message);
+    /// # Ok::<(), cognate::Error>(())
     /// ```
-    pub fn eval(&self, inputs: &[(&str, f64)]) -> Result<f64, Diagnostic> {
+    pub fn eval(&self, inputs: &[(&str, f64)]) -> Result<f64, Error> {
         let mut known = BTreeMap::new();
         for &(name, value) in inputs {
             known.insert(input_named(name, self.ast.dialect)?, value);
@@ -142,8 +141,8 @@ impl Expr {
     ///
     /// # Errors
     /// Those of [`Expr::eval`].
-    pub fn eval_with(&self, host: &dyn Host) -> Result<f64, Diagnostic> {
-        walk::value(&self.ast, host).map_err(|trouble| trouble.diagnostic(&self.text))
+    pub fn eval_with(&self, host: &dyn Host) -> Result<f64, Error> {
+        walk::value(&self.ast, host).map_err(|trouble| trouble.diagnostic(&self.text).into())
     }
 
     /// Returns its inputs, each once, in the order of the text. Delayed values are left out; the
@@ -191,20 +190,20 @@ impl Expr {
     ///
     /// # Errors
     /// A spline or curve that is not bound.
-    pub fn compile(&self, bindings: &Bindings) -> Result<Program, Diagnostic> {
+    pub fn compile(&self, bindings: &Bindings) -> Result<Program, Error> {
         compile(&[&self.ast], bindings).map_err(|mut said| {
             if let Some(span) = said.span {
                 let placed = super::advice::at(&self.text, said.code, "", span);
                 (said.line, said.column) = (placed.line, placed.column);
             }
-            said
+            said.into()
         })
     }
 }
 
 impl FromStr for Expr {
-    type Err = Diagnostic;
-    fn from_str(text: &str) -> Result<Self, Diagnostic> {
+    type Err = Error;
+    fn from_str(text: &str) -> Result<Self, Error> {
         Self::parse(text)
     }
 }

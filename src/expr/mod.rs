@@ -5,7 +5,7 @@
 //! let f = Expr::parse("STEP5(TIME, 0, 0, 1, 10) * SIN(2*PI*TIME)")?;
 //! let y = f.eval(&[("TIME", 0.25)])?;
 //! assert_eq!(y, 1.03515625);
-//! # Ok::<(), cognate::diagnostic::Diagnostic>(())
+//! # Ok::<(), cognate::Error>(())
 //! ```
 //!
 //! ```text

@@ -15,7 +15,7 @@ use super::Expr;
 use super::functions::Continuity;
 use super::interpolation::Bindings;
 use super::program::{Break, Builder, Folding, Input, Levels, Program, Value, Work};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Error;
 use crate::scalar::{Germ, ORDERS};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -31,7 +31,7 @@ use std::ops::RangeInclusive;
 /// assert_eq!(times, [1.0, 2.0]);
 /// assert_eq!(found.breakpoints[0].order, 2);
 /// assert_eq!(found.breakpoints[0].jump(2), 6.0);
-/// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+/// # Ok::<(), cognate::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothness {
@@ -158,7 +158,7 @@ impl Expr {
         &self,
         bindings: &Bindings,
         interval: RangeInclusive<f64>,
-    ) -> Result<Smoothness, Diagnostic> {
+    ) -> Result<Smoothness, Error> {
         Ok(smoothness(
             &self.compile(bindings)?,
             0,

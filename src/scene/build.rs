@@ -13,7 +13,7 @@ use super::loops::{self, Key};
 use super::sweep::Freedom;
 use super::unknown::UnknownId;
 use super::{ConstraintElement, CountedAngle, Entry, LinkMotion, RowKind, Scene, Source};
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::expr::interpolation::Bindings;
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
@@ -57,7 +57,7 @@ impl Scene {
     ///
     /// # Errors
     /// Everything that keeps the model from being solved, all at once.
-    pub fn compile(model: &Model, options: &Options) -> Result<Arc<Scene>, Vec<Diagnostic>> {
+    pub fn compile(model: &Model, options: &Options) -> Result<Arc<Scene>, Error> {
         let mut left_out = LeftOut::of(model, &options.skip, options.zero_user);
         let without = (!left_out.elements.is_empty()).then(|| {
             let mut model = model.clone();
@@ -122,7 +122,7 @@ impl Scene {
         if c.errors.is_empty() {
             Ok(Arc::new(b.scene))
         } else {
-            Err(c.errors)
+            Err(c.errors.into())
         }
     }
 }

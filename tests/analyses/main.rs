@@ -13,6 +13,7 @@ mod running;
 mod accuracy;
 mod allocations;
 mod delays;
+mod doors;
 mod energy;
 mod integrators;
 mod limits;

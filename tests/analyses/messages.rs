@@ -58,7 +58,9 @@ fn an_operand_without_value_stops_a_run_although_its_operation_would_lose_it() {
             let outcome = s.simulate(Analysis::Dynamic, 1.0, 3, &mut Unwatched);
             let said = match &outcome {
                 Ok(_) => s.run.record.stop_reason.clone(),
-                Err(errors) => errors.iter().map(ToString::to_string).collect(),
+                Err(errors) => (errors.diagnostics().iter())
+                    .map(ToString::to_string)
+                    .collect(),
             };
             assert!(
                 !matches!(outcome, Ok(Status::Completed)) && said.contains("SFORCE/7"),

@@ -87,7 +87,7 @@ pub fn rest(s: &mut Session) {
 /// Obeys all commands of a script, each of which must be done.
 pub fn obeys(s: &mut Session, script: &Script) {
     let status = obey(s, &script.steps, |_, _| (), &mut Unwatched)
-        .unwrap_or_else(|e| panic!("{}: {}", s.run.name, e[0]));
+        .unwrap_or_else(|e| panic!("{}: {}", s.run.name, e.first()));
     arrived(s, status);
 }
 
@@ -114,13 +114,14 @@ pub fn run(
 /// All that is said about a session that must be refused, asked for ten units of time.
 pub fn mistakes(s: &mut Session, analysis: Analysis) -> Vec<Diagnostic> {
     let end = s.time() + 10.0;
-    s.simulate(analysis, end, 10, &mut Unwatched)
-        .expect_err("a mistake")
+    let refused = s.simulate(analysis, end, 10, &mut Unwatched);
+    refused.expect_err("a mistake").into_diagnostics()
 }
 
 /// All that is said about a script of which a command cannot be obeyed.
 pub fn mistakes_of(s: &mut Session, script: &Script) -> Vec<Diagnostic> {
-    obey(s, &script.steps, |_, _| (), &mut Unwatched).expect_err("a mistake")
+    let refused = obey(s, &script.steps, |_, _| (), &mut Unwatched);
+    refused.expect_err("a mistake").into_diagnostics()
 }
 
 /// The first thing that is said about a model that cannot be run.

@@ -31,14 +31,14 @@ fn outcome(command: &str) -> String {
     let script = match Script::from_text(&text) {
         Ok(script) => script,
         Err(errors) => {
-            note(&mut said, &errors.0);
+            note(&mut said, errors.diagnostics());
             return said;
         }
     };
     note(&mut said, &script.diagnostics);
     let mut s: Session = running::session(MODEL, &["DX(20,1)", "VX(20,1)"], 1e-6);
     match obey(&mut s, &script.steps, |_, _| (), &mut Unwatched) {
-        Err(errors) => note(&mut said, &errors),
+        Err(errors) => note(&mut said, errors.diagnostics()),
         Ok(status) => {
             let _ = writeln!(said, "{status:?}");
         }

@@ -21,7 +21,7 @@ fn model(statements: &str) -> Model {
     assert!(
         reading.diagnostics.is_empty(),
         "{}",
-        dataset::Errors(reading.diagnostics)
+        cognate::Error::from(reading.diagnostics)
     );
     reading.model
 }
@@ -594,7 +594,7 @@ fn each_bad_input_gets_its_message() {
         for d in &found {
             assert!(is_placed(d), "{}: {d}", path.display());
         }
-        let printed = format!("{}\n", dataset::Errors(found));
+        let printed = format!("{}\n", cognate::Error::from(found));
         let beside = path.with_extension("txt");
         if std::env::var_os("BLESS").is_some() {
             std::fs::write(&beside, &printed).unwrap();
@@ -809,13 +809,13 @@ fn a_command_that_does_not_fit_leaves_the_model_as_it_was() {
     let before = m.clone();
     for text in ["\nVARIABLE/52, FUN=1", "\nDEACTIVATE/JOINT, ID=2"] {
         let e = m.apply(&script(text).steps[0].command).unwrap_err();
-        assert_eq!(e.0[0].code, "unknown_element");
+        assert_eq!(e.first().code, "unknown_element");
         assert_eq!(m, before);
     }
     let e = m
         .apply(&script("\nVARIABLE/52, FUN=1").steps[0].command)
         .unwrap_err();
-    assert_eq!(e.0[0].help, ["did you mean 51?"]);
+    assert_eq!(e.first().help, ["did you mean 51?"]);
 }
 
 #[test]
@@ -852,7 +852,7 @@ fn commands_continue_like_statements() {
 #[test]
 fn mistakes_in_commands_are_reported_with_their_lines() {
     let e = Script::from_text("\nsim/dyn\nSIMULATE/DYNAMIC, END=1, DURATION=2\nfoo/bar\nDEACTIVATE/NOTHING, ID=1\nsim/dyn, end=1, steps=0\n").unwrap_err();
-    let found: Vec<_> = e.0.iter().map(|d| (d.line, d.code)).collect();
+    let found: Vec<_> = e.diagnostics().iter().map(|d| (d.line, d.code)).collect();
     assert_eq!(
         found,
         [

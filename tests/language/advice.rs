@@ -9,7 +9,7 @@ use cognate::expr::Expr;
 /// What is said of a text: its mistake, or its warnings.
 fn said(text: &str) -> Vec<Diagnostic> {
     match Expr::parse(text) {
-        Err(d) => vec![d],
+        Err(error) => error.into_diagnostics(),
         Ok(expr) => expr.warnings(),
     }
 }

@@ -117,7 +117,7 @@ fn duals_jets_and_batches_carry_the_value_to_the_bit() {
         };
         let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         let mut results = [f64::NAN; 70];
-        program.batch().run(&columns, &mut [&mut results]);
+        (program.batch().run(&columns, &mut [&mut results])).expect("columns that fit");
         assert!(
             same(results[69]),
             "{ast}: batch {} and {value}",
@@ -349,7 +349,9 @@ fn evaluating_allocates_nothing() {
             gradient.run(&inputs, &mut other, &mut all);
             program.eval(&duals, &mut dual, &mut dual_out);
             program.eval(&jets, &mut jet, &mut jet_out);
-            batch.run(&columns, &mut [&mut column]);
+            batch
+                .run(&columns, &mut [&mut column])
+                .expect("columns that fit");
         };
         for engine in ENGINES {
             let of = |program: &Program| program.with_engine(engine);

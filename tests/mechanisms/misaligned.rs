@@ -80,7 +80,9 @@ fn outcome(text: &str, analysis: Analysis) -> (Option<usize>, bool, Vec<String>)
         Err(errors) => (
             freedom,
             false,
-            errors.iter().map(ToString::to_string).collect(),
+            (errors.diagnostics().iter())
+                .map(ToString::to_string)
+                .collect(),
         ),
     }
 }

@@ -11,7 +11,6 @@ mod cli;
 mod cli_eval;
 mod manual;
 mod plots;
-mod readme;
 mod report;
 mod results;
 mod written;

@@ -2,7 +2,6 @@
 
 use crate::running::{self, Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
-use cognate::diagnostic::Diagnostic;
 use cognate::results::Status;
 
 /// What must come out of a scene.
@@ -143,14 +142,16 @@ impl Scene {
     /// How a session that has ended came out, and a sentence about the worst of it.
     fn judged(
         &self,
-        status: Result<Status, Vec<Diagnostic>>,
+        status: Result<Status, cognate::Error>,
         session: &Session,
         error: f64,
     ) -> (Outcome, String) {
         let (ended, said): (Outcome, Vec<String>) = match status {
             Err(errors) => (
                 Outcome::Stopped,
-                errors.iter().map(ToString::to_string).collect(),
+                (errors.diagnostics().iter())
+                    .map(ToString::to_string)
+                    .collect(),
             ),
             Ok(Status::Completed) => (Outcome::Right, Vec::new()),
             Ok(Status::Limit) => (

@@ -9,7 +9,7 @@ use crate::analysis::accuracy::{
 };
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Error;
 use crate::results::{ChannelAccuracy, Run, Status};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -109,7 +109,7 @@ impl Session {
     pub(super) fn follow(
         &mut self,
         begun: Begun,
-        simulate: impl FnOnce(&mut Session) -> Result<Status, Vec<Diagnostic>>,
+        simulate: impl FnOnce(&mut Session) -> Result<Status, Error>,
     ) {
         let Some(mut companion) = self.companion.take() else {
             return;

@@ -8,7 +8,7 @@ use crate::analysis::time::output::Output;
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::{Limited, WorkLimit};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Error};
 use crate::numeric::{Ode, Stats};
 use crate::results::{self, Kind, Status};
 use crate::scene::layout::Layout;
@@ -184,14 +184,14 @@ impl Session {
     /// [`Status::Limit`].
     ///
     /// # Errors
-    /// Mistakes in the model. A numerical failure is no error: see the record.
+    /// Those of [`Session::simulate`], and distances of output times that are not positive.
     pub fn simulate_with(
         &mut self,
         analysis: Analysis,
         end: f64,
         output: Output,
         watch: &mut dyn Watch,
-    ) -> Result<Status, Vec<Diagnostic>> {
+    ) -> Result<Status, Error> {
         let Some(limit) = self.limit else {
             return self.simulate_within(analysis, end, output, watch);
         };

@@ -4,6 +4,7 @@
 //! one), computes, and appends its rows to the run. What goes wrong in numbers is an outcome in
 //! the record, with the results so far; what is wrong in the model is an error.
 
+mod arguments;
 mod at_rest;
 mod carried;
 pub mod columns;
@@ -31,7 +32,7 @@ use crate::analysis::system::{System, closures};
 use crate::analysis::time::output::Output;
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::WorkLimit;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Error;
 use crate::expr::program::Program;
 use crate::model::{ElementKind, Model};
 use crate::results::{Event, Run, Status};
@@ -243,8 +244,8 @@ impl Session {
     ///
     /// # Errors
     /// Mistakes in the model, and functions without derivatives.
-    pub fn linearize(&mut self, wanted: &linear::Wanted) -> Result<Linearization, Vec<Diagnostic>> {
-        let inputs = linear::inputs(&self.model, wanted).map_err(|d| vec![d])?;
+    pub fn linearize(&mut self, wanted: &linear::Wanted) -> Result<Linearization, Error> {
+        let inputs = linear::inputs(&self.model, wanted).map_err(Error::from)?;
         let (mut system, assembly) = self.prepare(LINEAR, &inputs)?;
         self.first_facts(&system, &assembly);
         let found = linear::linearize(&mut system, &self.model, wanted)?;
@@ -254,17 +255,21 @@ impl Session {
         Ok(found)
     }
 
-    /// Runs one simulation up to `end` with `steps` output steps.
+    /// Runs one simulation up to `end` with `steps` output steps at equal distances, at least one.
+    ///
+    /// `end` is absolute time, in the unit of the model. A numerical failure is no error but a
+    /// [`Status`], with the results so far: see the record of [`Session::run`].
     ///
     /// # Errors
-    /// Mistakes in the model. A numerical failure is no error: see the record.
+    /// Mistakes in the model ([`Model::check`]), in the options and in the names of closures, and an
+    /// end that is not finite or has passed.
     pub fn simulate(
         &mut self,
         analysis: Analysis,
         end: f64,
         steps: usize,
         watch: &mut dyn Watch,
-    ) -> Result<Status, Vec<Diagnostic>> {
+    ) -> Result<Status, Error> {
         self.simulate_with(analysis, end, Output::Steps(steps), watch)
     }
 }

@@ -7,7 +7,7 @@ use crate::analysis::time::output::Output;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Linear, Simulate, SimulationKind, Step};
-use crate::diagnostic::{Cause, Diagnostic};
+use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::model::ElementKind;
 use crate::results::{Event, Status};
 
@@ -29,7 +29,7 @@ impl Simulate {
     ///
     /// # Errors
     /// When a simulation over time has no end, or no time to go.
-    pub fn resolved(&self, now: f64) -> Result<(Analysis, f64, Output), Diagnostic> {
+    pub fn resolved(&self, now: f64) -> Result<(Analysis, f64, Output), Error> {
         let analysis = match self.kind {
             SimulationKind::Kinematic => Analysis::Kinematic,
             SimulationKind::Dynamic => Analysis::Dynamic,
@@ -42,7 +42,9 @@ impl Simulate {
         let Some(end) = end else {
             if over_time {
                 let d = Diagnostic::error("no_end", "the simulation has no end");
-                return Err(d.help("give END, the time at which it ends, or DURATION"));
+                return Err(d
+                    .help("give END, the time at which it ends, or DURATION")
+                    .into());
             }
             return Ok((analysis, now, Output::Steps(1)));
         };
@@ -50,7 +52,8 @@ impl Simulate {
         if goes_back || over_time && (end <= now || !end.is_finite()) {
             let message = format!("the simulation should end at {end}, but the clock shows {now}");
             return Err(Diagnostic::error("no_end", message)
-                .help("END is absolute time; DURATION counts from here"));
+                .help("END is absolute time; DURATION counts from here")
+                .into());
         }
         let output = match (self.steps, self.dtout) {
             (Some(steps), _) => Output::Steps(steps.max(1) as usize),
@@ -89,7 +92,7 @@ pub fn obey(
     steps: &[Step],
     mut before: impl FnMut(f64, f64),
     watch: &mut dyn Watch,
-) -> Result<Status, Vec<Diagnostic>> {
+) -> Result<Status, Error> {
     let mut status = Status::Completed;
     let changed = steps.iter().filter_map(|s| match &s.command {
         Command::Change(record) if record.row.kind() == Some(ElementKind::Variable) => record.id,
@@ -109,7 +112,7 @@ pub fn obey(
             }
             Command::Change(_) | Command::Activate { .. } => {
                 let applied = session.model.apply(&step.command);
-                applied.map_err(|e| e.0.into_iter().map(located).collect::<Vec<_>>())?;
+                applied.map_err(|e| e.map(located))?;
             }
             Command::Stop => break,
             Command::Show(_) => {}
@@ -120,15 +123,16 @@ pub fn obey(
             }
             Command::Reload(Some(name)) => {
                 let saved = found(session, name)
+                    .map_err(Error::from)
                     .and_then(|bytes| Saved::read(&bytes))
                     .and_then(|saved| session.reload(saved));
-                saved.map_err(|d| vec![located(d)])?;
+                saved.map_err(|e| e.map(located))?;
             }
             Command::Save(None) | Command::Reload(None) => {
                 let d = Diagnostic::error("missing_argument", "SYSTEM = file is needed");
-                return Err(vec![located(d)]);
+                return Err(located(d).into());
             }
-            Command::File { .. } => return Err(vec![located(second_file())]),
+            Command::File { .. } => return Err(located(second_file()).into()),
         }
     }
     Ok(status)
@@ -158,7 +162,7 @@ impl Session {
         step: &Step,
         before: &mut impl FnMut(f64, f64),
         watch: &mut dyn Watch,
-    ) -> Result<Option<Status>, Vec<Diagnostic>> {
+    ) -> Result<Option<Status>, Error> {
         let now = self.time();
         if simulate.is_over(now) {
             self.warn(RunWarning::NothingToSimulate {
@@ -168,13 +172,13 @@ impl Session {
             return Ok(None);
         }
         let resolved = simulate.resolved(now);
-        let (analysis, end, output) = resolved.map_err(|d| vec![located(d, step)])?;
+        let (analysis, end, output) = resolved.map_err(|e| e.map(|d| located(d, step)))?;
         before(now, end);
         self.simulate_with(analysis, end, output, watch).map(Some)
     }
 
     /// Obeys LINEAR.
-    fn obey_linear(&mut self, command: &Linear) -> Result<(), Vec<Diagnostic>> {
+    fn obey_linear(&mut self, command: &Linear) -> Result<(), Error> {
         let shapes = match command.coords[..] {
             [] => None,
             [only] => Some([only as usize; 2]),

@@ -8,11 +8,11 @@ use super::{Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::analysis::time::drives;
-use crate::analysis::time::output::{self, Output};
+use crate::analysis::time::output::Output;
 use crate::analysis::verify::massless::massless;
 use crate::analysis::warning::{RunWarning, Warning};
 use crate::analysis::watch::Watch;
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::expr::program::Program;
 use crate::model::ElementKind;
 use crate::results::{Event, Kind, Status};
@@ -43,7 +43,7 @@ impl Session {
         end: f64,
         output: Output,
         watch: &mut dyn Watch,
-    ) -> Result<Status, Vec<Diagnostic>> {
+    ) -> Result<Status, Error> {
         if !self.options.accuracy {
             return self.simulate_alone(analysis, end, output, watch);
         }
@@ -68,12 +68,22 @@ impl Session {
         end: f64,
         output: Output,
         watch: &mut dyn Watch,
-    ) -> Result<Status, Vec<Diagnostic>> {
+    ) -> Result<Status, Error> {
         self.last = Integrated::default();
         // what is asked for
-        self.check_method()?;
-        self.check_settings()?;
-        check_output(output.count(self.time(), end))?;
+        let asked = [
+            self.check_method(),
+            self.check_settings(),
+            self.check_times(analysis, end, output),
+        ];
+        let wrong: Vec<Diagnostic> = asked
+            .into_iter()
+            .filter_map(Result::err)
+            .flatten()
+            .collect();
+        if !wrong.is_empty() {
+            return Err(wrong.into());
+        }
         // the system in its state, and which analysis moves it
         let (mut system, assembly, analysis) = self.begin(analysis)?;
         self.check_masses(&system, analysis)?;
@@ -246,16 +256,6 @@ impl Session {
         self.columns_program = Some(program.clone());
         Ok(program)
     }
-}
-
-fn check_output(asked: usize) -> Result<(), Vec<Diagnostic>> {
-    if asked <= output::MOST {
-        return Ok(());
-    }
-    Err(vec![
-        Diagnostic::error("unfit_value", format!("{asked} output steps are too many"))
-            .help(format!("a simulation has {} at most", output::MOST)),
-    ])
 }
 
 fn has_freedom(freedom: usize) -> Diagnostic {

@@ -107,6 +107,8 @@ impl Session {
             return Ok(again);
         }
         (self.columns_program, self.row_values) = (None, None);
+        self.model.checked()?;
+        self.check_closures()?;
         self.within_limit(SetUp::Reading)?;
         let phase = Phase::begin();
         let (scene, moved) = self.compile(mode, inputs)?;

@@ -9,7 +9,7 @@ use super::carried::Carried;
 use crate::analysis::system::past::Past;
 use crate::analysis::system::samples::Held;
 use crate::dataset;
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::scene::history::{AngleId, DelayId};
 use crate::scene::unknown::{MotionState, UnknownId};
@@ -47,12 +47,13 @@ impl Saved {
     ///
     /// # Errors
     /// Bytes that are no state: also the binary files that Adams saves.
-    pub fn read(bytes: &[u8]) -> Result<Self, Diagnostic> {
+    pub fn read(bytes: &[u8]) -> Result<Self, Error> {
         let text = std::str::from_utf8(bytes).ok();
         let value: Option<Value> = text.and_then(|t| serde_json::from_str(t).ok());
         let Some(value) = value.filter(|v| v.get(MARK).is_some()) else {
             let d = Diagnostic::error("not_a_state", "is no state that cognate has saved");
-            return Err(d.help("what Adams saves is an image of its memory, whose layout is nowhere described: obey the commands that led there, and SAVE here"));
+            return Err(d.help("what Adams saves is an image of its memory, whose layout is nowhere described: obey the commands that led there, and SAVE here")
+                .into());
         };
         let wrong =
             |what: &str| Diagnostic::error("not_a_state", format!("its {what} cannot be read"));
@@ -61,7 +62,7 @@ impl Saved {
                 "is a state of form {}, this program reads form {VERSION}",
                 value[MARK]
             );
-            return Err(Diagnostic::error("not_a_state", what));
+            return Err(Diagnostic::error("not_a_state", what).into());
         }
         let text = value["model"].as_str().ok_or_else(|| wrong("model"))?;
         let reading = dataset::read_text(text);
@@ -70,14 +71,14 @@ impl Saved {
             .into_iter()
             .find(|d| d.severity == Severity::Error)
         {
-            return Err(d);
+            return Err(d.into());
         }
         let mut model = reading.model;
         for pair in value["inactive"].as_array().into_iter().flatten() {
             let number = pair[1].as_u64().and_then(|id| u32::try_from(id).ok());
             let kind = pair[0].as_str().and_then(|k| ElementKind::from_str(k).ok());
             let (Some(kind), Some(number)) = (kind, number) else {
-                return Err(wrong("inactive elements"));
+                return Err(wrong("inactive elements").into());
             };
             model.inactive.insert(kind.id(number));
         }
@@ -114,7 +115,7 @@ impl Session {
     ///
     /// # Errors
     /// When the model of the state asks for other results than those that this run already has.
-    pub fn reload(&mut self, saved: Saved) -> Result<(), Diagnostic> {
+    pub fn reload(&mut self, saved: Saved) -> Result<(), Error> {
         let Saved { model, carried } = saved;
         // as written, without the places they were read from
         let asked = |model: &Model| {
@@ -131,7 +132,8 @@ impl Session {
                 "not_a_state",
                 "its model has other requests than the results so far",
             );
-            return Err(d.help("a run has one table: reload before the first simulation, or in a command file of its own"));
+            return Err(d.help("a run has one table: reload before the first simulation, or in a command file of its own")
+                .into());
         }
         let fresh = self.run.rows() == 0 && !same;
         self.model = model;

@@ -18,7 +18,7 @@ mod written;
 
 use crate::analysis::system::System;
 use crate::analysis::system::closures::Closures;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Error};
 use crate::numeric::{Dae, Failure, Kind, Levels, Ode, Relation};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
@@ -183,7 +183,7 @@ impl System {
     ///
     /// # Errors
     /// Functions that read what is solved for.
-    pub fn make_implicit(&mut self, formulation: Formulation) -> Result<(), Vec<Diagnostic>> {
+    pub fn make_implicit(&mut self, formulation: Formulation) -> Result<(), Error> {
         let implicit = self.recorded.implicit.as_ref();
         if implicit.is_none_or(|i| i.formulation != formulation) {
             let here = self.scene.within(&self.configuration);

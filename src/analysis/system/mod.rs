@@ -34,7 +34,7 @@ pub(super) mod time_events;
 mod tunnelling;
 pub mod turns;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Error};
 use crate::numeric::Ode;
 use crate::scalar::Dual;
 use crate::scene::broken::{Broken, broken};
@@ -89,7 +89,7 @@ impl System {
     ///
     /// # Errors
     /// Functions that the equations cannot supply.
-    pub fn new(scene: Arc<Scene>, configuration: Configuration) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(scene: Arc<Scene>, configuration: Configuration) -> Result<Self, Error> {
         Self::with_hooks(scene, configuration, &[])
     }
 
@@ -101,7 +101,7 @@ impl System {
         scene: Arc<Scene>,
         mut configuration: Configuration,
         hooks: &[Hook],
-    ) -> Result<Self, Vec<Diagnostic>> {
+    ) -> Result<Self, Error> {
         let lent_inertia = recorded::lent_inertia(scene.within(&configuration));
         configuration.elimination = Elimination {
             lent_inertia,
@@ -128,7 +128,7 @@ impl System {
     ///
     /// # Errors
     /// Functions that the equations cannot supply; then the system stays as it is.
-    pub fn reselect(&mut self, active: Vec<bool>) -> Result<(), Vec<Diagnostic>> {
+    pub fn reselect(&mut self, active: Vec<bool>) -> Result<(), Error> {
         let mut configuration = self.configuration.clone();
         configuration.active = active;
         let q = &self.numbers[self.scene.layout.q()];

@@ -179,7 +179,7 @@ pub fn there(
             .ok()
             .and_then(|e| e.eval_with(&host).err());
         let loss = match said {
-            Some(d) if d.is(Cause::Domain) => Loss::Domain(d.message),
+            Some(d) if d.is(Cause::Domain) => Loss::Domain(d.into_first().message),
             _ => Loss::NotFinite,
         };
         Some(Valueless {

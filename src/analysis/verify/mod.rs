@@ -29,7 +29,7 @@ use crate::analysis::start::dataset::Dataset;
 use crate::analysis::start::nearby::Place;
 use crate::analysis::start::{initial_conditions, misalignment, placement, velocities};
 use crate::analysis::warning::{VerificationWarning, Warning};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Error};
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
 use crate::model::{ElementId, ElementKind, Family, Formula, Level, Model};
@@ -268,7 +268,8 @@ fn counted(model: &Model) -> Vec<(String, usize, usize)> {
 /// # Errors
 /// Mistakes that keep the model from being assembled at all. Rows that contradict each other are no
 /// such error.
-pub fn verify(model: &Model) -> Result<Verification, Vec<Diagnostic>> {
+pub fn verify(model: &Model) -> Result<Verification, Error> {
+    model.checked()?;
     // the model without all that has no influence on its freedoms
     let mut model = skeleton(model);
     let mut warnings = Vec::new();

@@ -8,7 +8,7 @@ use crate::analysis::verify::culprit::blamed;
 use crate::analysis::verify::idle::{Idle, idle};
 use crate::analysis::verify::{stand_still, start};
 use crate::analysis::warning::{AssemblyWarning, Warning};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Error;
 use crate::model::{ElementId, ElementKind, Family, Formula, Model};
 use crate::scene::build::Options;
 use crate::scene::configuration::Configuration;
@@ -73,7 +73,8 @@ pub(in crate::analysis) fn pushing() -> BTreeSet<ElementKind> {
 ///
 /// # Errors
 /// Mistakes that keep the model from being solved.
-pub fn outline(model: &Model) -> Result<Outline, Vec<Diagnostic>> {
+pub fn outline(model: &Model) -> Result<Outline, Error> {
+    model.checked()?;
     let mut model = model.clone();
     let mut taken_for_granted = Vec::new();
     let inputs = inputs(&model);

@@ -7,7 +7,7 @@ use crate::analysis::session::script::obey;
 use crate::analysis::session::{Options, Session};
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::ProcessorClock;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Error;
 use crate::results::{Counts, Kind, Record, Run, Status, csv};
 use std::time::Instant;
 
@@ -42,7 +42,7 @@ pub(super) fn attempt(
     (method, request): (&str, f64),
     limit: f64,
     watch: &mut dyn Watch,
-) -> Result<Attempt, Vec<Diagnostic>> {
+) -> Result<Attempt, Error> {
     let options = |repeat| Options {
         error: Some(request),
         method: Some(method.to_string()),
@@ -119,7 +119,7 @@ fn once(
     question: &Question<'_>,
     options: Options,
     watch: &mut dyn Watch,
-) -> Result<(Session, Seconds), Vec<Diagnostic>> {
+) -> Result<(Session, Seconds), Error> {
     let (clock, passing) = (ProcessorClock::start(), Instant::now());
     let mut session = Session::new(question.model.clone(), &question.name, options);
     session.folders.clone_from(&question.folders);

@@ -4,7 +4,7 @@ use super::attempt::{Attempt, attempt};
 use super::distance::{self, Candidate, Table};
 use super::{Cost, Error, LeftOut, Outcome, Question, Reason, Reference, Row, Study};
 use crate::analysis::watch::Watch;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic;
 use crate::numeric::METHODS;
 use crate::results::Status;
 
@@ -66,7 +66,7 @@ struct Survey<'a> {
 ///
 /// # Errors
 /// The model cannot be run by the first method at the first request.
-pub fn survey(question: &Question<'_>, watch: &mut dyn Watch) -> Result<Study, Vec<Diagnostic>> {
+pub fn survey(question: &Question<'_>, watch: &mut dyn Watch) -> Result<Study, diagnostic::Error> {
     let mut survey = Survey {
         question,
         watch,
@@ -90,7 +90,7 @@ impl Survey<'_> {
     ///
     /// # Errors
     /// The model cannot be run.
-    fn begin(&mut self, request: f64) -> Result<(), Vec<Diagnostic>> {
+    fn begin(&mut self, request: f64) -> Result<(), diagnostic::Error> {
         let names = &self.question.methods;
         let first = names.first().map_or("AUTO", String::as_str);
         let attempt = attempt(self.question, (first, request), self.limit(), self.watch)?;
@@ -143,8 +143,7 @@ impl Survey<'_> {
         let request = self.question.requests[series.next];
         let by = (series.method.as_str(), request);
         let found = attempt(self.question, by, self.limit(), self.watch);
-        let refused =
-            |errors: Vec<Diagnostic>| errors.first().map_or_else(String::new, ToString::to_string);
+        let refused = |error: diagnostic::Error| error.first().to_string();
         self.take(k, request, found.map_err(refused));
     }
 

@@ -166,7 +166,7 @@ mod tests {
         let typed = "w*FOO + w";
         let expansion = names(&[("W", "2*PI")]).expand(typed);
         assert_eq!(expansion.text, "(2*PI)*FOO + (2*PI)");
-        let said = expansion.as_typed(Expr::parse(&expansion.text).unwrap_err());
+        let said = expansion.as_typed(Expr::parse(&expansion.text).unwrap_err().into_first());
         assert_eq!((said.span, said.column), (Some(Span::new(2, 5)), 3));
         assert!(!said.help.iter().any(|h| h.contains("stands for")));
     }
@@ -176,7 +176,7 @@ mod tests {
         let typed = "1 + root*2";
         let expansion = names(&[("ROOT", "SQRT(TIME-1)")]).expand(typed);
         let expr = Expr::parse(&expansion.text).unwrap();
-        let said = expansion.as_typed(expr.eval(&[("TIME", 0.0)]).unwrap_err());
+        let said = expansion.as_typed(expr.eval(&[("TIME", 0.0)]).unwrap_err().into_first());
         assert_eq!(said.span, Some(Span::new(4, 8)));
         assert_eq!(said.help, ["root stands for SQRT(TIME-1)"]);
     }
@@ -185,7 +185,7 @@ mod tests {
     fn the_end_of_the_text_stays_its_end() {
         for typed in ["2*(w", "2*(w +", "MAX(w, w"] {
             let expansion = names(&[("W", "1")]).expand(typed);
-            let said = expansion.as_typed(Expr::parse(&expansion.text).unwrap_err());
+            let said = expansion.as_typed(Expr::parse(&expansion.text).unwrap_err().into_first());
             assert_eq!(said.span, Some(Span::new(typed.len(), typed.len())));
         }
     }

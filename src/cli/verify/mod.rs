@@ -7,7 +7,7 @@ use super::{Exit, Failure, Outcome, complain_in_files, remark, say};
 use crate::analysis::verify::{Verification, verify};
 use crate::dataset::Dataset;
 use crate::dataset::command::Command;
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::model::Model;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -69,7 +69,7 @@ pub fn model_of(path: &Path) -> Result<(Model, Dataset), Failure> {
         match &step.command {
             Command::Simulate(_) => break,
             command => {
-                let wrong = |e: crate::dataset::Errors| Failure::in_files(Exit::Input, e.0);
+                let wrong = |e: Error| Failure::in_files(Exit::Input, e.into());
                 model.apply(command).map_err(wrong)?;
             }
         }

@@ -20,9 +20,9 @@ impl Model {
     ///     model.apply(&step.command)?;
     /// }
     /// assert!(format!("{:?}", model.variables[&5].function).contains("TIME**2"));
-    /// # Ok::<(), cognate::dataset::Errors>(())
+    /// # Ok::<(), cognate::Error>(())
     /// ```
-    pub fn apply(&mut self, command: &Command) -> Result<(), Errors> {
+    pub fn apply(&mut self, command: &Command) -> Result<(), Error> {
         match command {
             Command::Change(record) => self.change(record),
             Command::Activate {
@@ -41,7 +41,7 @@ impl Model {
         }
     }
 
-    fn change(&mut self, record: &Record) -> Result<(), Errors> {
+    fn change(&mut self, record: &Record) -> Result<(), Error> {
         let arguments = record.row.arguments();
         let mut record = record.clone();
         // LIST asks for a print, DEFAULT for the documented values; neither is a setting.
@@ -68,7 +68,7 @@ impl Model {
             (d.span, d.line, d.column) =
                 (None, record.place.line, usize::from(record.place.line > 0));
         }
-        Err(Errors(out))
+        Err(out.into())
     }
 
     fn activate(
@@ -77,7 +77,7 @@ impl Model {
         kind: ElementKind,
         ids: &[u32],
         range: Option<[u32; 2]>,
-    ) -> Result<(), Errors> {
+    ) -> Result<(), Error> {
         let known = self.numbers(kind);
         let missing = |id: &&u32| !known.contains(id);
         let mut out = Vec::new();
@@ -88,7 +88,7 @@ impl Model {
             out.push(d);
         }
         if !out.is_empty() {
-            return Err(Errors(out));
+            return Err(out.into());
         }
         let in_range = |id: &u32| range.is_some_and(|[a, b]| (a..=b).contains(id));
         let of_range = known.iter().copied().filter(in_range);

@@ -11,7 +11,7 @@ enum Note {
     End,
 }
 
-pub(super) fn of_message_log(log: &Source) -> Result<Script, Errors> {
+pub(super) fn of_message_log(log: &Source) -> Result<Script, Error> {
     // Commands stay where they are, everything else is blanked: all places stay.
     let mut text = String::with_capacity(log.text.len());
     let mut notes = Vec::new();

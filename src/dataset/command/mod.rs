@@ -17,8 +17,8 @@ use super::row::{Argument, Meaning, Problem, Record, Statement, meaning, near_id
 use super::statement::STATEMENTS;
 use super::syntax::{self, Item, Source, Syntax};
 use super::value::Kind;
-use super::{Errors, enter, load};
-use crate::diagnostic::{Diagnostic, Severity, Span};
+use super::{enter, load};
+use crate::diagnostic::{Diagnostic, Error, Severity, Span};
 use crate::model::{ElementKind, Model, SettingsStatement};
 use interpret::{COMMANDS, interpret};
 use message_log::of_message_log;
@@ -173,7 +173,7 @@ impl Script {
     ///
     /// # Errors
     /// Every mistake with its place. Warnings are in [`Script::diagnostics`].
-    pub fn read(path: impl AsRef<Path>) -> Result<Script, Errors> {
+    pub fn read(path: impl AsRef<Path>) -> Result<Script, Error> {
         read_called(path.as_ref(), 0)
     }
 
@@ -181,7 +181,7 @@ impl Script {
     ///
     /// # Errors
     /// As [`Script::read`].
-    pub fn from_text(text: &str) -> Result<Script, Errors> {
+    pub fn from_text(text: &str) -> Result<Script, Error> {
         of_source(&Source::from_text(None, text))
     }
 
@@ -192,7 +192,7 @@ impl Script {
     ///
     /// # Errors
     /// As [`Script::read`].
-    pub fn from_message_log(path: impl AsRef<Path>) -> Result<Script, Errors> {
+    pub fn from_message_log(path: impl AsRef<Path>) -> Result<Script, Error> {
         let path = path.as_ref();
         let file = path.display().to_string();
         let log = Source::from_bytes(Some(&file), &load(path)?);
@@ -205,7 +205,7 @@ impl Script {
     ///
     /// # Errors
     /// As [`Script::read`].
-    pub fn from_message_log_text(text: &str) -> Result<Script, Errors> {
+    pub fn from_message_log_text(text: &str) -> Result<Script, Error> {
         of_message_log(&Source::from_text(None, text))
     }
 
@@ -264,7 +264,7 @@ fn existing(path: PathBuf) -> PathBuf {
 /// Files that call each other endlessly stop here.
 const MAX_CALLS: usize = 16;
 
-fn read_called(path: &Path, depth: usize) -> Result<Script, Errors> {
+fn read_called(path: &Path, depth: usize) -> Result<Script, Error> {
     let file = path.display().to_string();
     let source = Source::from_bytes(Some(&file), &load(path)?);
     let mut script = of_source(&source)?;
@@ -283,7 +283,7 @@ fn read_called(path: &Path, depth: usize) -> Result<Script, Errors> {
             let mut d =
                 Diagnostic::error("endless_calls", "command files call each other too deeply");
             (d.file, d.line, d.column) = (Some(file), step.line, 1);
-            return Err(Errors(vec![d]));
+            return Err(Error::from(d));
         }
         let called = path.parent().unwrap_or(Path::new("")).join(called);
         let inner = read_called(&called, depth + 1)?;
@@ -296,7 +296,7 @@ fn read_called(path: &Path, depth: usize) -> Result<Script, Errors> {
     Ok(script)
 }
 
-fn of_source(source: &Source) -> Result<Script, Errors> {
+fn of_source(source: &Source) -> Result<Script, Error> {
     let mut script = Script::default();
     let mut body = source.clone();
     if let Some(spans) = prompt_answers(source) {
@@ -346,11 +346,11 @@ fn end_at_stop(text: &mut String) {
     }
 }
 
-fn finish(mut script: Script, mut out: Vec<Diagnostic>) -> Result<Script, Errors> {
+fn finish(mut script: Script, mut out: Vec<Diagnostic>) -> Result<Script, Error> {
     out.sort_by_key(|d| (d.line, d.column));
     if out.iter().any(|d| d.severity == Severity::Error) {
         out.retain(|d| d.severity == Severity::Error);
-        return Err(Errors(out));
+        return Err(out.into());
     }
     script.diagnostics.extend(out);
     Ok(script)

@@ -22,7 +22,7 @@ use crate::diagnostic::{Diagnostic, Severity, Span};
 /// let text = "10*SIN(30)";
 /// let warnings = lint(&parse(text, Dialect::Function, Profile::Adams)?, text);
 /// assert_eq!((warnings[0].code, warnings[0].column), ("degrees_or_radians", 4));
-/// # Ok::<(), cognate::diagnostic::Diagnostic>(())
+/// # Ok::<(), cognate::Error>(())
 /// ```
 pub fn lint(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     let mut doubts: Vec<Doubt> = typing::doubts(ast.dialect, text);

@@ -8,6 +8,7 @@
 use super::code::{Code, Instruction, gathered, partial};
 use super::operation::{BinaryOp, Comparison, UnaryOp, from_mask};
 use super::run::Program;
+use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::expr::functions::Function;
 use crate::expr::functions::prepared::{self, Prepared};
 use crate::expr::functions::step::{cubic, quintic};
@@ -36,8 +37,9 @@ struct Block([Vector; VECTORS]);
 /// let product = builder.binary(BinaryOp::Mul, x, y);
 /// let mut batch = builder.finish(&[product]).batch();
 /// let mut out = [0.0; 3];
-/// batch.run(&[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0]], &mut [&mut out]);
+/// batch.run(&[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0]], &mut [&mut out])?;
 /// assert_eq!(out, [4.0, 10.0, 18.0]);
+/// # Ok::<(), cognate::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Batch {
@@ -182,37 +184,26 @@ impl Batch {
     }
 
     /// Runs over columns: one per input of the program, in its order, and one per output wanted.
-    /// Allocates nothing.
+    /// Allocates nothing. A point without a value is NaN or infinite.
     ///
-    /// # Panics
-    ///
-    /// When there are fewer input columns or more output columns than the program has, or an input
-    /// column is shorter than the longest output column.
-    pub fn run(&mut self, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) {
+    /// # Errors
+    /// Fewer input columns or more output columns than the program has, or an input column that is
+    /// shorter than the longest output column.
+    pub fn run(&mut self, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) -> Result<(), Error> {
         let n = outputs.iter().map(|out| out.len()).max().unwrap_or(0);
-        assert!(
-            inputs.len() >= self.program.inputs().len(),
-            "the program reads {} inputs",
-            self.program.inputs().len()
-        );
-        assert!(
-            outputs.len() <= self.program.n_outputs(),
-            "the program has {} outputs",
-            self.program.n_outputs()
-        );
-        assert!(
-            self.program
-                .core()
-                .used
-                .iter()
-                .all(|&k| inputs[k as usize].len() >= n),
-            "an input column is too short"
-        );
+        self.program.check_counts(inputs.len(), outputs.len())?;
+        let mut used = self.program.core().used.iter().map(|&k| k as usize);
+        if let Some(k) = used.find(|&k| inputs[k].len() < n) {
+            let (input, had) = (self.program.inputs()[k], inputs[k].len());
+            let what = format!("the column of {input} has {had} values for {n} points");
+            return Err(Diagnostic::error(Cause::MissingValue, what).into());
+        }
         for start in (0..n).step_by(BLOCK) {
             self.enter(inputs, start, n);
             self.run_block();
             self.leave(outputs, start);
         }
+        Ok(())
     }
 
     /// Copies the inputs of a block into their registers.
@@ -478,7 +469,7 @@ mod tests {
                 .collect();
             let mut out = vec![vec![0.0; n]; 4];
             let mut outputs: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
-            batch.run(&[&columns[0], &columns[1]], &mut outputs);
+            (batch.run(&[&columns[0], &columns[1]], &mut outputs)).unwrap();
             let (mut work, mut single) = (Work::default(), [0.0; 4]);
             for k in 0..n {
                 program.run(&[columns[0][k], columns[1][k]], &mut work, &mut single);

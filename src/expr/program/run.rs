@@ -3,6 +3,7 @@
 use super::code::Core;
 use super::input::Input;
 use super::machine::{Engine, Machine};
+use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::scalar::Scalar;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -102,34 +103,60 @@ impl Program {
             .collect()
     }
 
-    /// Runs over plain numbers. Once `work` has been used with this program it allocates nothing,
-    /// but for the one run in which the program is translated.
+    /// Runs over plain numbers, unchecked: an input that is missing counts as NaN, and a place for
+    /// an output that the program does not have becomes NaN. [`Program::run_checked`] refuses both.
     ///
-    /// # Panics
-    ///
-    /// When there are fewer inputs or more places for outputs than the program has.
+    /// Once `work` has been used with this program it allocates nothing, but for the one run in
+    /// which the program is translated.
     #[inline]
     pub fn run(&self, inputs: &[f64], work: &mut Work, out: &mut [f64]) {
         let outputs = &self.core().outputs;
-        assert!(
-            out.len() <= outputs.len(),
-            "the program has {} outputs",
-            outputs.len()
-        );
         if self.run_at_once(inputs, work).is_none() {
             self.enter_and_run(inputs, work);
         }
         for (out, &r) in out.iter_mut().zip(outputs) {
             *out = work.registers[r as usize];
         }
+        if out.len() > outputs.len() {
+            out[outputs.len()..].fill(f64::NAN);
+        }
+    }
+
+    /// Runs over plain numbers as [`Program::run`] does, for inputs that nobody has counted.
+    ///
+    /// # Errors
+    /// Fewer inputs or more places for outputs than the program has, and outputs that are not
+    /// finite numbers.
+    ///
+    /// ```
+    /// use cognate::expr::{Expr, interpolation::Bindings, program::Work};
+    /// let program = Expr::parse("TIME*DX(1, 2)")?.compile(&Bindings::default())?;
+    /// let (mut work, mut out) = (Work::default(), [0.0]);
+    /// program.run_checked(&[2.0, 3.0], &mut work, &mut out)?;
+    /// assert_eq!(out, [6.0]);
+    /// let error = program.run_checked(&[2.0], &mut work, &mut out).unwrap_err();
+    /// assert_eq!(error.first().message, "1 value was given for 2 inputs: TIME, DX(1, 2)");
+    /// # Ok::<(), cognate::Error>(())
+    /// ```
+    pub fn run_checked(
+        &self,
+        inputs: &[f64],
+        work: &mut Work,
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        self.check_counts(inputs.len(), out.len())?;
+        self.run(inputs, work, out);
+        match out.iter().position(|y| !y.is_finite()) {
+            None => Ok(()),
+            Some(k) => {
+                let what = format!("output {} has no finite value: {}", k + 1, out[k]);
+                Err(Diagnostic::error(Cause::Domain, what).into())
+            }
+        }
     }
 
     /// Returns the first output, over plain numbers: as [`Program::run`], a little faster for a
-    /// single number.
-    ///
-    /// # Panics
-    ///
-    /// When there are fewer inputs than the program has, or no output.
+    /// single number. NaN where there is no output.
     #[inline]
     pub fn value(&self, inputs: &[f64], work: &mut Work) -> f64 {
         match self.run_at_once(inputs, work) {
@@ -152,7 +179,13 @@ impl Program {
     /// runs.
     #[inline(never)]
     fn enter_and_run(&self, inputs: &[f64], work: &mut Work) {
-        self.check_inputs(inputs.len());
+        let padded;
+        let inputs = if inputs.len() < self.inputs.len() {
+            padded = self.padded(inputs, f64::NAN);
+            &padded
+        } else {
+            inputs
+        };
         if work.owner != self.id + FOR_THE_MACHINE {
             self.prepare_machine(work);
         }
@@ -164,22 +197,20 @@ impl Program {
     #[inline(never)]
     fn enter_and_value(&self, inputs: &[f64], work: &mut Work) -> f64 {
         self.enter_and_run(inputs, work);
-        work.registers[self.core().outputs[0] as usize]
+        let first = self.core().outputs.first();
+        first.map_or(f64::NAN, |&r| work.registers[r as usize])
     }
 
-    /// Runs over any number.
-    ///
-    /// # Panics
-    ///
-    /// When there are fewer inputs or more places for outputs than the program has.
+    /// Runs over any number, unchecked as [`Program::run`].
     pub fn eval<S: Scalar>(&self, inputs: &[S], work: &mut Work<S>, out: &mut [S]) {
         let core = self.core();
-        assert!(
-            out.len() <= core.outputs.len(),
-            "the program has {} outputs",
-            core.outputs.len()
-        );
-        self.check_inputs(inputs.len());
+        let padded;
+        let inputs = if inputs.len() < self.inputs.len() {
+            padded = self.padded(inputs, S::constant(f64::NAN));
+            &padded
+        } else {
+            inputs
+        };
         if work.owner != self.id {
             self.prepare(work);
         }
@@ -193,14 +224,53 @@ impl Program {
         for (out, &r) in out.iter_mut().zip(&core.outputs) {
             *out = registers[r as usize];
         }
+        if out.len() > core.outputs.len() {
+            out[core.outputs.len()..].fill(S::constant(f64::NAN));
+        }
     }
 
-    fn check_inputs(&self, n: usize) {
-        assert!(
-            n >= self.inputs.len(),
-            "the program reads {} inputs, not {n}",
-            self.inputs.len()
-        );
+    /// Checks how many values and places for outputs a caller gave.
+    ///
+    /// # Errors
+    /// Fewer values than inputs, or more places than outputs.
+    pub(super) fn check_counts(&self, values: usize, places: usize) -> Result<(), Error> {
+        let (inputs, outputs) = (self.inputs.len(), self.n_outputs());
+        let number = |n: usize, one: &str| match n {
+            1 => format!("1 {one}"),
+            n => format!("{n} {one}s"),
+        };
+        let mut wrong = Vec::new();
+        if values < inputs {
+            let names: Vec<String> = self.inputs.iter().map(ToString::to_string).collect();
+            let was = if values == 1 { "was" } else { "were" };
+            let what = format!(
+                "{} {was} given for {}: {}",
+                number(values, "value"),
+                number(inputs, "input"),
+                names.join(", ")
+            );
+            wrong.push(Diagnostic::error(Cause::MissingValue, what));
+        }
+        if places > outputs {
+            let what = format!(
+                "{} asked for, the program has {}",
+                number(places, "output"),
+                number(outputs, "output")
+            );
+            wrong.push(Diagnostic::error("unfit_value", what));
+        }
+        match wrong.is_empty() {
+            true => Ok(()),
+            false => Err(wrong.into()),
+        }
+    }
+
+    /// Returns the inputs with as many as are missing added.
+    #[cold]
+    fn padded<S: Copy>(&self, inputs: &[S], missing: S) -> Vec<S> {
+        let mut padded = inputs.to_vec();
+        padded.resize(self.inputs.len(), missing);
+        padded
     }
 
     /// Lays out the registers for this program.

@@ -112,17 +112,9 @@ pub const DOUBTS: &[Rule] = &[
 ];
 
 impl Model {
-    /// Everything that does not fit together, in the order of the elements' lines.
-    ///
-    /// # Examples
-    /// ```
-    /// use cognate::model::{Joint, Model};
-    /// let mut model = Model::default();
-    /// model.joints.insert(3, Joint { i: 12, j: 21, ..Joint::default() });
-    /// let found = model.check();
-    /// assert!(found.iter().any(|d| d.message == "I = 12: MARKER/12 does not exist"));
-    /// ```
-    pub fn check(&self) -> Vec<Diagnostic> {
+    /// Returns everything that does not fit together in a model whose numbers are finite, in the
+    /// order of the elements' lines.
+    pub(crate) fn contradictions(&self) -> Vec<Diagnostic> {
         let mut out = Vec::new();
         for (_, rule) in RULES {
             rule(self, &mut out);

@@ -88,7 +88,7 @@ impl Model {
     pub fn check_expression(&self, text: &str) -> Vec<Diagnostic> {
         let expr = match Expr::parse(text) {
             Ok(expr) => expr,
-            Err(d) => return vec![d],
+            Err(error) => return error.into(),
         };
         let mut known = Known::default();
         let mut out = Vec::new();
