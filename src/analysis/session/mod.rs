@@ -261,8 +261,8 @@ impl Session {
     /// [`Status`], with the results so far: see the record of [`Session::run`].
     ///
     /// # Errors
-    /// Mistakes in the model ([`Model::check`]), in the options and in the names of closures, and an
-    /// end that is not finite or has passed.
+    /// Mistakes in the model ([`Model::check`]), in the options, in the names of closures; an end
+    /// that is not finite or has passed.
     pub fn simulate(
         &mut self,
         analysis: Analysis,
