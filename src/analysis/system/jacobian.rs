@@ -51,6 +51,17 @@ pub(super) struct Derivatives {
     out: Vec<Dual<WIDTH>>,
 }
 
+/// Fails where an entry of a Jacobian of `n` rates has no value.
+fn find_gap(jacobian: &[f64], n: usize) -> Result<(), Failure> {
+    match jacobian.iter().position(|x| !x.is_finite()) {
+        Some(e) => Err(Failure {
+            what: e % n.max(1),
+            recoverable: true,
+        }),
+        None => Ok(()),
+    }
+}
+
 impl System {
     /// Returns the program of the rates as they are taken now.
     fn present_rate(&self) -> &Program {
@@ -104,27 +115,39 @@ impl System {
                     dfdt[i] = by_time;
                 }
             }
-            _ => {
-                let places = [Layout::TIME].into_iter().chain(self.scene.layout.y());
-                let columns: Vec<Vec<usize>> = places.map(|place| vec![place]).collect();
-                self.along_sums(&columns, |k, slope| {
-                    let column = match k.checked_sub(1) {
-                        None => &mut *dfdt,
-                        Some(j) => &mut jacobian[n * j..n * (j + 1)],
-                    };
-                    for (i, entry) in column.iter_mut().enumerate() {
-                        *entry = slope(i);
-                    }
-                })?;
+            _ => self.jacobian_by_duals(n, jacobian, dfdt)?,
+        }
+        find_gap(jacobian, n)
+    }
+
+    /// Evaluates all of the Jacobian at the present numbers by duals: for one that is needed once,
+    /// recording its program would take longer.
+    pub(in crate::analysis) fn jacobian_once(
+        &mut self,
+        jacobian: &mut [f64],
+        dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.jacobian_by_duals(dfdt.len(), jacobian, dfdt)?;
+        find_gap(jacobian, dfdt.len())
+    }
+
+    fn jacobian_by_duals(
+        &mut self,
+        n: usize,
+        jacobian: &mut [f64],
+        dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
+        let places = [Layout::TIME].into_iter().chain(self.scene.layout.y());
+        let columns: Vec<Vec<usize>> = places.map(|place| vec![place]).collect();
+        self.along_sums(&columns, |k, slope| {
+            let column = match k.checked_sub(1) {
+                None => &mut *dfdt,
+                Some(j) => &mut jacobian[n * j..n * (j + 1)],
+            };
+            for (i, entry) in column.iter_mut().enumerate() {
+                *entry = slope(i);
             }
-        }
-        match jacobian.iter().position(|x| !x.is_finite()) {
-            Some(e) => Err(Failure {
-                what: e % n.max(1),
-                recoverable: true,
-            }),
-            None => Ok(()),
-        }
+        })
     }
 
     /// Returns the entries of the Jacobian, whichever branches are held; `None` where it is full,

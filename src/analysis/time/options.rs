@@ -117,7 +117,8 @@ pub fn first_method(system: &mut System, duration: f64) -> &'static str {
     let t = system.numbers[Layout::TIME];
     let y = system.numbers[system.scene.layout.y()].to_vec();
     let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
-    if Ode::jacobian(system, t, &y, &mut jacobian, &mut dfdt).is_err() {
+    system.set(t, &y);
+    if (system.jacobian_once(&mut jacobian, &mut dfdt)).is_err() {
         return "DOP853";
     }
     let matrix = nalgebra::DMatrix::from_vec(n, n, jacobian);

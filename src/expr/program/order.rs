@@ -131,6 +131,45 @@ enum Task {
     End(Value, u8),
 }
 
+/// Nodes that a search has met; a new search forgets them at no cost.
+struct Met {
+    /// the search that met each node last
+    by: Vec<u32>,
+    search: u32,
+    count: usize,
+    /// nodes that the search has still to look at
+    open: Vec<Value>,
+}
+
+impl Met {
+    fn new(n_nodes: usize) -> Self {
+        Self {
+            by: vec![0; n_nodes],
+            search: 0,
+            count: 0,
+            open: Vec::new(),
+        }
+    }
+
+    /// Begins a search at a node, which does not count as met.
+    fn begin(&mut self, first: Value) {
+        self.search += 1;
+        self.count = 0;
+        self.open.clear();
+        self.open.push(first);
+    }
+
+    /// Notes a node that is to be looked at, once.
+    fn meet(&mut self, v: Value) {
+        let by = &mut self.by[v.index()];
+        if *by != self.search {
+            *by = self.search;
+            self.count += 1;
+            self.open.push(v);
+        }
+    }
+}
+
 struct Walk<'a> {
     builder: &'a Builder,
     guards: &'a Guards,
@@ -139,6 +178,7 @@ struct Walk<'a> {
     /// cost of all that is needed only under each guard
     weight: Vec<u32>,
     placed: Vec<bool>,
+    met: Met,
     /// nodes that one operation yields together, by the first of them
     partners: HashMap<Value, Vec<Value>>,
     /// guards of the open sides
@@ -161,6 +201,7 @@ impl<'a> Walk<'a> {
             demand: demand(builder),
             weight: weights(builder, guards),
             placed: vec![false; builder.nodes.len()],
+            met: Met::new(builder.nodes.len()),
             partners: partners(builder, guards),
             open: vec![ALWAYS],
             alike: alike(builder, guards),
@@ -321,20 +362,19 @@ impl<'a> Walk<'a> {
     /// Returns whether all that a selection needs may be placed here: nothing waits for a selection
     /// that is being placed, and nothing is needed where the open sides are not taken. `false`
     /// where that is not seen soon.
-    fn is_ready(&self, w: Value) -> bool {
+    fn is_ready(&mut self, w: Value) -> bool {
         let here = self.open.last().copied().unwrap_or(ALWAYS);
-        let mut seen = HashSet::default();
-        let mut open = vec![w];
+        self.met.begin(w);
         let mut is_ready = true;
-        while let (Some(x), true) = (open.pop(), is_ready) {
+        while let (Some(x), true) = (self.met.open.pop(), is_ready) {
             let node = &self.builder.nodes[x.index()];
             is_ready = matches!(node, Node::Constant(_) | Node::Input(_))
-                || seen.len() <= MOST_SEARCHED
+                || self.met.count <= MOST_SEARCHED
                     && !self.grouped[x.index()]
                     && self.guards.is_within(self.guards.of[x.index()], here);
             self.order.operands(self.builder, node, |o| {
-                if !self.placed[o.index()] && seen.insert(o) {
-                    open.push(o);
+                if !self.placed[o.index()] {
+                    self.met.meet(o);
                 }
             });
         }
@@ -342,18 +382,17 @@ impl<'a> Walk<'a> {
     }
 
     /// Returns whether neither value needs the other; `false` where that is not seen soon.
-    fn are_independent(&self, a: Value, b: Value) -> bool {
+    fn are_independent(&mut self, a: Value, b: Value) -> bool {
         let (below, above) = (a.min(b), a.max(b));
-        let mut seen = HashSet::default();
-        let mut open = vec![above];
-        while let Some(x) = open.pop() {
-            if x == below || seen.len() > MOST_SEARCHED {
+        self.met.begin(above);
+        while let Some(x) = self.met.open.pop() {
+            if x == below || self.met.count > MOST_SEARCHED {
                 return false;
             }
             // operands stand before their users
             self.builder.operands(&self.builder.nodes[x.index()], |o| {
-                if o >= below && seen.insert(o) {
-                    open.push(o);
+                if o >= below {
+                    self.met.meet(o);
                 }
             });
         }
