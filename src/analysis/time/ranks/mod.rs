@@ -13,6 +13,7 @@ mod sides;
 
 pub use locked::{Lock, locked};
 pub use passes::{Pass, passes};
+use sides::Loop;
 pub use sides::{Side, Sides};
 
 use crate::analysis::start::assemble::{self, DEPENDENT};
@@ -45,53 +46,69 @@ fn active(scene: Configured<'_>) -> Vec<usize> {
     scene.configuration.active_rows().collect()
 }
 
-/// Gradients of the rows of a scene, recorded once and evaluated often.
+/// Gradients of the rows that take part, recorded once and evaluated often.
 struct Gradients {
     program: Program,
-    /// row and velocity of each value
-    places: Vec<(usize, usize)>,
     work: RefCell<Work>,
-    /// scales of the columns, and what counts as one for each row
-    columns: Vec<f64>,
-    rows: Vec<f64>,
+    /// rows that share coordinates
+    loops: Vec<Loop>,
+    /// loop, row and column of each value, and its factor: columns are scaled, each row counts
+    /// against its scale
+    places: Vec<(usize, usize, usize, f64)>,
 }
 
 impl Gradients {
+    /// Records the gradients; `None` where no row takes part.
     fn of(scene: Configured<'_>) -> Option<Self> {
-        let mut places = Vec::new();
+        let rows = active(scene);
+        let mut entries = Vec::new();
         let program = record(scene, |at| {
             let mut values = Vec::new();
-            for r in 0..scene.rows.len() {
+            for &r in &rows {
                 for &(v, x) in &at.row(r).gradient {
-                    places.push((r, v));
+                    entries.push((r, v));
                     values.push(x);
                 }
             }
             values
         });
-        Some(Self {
-            program: program.ok()?,
-            places,
+        let program = program.ok()?;
+        let loops = sides::loops(&rows, &entries, scene.layout.n_v);
+        let mut place_of_row = vec![(0, 0); scene.rows.len()];
+        let mut column = vec![0; scene.layout.n_v];
+        for (k, l) in loops.iter().enumerate() {
+            (l.rows.iter().enumerate()).for_each(|(i, &r)| place_of_row[r] = (k, i));
+            (l.coordinates.iter().enumerate()).for_each(|(j, &v)| column[v] = j);
+        }
+        let w = weights(&scene);
+        let place = |&(r, v): &(usize, usize)| {
+            let (k, i) = place_of_row[r];
+            (k, i, column[v], w[v].sqrt() / scene.row_scale(r))
+        };
+        let places = entries.iter().map(place).collect();
+        (!loops.is_empty()).then(|| Self {
+            program,
             work: RefCell::default(),
-            columns: weights(&scene).iter().map(|w| w.sqrt()).collect(),
-            rows: (0..scene.rows.len()).map(|r| scene.row_scale(r)).collect(),
+            loops,
+            places,
         })
     }
 
-    /// Evaluates all rows, columns scaled, each row against its scale.
-    fn at(&self, numbers: &[f64]) -> Vec<Vec<f64>> {
+    /// Evaluates the rows, by loops.
+    fn at(&self, numbers: &[f64]) -> Vec<Vec<Vec<f64>>> {
         let mut values = vec![0.0; self.places.len()];
         self.program
             .run(numbers, &mut self.work.borrow_mut(), &mut values);
-        let mut all = vec![vec![0.0; self.columns.len()]; self.rows.len()];
-        for (&(r, v), x) in self.places.iter().zip(values) {
-            all[r][v] += x * self.columns[v] / self.rows[r];
+        let zeros = |l: &Loop| vec![vec![0.0; l.coordinates.len()]; l.rows.len()];
+        let mut all: Vec<_> = self.loops.iter().map(zeros).collect();
+        for (&(k, i, j, factor), x) in self.places.iter().zip(values) {
+            all[k][i][j] += factor * x;
         }
         all
     }
 }
 
-/// Evaluates all rows at one place, as [`Gradients::at`] does.
+/// Evaluates all rows at one place, columns scaled, each row against its scale.
 fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
     let l = scene.layout;
     let (_, gradient, _) = assemble::rows_at(
@@ -156,19 +173,16 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Returns the least that any of the rows determines beyond the others: zero where they are
+/// Returns the least that any row of a loop determines beyond the others: zero where they are
 /// dependent. `usual`: the length of each row elsewhere.
-fn margin(all: &[Vec<f64>], rows: &[usize], usual: &[f64]) -> f64 {
-    let scaled = rows
-        .iter()
-        .map(|&r| all[r].iter().map(|x| x / usual[r]).collect())
-        .collect();
-    let (chosen, least) = select(scaled, |_| false, rows.len());
-    if chosen.len() < rows.len() {
-        0.0
-    } else {
-        least
+fn margin(rows: Vec<Vec<f64>>, usual: impl Iterator<Item = f64>) -> f64 {
+    let n = rows.len();
+    let mut rows = rows;
+    for (row, usual) in rows.iter_mut().zip(usual) {
+        row.iter_mut().for_each(|x| *x /= usual);
     }
+    let (chosen, least) = select(rows, |_| false, n);
+    if chosen.len() < n { 0.0 } else { least }
 }
 
 /// Returns the rows to keep from here on, when those kept so far have become dependent though the

@@ -15,6 +15,8 @@ use crate::scene::mover::Mover;
 pub(super) const DEPENDENT_THERE: f64 = 1e-6;
 /// The same at a state, below which a minimum is located.
 const LARGEST_MINIMUM: f64 = 0.7;
+/// The same at a state that is not closed onto the rows, above which no minimum is located.
+const FAR_FROM_DEPENDENT: f64 = 0.8;
 /// The same at a minimum found without closing states onto the rows, above which it is none.
 const LARGEST_ROUGH_MINIMUM: f64 = 0.01;
 /// Change of an angle from one state that is looked at to the next, at most, rad.
@@ -38,6 +40,9 @@ pub struct Pass {
 /// Finds the positions between accepted states at which rows become dependent. `states`: numbers of
 /// states in order; `None` separates states that do not follow on.
 pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
+    if states.is_empty() {
+        return Vec::new();
+    }
     let Some(search) = Search::new(scene, states) else {
         return Vec::new();
     };
@@ -52,8 +57,7 @@ pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
     let mut found: Vec<Pass> = Vec::new();
     for run in states.split(Option::is_none) {
         let run: Vec<&Vec<f64>> = run.iter().flatten().collect();
-        let run = search.refined(&run);
-        let sizes: Vec<f64> = run.iter().map(|n| search.margin(n)).collect();
+        let (run, sizes): (Vec<_>, Vec<_>) = search.refined(&run).into_iter().unzip();
         for k in (0..run.len()).filter(|&k| is_suspect(&run, &sizes, k)) {
             let (before, after) = neighbours(k, run.len());
             let best = [(before, k), (k, after)]
@@ -116,12 +120,13 @@ struct Search<'s> {
 impl<'s> Search<'s> {
     /// Records the gradients of the rows; `None` where no row takes part.
     fn new(scene: Configured<'s>, states: &[Option<Vec<f64>>]) -> Option<Self> {
-        let rows = active(scene);
-        let gradients = Gradients::of(scene).filter(|_| !rows.is_empty())?;
+        let gradients = Gradients::of(scene)?;
         let mut usual = vec![0.0_f64; scene.rows.len()];
         for n in states.iter().flatten() {
-            for (u, row) in usual.iter_mut().zip(gradients.at(n)) {
-                *u = u.max(norm(&row));
+            for (l, rows) in gradients.loops.iter().zip(gradients.at(n)) {
+                for (&r, row) in l.rows.iter().zip(rows) {
+                    usual[r] = usual[r].max(norm(&row));
+                }
             }
         }
         for u in usual.iter_mut().filter(|u| **u == 0.0) {
@@ -130,13 +135,16 @@ impl<'s> Search<'s> {
         Some(Self {
             scene,
             gradients,
-            rows,
+            rows: active(scene),
             usual,
         })
     }
 
     fn margin(&self, numbers: &[f64]) -> f64 {
-        margin(&self.gradients.at(numbers), &self.rows, &self.usual)
+        let loops = self.gradients.loops.iter();
+        let all = loops.zip(self.gradients.at(numbers));
+        all.map(|(l, rows)| margin(rows, l.rows.iter().map(|&r| self.usual[r])))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the state at a part `s` of the way between two others: positions cubic in time,
@@ -173,8 +181,9 @@ impl<'s> Search<'s> {
         n
     }
 
-    /// Returns states so close to each other that no angle changes much between them.
-    fn refined(&self, run: &[&Vec<f64>]) -> Vec<Vec<f64>> {
+    /// Returns states so close to each other that no angle changes much between them, each with
+    /// its margin; closed onto the rows where these are anything like dependent.
+    fn refined(&self, run: &[&Vec<f64>]) -> Vec<(Vec<f64>, f64)> {
         let (scene, l) = (self.scene, self.scene.layout);
         let turning: Vec<usize> = (scene.coordinates.iter().zip(&scene.freedoms))
             .filter(|(c, _)| c.angular)
@@ -185,17 +194,25 @@ impl<'s> Search<'s> {
             speeds.fold(0.0, f64::max)
         };
         let mut all = Vec::new();
+        let with_margin = |n: Vec<f64>| {
+            let margin = self.margin(&n);
+            (n, margin)
+        };
         for pair in run.windows(2) {
             let h = pair[1][Layout::TIME] - pair[0][Layout::TIME];
             let turn = h * speed(pair[0]).max(speed(pair[1]));
             let pieces = (turn / MAX_TURN).ceil().clamp(1.0, MAX_PIECES) as usize;
-            all.push(pair[0].clone());
+            all.push(with_margin(pair[0].clone()));
             for k in 1..pieces {
                 let s = k as f64 / pieces as f64;
-                all.push(self.between(pair[0], pair[1], s, true));
+                let mut piece = with_margin(self.between(pair[0], pair[1], s, false));
+                if piece.1 < FAR_FROM_DEPENDENT {
+                    piece = with_margin(self.between(pair[0], pair[1], s, true));
+                }
+                all.push(piece);
             }
         }
-        all.extend(run.last().map(|n| (*n).clone()));
+        all.extend(run.last().map(|n| with_margin((*n).clone())));
         all
     }
 

@@ -45,11 +45,11 @@ const PASSED_BY: f64 = 0.05;
 
 /// Rows of a loop: those that share coordinates.
 #[derive(Clone, Debug, Default)]
-struct Loop {
+pub(super) struct Loop {
     /// indices of its rows
-    rows: Vec<usize>,
+    pub rows: Vec<usize>,
     /// places in v of its coordinates
-    coordinates: Vec<usize>,
+    pub coordinates: Vec<usize>,
 }
 
 /// The gradients of the rows at one state, by loops: rows against what counts as one, columns in
@@ -224,7 +224,7 @@ impl Sides {
 }
 
 /// Sorts rows into loops: those that share coordinates.
-fn loops(rows: &[usize], entries: &[(usize, usize)], n_v: usize) -> Vec<Loop> {
+pub(super) fn loops(rows: &[usize], entries: &[(usize, usize)], n_v: usize) -> Vec<Loop> {
     // the loop of each coordinate, by its first row
     let mut parent: Vec<usize> = (0..n_v).collect();
     fn root(parent: &[usize], mut k: usize) -> usize {
@@ -263,8 +263,24 @@ fn has_turned(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
     if b.iter().any(|x| !x.is_finite()) {
         return false;
     }
-    if b.nrows() == 1 {
-        return b[0] < 0.0;
+    has_negative(b)
+}
+
+/// Returns whether a matrix has an eigenvalue that is negative and nearly real.
+fn has_negative(b: DMatrix<f64>) -> bool {
+    // all eigenvalues lie in circles round the diagonal
+    let off_diagonal = |i: usize| b.row(i).iter().map(|x| x.abs()).sum::<f64>() - b[(i, i)].abs();
+    if (0..b.nrows()).all(|i| b[(i, i)] > off_diagonal(i)) {
+        return false;
+    }
+    if b.nrows() == 2 {
+        let mean = 0.5 * b.trace();
+        let spread = mean * mean - b.determinant();
+        let root = spread.abs().sqrt();
+        return match spread < 0.0 {
+            true => mean < 0.0 && root <= NEARLY_REAL * mean.abs(),
+            false => mean - root < 0.0,
+        };
     }
     if b.nrows() > MAX_EIGENVALUES {
         let lu = b.lu();
@@ -277,4 +293,28 @@ fn has_turned(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
         let eigenvalues = schur.complex_eigenvalues();
         (eigenvalues.iter()).any(|z| z.re < 0.0 && z.im.abs() <= NEARLY_REAL * z.re.abs())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_turn_right_round_have_gone_through_zero_and_others_have_not() {
+        let turn = |degrees: f64| {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            DMatrix::from_row_slice(2, 2, &[cosine, -sine, sine, cosine])
+        };
+        let turns = [0.0, 60.0, 100.0, 149.0, 160.0, 180.0].map(|d| has_negative(turn(d)));
+        assert_eq!(turns, [false, false, false, false, true, true]);
+        let scaled = |x: f64| DMatrix::from_row_slice(2, 2, &[1.0, 5.0, 0.0, x]);
+        assert!(has_negative(scaled(-0.1)) && !has_negative(scaled(0.1)));
+        // the same beside a third row
+        let beside = |b: DMatrix<f64>| b.insert_row(2, 0.0).insert_column(2, 0.0);
+        for degrees in [60.0, 100.0, 160.0] {
+            let mut b = beside(turn(degrees));
+            b[(2, 2)] = 1.0;
+            assert_eq!(has_negative(b), has_negative(turn(degrees)), "{degrees}°");
+        }
+    }
 }
