@@ -27,13 +27,11 @@ pub fn table(run: &Run, n_rows: usize, width: usize) -> String {
     for &c in &columns {
         let column = &run.columns[c];
         let values: Vec<f64> = shown.iter().map(|&row| column.values[row]).collect();
-        cells.push(
-            [
-                vec![column.name.clone(), column.unit.clone()],
-                aligned(&values),
-            ]
-            .concat(),
-        );
+        let written = match column.bar_of {
+            Some(_) => values.iter().copied().map(bar).collect(),
+            None => aligned(&values),
+        };
+        cells.push([vec![column.name.clone(), column.unit.clone()], written].concat());
         if c == columns[0] && phases.len() > 1 {
             let phase = |row: &usize| kind_of_row(run, *row).map_or("", Kind::name).to_owned();
             let head = vec!["phase".to_owned(), String::new()];
@@ -142,6 +140,15 @@ fn aligned(values: &[f64]) -> Vec<String> {
     values.iter().map(number).collect()
 }
 
+/// Prints a bar of error with the two digits that it has.
+fn bar(x: f64) -> String {
+    match x {
+        0.0 => "0".into(),
+        x if x.is_nan() => digits_of_six(x),
+        x => format!("{x:.1e}"),
+    }
+}
+
 /// Prints the facts of a run, and the files that were written.
 pub fn facts(run: &Run, written: &[PathBuf]) -> String {
     let r = &run.record;
@@ -230,12 +237,14 @@ fn believed(accuracy: &Accuracy) -> String {
     let Some(worst) = accuracy.worst() else {
         return String::new();
     };
+    let [usual, least] = [worst.digits(), worst.least_digits()].map(|d| format!("{d:.1}"));
+    let at_worst = match usual == least {
+        true => String::new(),
+        false => format!(" ({least} where it is least known)"),
+    };
     let mut text = format!(
-        "believe {:.1} digits: {} is the worst, ±{:.1e} {}\n",
-        worst.digits(),
-        worst.channel,
-        worst.largest_bar,
-        worst.unit
+        "believe {usual} digits{at_worst}: {} is the worst, ±{:.1e} {}\n",
+        worst.channel, worst.usual_bar, worst.unit
     );
     let lost = accuracy.channels.iter();
     let lost = lost.filter_map(|c| Some((c.lost_from?, &c.channel)));
@@ -400,6 +409,11 @@ mod tests {
         assert!(shown[3].starts_with("JOINT/3"));
         assert_eq!(shown[4], "47 more like these are in the record");
         assert_eq!(warnings(&all[..3]).len(), 3);
+    }
+
+    #[test]
+    fn bars_have_two_digits() {
+        assert_eq!([0.0, 9.156e-10, 12.0].map(bar), ["0", "9.2e-10", "1.2e1"]);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 
 use super::{
     Accuracy, ChannelAccuracy, Column, Counts, Energy, Jump, Kind, RankChange, Run, Seconds,
-    Sequence, Simulation, malformed,
+    Sequence, Simulation, Units, malformed,
 };
 use crate::diagnostic::Diagnostic;
 use crate::model::ElementKind;
@@ -33,7 +33,7 @@ pub fn record(run: &Run) -> Value {
         "redundant": r.redundant,
         "reactions": if r.redundant.is_empty() { "unique" } else { "smallest set: rows depend on each other" },
         "rank_changes": r.rank_changes.iter().map(rank_change).collect::<Vec<_>>(),
-        "energy": energy(&r.energy),
+        "energy": energy(&r.energy, &run.units),
         "energy_drift": r.energy.error(),
         "accuracy": r.accuracy.as_ref().map(accuracy),
         "limited_steps": limited(&r.counts),
@@ -64,8 +64,9 @@ fn seconds(s: &Seconds) -> Value {
     Value::Object(named)
 }
 
-fn energy(e: &Energy) -> Value {
+fn energy(e: &Energy, units: &Units) -> Value {
     json!({
+        "unit": format!("{}-{}", units.force, units.length),
         "kinetic": { "start": e.kinetic[0], "end": e.kinetic[1] },
         "potential": { "start": e.potential[0], "end": e.potential[1] },
         "stored": e.stored,
@@ -84,7 +85,9 @@ fn accuracy(a: &Accuracy) -> Value {
             "unit": c.unit,
             "largest_bar": c.largest_bar,
             "relative": c.relative,
+            "usual_bar": c.usual_bar,
             "digits": c.digits(),
+            "least_digits": c.least_digits(),
             "lost_from": c.lost_from,
         })
     };

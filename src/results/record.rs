@@ -126,7 +126,7 @@ pub struct Accuracy {
 }
 
 /// The bars of error of one column, in short.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelAccuracy {
     /// name of the column
     pub channel: String,
@@ -136,22 +136,31 @@ pub struct ChannelAccuracy {
     pub largest_bar: f64,
     /// the same over the largest value of the column
     pub relative: f64,
+    /// bar that 19 of 20 outputs do not exceed, in that unit: an output within an impact does
+    pub usual_bar: f64,
+    /// the same over the largest value of the column
+    pub usual: f64,
     /// the time from which on bars are as large as the range of the values until the end
     pub lost_from: Option<f64>,
 }
 
 impl ChannelAccuracy {
-    /// Returns how many digits of the largest value can be believed everywhere.
+    /// Returns how many digits of the largest value can be believed at 19 of 20 outputs.
     pub fn digits(&self) -> f64 {
+        (-self.usual.log10()).max(0.0)
+    }
+
+    /// Returns how many digits of the largest value can be believed at all outputs.
+    pub fn least_digits(&self) -> f64 {
         (-self.relative.log10()).max(0.0)
     }
 }
 
 impl Accuracy {
-    /// Returns the channel with the largest relative bar.
+    /// Returns the channel with the largest usual bar, relative to its values.
     pub fn worst(&self) -> Option<&ChannelAccuracy> {
-        let known = self.channels.iter().filter(|c| !c.relative.is_nan());
-        known.max_by(|a, b| a.relative.total_cmp(&b.relative))
+        let known = self.channels.iter().filter(|c| !c.usual.is_nan());
+        known.max_by(|a, b| a.usual.total_cmp(&b.usual))
     }
 }
 

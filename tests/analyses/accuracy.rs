@@ -7,7 +7,7 @@ use crate::{requests, running};
 use cognate::analysis::session::Session;
 use cognate::dataset::command::Script;
 use cognate::model::Model;
-use cognate::results::csv;
+use cognate::results::{self, csv, format::Style, res};
 use requests::expressions;
 use running::{Analysis, Options, begin, go, obeys, session, values};
 use std::path::Path;
@@ -106,6 +106,31 @@ fn bars_change_no_number_of_the_run() {
         written.lines().next(),
         Some("time,\"DX(2,1)\",\"DX(2,1)±\",\"VY(2,1)\",\"VY(2,1)±\"")
     );
+}
+
+/// `.res` is for programs that know of no bars, and stays as it is without them.
+#[test]
+fn bars_stand_in_parquet_and_not_in_res() {
+    let columns = ["DX(2,1)", "VY(2,1)"];
+    let s = judged(PENDULUM, &columns, Analysis::Dynamic, 3.0, 1e-5);
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bars.parquet");
+    results::write(&s.run, &file, Style::default()).unwrap();
+    let read = results::read(&file).unwrap();
+    for column in columns {
+        let bar = format!("{column}±");
+        assert_eq!(
+            read.column(&bar),
+            s.run.column(&bar),
+            "{bar} is in the run, and is read as it was written"
+        );
+        assert!(
+            read.column(&bar)
+                .is_some_and(|b| b.iter().all(|b| *b > 0.0))
+        );
+    }
+    let mut plain = session(PENDULUM, &columns, 1e-5);
+    go(&mut plain, Analysis::Dynamic, 3.0, 50);
+    assert_eq!(res::write(&s.run), res::write(&plain.run));
 }
 
 #[test]

@@ -56,13 +56,23 @@ const LEAST_MOTION: f64 = 0.01;
 pub const LEAST_SIZE: f64 = 1e-3;
 
 /// Returns the request of the companion of a run by a method, or by several, at some request.
-pub fn companion_request(error: f64, methods: &[String]) -> f64 {
-    let of_order_2 = |name: &String| METHODS.iter().any(|m| m.name == name && m.order <= 2);
-    let tightening = if methods.iter().any(of_order_2) {
+///
+/// Where few steps lie between two events (`has_many_events`), their number hardly follows the
+/// request: it is made so small that the method takes √2 times as many where they do.
+pub fn companion_request(error: f64, methods: &[String], has_many_events: bool) -> f64 {
+    let worked = |name: &str| methods.iter().any(|n| n == name);
+    let rows = METHODS.iter().filter(|m| worked(m.name));
+    let order = rows.map(|m| m.order).min().unwrap_or(usize::MAX);
+    let usual = if order <= 2 {
         TIGHTENING_OF_ORDER_2
     } else {
         TIGHTENING
     };
+    let by_order = match has_many_events && order < usize::MAX {
+        true => (0.5 * order as f64).exp2(),
+        false => 1.0,
+    };
+    let tightening = usual.max(by_order);
     if error < LEAST_REQUEST {
         error * tightening
     } else {
@@ -220,6 +230,17 @@ mod tests {
             shifts,
         };
         comparison.bars(values, others, 1.0)
+    }
+
+    #[test]
+    fn the_companion_takes_half_as_many_steps_again_at_most() {
+        for method in METHODS {
+            for has_many_events in [false, true] {
+                let request = companion_request(1e-6, &[method.name.into()], has_many_events);
+                let steps = (1e-6 / request).powf(1.0 / method.order as f64);
+                assert!((1.15..1.75).contains(&steps), "{}: {steps}", method.name);
+            }
+        }
     }
 
     #[test]

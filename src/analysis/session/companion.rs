@@ -17,6 +17,12 @@ use std::ops::Range;
 /// Share of steps that end at events from which on these, not the request, set the steps.
 const SHARE_OF_EVENTS: f64 = 0.3;
 
+/// Events over steps from which on few steps lie between two of them, and their number hardly
+/// follows the request.
+const EVENTS_OVER_STEPS: f64 = 0.03;
+/// Share of the outputs at which the usual bar of a channel holds.
+const USUAL_SHARE: f64 = 0.95;
+
 /// The pace of a companion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
@@ -54,6 +60,8 @@ pub(super) struct Integrated {
     error: Option<f64>,
     /// times of events, in s
     events: Vec<f64>,
+    /// whether few steps lie between two events
+    has_many_events: bool,
     /// mean step, in s, where events set the steps
     step_between_events: Option<f64>,
 }
@@ -68,6 +76,7 @@ impl Integrated {
             methods: trajectory.methods.iter().map(|m| m.1.clone()).collect(),
             error: Some(error),
             events: trajectory.event_times.clone(),
+            has_many_events: trajectory.event_times.len() as f64 > EVENTS_OVER_STEPS * steps,
             step_between_events: (at_events && steps > 0.0).then(|| duration / steps),
         }
     }
@@ -115,7 +124,7 @@ impl Session {
             return;
         };
         let asked = self.last.error.unwrap_or_else(|| self.integration().error);
-        let request = companion_request(asked, &self.last.methods);
+        let request = companion_request(asked, &self.last.methods, self.last.has_many_events);
         companion.options.error = Some(request);
         companion.pace = Pace {
             steps: SHORTER_STEPS,
@@ -180,16 +189,14 @@ impl Session {
             if let Some(place) = column.values.get_mut(rows.clone()) {
                 place.copy_from_slice(&found.bars);
             }
-            self.note_channel((of, least), &own, found);
+            self.note_channel([of, bar], least, found);
         }
     }
 
-    /// Notes the largest bar of a channel, and when it is lost, if tables show it; relative to the
-    /// largest value of the channel, or to `least` if that is more.
-    fn note_channel(&mut self, (of, least): (usize, f64), values: &[f64], found: Bars) {
-        let largest = |of: &[f64]| of.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    /// Notes the largest and the usual bar of a channel, and when it is lost, if tables show it;
+    /// relative to the largest value of the channel, or to `least` if that is more.
+    fn note_channel(&mut self, [of, bar]: [usize; 2], least: f64, found: Bars) {
         let Bars { bars, lost_from } = found;
-        let (bar, value) = (largest(&bars), largest(values));
         let record = &mut self.run.record;
         if !self.run.table.contains(&of) || bars.iter().all(|b| b.is_nan()) {
             return;
@@ -204,20 +211,22 @@ impl Session {
             accuracy.channels.push(ChannelAccuracy {
                 channel: column.name.clone(),
                 unit: column.unit.clone(),
-                largest_bar: 0.0,
-                relative: 0.0,
-                lost_from: None,
+                ..ChannelAccuracy::default()
             });
             accuracy.channels.len() - 1
         });
         let channel = &mut accuracy.channels[k];
-        channel.largest_bar = channel.largest_bar.max(bar);
-        let all = largest(&column.values).max(value).max(least);
-        channel.relative = if all > 0.0 {
-            channel.largest_bar / all
-        } else {
-            0.0
-        };
+        // over all simulations so far
+        let bars = &self.run.columns[bar].values;
+        let mut bars: Vec<f64> = bars.iter().copied().filter(|b| b.is_finite()).collect();
+        bars.sort_by(f64::total_cmp);
+        let usual = (USUAL_SHARE * bars.len() as f64).ceil() as usize;
+        channel.largest_bar = bars.last().copied().unwrap_or(0.0);
+        channel.usual_bar = bars.get(usual.saturating_sub(1)).copied().unwrap_or(0.0);
+        let largest = column.values.iter().fold(least, |m, x| m.max(x.abs()));
+        let relative = |bar: f64| if largest > 0.0 { bar / largest } else { 0.0 };
+        channel.relative = relative(channel.largest_bar);
+        channel.usual = relative(channel.usual_bar);
         channel.lost_from = channel.lost_from.or(lost_from);
     }
 }

@@ -1,4 +1,4 @@
-//! Writing `.res` files.
+//! Writing `.res` files. They hold no bars of error: they are for programs that know of none.
 
 use super::EXPRESSIONS;
 use crate::results::format::TableText;
@@ -169,7 +169,7 @@ fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
         text.push_str("</Entity>\n");
     }
     let free: Vec<usize> = (1..run.columns.len())
-        .filter(|&c| owners[c].is_none())
+        .filter(|&c| owners[c].is_none() && run.columns[c].bar_of.is_none())
         .collect();
     if !free.is_empty() {
         add(
@@ -187,7 +187,8 @@ fn step_map(run: &Run, owners: &[Option<usize>], text: &mut String) {
 
 /// Writes one row, a line per group of neighbours with one owner. `place`: where its values are.
 fn values(run: &Run, owners: &[Option<usize>], place: usize, text: &mut Vec<u8>) {
-    for (i, column) in run.columns.iter().enumerate() {
+    let columns = run.columns.iter().enumerate();
+    for (i, column) in columns.filter(|(_, c)| c.bar_of.is_none()) {
         if i > 0 {
             text.push(if i == 1 || owners[i] != owners[i - 1] {
                 b'\n'
