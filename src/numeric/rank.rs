@@ -21,6 +21,10 @@
 //! lies between. [`Rank::margin`] tells how clear the decision was, for a caller that wants to
 //! warn. Rows are compared by direction, so their units do not matter; columns of different units
 //! should be scaled alike by the caller (a length of the mechanism).
+//!
+//! *Zeros*: a reflection touches the columns where its vector is not zero, and only rows that have
+//! something there; the parts of all other rows stay as they were measured. So rows that share
+//! columns with few others take about as long as their entries.
 
 /// Part of a row outside the others, relative to its length, below which it depends on them.
 pub const TOLERANCE: f64 = 1e-8;
@@ -41,6 +45,9 @@ pub struct Dependence {
     pub remainder: f64,
 }
 
+/// Householder vector: its places, ascending, and its values there.
+type Reflection = Vec<(usize, f64)>;
+
 /// The rank decision over an `m × n` matrix.
 #[derive(Clone, Debug)]
 pub struct Rank {
@@ -53,8 +60,8 @@ pub struct Rank {
     length: Vec<f64>,
     /// rows of L, by row; beyond the rank, the remainder of the row   (m × n)
     l: Vec<Vec<f64>>,
-    /// Householder vectors v, I − v vᵀ with |v|² = 2   (rank × n)
-    reflections: Vec<Vec<f64>>,
+    /// Householder vectors v, I − v vᵀ with |v|² = 2, without their zeros   (rank)
+    reflections: Vec<Reflection>,
     /// smallest part of a row that was kept, and largest part that was dropped
     margin: (f64, f64),
 }
@@ -101,23 +108,28 @@ impl Rank {
         let mut remaining: Vec<usize> = (0..m).collect();
         let (mut chosen, mut reflections) = (Vec::new(), Vec::new());
         let (mut kept, mut dropped) = (1.0f64, 0.0f64);
+        // the part of each row outside those chosen so far
+        let mut part: Vec<f64> = l.iter().map(|row| norm(row)).collect();
         while !remaining.is_empty() {
             let k = chosen.len();
-            let part = |i: &usize| norm(&l[*i][k.min(n)..]);
             let open = || remaining.iter().take_while(|i| **i < leading);
-            let largest = open().map(part).fold(0.0, f64::max);
+            let largest = open().map(|&i| part[i]).fold(0.0, f64::max);
             if k == n || largest <= tolerance {
                 dropped = largest;
                 break;
             }
             let at = open()
-                .position(|i| part(i) >= PREFERENCE_FOR_EARLIER * largest)
+                .position(|&i| part[i] >= PREFERENCE_FOR_EARLIER * largest)
                 .unwrap_or(0);
             let pivot = remaining.remove(at);
-            kept = kept.min(part(&pivot));
+            kept = kept.min(part[pivot]);
             let v = reflection(&l[pivot], k);
-            for i in remaining.iter().chain([&pivot]) {
-                reflect(&v, &mut l[*i]);
+            reflect(&v, &mut l[pivot]);
+            for &i in &remaining {
+                let row = &mut l[i];
+                if reflect(&v, row) || row[k] != 0.0 {
+                    part[i] = norm(&row[k + 1..]);
+                }
             }
             l[pivot][k + 1..].fill(0.0);
             reflections.push(v);
@@ -163,6 +175,9 @@ impl Rank {
             // back substitution with L₁ᵀ
             let mut c = target[..r].to_vec();
             for j in (0..r).rev() {
+                if c[j] == 0.0 {
+                    continue;
+                }
                 let pivot = &self.l[self.order[j]];
                 c[j] /= pivot[j];
                 for i in 0..j {
@@ -314,23 +329,29 @@ fn norm(x: &[f64]) -> f64 {
 }
 
 /// Returns the Householder vector that turns `x[k..]` into its first component.
-fn reflection(x: &[f64], k: usize) -> Vec<f64> {
-    let mut v = x.to_vec();
-    v[..k].fill(0.0);
-    let length = norm(&v);
-    v[k] += if v[k] < 0.0 { -length } else { length };
-    let size = norm(&v);
+fn reflection(x: &[f64], k: usize) -> Reflection {
+    let length = norm(&x[k..]);
+    let first = x[k] + if x[k] < 0.0 { -length } else { length };
+    let others = x.iter().copied().enumerate().skip(k + 1);
+    let mut v = vec![(k, first)];
+    v.extend(others.filter(|e| e.1 != 0.0));
+    let values: Vec<f64> = v.iter().map(|e| e.1).collect();
+    let size = norm(&values);
     if size > 0.0 {
         v.iter_mut()
-            .for_each(|v| *v *= std::f64::consts::SQRT_2 / size);
+            .for_each(|e| e.1 *= std::f64::consts::SQRT_2 / size);
     }
     v
 }
 
-/// Reflects `x ← (I − v vᵀ) x`.
-fn reflect(v: &[f64], x: &mut [f64]) {
-    let along: f64 = v.iter().zip(&*x).map(|(v, x)| v * x).sum();
-    x.iter_mut().zip(v).for_each(|(x, v)| *x -= along * v);
+/// Reflects `x ← (I − v vᵀ) x`; returns whether that changes x.
+fn reflect(v: &[(usize, f64)], x: &mut [f64]) -> bool {
+    let along: f64 = v.iter().map(|&(i, v)| v * x[i]).sum();
+    if along == 0.0 {
+        return false;
+    }
+    v.iter().for_each(|&(i, v)| x[i] -= along * v);
+    true
 }
 
 #[cfg(test)]

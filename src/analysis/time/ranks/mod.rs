@@ -135,32 +135,40 @@ fn select(
 ) -> (Vec<usize>, f64) {
     let (mut chosen, mut least) = (Vec::new(), f64::INFINITY);
     let mut open: Vec<usize> = (0..rows.len()).collect();
+    let mut sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
     while chosen.len() < most {
-        let size = |r: usize| norm(&rows[r]);
-        let larger = |a: &&usize, b: &&usize| size(**a).total_cmp(&size(**b));
+        let larger = |a: &&usize, b: &&usize| sizes[**a].total_cmp(&sizes[**b]);
         let Some(&largest) = open.iter().max_by(larger) else {
             break;
         };
         let best = open.iter().filter(|r| preferred(**r)).max_by(larger);
         let pivot = match best {
-            Some(&r) if size(r) > size(largest) / PREFERENCE => r,
+            Some(&r) if sizes[r] > sizes[largest] / PREFERENCE => r,
             _ => largest,
         };
-        let length = size(pivot);
+        let length = sizes[pivot];
         if length.is_nan() || length < DEPENDENT {
             break;
         }
         least = least.min(length);
         open.retain(|r| *r != pivot);
-        let unit: Vec<f64> = rows[pivot].iter().map(|x| x / length).collect();
+        // rows that have nothing where the chosen one has something stay as they are
+        let entries = rows[pivot].iter().enumerate().filter(|e| *e.1 != 0.0);
+        let unit: Vec<(usize, f64)> = entries.map(|(k, x)| (k, x / length)).collect();
         for &r in &open {
+            let mut changed = false;
             // twice, so that nothing is left of it but rounding
             for _ in 0..2 {
-                let along: f64 = rows[r].iter().zip(&unit).map(|(a, b)| a * b).sum();
-                rows[r]
-                    .iter_mut()
-                    .zip(&unit)
-                    .for_each(|(a, b)| *a -= along * b);
+                let row = &mut rows[r];
+                let along: f64 = unit.iter().map(|&(k, x)| row[k] * x).sum();
+                if along == 0.0 {
+                    break;
+                }
+                unit.iter().for_each(|&(k, x)| row[k] -= along * x);
+                changed = true;
+            }
+            if changed {
+                sizes[r] = norm(&rows[r]);
             }
         }
         chosen.push(pivot);

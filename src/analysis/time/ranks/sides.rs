@@ -15,11 +15,12 @@ use super::select;
 use crate::analysis::system::System;
 use crate::analysis::time::states::{Cubic, Node};
 use crate::expr::program::{Program, Work};
+use crate::numeric::envelope;
 use crate::scene::configuration::Configured;
 use crate::scene::mover::Mover;
 use crate::scene::programs::{record, weights};
-use nalgebra::DMatrix;
 use nalgebra::linalg::Schur;
+use nalgebra::{DMatrix, DVectorView};
 use std::collections::BTreeMap;
 
 /// Rows of the largest loop whose eigenvalues are found; of a larger one the sign of the
@@ -89,10 +90,14 @@ impl Sides {
         let program = program.ok()?;
         let loops = loops(&rows, &entries, scene.layout.n_v);
         let w = weights(&scene);
+        let mut loop_of = vec![None; scene.rows.len()];
+        for (k, l) in loops.iter().enumerate() {
+            l.rows.iter().for_each(|&r| loop_of[r] = Some(k));
+        }
         let place = |&(r, v): &(usize, usize)| {
-            let k = loops.iter().position(|l| l.rows.contains(&r))?;
-            let i = loops[k].rows.iter().position(|&x| x == r)?;
-            let j = loops[k].coordinates.iter().position(|&x| x == v)?;
+            let k = loop_of[r]?;
+            let i = loops[k].rows.binary_search(&r).ok()?;
+            let j = loops[k].coordinates.binary_search(&v).ok()?;
             Some((k, i, j, w[v].sqrt() / scene.row_scale(r)))
         };
         let places: Vec<_> = entries.iter().filter_map(place).collect();
@@ -255,6 +260,12 @@ pub(super) fn loops(rows: &[usize], entries: &[(usize, usize)], n_v: usize) -> V
 
 /// Returns whether a combination of rows has gone through zero from one state to another.
 fn has_turned(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
+    if from.nrows() > MAX_EIGENVALUES {
+        // the determinant of B has the sign of that of G₁ A G₀ᵀ
+        let square = products(from, from);
+        return envelope::is_positive(&square)
+            && envelope::has_negative_determinant(&products(from, to));
+    }
     let (square, mixed) = (from * from.transpose(), from * to.transpose());
     let Some(factor) = square.cholesky() else {
         return false;
@@ -282,17 +293,29 @@ fn has_negative(b: DMatrix<f64>) -> bool {
             false => mean - root < 0.0,
         };
     }
-    if b.nrows() > MAX_EIGENVALUES {
-        let lu = b.lu();
-        let pivots = lu.u().diagonal();
-        let negative = pivots.iter().filter(|x| **x < 0.0).count();
-        let swaps: f64 = lu.p().determinant();
-        return (negative % 2 == 1) != (swaps < 0.0);
-    }
     Schur::try_new(b, f64::EPSILON, MAX_SCHUR).is_some_and(|schur| {
         let eigenvalues = schur.complex_eigenvalues();
         (eigenvalues.iter()).any(|z| z.re < 0.0 && z.im.abs() <= NEARLY_REAL * z.re.abs())
     })
+}
+
+/// Returns `A Bᵀ` of two matrices with many zeros.
+fn products(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(a.nrows(), b.nrows());
+    for (a, b) in a.column_iter().zip(b.column_iter()) {
+        let entries = |c: DVectorView<'_, f64>| -> Vec<(usize, f64)> {
+            c.iter()
+                .copied()
+                .enumerate()
+                .filter(|e| e.1 != 0.0)
+                .collect()
+        };
+        let b = entries(b);
+        for (i, x) in entries(a) {
+            b.iter().for_each(|&(j, y)| out[(i, j)] += x * y);
+        }
+    }
+    out
 }
 
 #[cfg(test)]
