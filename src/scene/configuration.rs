@@ -95,13 +95,27 @@ pub struct TurnStart {
     pub offset: Option<f64>,
 }
 
+/// The order in which freedoms and rows are eliminated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Way {
+    /// Freedoms from the entries of the mass matrix, then rows (short chains).
+    #[default]
+    MassMatrix,
+    /// Freedoms link by link, then rows (long chains).
+    ArticulatedBodies,
+    /// Freedoms link by link, and each row where its loop closes (chains of loops).
+    RowsWhereLoopsClose,
+}
+
 /// The way in which accelerations and multipliers are found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Elimination {
-    /// Freedoms are eliminated link by link (long chains) rather than from the mass matrix (short
-    /// ones).
-    pub articulated: bool,
-    /// The usual diagonal of `G M⁻¹ Gᵀ`, by active rows; empty: not known.   (n_active)
+    /// The order of freedoms and rows.
+    pub way: Way,
+    /// The order of the active rows among each other; empty: ascending.   (n_active or 0)
+    pub order: Vec<usize>,
+    /// The usual diagonal of `G M⁻¹ Gᵀ`, by active rows in their order; empty: not known.
+    /// (n_active)
     pub usual_pivots: Vec<f64>,
     /// Inertia lent to freedoms that have none, and taken back by
     /// [`accelerations`](super::solve::accelerations); empty: none is lent.
@@ -151,6 +165,14 @@ impl Configuration {
     pub fn active_rows(&self) -> impl Iterator<Item = usize> {
         let rows = self.active.iter().enumerate();
         rows.filter(|(_, active)| **active).map(|(r, _)| r)
+    }
+
+    /// Returns the rows that take part, in the order of their elimination.
+    pub fn rows_in_order(&self) -> Vec<usize> {
+        match self.elimination.order.is_empty() {
+            true => self.active_rows().collect(),
+            false => self.elimination.order.clone(),
+        }
     }
 
     /// Returns the counted angles before the first step   (n_turns)   \[rad\]

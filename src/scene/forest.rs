@@ -5,6 +5,10 @@
 //! ground. A part that nothing reaches starts a tree of its own, free in ground. The choice depends
 //! on the model alone, not on the order of its statements beyond ties, which the smaller number
 //! wins.
+//!
+//! Where many loops pass through the same parts (a scissor lift grown from ground has two branches,
+//! and each loop goes down one and up the other), the carrier farthest from ground goes first
+//! instead: then loops close over few parts, and each part stands in few of them.
 
 use crate::physics::joint::Tie;
 use std::collections::BTreeSet;
@@ -48,8 +52,60 @@ pub struct Placed {
     pub by: Carried,
 }
 
+/// Loops through parts, squared and added up, from which a deep forest is considered.
+const MANY_LOOPS: f64 = 4e3;
+/// That of the forest nearest to ground over that of a deep one which takes its place.
+const GAIN: f64 = 8.0;
+
 /// Grows the forest over `n_parts` parts.
 pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
+    let near = spread(n_parts, candidates, |depth| depth);
+    let usual = loops_through_parts(n_parts, candidates, &near);
+    if usual <= MANY_LOOPS {
+        return near;
+    }
+    let deep = spread(n_parts, candidates, |depth| n_parts - depth);
+    if usual > GAIN * loops_through_parts(n_parts, candidates, &deep) {
+        deep
+    } else {
+        near
+    }
+}
+
+/// Returns the sum over all parts of the squared number of loops that pass through the part and its
+/// carrier.
+fn loops_through_parts(n_parts: usize, candidates: &[Candidate], placed: &[Placed]) -> f64 {
+    let mut carrier = vec![None; n_parts];
+    let mut depth = vec![0; n_parts];
+    let mut carries = BTreeSet::new();
+    for p in placed {
+        carrier[p.part] = p.carrier;
+        depth[p.part] = 1 + p.carrier.map_or(0, |c| depth[c]);
+        if let Carried::Forward(tie) | Carried::Backward(tie) = p.by {
+            carries.insert(tie);
+        }
+    }
+    let depth_of = |p: Option<usize>| p.map_or(0, |k| depth[k]);
+    let mut through = vec![0.0; n_parts];
+    for c in candidates.iter().filter(|c| !carries.contains(&c.tie)) {
+        let (mut a, mut b) = (c.i, c.j);
+        while a != b {
+            let deeper = if depth_of(a) > depth_of(b) {
+                &mut a
+            } else {
+                &mut b
+            };
+            let Some(part) = *deeper else { break };
+            through[part] += 1.0;
+            *deeper = carrier[part];
+        }
+    }
+    through.iter().map(|n: &f64| n * n).sum()
+}
+
+/// Grows the forest; of joints with equally many coordinates the one whose carrier has the least
+/// `rank` goes first, a function of its distance from ground.
+fn spread(n_parts: usize, candidates: &[Candidate], rank: impl Fn(usize) -> usize) -> Vec<Placed> {
     let mut depth: Vec<Option<usize>> = vec![None; n_parts];
     let mut order = Vec::with_capacity(n_parts);
     let mut edges_of: Vec<Vec<usize>> = vec![Vec::new(); n_parts + 1];
@@ -60,7 +116,7 @@ pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
             edges_of[slot(c.j)].push(e);
         }
     }
-    // the frontier, cheapest first: (coordinates, not preferred, depth of the carrier, candidate)
+    // the frontier, cheapest first: (coordinates, not preferred, rank of the carrier, candidate)
     let mut frontier: BTreeSet<(usize, bool, usize, usize)> = BTreeSet::new();
     let reach = |from: Option<usize>, at: usize, frontier: &mut BTreeSet<_>| {
         for &e in &edges_of[slot(from)] {
@@ -69,13 +125,13 @@ pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
                 .kind
                 .motions()
                 .map_or(0, |m| m.iter().map(|x| x.freedoms()).sum());
-            frontier.insert((cost, !c.preferred, at, e));
+            frontier.insert((cost, !c.preferred, rank(at), e));
         }
     };
     reach(None, 0, &mut frontier);
     let mut next_free = 0;
     loop {
-        while let Some((_, _, at, e)) = frontier.pop_first() {
+        while let Some((_, _, _, e)) = frontier.pop_first() {
             let c = &candidates[e];
             let known = |p: Option<usize>| p.is_none_or(|k| depth[k].is_some());
             let (part, carrier, by) = match (known(c.j), known(c.i)) {
@@ -84,9 +140,10 @@ pub fn grow(n_parts: usize, candidates: &[Candidate]) -> Vec<Placed> {
                 _ => continue,
             };
             let Some(part) = part else { continue };
-            depth[part] = Some(at + 1);
+            let deeper = 1 + carrier.and_then(|c| depth[c]).unwrap_or(0);
+            depth[part] = Some(deeper);
             order.push(Placed { part, carrier, by });
-            reach(Some(part), at + 1, &mut frontier);
+            reach(Some(part), deeper, &mut frontier);
         }
         while next_free < n_parts && depth[next_free].is_some() {
             next_free += 1;

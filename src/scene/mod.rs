@@ -16,6 +16,7 @@ pub mod configuration;
 pub mod contacts;
 mod coordinate_sums;
 mod couplers;
+pub mod elimination;
 pub mod equations;
 pub mod external_inputs;
 mod force_elements;
@@ -28,6 +29,7 @@ mod general;
 pub mod history;
 pub mod layout;
 pub mod left_out;
+pub mod loop_factor;
 pub mod loops;
 mod motions;
 pub mod mover;
@@ -468,6 +470,17 @@ impl Scene {
             depth[k] = 1 + self.carrier[k].map_or(0, |c| depth[c]);
         }
         depth.into_iter().max().unwrap_or(0)
+    }
+
+    /// Returns the last freedom that carries two freedoms or is one of them; `None`: ground alone
+    /// carries both.
+    pub fn common_carrier(&self, [mut a, mut b]: [Option<usize>; 2]) -> Option<usize> {
+        // carriers come first, so the later of two freedoms does not carry the other
+        while a != b {
+            let later = if a > b { &mut a } else { &mut b };
+            *later = later.and_then(|k| self.carrier[k]);
+        }
+        a
     }
 
     /// Pose of a marker in ground as the dataset places its part.

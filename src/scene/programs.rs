@@ -367,26 +367,11 @@ pub fn weights(scene: &Scene) -> Vec<f64> {
 /// those motions alone. In kinematics, where masses may be zero, A is a diagonal matrix of
 /// [`weights`].
 pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &[S]) -> Vec<S> {
-    let rows: Vec<_> = (0..scene.rows.len())
-        .filter(|&r| at.is_active(r))
+    let rows: Vec<_> = (at.rows_in_order())
+        .into_iter()
         .map(|r| at.row(r))
         .collect();
     let n = scene.layout.n_v;
-    let factor = at.mass_factor();
-    let w = weights(scene);
-    // u with uᵀ D⁻¹ u = G A Gᵀ, and D⁻¹
-    let inverse_d = match &factor {
-        Some(factor) => factor.inverse_d(),
-        None => w.iter().map(|&w| S::constant(w)).collect(),
-    };
-    let u: Vec<Vec<(usize, S)>> = rows
-        .iter()
-        .map(|row| match &factor {
-            Some(factor) => factor.half_row(&row.gradient),
-            None => row.gradient.clone(),
-        })
-        .collect();
-    let gram = SymmetricFactor::new(gram(&u, &inverse_d), &[]);
     let position: Vec<S> = rows.iter().map(|r| -r.value).collect();
     let velocity: Vec<S> = rows
         .iter()
@@ -396,6 +381,29 @@ pub fn projection<S: Scalar>(scene: &Scene, at: &Equations<'_, S>, velocities: &
                 .fold(-r.drift, |s, &(v, g)| s - g * velocities[v])
         })
         .collect();
+    let g: Vec<Vec<(usize, S)>> = rows.iter().map(|r| r.gradient.clone()).collect();
+    if let Some(factor) = at.loop_factor(&g, &[]) {
+        let changes = [position, velocity].map(|rhs| {
+            let mut change = vec![S::zero(); n];
+            factor.solve(&mut change, &rhs);
+            change
+        });
+        let mut out = changes.concat();
+        out.extend(at.cam_corrections());
+        return out;
+    }
+    let factor = at.mass_factor();
+    let w = weights(scene);
+    // u with uᵀ D⁻¹ u = G A Gᵀ, and D⁻¹
+    let inverse_d = match &factor {
+        Some(factor) => factor.inverse_d(),
+        None => w.iter().map(|&w| S::constant(w)).collect(),
+    };
+    let u: Vec<Vec<(usize, S)>> = match &factor {
+        Some(factor) => g.iter().map(|row| factor.half_row(row)).collect(),
+        None => g,
+    };
+    let gram = SymmetricFactor::new(gram(&u, &inverse_d), &[]);
     let mut out = Vec::with_capacity(2 * n);
     for rhs in [position, velocity] {
         let lambda = gram.solve(rhs);

@@ -87,11 +87,7 @@ impl<S: Scalar> MassFactor<S> {
                     continue;
                 }
                 let a = m_ki * inverse_d[k];
-                for &(j, m_kj) in &row[at..] {
-                    if let Some(entry) = rows[i].iter_mut().find(|e| e.0 == j) {
-                        entry.1 -= a * m_kj;
-                    }
-                }
+                with_carriers(&mut rows[i], &row[at..], |entry, m_kj| *entry -= a * m_kj);
                 scaled.push((i, a));
             }
             rows[k] = scaled;
@@ -137,6 +133,26 @@ impl<S: Scalar> MassFactor<S> {
                 s -= l * x[j];
             }
             x[i] = s;
+        }
+    }
+}
+
+/// Visits the entries of a carrier's row with those of a row that it carries, from the carrier on:
+/// both name the carrier's own carriers, nearest first.
+fn with_carriers<S: Copy>(
+    row: &mut [(usize, S)],
+    carried: &[(usize, S)],
+    mut visit: impl FnMut(&mut S, S),
+) {
+    for (at, &(j, m)) in carried.iter().enumerate() {
+        let here = row.get(at).is_some_and(|e| e.0 == j);
+        let place = if here {
+            Some(at)
+        } else {
+            row.iter().position(|e| e.0 == j)
+        };
+        if let Some(place) = place {
+            visit(&mut row[place].1, m);
         }
     }
 }
@@ -203,11 +219,9 @@ pub fn lent_inertia(mut rows: Vec<Vec<(usize, f64)>>, turns: &[bool], length: f6
         }
         pivots[k] = row[0].1 / unit(k);
         for (at, &(i, m_ki)) in row.iter().enumerate().skip(1) {
-            for &(j, m_kj) in &row[at..] {
-                if let Some(entry) = rows[i].iter_mut().find(|e| e.0 == j) {
-                    entry.1 -= m_ki * m_kj / row[0].1;
-                }
-            }
+            with_carriers(&mut rows[i], &row[at..], |entry, m_kj| {
+                *entry -= m_ki * m_kj / row[0].1;
+            });
         }
     }
     if pivots.iter().all(|&d| d > 0.0) {
@@ -300,6 +314,14 @@ pub fn products<S: Scalar, P: Iterator<Item = usize>>(
     lower
 }
 
+/// The diagonal of `U D⁻¹ Uᵀ`
+pub fn gram_diagonal<S: Scalar>(u: &[Vec<(usize, S)>], inverse_d: &[S]) -> Vec<S> {
+    let square = |sum: S, &(k, x): &(usize, S)| sum + x * (x * inverse_d[k]);
+    u.iter()
+        .map(|row| row.iter().fold(S::zero(), square))
+        .collect()
+}
+
 /// Product of two rows given by ascending indices.
 fn sparse_dot<S: Scalar>(a: &[(usize, S)], b: &[(usize, S)]) -> S {
     let (mut i, mut j, mut sum) = (0, 0, S::zero());
@@ -324,8 +346,6 @@ pub struct Solution<S> {
     /// least pivot as a part of what it usually is; 1: none is smaller   (the square of the
     /// distance from dependence)
     pub strength: S,
-    /// diagonal of A
-    pub diagonal: Vec<S>,
 }
 
 /// Pivots smaller than this times their usual size count as nearly singular.
@@ -344,8 +364,6 @@ pub struct SymmetricFactor<S: Scalar> {
     dependent: Vec<S::Mask>,
     /// as that of [`Solution`]
     strength: S,
-    /// diagonal of A
-    diagonal: Vec<S>,
 }
 
 impl<S: Scalar> SymmetricFactor<S> {
@@ -358,7 +376,6 @@ impl<S: Scalar> SymmetricFactor<S> {
             inverse: Vec::with_capacity(n),
             dependent: Vec::with_capacity(n),
             strength: S::one(),
-            diagonal: Vec::with_capacity(n),
         };
         // L_ik D_k of the row i at hand; zero elsewhere
         let mut work = vec![S::zero(); n];
@@ -421,7 +438,6 @@ impl<S: Scalar> SymmetricFactor<S> {
         self.strength = S::select(part.lt(self.strength), part, self.strength);
         self.inverse.push(S::choose(tiny, S::zero, || S::one() / d));
         self.dependent.push(tiny);
-        self.diagonal.push(start);
     }
 
     /// Solves `A x = b`; what depends on earlier rows gets the value zero.
@@ -446,7 +462,6 @@ impl<S: Scalar> SymmetricFactor<S> {
         Solution {
             x: self.solve(b),
             strength: self.strength,
-            diagonal: self.diagonal,
         }
     }
 }

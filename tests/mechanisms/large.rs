@@ -2,8 +2,14 @@
 
 use crate::running;
 
+use cognate::analysis::start::assemble;
 use cognate::analysis::verify::outline::outline;
 use cognate::model::Model;
+use cognate::scene::Scene;
+use cognate::scene::build;
+use cognate::scene::configuration::{Configuration, Way};
+use cognate::scene::equations::Equations;
+use cognate::scene::programs;
 use running::{Analysis, Options, Session, begin, go, values, whole};
 use std::fmt::Write;
 
@@ -65,4 +71,106 @@ fn a_cantilever_of_twelve_parts_swings_alike_by_every_method() {
 #[test]
 fn angles_that_pass_zero_are_no_switches() {
     assert_eq!(outline(&cantilever(3)).unwrap().switches, 0);
+}
+
+/// A scissor lift of `n` cells in an inclined plane, on a base that is part of ground, which closes a loop with every cell.
+fn scissor_lift(n: usize) -> Model {
+    let mut text = "LIFT\nPART/1, GROUND\nACCGRAV/JGRAV=-9.81, IGRAV=2\nPART/2, REULER=0.3,0.7,-0.4\n\
+                    MARKER/1, PART=1, REULER=0.3,0.7,-0.4\nMARKER/2, PART=2\nJOINT/1, FIXED, I=2, J=1\n"
+        .to_string();
+    // all parts begin in the frame of the base, so that markers may stand where they are in it
+    let (mut marker, mut joint) = (10, 1);
+    let mut hinge = |text: &mut String, i: usize, j: usize, [x, y]: [f64; 2]| {
+        (marker, joint) = (marker + 2, joint + 1);
+        writeln!(
+            text,
+            "MARKER/{marker}, PART={i}, QP={x:?},{y:?},0\nMARKER/{}, PART={j}, QP={x:?},{y:?},0\nJOINT/{joint}, REVOLUTE, I={marker}, J={}",
+            marker + 1,
+            marker + 1
+        )
+        .unwrap();
+    };
+    for k in 0..n {
+        let (a, b, y) = (10 + 2 * k, 11 + 2 * k, 0.8 * k as f64);
+        for part in [a, b] {
+            writeln!(
+                text,
+                "PART/{part}, REULER=0.3,0.7,-0.4, MASS=1.5, CM={}, IP=0.1,0.2,0.3\nMARKER/{}, PART={part}, QP=0.5,{:?},0",
+                10_000 + part,
+                10_000 + part,
+                y + 0.4
+            )
+            .unwrap();
+        }
+        hinge(&mut text, a, b, [0.5, y + 0.4]);
+        if k == 0 {
+            hinge(&mut text, a, 2, [0.0, 0.0]);
+            text.push_str(
+                "MARKER/5, PART=11, QP=1,0,0\nMARKER/6, PART=2, QP=1,0,0, REULER=0,90D,0\nJPRIM/1, INPLANE, I=5, J=6\n",
+            );
+        } else {
+            hinge(&mut text, a, b - 2, [0.0, y]);
+            hinge(&mut text, b, a - 2, [1.0, y]);
+        }
+    }
+    whole(&format!("{text}END\n"))
+}
+
+/// The lift in motion, with freedoms and rows eliminated in one way: the least changes that put velocities on the rows, then
+/// accelerations and multipliers there.
+fn eliminated(model: &Model, way: Way) -> [Vec<f64>; 3] {
+    let scene = Scene::compile(model, &build::Options::default()).expect("a scene");
+    let mut configuration = Configuration::new(&scene);
+    let mut q = scene.initial_q.clone();
+    let found = assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).unwrap();
+    assert_eq!(found.freedom, 1);
+    configuration.elimination.way = way;
+    let here = scene.within(&configuration);
+    let l = scene.layout;
+    let mut numbers = vec![0.0; l.len()];
+    numbers[l.q()].copy_from_slice(&q);
+    numbers[l.v()].fill(0.4);
+    let at = Equations::<f64>::new(here, &numbers);
+    let changes = programs::projection(&scene, &at, at.velocities());
+    for (v, change) in numbers[l.v()].iter_mut().zip(&changes[l.n_v..]) {
+        *v += change;
+    }
+    let at = Equations::<f64>::new(here, &numbers);
+    let solved = at.solved();
+    [changes, solved.vdot.clone(), solved.lambda.clone()]
+}
+
+/// Rows whose multipliers are eliminated as soon as their loops close: on the forest that is nearest to ground, where all close at one
+/// link, and on a deep one.
+#[test]
+fn accelerations_and_multipliers_are_the_same_however_they_are_eliminated() {
+    for n in [3, 24] {
+        let model = scissor_lift(n);
+        let [usual, closing] =
+            [Way::ArticulatedBodies, Way::RowsWhereLoopsClose].map(|way| eliminated(&model, way));
+        for (k, (a, b)) in usual.iter().zip(&closing).enumerate() {
+            let size = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let off = a
+                .iter()
+                .zip(b)
+                .fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()));
+            assert!(
+                size > 0.1 && off < 1e-9 * size,
+                "{n} cells, {k}: {off:.1e} of {size:.1e}"
+            );
+        }
+    }
+}
+
+/// Every cell closes a loop with parts of its neighbours alone; counted from ground, each loop would be as long as the lift.
+#[test]
+fn what_a_scissor_lift_computes_grows_with_its_cells() {
+    let outlines = [30, 60].map(|n| outline(&scissor_lift(n)).unwrap());
+    let [one, two] = [0, 1].map(|k: usize| outlines[k].operations);
+    println!("{one:?} {two:?}");
+    assert!(two.0 as f64 <= 2.1 * one.0 as f64, "rate: {one:?} {two:?}");
+    assert!(
+        two.1 as f64 <= 2.1 * one.1 as f64,
+        "projection: {one:?} {two:?}"
+    );
 }

@@ -24,7 +24,8 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
 use crate::scene::Scene;
 use crate::scene::cams;
-use crate::scene::configuration::{Configuration, Configured};
+use crate::scene::configuration::{Configuration, Configured, Way};
+use crate::scene::elimination;
 use crate::scene::equations::{Equations, KINEMATIC, STATIC};
 use crate::scene::programs::{self, record};
 use crate::scene::solve;
@@ -82,8 +83,7 @@ impl Recorded {
         q: &[f64],
         hooks: &[Hook],
     ) -> Result<Self, Vec<Diagnostic>> {
-        let usual_pivots = usual_pivots(scene.within(configuration), q);
-        configuration.elimination.usual_pivots = usual_pivots;
+        choose_elimination(scene, configuration, q);
         let rate = shortest_rate(scene, configuration)?;
         let here = scene.within(configuration);
         let branches = Branches::new(here)?;
@@ -141,22 +141,25 @@ impl Recorded {
 }
 
 /// Chooses the elimination that takes fewer operations and records the rate with it; deep forests
-/// are not tried the quadratic way.
+/// are not tried the quadratic way, and rows are left where they are to be eliminated.
 fn shortest_rate(
     scene: &Scene,
     configuration: &mut Configuration,
 ) -> Result<Program, Vec<Diagnostic>> {
-    configuration.elimination.articulated = true;
+    if configuration.elimination.way == Way::RowsWhereLoopsClose {
+        return rate_program(scene.within(configuration));
+    }
+    configuration.elimination.way = Way::ArticulatedBodies;
     let articulated = rate_program(scene.within(configuration))?;
     if scene.depth() > MAX_DEPTH_OF_MATRIX {
         return Ok(articulated);
     }
-    configuration.elimination.articulated = false;
+    configuration.elimination.way = Way::MassMatrix;
     let matrix = rate_program(scene.within(configuration))?;
     if matrix.n_operations() <= articulated.n_operations() {
         return Ok(matrix);
     }
-    configuration.elimination.articulated = true;
+    configuration.elimination.way = Way::ArticulatedBodies;
     Ok(articulated)
 }
 
@@ -180,21 +183,31 @@ pub(super) fn lent_inertia(scene: Configured<'_>) -> Vec<f64> {
     solve::lent_inertia(rows, &turns, scene.length)
 }
 
-/// Returns the diagonal of `G M⁻¹ Gᵀ` at the positions `q`, against which pivots are measured
-/// (n_active).
-fn usual_pivots(scene: Configured<'_>, q: &[f64]) -> Vec<f64> {
-    if scene.rows.is_empty() {
-        return Vec::new();
-    }
+/// Chooses the order in which rows are eliminated, and measures at the positions `q` against what
+/// their pivots are compared.
+fn choose_elimination(scene: &Scene, configuration: &mut Configuration, q: &[f64]) {
+    let mut elimination = std::mem::take(&mut configuration.elimination);
+    elimination.usual_pivots.clear();
+    configuration.elimination = elimination.clone();
     let mut numbers = vec![0.0; scene.layout.len()];
     numbers[scene.layout.q()].copy_from_slice(q);
     // contacts on curves are sought there
-    let mut there = scene.configuration.clone();
-    there.elimination.usual_pivots.clear();
+    let mut there = configuration.clone();
     there.contacts.iter_mut().for_each(|c| c.begun = false);
-    cams::track(scene.scene, &mut there, &numbers);
-    let at = Equations::new(scene.within(&there), &numbers);
-    let diagonal = at.solved().diagonal.clone();
+    cams::track(scene, &mut there, &numbers);
+    elimination::choose(scene.within(&there), &numbers, &mut elimination);
+    there.elimination = elimination.clone();
+    elimination.usual_pivots = usual_pivots(scene.within(&there), &numbers);
+    configuration.elimination = elimination;
+}
+
+/// Returns the diagonal of `G M⁻¹ Gᵀ` at a row of numbers, against which pivots are measured
+/// (n_active).
+fn usual_pivots(scene: Configured<'_>, numbers: &[f64]) -> Vec<f64> {
+    if scene.rows.is_empty() {
+        return Vec::new();
+    }
+    let diagonal = Equations::new(scene, numbers).pivots();
     let largest = diagonal
         .iter()
         .fold(0.0, |m: f64, &d| if d.is_finite() { m.max(d) } else { m });

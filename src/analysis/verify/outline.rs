@@ -11,7 +11,7 @@ use crate::analysis::warning::{AssemblyWarning, Warning};
 use crate::diagnostic::Error;
 use crate::model::{ElementId, ElementKind, Family, Formula, Model};
 use crate::scene::build::Options;
-use crate::scene::configuration::Configuration;
+use crate::scene::configuration::{Configuration, Way};
 use crate::scene::equations::row_name;
 use crate::scene::programs;
 use crate::scene::{Scene, Source};
@@ -141,10 +141,10 @@ pub fn outline(model: &Model) -> Result<Outline, Error> {
     );
     out.costs = programs::costs(system.configured());
     out.switches = system.branches().len();
-    out.elimination = if system.configuration.elimination.articulated {
-        "articulated bodies"
-    } else {
-        "mass matrix"
+    out.elimination = match system.configuration.elimination.way {
+        Way::MassMatrix => "mass matrix",
+        Way::ArticulatedBodies => "articulated bodies",
+        Way::RowsWhereLoopsClose => "articulated bodies, rows where loops close",
     };
     Ok(out)
 }

@@ -5,8 +5,12 @@ use crate::model::Level;
 use crate::physics::action::Action;
 use crate::scalar::{Jet, Scalar};
 use crate::scene::articulated::ArticulatedFactor;
+use crate::scene::configuration::Way;
 use crate::scene::layout::{replace, several};
-use crate::scene::solve::{Factor, MassFactor, Solution, SymmetricFactor, accelerations, products};
+use crate::scene::loop_factor::LoopFactor;
+use crate::scene::solve::{
+    Factor, MassFactor, Solution, SymmetricFactor, accelerations, gram_diagonal, products,
+};
 use crate::scene::sweep::{self, LinkState, Wrench};
 use crate::scene::{LinkMotion, Source, programs};
 use crate::space::Vec3;
@@ -16,6 +20,11 @@ impl<S: Scalar> Equations<'_, S> {
     /// Returns true if a row takes part (it does not where it depends on earlier ones).
     pub fn is_active(&self, r: usize) -> bool {
         self.configuration.active[r]
+    }
+
+    /// Returns the rows that take part, in the order of their elimination.
+    pub fn rows_in_order(&self) -> Vec<usize> {
+        self.configuration.rows_in_order()
     }
 
     /// Accelerations, multipliers and reactions.
@@ -83,8 +92,8 @@ impl<S: Scalar> Equations<'_, S> {
             .filter(|f| f.v.is_some())
             .map(|f| -f.component(&bias[f.link]))
             .collect();
-        let rows: Vec<(usize, Rc<RowValue<S>>)> = (0..scene.rows.len())
-            .filter(|&r| self.is_active(r))
+        let rows: Vec<(usize, Rc<RowValue<S>>)> = (self.rows_in_order())
+            .into_iter()
             .map(|r| (r, self.row(r)))
             .collect();
         let g: Vec<Vec<(usize, S)>> = rows.iter().map(|(_, row)| row.gradient.clone()).collect();
@@ -92,6 +101,11 @@ impl<S: Scalar> Equations<'_, S> {
         let way = &self.configuration.elimination;
         let multipliers = if scene.mode == STATIC {
             self.supporting(&g, &mut f)
+        } else if let Some(factor) = self.loop_factor(&g, &way.usual_pivots) {
+            Solution {
+                x: factor.solve(&mut f, &gamma),
+                strength: factor.strength,
+            }
         } else {
             match self.mass_factor() {
                 Some(factor) => accelerations(&factor, &g, &gamma, &mut f, way),
@@ -120,7 +134,6 @@ impl<S: Scalar> Equations<'_, S> {
             vdot: f,
             lambda,
             strength: multipliers.strength,
-            diagonal: multipliers.diagonal,
             links,
             carried,
             actions,
@@ -133,15 +146,55 @@ impl<S: Scalar> Equations<'_, S> {
             return None;
         }
         let way = &self.configuration.elimination;
-        Some(if way.articulated && way.lent_inertia.is_empty() {
-            Factor::Articulated(ArticulatedFactor::new(self.scene, &self.links))
-        } else {
-            let mut rows = self.mass_rows();
-            for (row, &lent) in rows.iter_mut().zip(&way.lent_inertia) {
-                row[0].1 += S::constant(lent);
+        Some(
+            if way.way != Way::MassMatrix && way.lent_inertia.is_empty() {
+                Factor::Articulated(ArticulatedFactor::new(self.scene, &self.links))
+            } else {
+                let mut rows = self.mass_rows();
+                for (row, &lent) in rows.iter_mut().zip(&way.lent_inertia) {
+                    row[0].1 += S::constant(lent);
+                }
+                Factor::Matrix(MassFactor::new(rows))
+            },
+        )
+    }
+
+    /// The factors of masses and rows `g` where rows are eliminated as their loops close; `None`:
+    /// they are not.
+    pub fn loop_factor(
+        &self,
+        g: &[Vec<(usize, S)>],
+        usual_pivots: &[f64],
+    ) -> Option<LoopFactor<'_, S>> {
+        let massless = self.scene.mode == KINEMATIC || self.scene.mode == STATIC;
+        let way = &self.configuration.elimination;
+        let here = way.way == Way::RowsWhereLoopsClose && way.lent_inertia.is_empty();
+        (here && !massless).then(|| LoopFactor::new(self.scene, &self.links, g, usual_pivots))
+    }
+
+    /// The diagonal of `G M⁻¹ Gᵀ` over the rows that take part, in their order: their pivots before
+    /// any is eliminated. In kinematics M is one, in statics its inverse holds the weights of
+    /// projections.
+    pub fn pivots(&self) -> Vec<S> {
+        let rows = self.rows_in_order();
+        let g: Vec<Vec<(usize, S)>> = rows
+            .into_iter()
+            .map(|r| self.row(r).gradient.clone())
+            .collect();
+        match self.mass_factor() {
+            Some(factor) => {
+                let u: Vec<_> = g.iter().map(|row| factor.half_row(row)).collect();
+                gram_diagonal(&u, &factor.inverse_d())
             }
-            Factor::Matrix(MassFactor::new(rows))
-        })
+            None if self.scene.mode == KINEMATIC => {
+                gram_diagonal(&g, &vec![S::one(); self.scene.layout.n_v])
+            }
+            None => {
+                let w = programs::weights(self.scene);
+                let w: Vec<S> = w.into_iter().map(S::constant).collect();
+                gram_diagonal(&g, &w)
+            }
+        }
     }
 
     /// Accelerations (into `f`) and multipliers where the rows leave no freedom, so that masses may
@@ -371,8 +424,6 @@ pub struct Solved<S> {
     /// least pivot of the rows as a part of what it usually is: small near a position where rows
     /// become dependent
     pub strength: S,
-    /// diagonal of `G M⁻¹ Gᵀ` over the rows that take part
-    pub diagonal: Vec<S>,
     /// links with all accelerations
     pub links: Vec<LinkState<S>>,
     /// what the carrier exerts on each link, in the link's axes about its origin

@@ -77,7 +77,7 @@ impl<S: Scalar> Equations<'_, S> {
         rates: Jet<S>,
     ) -> RowValue<S> {
         let actions = vec![(i, twist(seeded, 0)), (j, twist(seeded, 6))];
-        let gradient = self.gradient_of(&actions);
+        let gradient = self.gradient_between((i, j), &actions);
         RowValue {
             value: seeded.re,
             drift: rates.first - self.along(&gradient),
@@ -91,7 +91,27 @@ impl<S: Scalar> Equations<'_, S> {
     pub fn gradient_of(&self, actions: &[(usize, Action<S>)]) -> Vec<(usize, S)> {
         let mut gradient: Vec<(usize, S)> = Vec::new();
         for (m, action) in actions {
-            self.gradient(*m, action, &mut gradient);
+            self.gradient(*m, action, None, &mut gradient);
+        }
+        gradient.sort_by_key(|g| g.0);
+        gradient
+    }
+
+    /// As [`Equations::gradient_of`], of something that depends on how I stands to J alone: its
+    /// actions are opposite, and freedoms that carry both markers do not feel them.
+    fn gradient_between(
+        &self,
+        (i, j): (usize, usize),
+        actions: &[(usize, Action<S>)],
+    ) -> Vec<(usize, S)> {
+        let carriers = [i, j].map(|m| {
+            let link = self.scene.markers[m].link;
+            link.and_then(|l| self.scene.last_freedom[l])
+        });
+        let both = self.scene.common_carrier(carriers);
+        let mut gradient: Vec<(usize, S)> = Vec::new();
+        for (m, action) in actions {
+            self.gradient(*m, action, both, &mut gradient);
         }
         gradient.sort_by_key(|g| g.0);
         gradient
@@ -190,7 +210,7 @@ impl<S: Scalar> Equations<'_, S> {
             };
         }
         let rates = d.gauge.value(&moving(&I), &moving(&J));
-        let gradient = self.gradient_of(&actions);
+        let gradient = self.gradient_between((d.i, d.j), &actions);
         let value = if d.gauge.is_angle() {
             self.turned(self.scene.angle_id(d), seeded.re)
         } else {
@@ -237,12 +257,19 @@ impl<S: Scalar> Equations<'_, S> {
         (first - second).dot(line)
     }
 
-    /// Adds the components of an action on a marker along all free coordinates that move it.
-    pub(super) fn gradient(&self, m: usize, action: &Action<S>, sum: &mut Vec<(usize, S)>) {
+    /// Adds the components of an action on a marker along the free coordinates that move it, from
+    /// the nearest to the one before the freedom `until`; `None`: along all.
+    fn gradient(
+        &self,
+        m: usize,
+        action: &Action<S>,
+        until: Option<usize>,
+        sum: &mut Vec<(usize, S)>,
+    ) {
         let scene = self.scene;
         let point = self.marker(m).p_GM;
         let mut next = scene.markers[m].link.and_then(|l| scene.last_freedom[l]);
-        while let Some(k) = next {
+        while let Some(k) = next.filter(|_| next != until) {
             let f = &scene.freedoms[k];
             next = scene.carrier[k];
             let Some(v) = f.v else { continue };

@@ -69,7 +69,7 @@ impl<S: Scalar> Equations<'_, S> {
         if left_out.is_empty() {
             return Vec::new();
         }
-        let active: Vec<usize> = (0..n).filter(|&r| self.is_active(r)).collect();
+        let active = self.rows_in_order();
         let w: Vec<S> = weights(scene).into_iter().map(S::constant).collect();
         let gradient = |&r: &usize| self.row(r).gradient.clone();
         let rows: Vec<Vec<(usize, S)>> = active.iter().map(gradient).collect();
