@@ -28,8 +28,8 @@ fn every_scene_of_known_answer_comes_out_right() {
         let (outcome, sentence, steps) = (found.outcome, found.sentence, found.steps);
         counts.entry(one.family).or_default()[outcome as usize] += 1;
         let line = format!(
-            "{:<14} {:<46} {outcome:?}: {sentence}; {steps} steps",
-            one.family, one.name
+            "{:<14} {:<46} at {:e} {outcome:?}: {sentence}; {steps} steps",
+            one.family, one.name, one.error
         );
         println!("{line}");
         if outcome != Outcome::Right {

@@ -4,7 +4,8 @@
 //! ```text
 //! EXP(a)               a               COSH(a), TANH(a)    −2 |a|
 //! x**n, n < 0, n ≥ 8   n ln |x|        ATAN(a)             −ln(1 + a²)
-//! b/x                  −ln |x|         products            the sum of those of the factors
+//! b/x                  −ln |x|         TAN(a)              −ln |cos a|
+//!                                      products            the sum of those of the factors
 //! ```
 //!
 //! TANH and ATAN are steep there: the difference of two of them is a pulse. While the logarithm
@@ -72,6 +73,10 @@ impl Builder {
                 let one = self.constant(1.0);
                 let sum = self.binary(BinaryOp::Add, one, square);
                 Some(self.log_of_size(-1.0, sum))
+            }
+            Node::Unary(UnaryOp::Tan, a) => {
+                let cosine = self.unary(UnaryOp::Cos, a);
+                Some(self.log_of_size(-1.0, cosine))
             }
             Node::Whole(x, n) => self.log_of_power(x, f64::from(n)),
             Node::Binary(BinaryOp::Pow, x, n) => {

@@ -66,6 +66,10 @@ const STAGE_GAP: [f64; 2] = [collocation::C[0], collocation::C[1]];
 const MOST_PLACINGS: usize = 4;
 /// Growth of the step, as a factor, up to which the factors of the matrices are kept.
 const KEEP_STEP: f64 = 1.2;
+/// Growth of the step, as a factor, over the one that the Jacobian was evaluated for, up to which
+/// that is kept. Error control grows steps by 8 at most; a step that follows one that a limit cut
+/// short may be longer by any factor.
+const KEEP_GROWTH: f64 = 10.0;
 /// Part of |q|/h against which the error of the rate of q may always be measured.
 ///
 /// Chosen on a wind turbine that hums at 480 kHz (half a second in 4200 steps); 10⁻² and 10⁻¹ save
@@ -111,6 +115,8 @@ struct Freshness {
     stale: bool,
     /// step for which the matrices are factored, in s; 0: none
     h_factored: f64,
+    /// step for which the Jacobian was evaluated, in s
+    h_evaluated: f64,
 }
 
 /// Radau IIA of order 5 with projection; see the file's card.
@@ -226,6 +232,7 @@ impl Radau {
                 here: false,
                 stale: true,
                 h_factored: 0.0,
+                h_evaluated: 0.0,
             },
             error: zeros(),
             defect: zeros(),
@@ -243,6 +250,7 @@ impl Radau {
             here: false,
             stale: true,
             h_factored: 0.0,
+            h_evaluated: 0.0,
         };
         self.convergence.reset();
         self.polynomial.forget();
@@ -289,6 +297,7 @@ impl Radau {
             here: true,
             stale: false,
             h_factored: 0.0,
+            h_evaluated: self.control.h,
         };
         Ok(())
     }
@@ -611,7 +620,9 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
             let too_fast = || control::too_fast(&self.begin.f, &self.weights);
             let (h, t1) = attempts.next(proposed, &self.options, &self.stats, too_fast)?;
             self.control.h = h;
-            if self.freshness.stale {
+            // a Jacobian that a short step hardly felt says nothing about a long one
+            let grown = h > KEEP_GROWTH * self.freshness.h_evaluated;
+            if self.freshness.stale || grown && !self.freshness.here {
                 self.evaluate_jacobian(problem)
                     .map_err(|reason| attempts.stop(reason, h))?;
             }
@@ -619,6 +630,9 @@ impl<P: Ode + ?Sized> Method<P> for Radau {
                 Ok((error, iterations)) => {
                     let keep = self.convergence.theta <= KEEP_JACOBIAN_RATE;
                     let allowed = self.convergence.allowed;
+                    if self.freshness.here {
+                        self.freshness.h_evaluated = h;
+                    }
                     self.control
                         .accept(error, iterations, allowed, proposed, keep);
                     self.control.h_next = self.control.h_next.max(self.placing.wanted);

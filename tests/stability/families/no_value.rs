@@ -9,7 +9,7 @@ pub fn no_value() -> Vec<Scene> {
     let one = |name: &str, function: &str, words: &'static str| {
         scene(f, name, slider(1.0, 0.0, 0.0) + &push(function)).ends(words)
     };
-    vec![
+    let mut all = vec![
         one("a root of what becomes negative", "SQRT(0.5-TIME)", "SQRT"),
         one(
             "a logarithm of what becomes negative",
@@ -35,5 +35,13 @@ pub fn no_value() -> Vec<Scene> {
         )
         .end(2.0)
         .ends("DIFF/1"),
-    ]
+    ];
+    for method in ["RADAU5", "BDF", "HHT", "NEWMARK"] {
+        for error in [1e-4, 1e-3, 1e-2, 1e-1] {
+            for (name, function) in [("a pole", "1/(TIME-0.5)"), ("a tangent", "TAN(PI*TIME)")] {
+                all.push(one(name, function, "SFORCE/1").method(method).error(error));
+            }
+        }
+    }
+    all
 }
