@@ -43,6 +43,9 @@ const MAX_BURSTS: usize = 50;
 /// Distance from zero where a switch was to be, as a part of the way within the step, that is more
 /// than rounding and error.
 const LANDING_TOLERANCE: f64 = 0.1;
+/// Distance from zero after the shortest step, as a part of the change within the longer step that
+/// found the switch, that is none.
+const NO_DISTANCE: f64 = 1e-6;
 /// Length below which no step is shortened because of a switch, as a part of the duration of the
 /// run: at time 0 there is always a shorter one, and a function whose branches are noise would lead
 /// there.
@@ -83,6 +86,8 @@ pub struct Switches {
     probe: Vec<f64>,
     /// where the step under way is to end
     landing: Option<f64>,
+    /// change of each value within the longer step that said so   (n)
+    swings: Vec<f64>,
     redone: usize,
     burst: usize,
     last: f64,
@@ -110,6 +115,7 @@ impl Switches {
             slope1: vec![0.0; n],
             probe: vec![0.0; size],
             landing: None,
+            swings: vec![0.0; n],
             redone: 0,
             burst: 0,
             last: f64::NEG_INFINITY,
@@ -300,7 +306,7 @@ impl Switches {
         let landed = self.landing.take() == Some(step.t1);
         let (y, ydot) = (method.y(), method.ydot());
         self.slopes(system, step.t1, y, ydot, 1e-4 * step.h);
-        let landed = landed && self.has_landed(step.h);
+        let landed = landed && self.has_landed(step);
         if !self.is_near(step.h, landed) {
             if landed {
                 return Verdict::Switched;
@@ -393,18 +399,26 @@ impl Switches {
         }
         self.redone += 1;
         self.landing = Some(at);
+        let ends = self.g1.iter().zip(&self.g0);
+        (self.swings.iter_mut().zip(ends)).for_each(|(swing, (a, b))| *swing = (a - b).abs());
         self.locator.begin_on(&self.g0, &self.sides);
         Verdict::Redo(at)
     }
 
     /// Returns whether what was to switch at the end of a step is there at zero. The steps that
     /// said so may have been much longer than their method could see, and their interpolants wrong.
-    fn has_landed(&mut self, h: f64) -> bool {
+    /// After the shortest step a value counts as zero that is nothing beside its change in the
+    /// longer one: there its distance from zero and its slope are rounding.
+    fn has_landed(&mut self, step: &Step) -> bool {
+        let is_shortest = step.h <= 2.0 * SHORTEST_STEP * self.duration;
         for k in 0..self.next.len() {
             let steepest = self.slope0[k].abs().max(self.slope1[k].abs());
-            if sign(self.g1[k]) == -self.next[k]
-                && self.g1[k].abs() > LANDING_TOLERANCE * h * steepest
-            {
+            let on_the_way = LANDING_TOLERANCE * step.h * steepest;
+            let zero = match is_shortest {
+                true => on_the_way.max(NO_DISTANCE * self.swings[k]),
+                false => on_the_way,
+            };
+            if sign(self.g1[k]) == -self.next[k] && self.g1[k].abs() > zero {
                 self.next[k] = 0;
             }
         }
