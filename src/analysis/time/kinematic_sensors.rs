@@ -27,6 +27,8 @@ pub(super) struct Followed {
     pace: f64,
     /// distance of looks at them
     distance: f64,
+    /// the time from which a sensor asks for other outputs, and their distance
+    pub every: Option<(f64, f64)>,
 }
 
 impl Followed {
@@ -61,7 +63,8 @@ impl Followed {
         }
     }
 
-    /// Follows the path up to a time in its last step.
+    /// Follows the path up to a time in its last step, or up to where a sensor asks for other
+    /// outputs.
     ///
     /// # Errors
     /// A sensor ends the simulation on the way.
@@ -77,9 +80,28 @@ impl Followed {
                 let next = self.t + self.distance;
                 let next = if next < to && next > self.t { next } else { to };
                 self.watch(system, path, next, out)?;
+                if self.every.is_some() {
+                    return Ok(());
+                }
             }
         }
         self.count(system, path, to);
+        Ok(())
+    }
+
+    /// Does what the sensors ask for that are triggered at a state.
+    ///
+    /// # Errors
+    /// One of them ends the simulation.
+    pub fn trigger(
+        &mut self,
+        system: &mut System,
+        at: (f64, &[f64]),
+        near: bool,
+        out: &mut Trajectory,
+    ) -> Result<(), Ended> {
+        let dt = trigger(system, at, near, out)?;
+        self.every = dt.map(|dt| (at.0, dt)).or(self.every);
         Ok(())
     }
 
@@ -127,24 +149,26 @@ impl Followed {
         }
         std::mem::swap(&mut self.before, &mut self.after);
         self.t = at;
-        trigger(system, (at, &there), located, out)
+        self.trigger(system, (at, &there), located, out)
     }
 }
 
-/// Does what the sensors ask for that are triggered at a state; `near`: a value within ERROR
-/// counts.
+/// Does what the sensors ask for that are triggered at a state; returns the distance of outputs
+/// that one of them asks for. `near`: a value within ERROR counts.
 ///
 /// # Errors
 /// One of them ends the simulation.
-pub(super) fn trigger(
+fn trigger(
     system: &mut System,
     (t, y): (f64, &[f64]),
     near: bool,
     out: &mut Trajectory,
-) -> Result<(), Ended> {
+) -> Result<Option<f64>, Ended> {
+    let mut distance = None;
     for k in system.sense(t, y, near) {
         let sensor = &system.scene.sensors[k];
         let ends = sensor.halt || sensor.end_simulation;
+        distance = sensor.dt.or(distance);
         if (ends || sensor.print) && out.ends_before(t) {
             let row = system.row_of(t, y);
             out.push(t, row);
@@ -154,7 +178,7 @@ pub(super) fn trigger(
             return Err(Ended::Sensor(k));
         }
     }
-    Ok(())
+    Ok(distance)
 }
 
 /// Returns the states of the last step of a path.

@@ -8,8 +8,9 @@
 
 use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
-use crate::analysis::time::kinematic_sensors::{Followed, trigger};
+use crate::analysis::time::kinematic_sensors::Followed;
 use crate::analysis::time::options::Options;
+use crate::analysis::time::output::Output;
 use crate::analysis::time::ranks;
 use crate::analysis::trajectory::{Ended, Takeover, Trajectory};
 use crate::analysis::watch::Watch;
@@ -46,10 +47,8 @@ pub fn trace(
         system,
         out,
     };
-    let ended = outputs
-        .iter()
-        .try_for_each(|&target| tracer.reach(target, watch));
-    tracer.out.ended = ended.err();
+    let mut ahead = outputs.iter().rev().copied().collect();
+    tracer.out.ended = tracer.go(&mut ahead, end, watch).err();
     tracer.out
 }
 
@@ -65,7 +64,20 @@ struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    /// Moves to an output time and puts it out.
+    /// Moves through all output times that are ahead, the next one last; sensors may ask for
+    /// others up to the `end`.
+    fn go(&mut self, ahead: &mut Vec<f64>, end: f64, watch: &mut dyn Watch) -> Result<(), Ended> {
+        while let Some(target) = ahead.pop() {
+            self.reach(target, watch)?;
+            if let Some((from, distance)) = self.followed.every.take() {
+                ahead.clear();
+                ahead.extend(Output::Every(distance).times(from, end).iter().rev());
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves to an output time and puts it out, unless a sensor asks for other outputs on the way.
     fn reach(&mut self, target: f64, watch: &mut dyn Watch) -> Result<(), Ended> {
         let mut landing = f64::INFINITY;
         let y = loop {
@@ -74,6 +86,9 @@ impl Tracer<'_> {
                     return Err(Ended::Interrupted);
                 }
                 self.advance(landing)?;
+                if self.followed.every.is_some() {
+                    return Ok(());
+                }
                 let last = (self.path.now().t, self.path.step());
                 self.out.last_step = Some(last);
                 watch.progress(last.0, last.1, &self.out.stats);
@@ -89,16 +104,20 @@ impl Tracer<'_> {
         };
         self.out.stats.evaluations += 1;
         (self.followed).follow(self.system, self.path, target, &mut self.out)?;
+        if self.followed.every.is_some() {
+            return Ok(());
+        }
         if self.out.ends_before(target) {
             let row = self.system.row_of(target, &y);
             self.out.push(target, row);
             watch.collect(self.system, &mut self.out);
         }
         // at outputs a value within ERROR counts
-        trigger(self.system, (target, &y), true, &mut self.out)
+        (self.followed).trigger(self.system, (target, &y), true, &mut self.out)
     }
 
-    /// Takes one step of the continuation, with the rows that are the better ones at its beginning.
+    /// Takes one step of the continuation, with the rows that are the better ones at its beginning;
+    /// none where a sensor asks for other outputs before it.
     fn advance(&mut self, landing: f64) -> Result<(), Ended> {
         let t = self.path.now().t;
         if self.out.stats.steps + self.out.stats.rejected >= self.max_steps {
@@ -106,6 +125,9 @@ impl Tracer<'_> {
             return Err(Ended::Stop(Stop { reason, t, h }));
         }
         (self.followed).follow(self.system, self.path, t, &mut self.out)?;
+        if self.followed.every.is_some() {
+            return Ok(());
+        }
         self.choose_rows();
         if let Err((failure, h)) = (self.path).advance(self.system, landing, &mut self.out.stats) {
             return Err(self.locked(failure, h));
