@@ -157,6 +157,12 @@ impl Element for Matrix {
 }
 
 impl Matrix {
+    /// Returns the file in which the numbers stand, which is not read; `None` where VALUES gives
+    /// them, which then count.
+    pub fn unread_file(&self) -> Option<&str> {
+        self.file.as_deref().filter(|_| self.values.is_empty())
+    }
+
     /// All numbers row after row   (rows × columns), or `None` when they do not fit the stated
     /// size.
     pub fn by_rows(&self) -> Option<Vec<f64>> {

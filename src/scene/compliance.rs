@@ -120,7 +120,9 @@ impl Builder<'_> {
                 if found.is_none() {
                     let why = match given {
                         None => "does not exist".to_string(),
-                        Some(m) if m.file.is_some() => "stands in a file, which is not read".into(),
+                        Some(m) if m.unread_file().is_some() => {
+                            "stands in a file, which is not read".into()
+                        }
                         Some(m) => format!("is {} × {}", m.rows, m.columns),
                     };
                     let matrix = ElementKind::Matrix.id(matrix);

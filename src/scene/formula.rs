@@ -63,7 +63,7 @@ pub(super) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
     }
     let matrix = data.matrix.and_then(|m| model.matrices.get(&m));
     let matrix = matrix.ok_or_else(|| unfit("has no MATRIX with its points".into()))?;
-    if let Some(file) = &matrix.file {
+    if let Some(file) = matrix.unread_file() {
         let what = format!("its points stand in the file {file}, which is not read");
         return Err(unfit(what));
     }

@@ -98,7 +98,7 @@ pub fn unknown_constraints(model: &Model) -> Vec<Unknown> {
             return Some(Hidden::CurveInRoutine(curve));
         }
         let matrix = given.matrix.and_then(|m| model.matrices.get(&m));
-        let file = matrix.and_then(|m| m.file.clone())?;
+        let file = matrix.and_then(|m| m.unread_file())?.to_string();
         Some(Hidden::CurveInFile { curve, file })
     };
     let mut found = Vec::new();

@@ -27,7 +27,7 @@ pub(super) fn curves_have_points(model: &Model, out: &mut Out) {
                 "CURVE_POINTS lays the curve through them; CONTROL_POINTS says that this is meant",
             );
         }
-        if points.file.is_some() {
+        if points.unread_file().is_some() {
             continue;
         }
         if points.columns != 3 {

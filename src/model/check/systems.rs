@@ -5,7 +5,7 @@ use super::*;
 pub(super) fn splines_are_functions(model: &Model, out: &mut Out) {
     for (&id, s) in &model.splines {
         let who = (ElementKind::Spline.id(id), &s.place);
-        if s.file.is_some() {
+        if s.file.is_some() && s.x.is_empty() {
             continue;
         }
         let n = s.x.len();
@@ -71,7 +71,7 @@ pub(super) fn arrays_have_their_size(model: &Model, out: &mut Out) {
     }
     for (&id, m) in &model.matrices {
         let who = (ElementKind::Matrix.id(id), &m.place);
-        if m.file.is_some() {
+        if m.unread_file().is_some() {
             continue;
         }
         if m.rows == 0 || m.columns == 0 {
