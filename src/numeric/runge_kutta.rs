@@ -19,8 +19,8 @@
 //! *Stiffness*: when `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` lies beyond 6.1, the edge of the
 //! stability region, in most of the recent steps, stability holds the step down. [`Method::stiff`]
 //! says so, and the integration goes on. There the interpolant (4), whose further stages magnify
-//! what is left of fast modes by `(h λ)³`, is compared with the rate in the middle of the step; it
-//! has no value where they do not fit.
+//! what is left of fast modes by `(h λ)³`, is compared with the rate in the middle of the step; where
+//! they do not fit, a value within the step is computed by a step of its own.
 //!
 //! *Rounding*: the part of an error that rounding explains (`noise.rs`) shortens no step, since a
 //! shorter one would be no better. It is measured where an error is too large, and where the two
@@ -35,8 +35,9 @@
 
 use super::control::{self, Attempts, Pi, Rejection, Weights, worst, worst_index};
 use super::noise::{self, Noise, Probed};
-use super::quadrature::{GAUSS_4, Node, over_interpolant};
+use super::quadrature::Node;
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
+use interpolant::Interpolant;
 
 /// Order of the method.
 const ORDER: usize = 8;
@@ -64,10 +65,6 @@ const FINE_REQUEST: f64 = 1e-10;
 /// stepped at 5.4, 4.3 and 3.7 at 1e-11, 1e-12 and 1e-13; a motion that is followed as exactly, at
 /// less than 1.
 const FINE_STABILITY_EDGE: f64 = 3.0;
-/// `h |λ|` from which on the interpolant is compared with the rate.
-const DENSE_EDGE: f64 = 2.0;
-/// Error of the interpolant there, at most, in units of that permitted in a step.
-const DENSE_TOLERANCE: f64 = 1.0;
 /// Steps beyond the edge from which on the problem is called stiff.
 const STIFF_STEPS: u32 = 15;
 /// Steps within the edge, in a row, after which those beyond it are forgotten.
@@ -84,6 +81,9 @@ macro_rules! row {
         }
     }};
 }
+
+// behind the macro that it uses
+mod interpolant;
 
 /// Explicit Runge–Kutta of order 8 with projection; see the file's card.
 #[derive(Clone, Debug)]
@@ -129,10 +129,8 @@ pub struct Dop853 {
     k: [Vec<f64>; 11],
     /// changes of the length of the present step for [`Ode::place_step`]
     placed: usize,
-    /// whether `dense` belongs to the last step
-    dense_ready: bool,
-    /// r₁ … r₇ of (4)   (7 × n)
-    dense: [Vec<f64>; 7],
+    /// the solution within the last step
+    interpolant: Interpolant,
 }
 
 /// The reason why an attempt was not accepted.
@@ -218,8 +216,7 @@ impl Dop853 {
             stage: zeros(),
             k: std::array::from_fn(|_| zeros()),
             placed: 0,
-            dense_ready: false,
-            dense: std::array::from_fn(|_| zeros()),
+            interpolant: Interpolant::new(n),
         }
     }
 
@@ -522,108 +519,6 @@ impl Dop853 {
             ((y1 - y0) - h * b_hat_slope(*k1, *k9, *k12)) / m
         }))
     }
-
-    /// Computes the coefficients of (4), with three evaluations.
-    fn prepare_dense<P: Ode + ?Sized>(&mut self, problem: &mut P) -> Result<(), Failure> {
-        if self.dense_ready {
-            return Ok(());
-        }
-        let (t, h, n) = (self.t0, self.h, self.y0.len());
-        let (y, stage) = (&self.y0[..n], &mut self.stage);
-        let (k1, k13) = (&self.f0, &self.f1);
-        // k₂ … k₄ are not needed any more
-        let [k14, k15, k16, _, k6, k7, k8, k9, k10, k11, k12] = &mut self.k;
-        macro_rules! stage {
-            ($out:ident at $c:literal: $($row:tt)*) => {
-                row!(stage = y + h * ($($row)*));
-                self.stats.evaluations += 1;
-                problem.rate(t + $c * h, &stage[..n], &mut $out[..n])?;
-            };
-        }
-        stage!(k14 at 0.1: k1 0.056167502283047954, k7 0.25350021021662483, k8 -0.2462390374708025, k9 -0.12419142326381637,
-            k10 0.15329179827876568, k11 0.00820105229563469, k12 0.007567897660545699, k13 -0.008298);
-        stage!(k15 at 0.2: k1 0.03183464816350214, k6 0.028300909672366776, k7 0.053541988307438566, k8 -0.05492374857139099,
-            k11 -0.00010834732869724932, k12 0.0003825710908356584, k13 -0.00034046500868740456, k14 0.1413124436746325);
-        stage!(k16 at 0.7777777777777778: k1 -0.42889630158379194, k6 -4.697621415361164, k7 7.683421196062599, k8 4.06898981839711,
-            k9 0.3567271874552811, k13 -0.0013990241651590145, k14 2.9475147891527724, k15 -9.15095847217987);
-
-        let [r1, r2, r3, r4, r5, r6, r7] = &mut self.dense;
-        for i in 0..n {
-            let rise = self.y1[i] - y[i];
-            r1[i] = rise;
-            r2[i] = h * k1[i] - rise;
-            r3[i] = rise - h * k13[i] - r2[i];
-        }
-        stage[..n].fill(0.0);
-        let zero = &stage[..n];
-        row!(r4 = zero + h * (k1 -8.428938276109013, k6 0.5667149535193777, k7 -3.0689499459498917, k8 2.38466765651207,
-            k9 2.117034582445028, k10 -0.871391583777973, k11 2.2404374302607883, k12 0.6315787787694688, k13 -0.08899033645133331,
-            k14 18.148505520854727, k15 -9.194632392478356, k16 -4.436036387594894));
-        row!(r5 = zero + h * (k1 10.427508642579134, k6 242.28349177525817, k7 165.20045171727028, k8 -374.5467547226902,
-            k9 -22.113666853125306, k10 7.733432668472264, k11 -30.674084731089398, k12 -9.332130526430229, k13 15.697238121770845,
-            k14 -31.139403219565178, k15 -9.35292435884448, k16 35.81684148639408));
-        row!(r6 = zero + h * (k1 19.985053242002433, k6 -387.0373087493518, k7 -189.17813819516758, k8 527.8081592054236,
-            k9 -11.57390253995963, k10 6.8812326946963, k11 -1.0006050966910838, k12 0.7777137798053443, k13 -2.778205752353508,
-            k14 -60.19669523126412, k15 84.32040550667716, k16 11.99229113618279));
-        row!(r7 = zero + h * (k1 -25.69393346270375, k6 -154.18974869023643, k7 -231.5293791760455, k8 357.6391179106141,
-            k9 93.40532418362432, k10 -37.45832313645163, k11 104.0996495089623, k12 29.8402934266605, k13 -43.53345659001114,
-            k14 96.32455395918828, k15 -39.17726167561544, k16 -149.72683625798564));
-        self.dense_ready = true;
-        if self.h_lambda > DENSE_EDGE {
-            self.check_dense(problem)?;
-        }
-        Ok(())
-    }
-
-    /// Compares the slope of (4) in the middle of the step with the rate there: the difference is
-    /// about λ times the error of the interpolant.
-    ///
-    /// # Errors
-    /// The interpolant is off by more than a step may be: a step has to end where a value is
-    /// wanted.
-    fn check_dense<P: Ode + ?Sized>(&mut self, problem: &mut P) -> Result<(), Failure> {
-        const MIDDLE: f64 = 0.5;
-        let n = self.y0.len();
-        // k₂ and k₃ have done their work
-        let (mut y, mut slope) = (
-            std::mem::take(&mut self.k[0]),
-            std::mem::take(&mut self.k[1]),
-        );
-        for i in 0..n {
-            (y[i], slope[i]) = self.dense_at(i, MIDDLE);
-        }
-        self.stats.evaluations += 1;
-        let evaluated = problem.rate(self.t0 + MIDDLE * self.h, &y, &mut self.stage);
-        let defects = self.stage.iter().zip(&slope).zip(self.weights.magnitude());
-        let worst = worst(defects.map(|((f, slope), m)| (self.h * f - slope) / m));
-        (self.k[0], self.k[1]) = (y, slope);
-        evaluated?;
-        if worst <= DENSE_TOLERANCE * self.h_lambda * self.weights.tolerance() {
-            return Ok(());
-        }
-        self.dense_ready = false;
-        Err(Failure {
-            what: 0,
-            recoverable: true,
-        })
-    }
-
-    /// Returns value and slope, per step, of (4) for unknown `i` at the part `s` of the step.
-    fn dense_at(&self, i: usize, s: f64) -> (f64, f64) {
-        // Horner's rule; the factors alternate between θ and 1 − θ
-        let (mut p, mut slope) = (0.0, 0.0);
-        for (j, r) in self.dense.iter().enumerate().rev() {
-            p += r[i];
-            let (factor, sign) = if j % 2 == 0 {
-                (s, 1.0)
-            } else {
-                (1.0 - s, -1.0)
-            };
-            slope = slope * factor + p * sign;
-            p *= factor;
-        }
-        (self.y0[i] + p, slope)
-    }
 }
 
 impl<P: Ode + ?Sized> Method<P> for Dop853 {
@@ -646,7 +541,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
             self.t0 = self.t1;
             self.advanced = false;
         }
-        self.dense_ready = false;
+        self.interpolant.forget();
         let mut attempts = Attempts::new(self.t0, t_limit, &self.options);
         loop {
             let proposed = self.h_next.min(self.options.h_max);
@@ -686,7 +581,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
         if self.advanced {
             self.advanced = false;
             self.h_next = self.h;
-            self.dense_ready = false;
+            self.interpolant.forget();
         }
     }
 
@@ -699,17 +594,7 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
             y.copy_from_slice(&self.y0);
             return Ok(());
         }
-        self.prepare_dense(problem)?;
-        let s = (t - self.t0) / self.h;
-        let c = 1.0 - s;
-        let [r1, r2, r3, r4, r5, r6, r7] = &self.dense;
-        for i in 0..y.len() {
-            y[i] = self.y0[i]
-                + s * (r1[i]
-                    + c * (r2[i]
-                        + s * (r3[i] + c * (r4[i] + s * (r5[i] + c * (r6[i] + s * r7[i]))))));
-        }
-        Ok(())
+        self.within_step(problem, t, y)
     }
 
     fn interpolate_rate(
@@ -722,27 +607,18 @@ impl<P: Ode + ?Sized> Method<P> for Dop853 {
             ydot.copy_from_slice(&self.f0);
             return Ok(());
         }
-        self.prepare_dense(problem)?;
-        let s = (t - self.t0) / self.h;
-        for (i, rate) in ydot.iter_mut().enumerate() {
-            *rate = self.dense_at(i, s).1 / self.h;
-        }
-        Ok(())
+        self.rate_within_step(problem, t, ydot)
     }
 
     fn quadrature(
         &mut self,
         problem: &mut P,
-        ends: [f64; 2],
-        work: &mut [Vec<f64>; 2],
+        _ends: [f64; 2],
+        _work: &mut [Vec<f64>; 2],
         visit: &mut dyn FnMut(&mut P, Node<'_>),
     ) -> Result<(), Failure> {
         if !self.advanced {
             return Ok(());
-        }
-        if self.dense_ready {
-            // the interpolant costs nothing any more, and has overwritten stages
-            return over_interpolant(self, problem, ends, &GAUSS_4, work, visit);
         }
         let h = self.h;
         visit(

@@ -21,6 +21,7 @@ mod linear;
 mod loops;
 mod messages;
 mod methods_outside;
+mod outputs;
 mod references;
 mod saved;
 mod statics;

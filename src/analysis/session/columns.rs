@@ -472,6 +472,8 @@ pub fn append_means<'a>(
                 *value = *mean;
             }
         }
+        // a zero has no sign that would mean something
+        values.iter_mut().for_each(|value| *value += 0.0);
         run.push(&values);
     }
 }

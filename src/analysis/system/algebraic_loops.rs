@@ -60,6 +60,10 @@ pub(in crate::analysis) struct AlgebraicLoops {
     factors: LoopFactors,
     /// `factors` are of ∂ρ/∂z here or where it was last solved
     factored: bool,
+    /// the factors that are not in use, whether they were, and the rounding that belongs to them
+    others: (LoopFactors, bool, f64),
+    /// the factors in use are those for evaluations aside
+    is_aside: bool,
     /// sizes of positions: angles count from one, lengths from that of the mechanism   (n_q)
     sizes: Vec<f64>,
     /// where positions stand
@@ -121,6 +125,8 @@ impl AlgebraicLoops {
         let pattern = Pattern::of_rows(n, &rows);
         Self {
             factors: LoopFactors::new(&rows, &pattern),
+            others: (LoopFactors::new(&rows, &pattern), false, 0.0),
+            is_aside: false,
             pattern,
             gradient: slopes::recorded(&residual, n, places.clone()).map(Recording::new),
             residual,
@@ -136,6 +142,18 @@ impl AlgebraicLoops {
             sizes: sizes_of_positions(scene),
             positions: scene.layout.q(),
             rounding: 0.0,
+        }
+    }
+
+    /// Exchanges the factors with those for evaluations aside, which begin with none, or back.
+    pub(super) fn exchange_factors(&mut self) {
+        let (factors, factored, rounding) = &mut self.others;
+        std::mem::swap(&mut self.factors, factors);
+        std::mem::swap(&mut self.factored, factored);
+        std::mem::swap(&mut self.rounding, rounding);
+        self.is_aside = !self.is_aside;
+        if self.is_aside {
+            (self.factored, self.rounding) = (false, 0.0);
         }
     }
 

@@ -41,6 +41,10 @@ pub struct Branches {
     pub(super) slides: Slides,
     /// angles that decide a branch again in every turn
     watched_angles: Vec<WatchedAngle>,
+    /// the numbers of the steps while evaluations are made aside
+    numbers_of_steps: Vec<f64>,
+    /// whether they are
+    is_aside: bool,
 }
 
 impl Branches {
@@ -69,6 +73,8 @@ impl Branches {
             holding: false,
             sides: vec![0.0; n],
             slides: Slides::default(),
+            numbers_of_steps: Vec::new(),
+            is_aside: false,
         })
     }
 
@@ -161,6 +167,21 @@ impl Branches {
         let places = self.row.numbers.loops();
         numbers[places].copy_from_slice(&self.numbers[self.row.more()]);
         true
+    }
+
+    /// Begins or ends evaluations aside, which leave neither unknowns nor factors of loops behind.
+    pub(super) fn exchange_traces(&mut self) {
+        let Some(loops) = &mut self.loops else {
+            return;
+        };
+        loops.exchange_factors();
+        self.is_aside = !self.is_aside;
+        if self.is_aside {
+            self.numbers_of_steps.clone_from(&self.numbers);
+        } else {
+            self.numbers.clone_from(&self.numbers_of_steps);
+        }
+        self.slides.exchange_unknowns(self.is_aside);
     }
 
     /// Returns whether what held branches read has to be solved for beside the programs.

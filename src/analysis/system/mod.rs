@@ -12,6 +12,7 @@
 //! ```
 
 mod algebraic_loops;
+mod aside;
 pub mod branches;
 pub mod closures;
 pub(super) mod energy;
@@ -70,6 +71,8 @@ pub struct System {
     energy: Option<Box<energy::EnergyProgram>>,
     /// instants near which rows were dependent in the present step
     singular_steps: SingularSteps,
+    /// what steps leave behind, while evaluations are made aside
+    traces: aside::Traces,
     /// the permitted local error: evaluations need not be much better
     pub precision: f64,
     /// the loop that had no solution at the last numbers
@@ -114,6 +117,7 @@ impl System {
             hooks: hooks.to_vec(),
             energy: None,
             singular_steps: SingularSteps::default(),
+            traces: aside::Traces::default(),
             precision: 1e-6,
             unsolved: None,
             stage: Vec::with_capacity(scene.layout.n_y()),

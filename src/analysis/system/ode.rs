@@ -43,7 +43,7 @@ impl System {
     /// be felt.
     fn evaluate_weak(&mut self, t: f64, y: &[f64]) {
         let l = self.scene.layout;
-        self.recorded.rows.were_weak = true;
+        self.recorded.rows.were_weak |= !self.singular_steps.is_paused();
         let strength = l.rates(&self.recorded.rate.values).1.max(0.0);
         let permitted = (MAGNIFIED_ERROR * self.precision * strength.sqrt()).max(ROUNDING);
         let violation = self.worst_violation();

@@ -14,6 +14,8 @@ pub struct SingularSteps {
     seen: Vec<(f64, f64)>,
     /// rows have nearly been dependent since somebody last asked
     weak: bool,
+    /// evaluations are made aside, and not taken note of
+    paused: bool,
 }
 
 /// Evaluations remembered, at most.
@@ -28,11 +30,24 @@ impl SingularSteps {
     /// Takes note of an evaluation with weak rows. `strength`: the weakest pivot over its usual
     /// size.
     pub fn see(&mut self, t: f64, strength: f64) {
+        if self.paused {
+            return;
+        }
         self.weak = true;
         if self.seen.len() >= MAX_SEEN {
             self.seen.clear();
         }
         self.seen.push((t, strength.max(0.0).sqrt()));
+    }
+
+    /// Stops taking note of evaluations, or goes on doing so.
+    pub fn pause(&mut self, paused: bool) {
+        self.paused = paused;
+    }
+
+    /// Returns whether evaluations are not taken note of.
+    pub fn is_paused(&self) -> bool {
+        self.paused
     }
 
     /// Returns whether an evaluation had weak rows since [`SingularSteps::take_weak`].

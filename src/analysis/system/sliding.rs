@@ -58,9 +58,22 @@ pub(super) struct Slides {
     lu: Option<Lu>,
     /// unknowns of loops on each branch, where their solution began last   ((m + 1) × n_loops)
     unknowns: Vec<f64>,
+    /// those of the steps while evaluations are made aside
+    unknowns_of_steps: Vec<f64>,
     work: Work<Dual<WIDTH>>,
     numbers: Vec<Dual<WIDTH>>,
     out: Vec<Dual<WIDTH>>,
+}
+
+impl Slides {
+    /// Copies the unknowns of loops before evaluations aside, or puts them back.
+    pub(super) fn exchange_unknowns(&mut self, is_aside: bool) {
+        if is_aside {
+            self.unknowns_of_steps.clone_from(&self.unknowns);
+        } else {
+            self.unknowns.clone_from(&self.unknowns_of_steps);
+        }
+    }
 }
 
 impl Branches {

@@ -412,7 +412,7 @@ impl<'a> Leg<'a> {
     /// Keeps what is asked of the past; whether the interpolant had no value.
     fn remember(&mut self, method: &mut dyn Method<System>, step: &Step) -> bool {
         !self.system.recorded.external.delays.is_empty()
-            && past::remember(self.system, method, step).is_err()
+            && (self.system).aside(|system| past::remember(system, method, step).is_err())
     }
 
     /// Does what triggered sensors ask for; whether the method is to begin anew, and with which

@@ -2,6 +2,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::system::turns::Look;
+use crate::analysis::time::counting::Counting;
 use crate::analysis::time::leg::Leg;
 use crate::numeric::{Method, Step};
 
@@ -18,7 +19,8 @@ impl Leg<'_> {
             .get(self.out.t.len())
             .filter(|&&t| t < step.t1)?;
         let mut state = method.y().to_vec();
-        let failed = method.interpolate(self.system, t, &mut state).is_err();
+        let found = (self.system).aside(|system| method.interpolate(system, t, &mut state));
+        let failed = found.is_err();
         (failed && t > step.t0).then_some(t)
     }
 
@@ -32,12 +34,16 @@ impl Leg<'_> {
                 break;
             }
             self.count_turns(method, step, t);
-            if !state_at(method, step.t1)(self.system, t, &mut state) {
-                // tried before the step was accepted: a method that had a value once has it again
-                state.fill(f64::NAN);
-            }
-            let row = self.system.row(t, &state);
-            let branches = self.system.rows_of_branches(&row);
+            let (row, branches) = self.system.aside(|system| {
+                if !state_at(method, step.t1)(system, t, &mut state) {
+                    // tried before the step was accepted: a method that had a value once has it
+                    // again
+                    state.fill(f64::NAN);
+                }
+                let row = system.row(t, &state);
+                let branches = system.rows_of_branches(&row);
+                (row, branches)
+            });
             if !branches.is_empty() {
                 self.out.means.insert(self.out.t.len(), branches);
             }
@@ -48,15 +54,7 @@ impl Leg<'_> {
 
     /// Returns a bound of the turn of the markers of counted angles within a step, rad.
     fn turn_within(&mut self, method: &mut dyn Method<System>, step: &Step) -> f64 {
-        let mut acceleration = self.system.spin(method.ydot());
-        let mut rate = method.y().to_vec();
-        if (method.interpolate_rate(self.system, step.t0, &mut rate)).is_ok() {
-            acceleration = acceleration.max(self.system.spin(&rate));
-        }
-        let ends = (step.t0, step.t1);
-        let (system, mut state_at) = (&mut *self.system, state_at(method, step.t1));
-        let free = (rate.len(), acceleration);
-        self.counting.turn_within(system, ends, free, &mut state_at)
+        turn_within(self.system, &mut self.counting, method, step)
     }
 
     /// Returns the time up to which the next step may go so that angles that decide forces keep
@@ -86,7 +84,8 @@ impl Leg<'_> {
     /// Begins to count the angles of a step, which is divided by how much they turn at most.
     fn begin_counting(&mut self, method: &mut dyn Method<System>, step: &Step) {
         if self.system.counts_turns() {
-            let turn = self.turn_within(method, step);
+            let counting = &mut self.counting;
+            let turn = (self.system).aside(|system| turn_within(system, counting, method, step));
             self.counting.divide(turn);
         }
     }
@@ -95,9 +94,27 @@ impl Leg<'_> {
     fn count_turns(&mut self, method: &mut dyn Method<System>, step: &Step, until: f64) {
         if self.system.counts_turns() {
             let mut state_at = state_at(method, step.t1);
-            self.counting.count(self.system, until, &mut state_at);
+            let counting = &mut self.counting;
+            (self.system).aside(|system| counting.count(system, until, &mut state_at));
         }
     }
+}
+
+/// Returns a bound of the turn of the markers of counted angles within a step, rad.
+fn turn_within(
+    system: &mut System,
+    counting: &mut Counting,
+    method: &mut dyn Method<System>,
+    step: &Step,
+) -> f64 {
+    let mut acceleration = system.spin(method.ydot());
+    let mut rate = method.y().to_vec();
+    if (method.interpolate_rate(system, step.t0, &mut rate)).is_ok() {
+        acceleration = acceleration.max(system.spin(&rate));
+    }
+    let ends = (step.t0, step.t1);
+    let free = (rate.len(), acceleration);
+    counting.turn_within(system, ends, free, &mut state_at(method, step.t1))
 }
 
 /// Returns the states of the step that a method has taken, which ends at `t1`.

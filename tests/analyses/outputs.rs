@@ -1,0 +1,153 @@
+//! The number of outputs changes nothing but the number of rows: the same steps, and the same bits at times that all runs have, with every method.
+
+use crate::running;
+use cognate::results::Run;
+use running::{Analysis, Options, begin, try_to, whole};
+
+const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+/// Powers of two, so that the same times have the same bits.
+const OUTPUTS: [usize; 3] = [8, 64, 1024];
+
+const SLIDER: &str = "PART/2, MASS=1, CM=20, VX=1\nMARKER/20, PART=2, REULER=90D,90D,0\n\
+                      MARKER/11, PART=1, REULER=90D,90D,0\nJOINT/1, TRANSLATIONAL, I=20, J=11\n";
+
+fn with_ground(statements: &str) -> String {
+    format!("{}{statements}END\n", running::GROUND)
+}
+
+/// The slider under a force.
+fn pushed(function: &str) -> String {
+    with_ground(&format!(
+        "{SLIDER}SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=11, FUNCTION={function}\n"
+    ))
+}
+
+/// A rotor whose friction reads the reaction of its own bearing, which gravity and speed load: an algebraic loop.
+fn loaded_by_itself() -> String {
+    with_ground(
+        "ACCGRAV/JGRAV=-9.81\nPART/2, MASS=2, CM=20, IP=0.1,0.1,0.2, WZ=9\nMARKER/20, PART=2, QP=0.3,0,0\nMARKER/21, PART=2\n\
+         JOINT/1, REVOLUTE, I=21, J=1\n\
+         SFORCE/1, ROTATION, I=21, J=1, FUNCTION=-0.02*TANH(WZ(21,1)/0.01)*(1+FM(21,1)+TM(21,1))\n",
+    )
+}
+
+/// Models that have all that steps and outputs share: stiff modes, switches, sliding, loops, closures, a past, turns, rows.
+fn models() -> Vec<(String, String, f64)> {
+    let mut all = vec![
+        (
+            "a stiff force",
+            pushed("-1E4*DX(20,11)-2E4*VX(20,11)+1E4*SIN(3*TIME)"),
+            0.5,
+        ),
+        (
+            "friction by SIGN",
+            pushed("-2*SIGN(1,VX(20,11))+3*SIN(4*TIME)"),
+            2.0,
+        ),
+        (
+            "a stop",
+            pushed("-10+MAX(0,1E4*(0.1-DX(20,11))-5*VX(20,11))"),
+            1.0,
+        ),
+        ("a delay", pushed("-4*DELAY(DX(20,11),0.3,0)"), 2.0),
+        ("turns", pushed("-SIN(DX(20,11))*AZ(20,11)-DX(20,11)"), 2.0),
+        ("a loop", loaded_by_itself(), 1.0),
+    ]
+    .into_iter()
+    .map(|(name, text, end)| (name.to_string(), text, end))
+    .collect::<Vec<_>>();
+    for (name, end) in [
+        ("a02_nfourbar_2", 2.0),
+        ("bistop_slot", 0.5),
+        ("bounce_k1e6", 1.0),
+        ("dzhanibekov", 2.0),
+        ("rack_pinion", 1.0),
+        ("settle_sphere", 0.5),
+        ("stiff_bushing", 0.5),
+    ] {
+        let file = format!(
+            "{}/tests/data/references/{name}.adm",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let text = std::fs::read_to_string(&file).expect("it is there");
+        all.push((name.to_string(), text, end));
+    }
+    all
+}
+
+/// Bits of all columns at the rows of the first number of outputs, for a run that has `every` times as many.
+fn bits(run: &Run, every: usize) -> Vec<(String, Vec<u64>)> {
+    let shared = |values: &[f64]| values.iter().step_by(every).map(|x| x.to_bits()).collect();
+    let columns = run.columns.iter();
+    columns
+        .map(|c| (c.name.clone(), shared(&c.values)))
+        .collect()
+}
+
+#[test]
+fn steps_and_values_do_not_depend_on_the_number_of_outputs() {
+    let mut wrong = Vec::new();
+    for (name, text, end) in models() {
+        for method in METHODS {
+            let runs = OUTPUTS.map(|outputs| {
+                let options = Options {
+                    method: Some(method.into()),
+                    error: Some(1e-5),
+                    full: true,
+                    max_steps: Some(20_000),
+                    ..Options::default()
+                };
+                let mut s = begin(whole(&text), &name, options);
+                try_to(&mut s, Analysis::Dynamic, end, outputs);
+                s
+            });
+            let [few, more @ ..] = &runs;
+            for (s, outputs) in more.iter().zip(&OUTPUTS[1..]) {
+                let (a, b) = (&few.run.record, &s.run.record);
+                let steps = [a, b].map(|r| (r.counts.steps, r.counts.rejected_steps));
+                if steps[0] != steps[1] {
+                    wrong.push(format!(
+                        "{name} by {method}: steps {steps:?} with {outputs} outputs"
+                    ));
+                    continue;
+                }
+                let (one, other) = (bits(&few.run, 1), bits(&s.run, outputs / OUTPUTS[0]));
+                let different = one.iter().zip(&other).find(|(a, b)| a != b);
+                if let Some(((column, a), (_, b))) = different {
+                    let row = a.iter().zip(b).position(|(a, b)| a != b);
+                    wrong.push(format!(
+                        "{name} by {method}: {column} with {outputs} outputs at row {row:?}"
+                    ));
+                }
+                if format!("{:?}", a.energy) != format!("{:?}", b.energy) {
+                    wrong.push(format!(
+                        "{name} by {method}: the account of energy with {outputs} outputs"
+                    ));
+                }
+            }
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "{} differ:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
+}
+
+#[test]
+fn zeros_have_no_sign() {
+    let mut s = running::session(
+        "PART/2, MASS=1, CM=2\nMARKER/2, PART=2\n",
+        &["-DX(2,1)"],
+        1e-6,
+    );
+    try_to(&mut s, Analysis::Dynamic, 1.0, 4);
+    for column in &s.run.columns {
+        let signs = column
+            .values
+            .iter()
+            .filter(|x| **x == 0.0 && x.is_sign_negative());
+        assert_eq!(signs.count(), 0, "{}", column.name);
+    }
+}
