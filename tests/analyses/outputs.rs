@@ -138,7 +138,7 @@ fn steps_and_values_do_not_depend_on_the_number_of_outputs() {
 #[test]
 fn zeros_have_no_sign() {
     let mut s = running::session(
-        "PART/2, MASS=1, CM=2\nMARKER/2, PART=2\n",
+        "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n",
         &["-DX(2,1)"],
         1e-6,
     );
@@ -149,5 +149,28 @@ fn zeros_have_no_sign() {
             .iter()
             .filter(|x| **x == 0.0 && x.is_sign_negative());
         assert_eq!(signs.count(), 0, "{}", column.name);
+    }
+}
+
+#[test]
+fn a_sensor_changes_the_distance_of_outputs_in_kinematic_and_dynamic_runs_alike() {
+    let rotor = "PART/2, MASS=1, CM=20, IP=1,1,1, WZ=1\nMARKER/20, PART=2\nJOINT/1, REVOLUTE, I=20, J=1\n\
+                 SENSOR/1, FUNCTION=AZ(20,1), VALUE=0.3, GE, ERROR=1E-6, DT=0.125\n";
+    let drive = "MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME\n";
+    for (analysis, drive) in [(Analysis::Dynamic, ""), (Analysis::Kinematic, drive)] {
+        let mut s = running::session(&format!("{rotor}{drive}"), &["AZ(20,1)"], 1e-10);
+        running::go(&mut s, analysis, 1.0, 2);
+        let times = running::values(&s, "time");
+        let expected = [0.0, 0.425, 0.55, 0.675, 0.8, 0.925, 1.0];
+        let off = times.iter().zip(expected).map(|(a, b)| (a - b).abs());
+        assert!(
+            times.len() == expected.len() && off.fold(0.0, f64::max) < 1e-6,
+            "{analysis:?}: {times:?}"
+        );
+        let angles = running::values(&s, "AZ(20,1)");
+        assert!(
+            angles.iter().zip(times).all(|(a, t)| (a - t).abs() < 1e-6),
+            "{angles:?}"
+        );
     }
 }

@@ -459,3 +459,15 @@ fn reactions_of_contacts_and_general_constraints_do_no_work() {
         }
     }
 }
+
+#[test]
+fn numbers_of_a_matrix_count_where_a_file_is_named_as_well() {
+    let text = bead([0.7, 0.0], "");
+    let named = text.replacen("MATRIX/1,", "MATRIX/1, FILE=points.txt, NAME=ring,", 1);
+    assert_ne!(text, named);
+    let column = ["DX(30,1)"];
+    let (plain, _) = first(&text, &column, Analysis::Dynamic);
+    let (with_file, told) = first(&named, &column, Analysis::Dynamic);
+    assert_eq!(plain, with_file);
+    assert!(told.iter().any(|w| w.contains("FILE")), "{told:?}");
+}
