@@ -19,8 +19,8 @@
 //! *Stiffness*: when `h |λ| ≈ h |k₁₃ − k₁₂| / |y₁ − Y₁₂|` lies beyond 6.1, the edge of the
 //! stability region, in most of the recent steps, stability holds the step down. [`Method::stiff`]
 //! says so, and the integration goes on. There the interpolant (4), whose further stages magnify
-//! what is left of fast modes by `(h λ)³`, is compared with the rate in the middle of the step; where
-//! they do not fit, a value within the step is computed by a step of its own.
+//! what is left of fast modes by `(h λ)³`, is compared with the rate in the middle of the step;
+//! where they do not fit, a value within the step is computed by a step of its own.
 //!
 //! *Rounding*: the part of an error that rounding explains (`noise.rs`) shortens no step, since a
 //! shorter one would be no better. It is measured where an error is too large, and where the two

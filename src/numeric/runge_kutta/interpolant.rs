@@ -1,12 +1,12 @@
-//! The solution within a step of DOP853: the interpolant (4), or, where fast modes spoil that, a step
-//! of its own from the same beginning.
+//! The solution within a step of DOP853: the interpolant (4), or, where fast modes spoil that, a
+//! step of its own from the same beginning.
 //!
 //! ```text
 //! y(t + θh) = y + θ h Σ bᵢ k′ᵢ          k′ᵢ: the stages of a step of length θ h
 //! ```
 //!
-//! Such a step is as exact as the one that was accepted, and it changes nothing of what follows: the
-//! steps of a run do not depend on where a value is wanted.
+//! Such a step is as exact as the one that was accepted, and it changes nothing of what follows:
+//! the steps of a run do not depend on where a value is wanted.
 
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
