@@ -4,7 +4,7 @@ use super::{Failure, linear, remark, summary};
 use crate::analysis::session::Session;
 use crate::analysis::work_limit::process_seconds;
 use crate::diagnostic::Diagnostic;
-use crate::model::SettingsStatement;
+use crate::model::{Model, SettingsStatement};
 use crate::results::format::{Format, Sink, Style};
 use crate::results::output_folder::OutputFolder;
 use crate::results::{Run, json, msg};
@@ -16,14 +16,16 @@ use std::time::{Duration, Instant};
 const MOST_HELD: usize = 1 << 21;
 /// Time after which rows go to the disk, where they outlive this process.
 const LONGEST_IN_MEMORY: Duration = Duration::from_secs(1);
-/// Numbers of the largest `.res` file that is written without being asked for: some 200 MB.
+/// Numbers of the largest run that has a `.res`, `.req` or `.gra` file without being asked for it:
+/// some 200 MB.
 pub const MOST_IN_RES: usize = 10_000_000;
 
 /// The wishes of a user about files.
 #[derive(clap::Args)]
 pub struct FileArgs {
-    /// Formats of the tables: csv, parquet, res, json. Without this option it is csv, and res if
-    /// the dataset has RESULTS and there are no more than 10 million numbers
+    /// Formats of the tables: csv, parquet, res, json, req, gra. Without this option it is csv, and
+    /// those that the dataset asks for if they have no more than 10 million numbers: res by
+    /// RESULTS, req by OUTPUT/REQSAVE, gra by OUTPUT/GRSAVE
     #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = table_format)]
     pub formats: Vec<Format>,
     #[command(flatten)]
@@ -48,6 +50,34 @@ impl StyleArgs {
             units: !self.no_units,
             decimal_comma: self.decimal_comma,
         }
+    }
+}
+
+impl FileArgs {
+    /// Returns the formats that are written: those of the user, else those that RESULTS and OUTPUT
+    /// ask for.
+    fn chosen(&self, model: &Model) -> Vec<Format> {
+        if !self.formats.is_empty() {
+            return self.formats.clone();
+        }
+        let output = model.settings.get(&SettingsStatement::Output);
+        let says = |word: &str| output.is_some_and(|o| o.words.contains_key(word));
+        let results = model.settings.contains_key(&SettingsStatement::Results);
+        let wanted = [
+            (Format::Csv, true),
+            (Format::Res, results),
+            (Format::Req, says("REQSAVE")),
+            (Format::Gra, says("GRSAVE")),
+        ];
+        wanted
+            .into_iter()
+            .filter_map(|(format, is_wanted)| is_wanted.then_some(format))
+            .collect()
+    }
+
+    /// Returns whether the files need a format.
+    pub fn need(&self, model: &Model, format: Format) -> bool {
+        self.chosen(model).contains(&format)
     }
 }
 
@@ -103,20 +133,14 @@ impl Tables {
         let base = session.run.name.as_str();
         let folder = OutputFolder::open(dir.unwrap_or(Path::new(".")), base)?;
         let asked = !args.formats.is_empty();
-        let settings = &session.model.settings;
-        let full = settings.contains_key(&SettingsStatement::Results);
-        let formats = match (asked, full) {
-            (true, _) => args.formats.clone(),
-            (false, true) => vec![Format::Csv, Format::Res],
-            (false, false) => vec![Format::Csv],
-        };
+        let formats = args.chosen(&session.model);
         let mut tables = Vec::new();
         for row in crate::results::format::FORMATS {
             let Some(sink) = row.sink.filter(|_| formats.contains(&row.format)) else {
                 continue;
             };
             let name = table_name(base, row.name);
-            let is_limited = row.format == Format::Res && !asked;
+            let is_limited = row.format != Format::Csv && !asked;
             tables.push(Table {
                 sink: sink(args.style.style(), &folder.path(&name)),
                 name,
@@ -235,7 +259,7 @@ impl Growing {
         let numbers = rows.end.saturating_mul(run.columns.len());
         for table in self.tables.extract_if(.., |t| numbers > t.most) {
             remark(format!(
-                "{} is left out: more than {} million numbers; --format res writes it",
+                "{} is left out: more than {} million numbers; --format writes it",
                 table.name,
                 MOST_IN_RES / 1_000_000
             ));

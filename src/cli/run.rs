@@ -6,7 +6,7 @@ use super::render::Sources;
 use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
-use crate::analysis::session::{Options, Session};
+use crate::analysis::session::{Chosen, Options, Session};
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::process_seconds;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
@@ -74,6 +74,12 @@ pub struct Args {
     /// Processor time after which the run ends with its results so far and exit code 7: 60s, 2min
     #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
     limit: Option<f64>,
+    /// Record only this element, as JOINT/3, or this kind, as JOINT (repeatable)
+    #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
+    only: Vec<Chosen>,
+    /// Record velocities and accelerations of the bodies' centres of mass, eight each
+    #[arg(long)]
+    body_motion: bool,
     /// Give every column bars of error (`name±`), from a further run at a smaller request
     #[arg(long)]
     accuracy: bool,
@@ -269,14 +275,21 @@ fn check_columns(args: &Args, model: &Model, steps: &[Step]) -> Result<(), Failu
 
 /// Opens the session of a model, with the options of the command line.
 fn open(args: &Args, model: Model, base: &str) -> Session {
+    // formats for everything that was solved
+    let complete = [Format::Res, Format::Parquet];
     let full = model.settings.contains_key(&SettingsStatement::Results)
-        || args.output.formats.contains(&Format::Res);
+        || complete.iter().any(|f| args.output.formats.contains(f))
+        || args.body_motion
+        || !args.only.is_empty();
     let options = Options {
         error: args.error,
         method: args.method.clone(),
         repeat: args.repeat,
         columns: args.columns.clone(),
         full,
+        frames: args.output.need(&model, Format::Gra),
+        body_rates: args.body_motion,
+        only: args.only.clone(),
         piecewise: args.piecewise,
         skip: args.skip.iter().copied().collect(),
         zero_user: args.zero_user,

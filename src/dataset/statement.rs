@@ -864,10 +864,10 @@ pub static STATEMENTS: &[&dyn Statement] = &[
         choice "Velocity" (quantity = Quantity::Velocity).required().group("quantity");
         choice "Acceleration" (quantity = Quantity::Acceleration).required().group("quantity");
         choice "Force" (quantity = Quantity::Force).required().group("quantity");
-        own "PARTS" (WORDS, |r, v| r.parts.put(v), |r| words(&r.parts)).idle();
-        own "JOINTS" (WORDS, |r, v| r.joints.put(v), |r| words(&r.joints)).idle();
-        own "JPRIMS" (WORDS, |r, v| r.primitives.put(v), |r| words(&r.primitives)).idle();
-        own "APPFORS" (WORDS, |r, v| r.forces.put(v), |r| words(&r.forces)).idle();
+        own "PARTS" (WORDS, |r, v| r.parts.put(v), |r| words(&r.parts));
+        own "JOINTS" (WORDS, |r, v| r.joints.put(v), |r| words(&r.joints));
+        own "JPRIMS" (WORDS, |r, v| r.primitives.put(v), |r| words(&r.primitives));
+        own "APPFORS" (WORDS, |r, v| r.forces.put(v), |r| words(&r.forces));
         field "RM" (rm);
         field "Comment" (comment);
     }),
@@ -974,34 +974,34 @@ pub static STATEMENTS: &[&dyn Statement] = &[
     settings!(Output, {
         set "REQSAVE" (Kind::Flag);
         set "GRSAVE" (Kind::Flag);
-        set "NOPRINT" (Kind::Flag);
-        set "NOSEPARATOR" (Kind::Flag);
+        set "NOPRINT" (Kind::Flag).idle();
+        set "NOSEPARATOR" (Kind::Flag).idle();
         set "YPR" (Kind::Flag);
-        set "TELETYPE" (Kind::Flag);
-        set "FIXED" (Kind::Flag);
-        set "OSFORMAT" (Kind::Flag);
-        set "GR521SAV" (Kind::Flag);
-        set "CHART" (REAL);
-        set "DSCALE" (REALS); set "VSCALE" (REALS); set "ASCALE" (REALS); set "FSCALE" (REALS);
-        set "DZERO" (REALS); set "VZERO" (REALS); set "AZERO" (REALS); set "FZERO" (REALS);
+        set "TELETYPE" (Kind::Flag).idle();
+        set "FIXED" (Kind::Flag).idle();
+        set "OSFORMAT" (Kind::Flag).idle();
+        set "GR521SAV" (Kind::Flag).idle();
+        set "CHART" (REAL).idle();
+        set "DSCALE" (REALS).idle(); set "VSCALE" (REALS).idle(); set "ASCALE" (REALS).idle(); set "FSCALE" (REALS).idle();
+        set "DZERO" (REALS).idle(); set "VZERO" (REALS).idle(); set "AZERO" (REALS).idle(); set "FZERO" (REALS).idle();
     }),
     settings!(Results, {
         set "XRF" (Kind::Flag);
         set "FORMATTED" (Kind::Flag);
         set "Comment" (Kind::Text).idle();
         set "DECIMAL_PLACES" (REAL).idle();
-        set "NODISPLACEMENTS" (Kind::Flag).idle();
-        set "NOVELOCITIES" (Kind::Flag).idle();
-        set "NOACCELERATIONS" (Kind::Flag).idle();
-        set "NOREACTIONFORCES" (Kind::Flag).idle();
-        set "NOAPPLIEDFORCES" (Kind::Flag).idle();
+        set "NODISPLACEMENTS" (Kind::Flag);
+        set "NOVELOCITIES" (Kind::Flag);
+        set "NOACCELERATIONS" (Kind::Flag);
+        set "NOREACTIONFORCES" (Kind::Flag);
+        set "NOAPPLIEDFORCES" (Kind::Flag);
         set "NODATASTRUCTURES" (Kind::Flag).idle();
-        set "NOSYSTEMELEMENTS" (Kind::Flag).idle();
+        set "NOSYSTEMELEMENTS" (Kind::Flag);
         set "NOLINEAR" (Kind::Flag).idle();
-        set "NOFLOATINGMARKERS" (Kind::Flag).idle();
+        set "NOFLOATINGMARKERS" (Kind::Flag);
         set "NOTIRES" (Kind::Flag).idle();
-        set "NOREQUESTS" (Kind::Flag).idle();
-        set "NOCONTACTS" (Kind::Flag).idle();
+        set "NOREQUESTS" (Kind::Flag);
+        set "NOCONTACTS" (Kind::Flag);
     }),
     settings!(List, {}),
     settings!(Nolist, {}),

@@ -11,6 +11,7 @@ mod constraint;
 mod element;
 mod force;
 pub(crate) mod geometry;
+mod many_requests;
 mod output;
 pub mod reference;
 mod settings;

@@ -110,10 +110,9 @@ impl SettingsStatement {
             | Self::Debug
             | Self::Lsolver
             | Self::Environment
-            | Self::Output
             | Self::List
             | Self::Nolist => true,
-            Self::Results => false,
+            Self::Output | Self::Results => false,
         }
     }
 }

@@ -5,7 +5,7 @@
 //! them.
 
 use super::part_file::{TextSink, WholeSink};
-use super::{Run, csv, gra, json, res};
+use super::{Run, csv, gra, json, req, res};
 use crate::diagnostic::Diagnostic;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -21,8 +21,10 @@ pub enum Format {
     Res,
     /// one document
     Json,
-    /// positions of parts, read only
+    /// positions of parts
     Gra,
+    /// components of requests, written only
+    Req,
 }
 
 /// Reads a file from its bytes.
@@ -75,7 +77,13 @@ pub const FORMATS: &[Row] = &[
         format: Format::Gra,
         name: "gra",
         read: Some(gra::read),
-        sink: None,
+        sink: Some(|_, path| Box::new(TextSink::new(gra::Frames::default(), path))),
+    },
+    Row {
+        format: Format::Req,
+        name: "req",
+        read: None,
+        sink: Some(|_, path| Box::new(TextSink::new(req::Components, path))),
     },
 ];
 

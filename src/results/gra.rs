@@ -1,4 +1,4 @@
-//! Reading `.gra` files: the place of every part at every output, to six digits.
+//! `.gra` files: the place of every part at every output, to six digits.
 //!
 //! Card, decoded from real files: a line of identification, the title, a line of counts (parts,
 //! markers, graphics, –, joints, …); one line per part (ground first), per joint one line, per
@@ -9,8 +9,10 @@
 //! static equilibrium, which has no time of its own. Numbers stand in columns of 13 characters
 //! after one blank, and may touch.
 
+use super::format::TableText;
 use super::{Component, Entity, Kind, Run, Units, component_unit, malformed, number};
 use crate::diagnostic::Diagnostic;
+use std::ops::Range;
 
 const COMPONENTS: [&str; 6] = ["X", "Y", "Z", "PSI", "THETA", "PHI"];
 const INPUT: f64 = -9.99999e5;
@@ -164,64 +166,159 @@ fn units(identification: &str) -> Units {
     units_of_code(code)
 }
 
+/// Lengths: two characters of the code, unit, units per metre.
+const LENGTHS: [(&str, &str, f64); 7] = [
+    ("M_", "meter", 1.0),
+    ("MM", "mm", 1e3),
+    ("CM", "cm", 1e2),
+    ("KM", "km", 1e-3),
+    ("IN", "inch", 1e3 / 25.4),
+    ("FT", "foot", 1e3 / 304.8),
+    ("MI", "mile", 1.0 / 1609.344),
+];
+const MASSES: [(&str, &str); 5] = [
+    ("KG", "kg"),
+    ("G_", "gram"),
+    ("LB", "pound_mass"),
+    ("SL", "slug"),
+    ("OZ", "ounce_mass"),
+];
+const TIMES: [(&str, &str); 4] = [
+    ("S_", "sec"),
+    ("MS", "millisec"),
+    ("MI", "min"),
+    ("HR", "hour"),
+];
+const FORCES: [(&str, &str); 5] = [
+    ("N_", "newton"),
+    ("KN", "knewton"),
+    ("PF", "pound_force"),
+    ("DY", "dyne"),
+    ("KF", "kg_force"),
+];
+const ANGLES: [(&str, &str); 2] = [("RA", "rad"), ("DE", "deg")];
+
 /// Returns the units of a code such as `M_KGS_N_RACA`; letters that are not known mean SI.
 pub(super) fn units_of_code(code: &str) -> Units {
-    let name = |at: usize, names: &[(&str, &str)], default: &str| {
+    let name = |at: usize, names: &[(&str, &str)]| {
         let short = code.get(at..at + 2).unwrap_or_default();
-        names
-            .iter()
-            .find(|n| n.0 == short)
-            .map_or(default, |n| n.1)
-            .to_string()
+        let found = names.iter().find(|n| n.0 == short);
+        found.or(names.first()).map_or("", |n| n.1).to_string()
     };
     Units {
-        length: name(
-            0,
-            &[
-                ("M_", "meter"),
-                ("MM", "mm"),
-                ("CM", "cm"),
-                ("KM", "km"),
-                ("IN", "inch"),
-                ("FT", "foot"),
-                ("MI", "mile"),
-            ],
-            "meter",
-        ),
-        mass: name(
-            2,
-            &[
-                ("KG", "kg"),
-                ("G_", "gram"),
-                ("LB", "pound_mass"),
-                ("SL", "slug"),
-                ("OZ", "ounce_mass"),
-            ],
-            "kg",
-        ),
-        time: name(
-            4,
-            &[
-                ("S_", "sec"),
-                ("MS", "millisec"),
-                ("MI", "min"),
-                ("HR", "hour"),
-            ],
-            "sec",
-        ),
-        force: name(
-            6,
-            &[
-                ("N_", "newton"),
-                ("KN", "knewton"),
-                ("PF", "pound_force"),
-                ("DY", "dyne"),
-                ("KF", "kg_force"),
-            ],
-            "newton",
-        ),
-        angle: name(8, &[("RA", "rad"), ("DE", "deg")], "rad"),
+        length: name(0, &LENGTHS.map(|(code, unit, _)| (code, unit))),
+        mass: name(2, &MASSES),
+        time: name(4, &TIMES),
+        force: name(6, &FORCES),
+        angle: name(8, &ANGLES),
     }
+}
+
+/// Returns the code of units and the units of length per metre, as the first lines of `.gra` and
+/// `.req` files have them; `??` and 1 stand for a unit that has no code.
+pub(super) fn code_of_units(units: &Units) -> String {
+    let code = |unit: &str, names: &[(&'static str, &str)]| {
+        let found = names.iter().find(|n| n.1 == unit);
+        found.map_or("??", |n| n.0)
+    };
+    let per_metre = LENGTHS.iter().find(|l| l.1 == units.length);
+    let per_metre = per_metre.map_or(1.0, |l| l.2);
+    format!(
+        "{}{}{}{}{}CA {}",
+        code(&units.length, &LENGTHS.map(|(code, unit, _)| (code, unit))),
+        code(&units.mass, &MASSES),
+        code(&units.time, &TIMES),
+        code(&units.force, &FORCES),
+        code(&units.angle, &ANGLES),
+        exponential(per_metre, 15)
+    )
+}
+
+/// Prints a number as FORTRAN's E format does: one digit before the point, a signed exponent of at
+/// least two digits.
+pub(super) fn exponential(x: f64, decimals: usize) -> String {
+    let text = format!("{x:.decimals$E}");
+    let Some((mantissa, exponent)) = text.split_once('E') else {
+        return text;
+    };
+    let (sign, digits) = match exponent.strip_prefix('-') {
+        Some(digits) => ('-', digits),
+        None => ('+', exponent),
+    };
+    format!("{mantissa}E{sign}{digits:0>2}")
+}
+
+/// Appends numbers in columns of 13 characters after one blank, as a line.
+pub(super) fn put_line(values: impl IntoIterator<Item = f64>, text: &mut Vec<u8>) {
+    text.push(b' ');
+    for x in values {
+        let x = if x.is_finite() { x } else { 0.0 };
+        text.extend_from_slice(format!("{:>13}", exponential(x, 5)).as_bytes());
+    }
+    text.push(b'\n');
+}
+
+/// The date in files that have a place for one: the same run is the same file on every day.
+pub(super) const NO_DATE: &str = "1970-01-01 00:00:00";
+
+/// A `.gra` file that is being written: the frames of all parts, without markers and graphics.
+#[derive(Debug, Default)]
+pub struct Frames {
+    /// per part: the columns of its six coordinates
+    parts: Vec<[usize; 6]>,
+}
+
+impl Frames {
+    fn frame(&self, run: &Run, time: f64, place: usize, text: &mut Vec<u8>) {
+        put_line([time], text);
+        for part in &self.parts {
+            put_line(part.map(|column| run.columns[column].values[place]), text);
+        }
+    }
+}
+
+impl TableText for Frames {
+    fn begin(&mut self, run: &Run, text: &mut Vec<u8>) {
+        let mut ids = vec![1];
+        for part in run.entities.iter().filter(|e| e.kind == "Part") {
+            let column = |name: &str| part.components.iter().find(|c| c.name == name);
+            let found = COMPONENTS.map(|name| column(name).map(|c| c.column));
+            if let [Some(x), Some(y), Some(z), Some(psi), Some(theta), Some(phi)] = found {
+                ids.push(part.id);
+                self.parts.push([x, y, z, psi, theta, phi]);
+            }
+        }
+        let code = code_of_units(&run.units);
+        let mut head = format!(" A.G8    {NO_DATE}  {code}\n{:<80}\n", run.title);
+        let counts = [ids.len(), 0, 0, 0, 0, 0, 0, 0, 0];
+        head += &counts
+            .iter()
+            .fold(" ".to_owned(), |line, n| line + &format!("{n:>5}"));
+        head.push('\n');
+        for id in ids {
+            head += &format!("{id:>11}{:>10}\n", 1);
+        }
+        text.extend_from_slice(head.as_bytes());
+    }
+
+    fn rows(&mut self, run: &Run, rows: Range<usize>, text: &mut Vec<u8>) {
+        for row in rows {
+            let place = row - run.released;
+            let mut sequences = run.sequences.iter();
+            let kind = sequences.find(|s| s.rows.contains(&row)).map(|s| s.kind);
+            if row == 0 && kind != Some(Kind::Input) {
+                self.frame(run, INPUT, place, text);
+            }
+            let time = match kind {
+                Some(Kind::Input) => INPUT,
+                Some(Kind::Static) => STATIC,
+                _ => run.columns[0].values[place],
+            };
+            self.frame(run, time, place, text);
+        }
+    }
+
+    fn end(&mut self, _: &Run, _: &mut Vec<u8>) {}
 }
 
 #[cfg(test)]
@@ -265,6 +362,30 @@ two parts and a force
             (run.units.length.as_str(), run.units.angle.as_str()),
             ("mm", "rad")
         );
+    }
+
+    #[test]
+    fn what_is_written_reads_back_to_six_digits() {
+        let run = read(TWO_PARTS.as_bytes()).unwrap();
+        let text = crate::results::format::text(&mut Frames::default(), &run);
+        let back = read(text.as_bytes()).unwrap();
+        assert_eq!(back.sequences, run.sequences);
+        assert_eq!((&back.units, &back.title), (&run.units, &run.title));
+        for (a, b) in run.columns.iter().zip(&back.columns) {
+            assert_eq!((&a.name, &a.values), (&b.name, &b.values));
+        }
+    }
+
+    #[test]
+    fn exponents_have_a_sign_and_two_digits() {
+        let cases = [
+            (0.0, "0.00000E+00"),
+            (-5.0287, "-5.02870E+00"),
+            (1e-100, "1.00000E-100"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(exponential(x, 5), text);
+        }
     }
 
     #[test]

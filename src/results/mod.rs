@@ -18,6 +18,7 @@ pub mod output_folder;
 pub mod parquet;
 mod part_file;
 mod record;
+pub mod req;
 pub mod res;
 mod run;
 mod seconds;
@@ -30,7 +31,7 @@ pub use record::{
     Accuracy, ChannelAccuracy, Counts, Energy, Jump, Quantity, RankChange, Record, RowChange,
     Simulation, Status, Warning,
 };
-pub use run::{Column, Component, Entity, Kind, Run, Sequence};
+pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence};
 pub use seconds::Seconds;
 pub use units::{Units, component_unit};
 

@@ -1,6 +1,7 @@
 //! The results of a run as a table: named columns of one length, and which rows belong to what.
 
 use super::{Event, Record, Units};
+use crate::model::RequestKind;
 use std::ops::Range;
 
 /// The results of a run.
@@ -17,6 +18,8 @@ pub struct Run {
     pub columns: Vec<Column>,
     /// elements and the columns that are their components
     pub entities: Vec<Entity>,
+    /// requests, of which some of the entities are the components
+    pub requests: Vec<Requested>,
     /// columns that tables (`.csv`, plots) show, in order; empty: all
     pub table: Vec<usize>,
     /// which rows belong to which simulation
@@ -74,6 +77,38 @@ pub struct Component {
     pub name: String,
     /// index in [`Run::columns`], whose unit it has
     pub column: usize,
+}
+
+/// A REQUEST as `.req` files list it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Requested {
+    /// its number
+    pub id: u32,
+    /// 1 DISPLACEMENT, 2 VELOCITY, 3 ACCELERATION, 4 FORCE, 5 expressions
+    pub kind: u32,
+    /// numbers of I, J and RM; 0: there is none
+    pub markers: [u32; 3],
+    /// indices in [`Run::columns`] of its eight components
+    pub columns: [Option<usize>; 8],
+}
+
+impl Requested {
+    /// Makes the entry of a REQUEST whose components have no columns so far.
+    pub fn new(id: u32, request: &RequestKind) -> Self {
+        let (kind, markers) = match *request {
+            RequestKind::Displacement { i, j, rm } => (1, [Some(i), j, rm]),
+            RequestKind::Velocity { i, j, rm } => (2, [Some(i), j, rm]),
+            RequestKind::Acceleration { i, j, rm } => (3, [Some(i), j, rm]),
+            RequestKind::Force { i, j, rm } => (4, [Some(i), j, rm]),
+            RequestKind::Functions(_) | RequestKind::User(_) => (5, [None; 3]),
+        };
+        Self {
+            id,
+            kind,
+            markers: markers.map(|marker| marker.unwrap_or(0)),
+            columns: [None; 8],
+        }
+    }
 }
 
 /// A kind of rows: what the model did in them.

@@ -194,14 +194,20 @@ impl ForceElement {
     /// Returns how deep the solids of a CONTACT stand in each other; `None`: it is another force,
     /// or they do not touch.
     pub fn depth(&self, at: &Equations<'_, f64>) -> Option<f64> {
+        let touches = self.touches(at).into_iter();
+        let deepest = touches.map(|touch| touch.depth).max_by(f64::total_cmp);
+        deepest.filter(|depth| *depth > 0.0)
+    }
+
+    /// Returns the touches of the solids of a CONTACT, those included that do not touch now; none
+    /// of another force.
+    pub fn touches<S: Scalar>(&self, at: &Equations<'_, S>) -> Vec<Touch<S>> {
         let ForceLaw::Contact(contact) = &self.law else {
-            return None;
+            return Vec::new();
         };
         let i = at.marker(self.i);
         let j = self.j.map_or_else(MarkerState::ground, |j| at.marker(j));
-        let touches = contact.0.touches(at, &i, &j).into_iter();
-        let deepest = touches.map(|touch| touch.depth).max_by(f64::total_cmp);
-        deepest.filter(|depth| *depth > 0.0)
+        contact.0.touches(at, &i, &j)
     }
 }
 

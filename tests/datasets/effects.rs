@@ -686,6 +686,12 @@ const CASES: &[(&str, &[&str], &str, Analysis)] = &[
         "$ARM$HINGE$WEIGHTREQUEST/1, D, I=20, J=11\n",
         Analysis::Dynamic,
     ),
+    (
+        "RESULTS/SETTING",
+        &["XRF"],
+        "$ARMJOINT/9, PLANAR, I=21, J=10\nPTCV/1, CURVE=1, I=20, RM=10\nCURVE/1, CLOSED, MATRIX=1, CURVE_POINTS\nMATRIX/1, FULL=RORDER, ROWS=5, COLUMNS=3, VALUES=1,0,0,0,1,0,-1,0,0,0,-1,0,1,0,0\nSFORCE/1, TRANSLATIONAL, I=20, J=11, FUNCTION=VARVAL(1)\nVARIABLE/1, FUNCTION=TIME\nGRAPHICS/1, PLANE, RM=12\nGRAPHICS/2, ELLIPSOID, CM=20, XSCALE=.1, YSCALE=.1, ZSCALE=.1\nCONTACT/1, IGEOM=2, JGEOM=1, IMPACT, STIFFNESS=1E3, DAMPING=1, DMAX=.01, EXPONENT=1.5\n",
+        Analysis::Dynamic,
+    ),
 ];
 
 const LSE: &str = "$ARM$HINGESFORCE/1, TRANSLATIONAL, I=20, J=11, FUNCTION=ARYVAL(3,1)
@@ -751,6 +757,8 @@ const EXEMPT: &[(&str, &str, &str)] = &[
     ("INTEGRATOR", "MAXIT", "few are needed"),
     ("RESULTS", "XRF", "what is done without it"),
     ("RESULTS", "FORMATTED", "a form of the file"),
+    ("OUTPUT", "REQSAVE", "the program writes the file"),
+    ("OUTPUT", "GRSAVE", "the program writes the file"),
     ("REQUEST", "COMMENT", "a text"),
     ("MREQUEST", "COMMENT", "a text"),
     ("REQUEST", "CLABELS", "texts"),

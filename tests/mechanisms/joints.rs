@@ -385,8 +385,8 @@ fn shown(s: &Session) -> Vec<(String, String)> {
 fn every_joint_shows_its_variables_with_their_units() {
     for (joint, place, expected) in [
         ("FIXED", "", vec![]),
-        ("SPHERICAL", "", vec![]),
-        ("CONVEL", "", vec![]),
+        ("SPHERICAL", "", vec!["angle X", "angle Y", "angle Z"]),
+        ("CONVEL", "", vec!["angle X", "angle Y", "angle Z"]),
         ("REVOLUTE", "", vec!["ANGLE"]),
         ("TRANSLATIONAL", "", vec!["DISTANCE"]),
         ("CYLINDRICAL", "", vec!["DISTANCE", "ANGLE"]),
@@ -403,27 +403,34 @@ fn every_joint_shows_its_variables_with_their_units() {
         let s = variables(joint, place, "", 0.01);
         let expected: Vec<(String, String)> = (expected.iter())
             .map(|v| {
-                let unit = if v.starts_with("ANGLE") {
-                    &s.run.units.angle
-                } else {
-                    "meter"
+                // those of a ball are angles between axes, whatever they are called
+                let unit = match v.to_uppercase().starts_with("ANGLE") {
+                    true => "deg",
+                    false => "meter",
                 };
-                ((*v).to_string(), unit.to_string())
+                (v.trim_start_matches("angle ").to_string(), unit.to_string())
             })
             .collect();
         assert_eq!(shown(&s), expected, "{joint}");
     }
 }
 
-/// Driven variables are what their motions prescribe, of I against J along and about the axes of J; angles count their turns.
+/// Degrees of an angle in radians.
+fn deg(angle: f64) -> f64 {
+    angle.to_degrees()
+}
+
+/// Driven variables are what their motions prescribe, of I against J along and about the axes of J; angles, in degrees, count their turns.
 #[test]
 fn variables_of_joints_are_what_motions_prescribe() {
     let turn = "MOTION/1, JOINT=1, ROTATION, FUNCTION=-0.3+7*TIME\n";
     let slide = "MOTION/2, JOINT=1, TRANSLATION, FUNCTION=0.2-TIME\n";
-    let angle = |t: f64| -0.3 + 7.0 * t;
+    let angle = |t: f64| deg(-0.3 + 7.0 * t);
     let check = |s: &Session, variable: &str, expected: &dyn Fn(f64) -> f64| {
         let error = off(s, &format!("JOINT_1_VARIABLES.{variable}"), expected);
-        assert!(error < 1e-8, "{variable}: {error}");
+        // in degrees errors are 57 times those in radians
+        let permitted = if variable == "ANGLE" { deg(1e-8) } else { 1e-8 };
+        assert!(error < permitted, "{variable}: {error}");
     };
     let s = variables("REVOLUTE", "", turn, 2.0);
     check(&s, "ANGLE", &angle);
@@ -436,7 +443,7 @@ fn variables_of_joints_are_what_motions_prescribe() {
     let s = variables("PLANAR", "", plane, 2.0);
     check(&s, "X", &|t| 0.5 * t);
     check(&s, "Y", &|t| -t);
-    check(&s, "ANGLE", &|t| 7.0 * t);
+    check(&s, "ANGLE", &|t| deg(7.0 * t));
 }
 
 /// A right-hand thread advances along +z as it turns about +z; a negative PITCH is a left-hand one.
@@ -446,7 +453,7 @@ fn variables_of_a_screw_advance_with_the_sign_of_its_pitch() {
         let more =
             "JOINT/2, CYLINDRICAL, I=20, J=1\nMOTION/1, JOINT=2, ROTATION, FUNCTION=7*TIME\n";
         let s = variables(&format!("SCREW, PITCH={pitch}"), "", more, 2.0);
-        assert!(off(&s, "JOINT_1_VARIABLES.ANGLE", |t| 7.0 * t) < 1e-8);
+        assert!(off(&s, "JOINT_1_VARIABLES.ANGLE", |t| deg(7.0 * t)) < deg(1e-8));
         let advance = |t: f64| pitch * 7.0 * t / std::f64::consts::TAU;
         assert!(
             off(&s, "JOINT_1_VARIABLES.DISTANCE", advance) < 1e-8,
@@ -468,8 +475,29 @@ fn variables_of_a_rack_and_pinion_roll_with_the_sign_of_pd() {
         let angle = values(&s, "JOINT_1_VARIABLES.ANGLE");
         let turned: Vec<f64> = angle.iter().map(|a| a - angle[0]).collect();
         for (t, a) in values(&s, "time").iter().zip(&turned) {
-            assert!((a - 0.7 * t / (0.5 * pd)).abs() < 1e-8, "{pd}: {t} {a}");
+            assert!(
+                (a - deg(0.7 * t / (0.5 * pd))).abs() < deg(1e-8),
+                "{pd}: {t} {a}"
+            );
         }
+    }
+}
+
+/// Between each pair of axes of the markers, in degrees; sizes do not depend on which marker is I.
+#[test]
+fn variables_of_a_ball_are_the_angles_between_the_axes_of_its_markers() {
+    use cognate::space::rotation::about_axis;
+    let r = about_axis(2, 0.4) * about_axis(0, 1.1);
+    let [x, _, z] = [0, 1, 2].map(|k| r.column(k).0);
+    let [xs, zs] = [x, z].map(|v| format!("{},{},{}", v[0], v[1], v[2]));
+    let s = variables("SPHERICAL", &format!(", ZG={zs}, XG={xs}"), "", 0.01);
+    for (k, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let expected = deg(r.0[k][k].acos());
+        let found = values(&s, &format!("JOINT_1_VARIABLES.{name}"))[0];
+        assert!(
+            (found - expected).abs() < 1e-7,
+            "{name}: {found} {expected}"
+        );
     }
 }
 
@@ -492,7 +520,7 @@ fn variables_of_universal_joints_are_turns_about_their_pins() {
             let found =
                 ["ANGLE_1", "ANGLE_2"].map(|v| values(&s, &format!("JOINT_1_VARIABLES.{v}"))[0]);
             assert!(
-                (found[0] - a).abs() < 1e-9 && (found[1] - b).abs() < 1e-9,
+                (found[0] - deg(a)).abs() < deg(1e-9) && (found[1] - deg(b)).abs() < deg(1e-9),
                 "{joint} {a} {b}: {found:?}"
             );
         }

@@ -400,7 +400,7 @@ fn results_of_others_are_kept_and_those_of_an_earlier_run_are_replaced() {
         names
     };
     let before = names();
-    assert_eq!(before.len(), 6);
+    assert_eq!(before.len(), 8);
     assert!(!run().err.contains("kept as"));
     assert_eq!(names(), before);
     // what somebody has changed is somebody's
@@ -437,7 +437,7 @@ fn a_mistake_on_the_command_line_costs_no_results() {
     };
     assert_eq!(run(&[]).code, 0);
     let before = contents(&dir);
-    assert!(before.len() == 5, "{}", before.len());
+    assert!(before.len() == 7, "{}", before.len());
     for (more, code, said) in [
         (["--column", "DX(41,2x2)"], 3, "--column:1:7"),
         (["--column", "DX(41,99)"], 3, "MARKER/99 does not exist"),
@@ -486,7 +486,7 @@ fn a_run_leaves_no_picture_of_an_earlier_one_and_knows_its_own_files() {
         "status": "being written",
         "versions": {"cognate": env!("CARGO_PKG_VERSION")},
         "files": sizes(&["csv"]),
-        "replaced": sizes(&["res", "msg", "svg"]),
+        "replaced": sizes(&["res", "req", "gra", "msg", "svg"]),
     });
     std::fs::write(dir.join("slider_crank.json"), record.to_string()).unwrap();
     run(&[]);

@@ -11,6 +11,7 @@ mod cli;
 mod cli_eval;
 mod manual;
 mod plots;
+mod recorded;
 mod report;
 mod results;
 mod written;

@@ -59,7 +59,7 @@ fn every_format_has_the_same_numbers_however_many_rows_there_are() {
         );
         let res = read(&folder.join("p.res"));
         let rows: usize = steps.parse().unwrap();
-        assert_eq!((res.rows(), res.columns.len()), (rows + 1, 33));
+        assert_eq!((res.rows(), res.columns.len()), (rows + 1, 46));
         let others = ["csv", "parquet"].map(|e| read(&folder.join(format!("p.{e}"))));
         for table in others {
             assert_eq!(table.rows(), res.rows());

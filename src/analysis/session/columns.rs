@@ -1,45 +1,47 @@
 //! Columns of results: one formula of an instant per column.
+//!
+//! Parts come first, all positions, then all velocities, then all accelerations; then further
+//! columns of the user's, requests, and the sets of all other elements in the order of their table
+//! (`sets.rs`).
 
+use super::Options;
+use super::requests::{components, request_sets};
+use super::selection::{Omission, Selection, omits};
+use super::sets::{self, Contents, Piece, SETS, Source};
+use super::shown::{Origin, Unit, Values, What, origins};
 use crate::expr::dimension::Dimension;
-use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Program, Work};
 use crate::model::{ElementId, ElementKind, Formula, Model, Part, Place, RequestKind, Text};
-use crate::physics::kinematic;
-use crate::results::{Component, Entity, Run, Units};
+use crate::results::{Component, Entity, Requested, Run, Units};
 use crate::scalar::Scalar;
-use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::{Equations, Unsupported};
 use crate::scene::layout::Layout;
 use crate::scene::programs::record_with_complaints;
-use crate::space::MarkerState;
+use std::collections::BTreeMap;
 
-/// The quantity that a column shows.
-#[derive(Clone, Debug, PartialEq)]
-enum What {
-    /// an expression: index among the extra formulas of the scene
-    Text(usize),
-    /// a component of a part's motion: 0–2 position, 3–5 ψ θ φ, 6–8 velocity, 9–11 angular
-    /// velocity, 12–14 acceleration, 15–17 angular acceleration; of the part frame, ground axes
-    Part { id: ElementId, quantity: usize },
-    /// a component of a REQUEST that a closure computes, from 0
-    Request { id: u32, component: usize },
-    /// a variable of a joint
-    JointVariable { joint: u32, variable: &'static str },
-    /// a component of the action of an element on its I marker, ground axes: 0–2 force, 3–5 torque
-    Action { id: ElementId, component: usize },
+/// A column as it is evaluated.
+#[derive(Debug)]
+struct Shown {
+    what: What,
+    /// the request it belongs to, which a command may switch off
+    request: Option<ElementId>,
 }
 
 /// The columns of a run in the order of its table of all columns, time left out.
 #[derive(Debug, Default)]
 pub struct Columns {
-    what: Vec<What>,
+    shown: Vec<Shown>,
     /// expressions to compile with each scene: (name, text)
     pub extra: Vec<(String, Text)>,
+    /// bodies whose motion from where they began is shown, with the markers at their centres
+    bodies: Vec<(ElementId, Option<u32>)>,
+    /// where these began
+    origins: BTreeMap<ElementId, Origin>,
 }
 
-/// The unit of what an expression yields, where it is a single measure.
-fn unit_of(text: &Text, units: &Units) -> String {
+/// Returns the unit of what an expression yields, where it is a single measure.
+pub(in crate::analysis) fn unit_of(text: &Text, units: &Units) -> String {
     let input = text.ast().ok().and_then(|ast| ast.input(ast.root));
     let Some(Input::Measure(measure, [_, _, component, _])) = input else {
         return String::new();
@@ -72,114 +74,31 @@ fn unit_of(text: &Text, units: &Units) -> String {
     }
 }
 
-/// An element whose components are columns of its own name.
-fn shown(run: &mut Run, kind: &str, entity: String, id: u32, components: Vec<Component>) {
-    run.entities.push(Entity {
-        name: entity.clone(),
-        entity,
-        kind: kind.into(),
-        id: u64::from(id),
-        components,
-    });
-}
-
-/// A component of a REQUEST.
-struct RequestComponent {
-    /// 1 to 8
-    place: usize,
-    name: String,
-    /// its expression; empty when a closure computes it
-    text: String,
-}
-
-/// Returns the components of a REQUEST as expressions, or those that a closure computes.
-fn components(
-    id: u32,
-    kind: &RequestKind,
-    computed: &dyn Fn(u32, &Formula) -> bool,
-) -> Vec<RequestComponent> {
-    match kind {
-        RequestKind::Displacement { i, j, rm } => {
-            let mut all = measured(1, "MAG", "DM", ["DX", "DY", "DZ"], (*i, *j, *rm));
-            all.extend(
-                (["PSI", "THETA", "PHI"].iter().enumerate()).map(|(k, name)| RequestComponent {
-                    place: 6 + k,
-                    name: name.to_string(),
-                    text: format!("{name}({i},{})", j.unwrap_or(0)),
-                }),
-            );
-            all
-        }
-        RequestKind::Velocity { i, j, rm } => {
-            let translation = ("VM", ["VX", "VY", "VZ"]);
-            both(translation, ("WM", ["WX", "WY", "WZ"]), (*i, *j, *rm))
-        }
-        RequestKind::Acceleration { i, j, rm } => {
-            let translation = ("ACCM", ["ACCX", "ACCY", "ACCZ"]);
-            let rotation = ("WDTM", ["WDTX", "WDTY", "WDTZ"]);
-            both(translation, rotation, (*i, *j, *rm))
-        }
-        RequestKind::Force { i, j, rm } => {
-            let translation = ("FM", ["FX", "FY", "FZ"]);
-            both(translation, ("TM", ["TX", "TY", "TZ"]), (*i, *j, *rm))
-        }
-        RequestKind::Functions(all) => (all.iter().enumerate())
-            .filter_map(|(k, f)| match f {
-                Some(Formula::Expression { text, .. }) => Some(function(k + 1, text)),
-                _ => None,
-            })
-            .collect(),
-        RequestKind::User(user) if computed(id, user) => (1..=8).map(|k| function(k, "")).collect(),
-        RequestKind::User(_) => Vec::new(),
-    }
-}
-
-fn function(place: usize, text: &str) -> RequestComponent {
-    RequestComponent {
-        place,
-        name: format!("F{place}"),
-        text: text.into(),
-    }
-}
-
-/// Returns a magnitude and three components that measures between markers I and J yield, those of
-/// RM resolving the components.
-fn measured(
-    first: usize,
-    magnitude: &str,
-    of_magnitude: &str,
-    measures: [&str; 3],
-    (i, j, rm): (u32, Option<u32>, Option<u32>),
-) -> Vec<RequestComponent> {
-    let (j, rm) = (j.unwrap_or(0), rm.unwrap_or(0));
-    let mut all = vec![RequestComponent {
-        place: first,
-        name: magnitude.into(),
-        text: format!("{of_magnitude}({i},{j})"),
-    }];
-    all.extend(measures.iter().zip(first + 1..).map(|(name, place)| {
-        let text = format!("{name}({i},{j},{rm})");
-        let name = name.to_string();
-        RequestComponent { place, name, text }
-    }));
-    all
-}
-
-/// Returns the eight components of a quantity that has a part of translation and one of rotation.
-fn both(
-    translation: (&str, [&str; 3]),
-    rotation: (&str, [&str; 3]),
-    markers: (u32, Option<u32>, Option<u32>),
-) -> Vec<RequestComponent> {
-    let mut all = measured(1, "MAG", translation.0, translation.1, markers);
-    all.extend(measured(5, "AMAG", rotation.0, rotation.1, markers));
-    all
-}
+/// Components of the motion of a body's centre of mass, level by level, and the names of the sets.
+const BODY_LEVELS: [(&str, [&str; 8]); 3] = [
+    (
+        "DISPLACEMENT",
+        ["X", "Y", "Z", "MAG", "RX", "RY", "RZ", "RMAG"],
+    ),
+    ("VELOCITY", ["VX", "VY", "VZ", "VM", "WX", "WY", "WZ", "WM"]),
+    (
+        "ACCELERATION",
+        [
+            "ACCX", "ACCY", "ACCZ", "ACCM", "WDTX", "WDTY", "WDTZ", "WDTM",
+        ],
+    ),
+];
+/// Words of RESULTS that leave out the levels of the motion of parts.
+const LEVELS: [Omission; 3] = [
+    Omission::Displacements,
+    Omission::Velocities,
+    Omission::Accelerations,
+];
 
 impl Columns {
-    /// Declares all columns of a run: those of the parts, joints and forces when `full`, requests,
-    /// and `user` expressions. `computed` tells whether there is a closure for a REQUEST of this
-    /// number with this USER.
+    /// Declares all columns of a run: sets of all elements when `full`, requests, and `user`
+    /// expressions. `computed` tells whether there is a closure for a REQUEST of this number with
+    /// this USER.
     pub fn new(
         model: &Model,
         run: &mut Run,
@@ -187,52 +106,74 @@ impl Columns {
         full: bool,
         computed: &dyn Fn(u32, &Formula) -> bool,
     ) -> Self {
+        let options = Options {
+            full,
+            ..Options::default()
+        };
+        Self::chosen(model, run, user, &options.selection(), computed)
+    }
+
+    /// Declares the columns as [`Columns::new`] does, with the sets of a selection.
+    pub(super) fn chosen(
+        model: &Model,
+        run: &mut Run,
+        user: &[String],
+        selection: &Selection<'_>,
+        computed: &dyn Fn(u32, &Formula) -> bool,
+    ) -> Self {
         run.columns.clear();
         run.entities.clear();
+        run.requests.clear();
         run.add_column("time", run.units.time.clone());
         let mut this = Self::default();
-        if full {
-            this.parts(model, run);
-        }
+        this.parts(model, run, selection);
         let mut table = vec![0];
         for text in user {
-            table.push(this.text(run, text.clone(), text, &run.units.clone()));
+            table.push(this.text(run, text.clone(), text, None));
         }
-        this.requests(model, run, &mut table, computed);
-        if full {
-            this.elements(model, run);
+        if !omits(model, Omission::Requests) {
+            this.requests(model, run, &mut table, computed);
         }
-        run.table = table;
+        if selection.full {
+            this.elements(model, run, selection);
+        }
+        // without wishes of its own the table has everything that RESULTS asks for
+        let has_own = table.len() > 1 || !selection.full;
+        run.table = if has_own { table } else { Vec::new() };
         this
     }
 
     fn push(&mut self, run: &mut Run, name: String, unit: String, what: What) -> usize {
-        self.what.push(what);
+        self.shown.push(Shown {
+            what,
+            request: None,
+        });
         run.add_column(name, unit)
     }
 
-    fn text(&mut self, run: &mut Run, name: String, text: &str, units: &Units) -> usize {
+    /// Adds the column of an expression; without a `unit` it has that of its measure.
+    fn text(&mut self, run: &mut Run, name: String, text: &str, unit: Option<Unit>) -> usize {
         let (k, text) = (self.extra.len(), Text::from(text));
-        let unit = unit_of(&text, units);
+        let unit = match unit {
+            Some(unit) => unit.spelt(&run.units),
+            None => unit_of(&text, &run.units),
+        };
         self.extra.push((name.clone(), text));
         self.push(run, name, unit, What::Text(k))
     }
 
-    /// Positions of all parts, then velocities, then accelerations.
-    fn parts(&mut self, model: &Model, run: &mut Run) {
-        let u = run.units.clone();
-        let first = run.entities.len();
+    /// Positions of all parts, then velocities, then accelerations; then the motions of bodies.
+    fn parts(&mut self, model: &Model, run: &mut Run, selection: &Selection<'_>) {
         let moving = |(id, p): &(ElementId, &Part)| id.kind == ElementKind::PointMass || !p.ground;
-        let all: Vec<(ElementId, &Part)> = model.bodies().filter(moving).collect();
+        let is_shown = |(id, _): &(ElementId, &Part)| selection.frames || selection.has(*id);
+        let all: Vec<(ElementId, &Part)> =
+            (model.bodies().filter(moving).filter(is_shown)).collect();
+        let first = run.entities.len();
         for &(id, part) in &all {
             let entity = name_of(&part.place, id);
-            let name = format!("{entity}_XFORM");
             run.entities.push(Entity {
-                name,
-                entity,
-                kind: "Part".into(),
-                id: u64::from(id.number),
-                components: Vec::new(),
+                name: format!("{entity}_XFORM"),
+                ..entity_of(entity, "Part", id)
             });
         }
         let names = [
@@ -241,21 +182,18 @@ impl Columns {
             ["ACCX", "ACCY", "ACCZ", "WDX", "WDY", "WDZ"],
         ];
         for (level, names) in names.iter().enumerate() {
-            let rate = [
-                "".to_string(),
-                format!("/{}", u.time),
-                format!("/{}**2", u.time),
-            ][level]
-                .clone();
-            for (k, &(id, _)) in all.iter().enumerate() {
+            let left_out = omits(model, LEVELS[level]);
+            let asked = |id: ElementId| match level {
+                0 => selection.frames || selection.has(id) && !left_out,
+                _ => selection.has(id) && !left_out,
+            };
+            let shown = all.iter().enumerate().filter(|(_, (id, _))| asked(*id));
+            for (k, &(id, _)) in shown {
                 for (c, component) in names.iter().enumerate() {
-                    let unit = format!("{}{rate}", if c < 3 { &u.length } else { &u.angle });
-                    let what = What::Part {
-                        id,
-                        quantity: 6 * level + c,
-                    };
+                    let quantity = 6 * level + c;
+                    let unit = level_unit(level, c < 3).spelt(&run.units);
                     let name = format!("{}.{component}", run.entities[first + k].name);
-                    let column = self.push(run, name, unit, what);
+                    let column = self.push(run, name, unit, What::Part { id, quantity });
                     run.entities[first + k].components.push(Component {
                         name: (*component).into(),
                         column,
@@ -263,73 +201,102 @@ impl Columns {
                 }
             }
         }
+        run.entities.retain(|entity| !entity.components.is_empty());
+        for &(id, part) in all.iter().filter(|(id, _)| selection.has(*id)) {
+            self.body(model, run, selection, id, part);
+        }
     }
 
-    /// Reactions of joints and actions of forces.
-    fn elements(&mut self, model: &Model, run: &mut Run) {
-        let u = run.units.clone();
-        let shown_kinds = [
-            (ElementKind::Joint, "Joint"),
-            (ElementKind::Jprim, "Primitive_Joint"),
-            (ElementKind::Sforce, "Single_Component_Force"),
-        ];
-        for (&id, joint) in &model.joints {
-            let entity = format!(
-                "{}_VARIABLES",
-                name_of(&joint.place, ElementKind::Joint.id(id))
-            );
+    /// Adds the sets of eight of a body: the change of the place of its centre of mass, and its
+    /// velocities and accelerations where they are asked for.
+    fn body(
+        &mut self,
+        model: &Model,
+        run: &mut Run,
+        selection: &Selection<'_>,
+        id: ElementId,
+        part: &Part,
+    ) {
+        let centre = part.cm;
+        let levels = BODY_LEVELS.iter().zip(LEVELS).enumerate();
+        let asked = |level: usize, left_out: Omission| {
+            (level == 0 || selection.body_rates) && !omits(model, left_out)
+        };
+        for (level, ((set, names), _)) in levels.filter(|(level, (_, o))| asked(*level, *o)) {
+            let entity = name_of(&part.place, id);
+            let name = format!("{entity}_{set}");
             let mut components = Vec::new();
-            for &(variable, gauge) in joint.kind.row().variables {
-                let unit = if gauge.is_angle() {
-                    u.angle.clone()
-                } else {
-                    u.length.clone()
+            for (component, of) in names.iter().enumerate() {
+                let what = What::Body {
+                    id,
+                    centre,
+                    level,
+                    component,
                 };
-                let name = format!("{entity}.{variable}");
-                let what = What::JointVariable {
-                    joint: id,
-                    variable,
-                };
-                let column = self.push(run, name, unit, what);
-                let name = variable.into();
+                let unit = level_unit(level, component < 4).spelt(&run.units);
+                let column = self.push(run, format!("{name}.{of}"), unit, what);
+                let name = (*of).to_owned();
                 components.push(Component { name, column });
             }
-            if !components.is_empty() {
-                shown(run, "Joint_Variables", entity, id, components);
+            run.entities.push(Entity {
+                name,
+                components,
+                ..entity_of(entity, "Body_Motion", id)
+            });
+        }
+        self.bodies.push((id, centre));
+    }
+
+    /// Adds the sets of all other elements: variables of joints, the table, the energies.
+    fn elements(&mut self, model: &Model, run: &mut Run, selection: &Selection<'_>) {
+        if !omits(model, Omission::Displacements) {
+            for (&n, joint) in &model.joints {
+                let id = ElementKind::Joint.id(n);
+                if selection.has(id) {
+                    let name = format!("{}_VARIABLES", name_of(&joint.place, id));
+                    let pieces = sets::joint_variables(model, n);
+                    self.set(run, entity_of(name, "Joint_Variables", id), pieces);
+                }
             }
         }
-        let all = shown_kinds.into_iter().flat_map(|(kind, word)| {
-            let numbers = model.numbers(kind).into_iter();
-            numbers.filter_map(move |n| {
-                let id = kind.id(n);
-                Some((id, name_of(model.element(id)?.place(), id), word))
-            })
-        });
-        for (id, entity, kind) in all {
-            let mut components = Vec::new();
-            for (c, component) in ["FX", "FY", "FZ", "TX", "TY", "TZ"].iter().enumerate() {
-                let unit = if c < 3 {
-                    u.force.clone()
-                } else {
-                    format!("{}-{}", u.force, u.length)
-                };
-                let what = What::Action { id, component: c };
-                let column = self.push(run, format!("{entity}.{component}"), unit, what);
-                components.push(Component {
-                    name: (*component).into(),
-                    column,
-                });
+        let of_table = SETS
+            .iter()
+            .filter(|set| matches!(set.contents, Contents::Groups(_)));
+        for set in of_table {
+            for n in model.numbers(set.kind) {
+                let id = set.kind.id(n);
+                let place = model.element(id).map(|element| element.place());
+                let name = place.map_or_else(String::new, |place| name_of(place, id));
+                let pieces = sets::pieces(model, selection, set, n);
+                self.set(run, entity_of(name, set.word, id), pieces);
             }
-            shown(run, kind, entity, id.number, components);
         }
-        for (&id, variable) in &model.variables {
-            let entity = name_of(&variable.place, ElementKind::Variable.id(id));
-            let column = self.text(run, format!("{entity}.Q"), &format!("VARVAL({id})"), &u);
-            let components = vec![Component {
-                name: "Q".into(),
-                column,
-            }];
-            shown(run, "ADAMS_Variable", entity, id, components);
+        if selection.only.is_empty() {
+            let entity = Entity {
+                name: ENERGY.into(),
+                entity: ENERGY.into(),
+                kind: "Energy".into(),
+                ..Entity::default()
+            };
+            self.set(run, entity, sets::energies());
+        }
+    }
+
+    /// Adds a set of results, if it has components.
+    fn set(&mut self, run: &mut Run, mut entity: Entity, pieces: Vec<Piece>) {
+        for Piece { name, unit, source } in pieces {
+            let title = format!("{}.{name}", entity.name);
+            let column = match source {
+                Source::Text(text) => self.text(run, title, &text, Some(unit)),
+                Source::Scene(what) => {
+                    let unit = unit.spelt(&run.units);
+                    self.push(run, title, unit, what)
+                }
+            };
+            entity.components.push(Component { name, column });
+        }
+        if !entity.components.is_empty() {
+            run.entities.push(entity);
         }
     }
 
@@ -341,96 +308,108 @@ impl Columns {
         table: &mut Vec<usize>,
         computed: &dyn Fn(u32, &Formula) -> bool,
     ) {
-        let units = run.units.clone();
-        for (&id, request) in &model.requests {
-            let entity = request
-                .results_name
-                .clone()
-                .unwrap_or_else(|| name_of(&request.place, ElementKind::Request.id(id)));
-            let by_closure = matches!(request.kind, RequestKind::User(_));
-            let mut columns = Vec::new();
-            for component in components(id, &request.kind, computed) {
-                let given = request.cnames.get(component.place - 1);
+        for set in request_sets(model) {
+            let by_closure = matches!(set.kind, RequestKind::User(_));
+            let mut entity = entity_of(set.name.clone(), "Request", set.id);
+            let mut requested = Requested::new(set.id.number, &set.kind);
+            for component in components(model, &set, computed) {
+                let given = set.cnames.get(component.place - 1);
                 if given.is_some_and(String::is_empty) {
                     continue;
                 }
                 let name = given.cloned().unwrap_or(component.name);
-                let title = format!("{entity}.{name}");
+                let title = format!("{}.{name}", set.name);
                 let column = if by_closure {
-                    let component = component.place - 1;
-                    self.push(run, title, String::new(), What::Request { id, component })
+                    let (id, place) = (set.id.number, component.place - 1);
+                    let what = What::Request {
+                        id,
+                        component: place,
+                    };
+                    self.push(run, title, String::new(), what)
                 } else {
-                    self.text(run, title, &component.text, &units)
+                    self.text(run, title, &component.text, None)
                 };
+                if let Some(last) = self.shown.last_mut() {
+                    last.request = Some(set.id);
+                }
+                requested.columns[component.place - 1] = Some(column);
                 table.push(column);
-                columns.push(Component { name, column });
+                entity.components.push(Component { name, column });
             }
-            if !columns.is_empty() {
-                shown(run, "Request", entity, id, columns);
+            if !entity.components.is_empty() {
+                run.entities.push(entity);
+                run.requests.push(requested);
             }
         }
     }
 
-    fn value<S: Scalar>(&self, what: &What, scene: &Scene, at: &Equations<'_, S>) -> S {
-        match what {
-            What::Text(k) => at.formula(scene.extra[*k]),
-            What::Part { id, quantity } => {
-                let part = scene.parts.iter().position(|p| p.id == *id);
-                let Some(part) = part else {
-                    return S::constant(f64::NAN);
-                };
-                let accelerated = *quantity >= 12;
-                let state = at.part(part, accelerated);
-                let angle = |m: Measure| {
-                    let ground = MarkerState::ground();
-                    kinematic::kinematic(m, &state, &ground, &ground, &ground)
-                        .unwrap_or_else(S::zero)
-                };
-                match quantity {
-                    0..=2 => state.p_GM.0[*quantity],
-                    3 => angle(Measure::Psi),
-                    4 => angle(Measure::Theta),
-                    5 => angle(Measure::Phi),
-                    6..=8 => state.v_GM.0[quantity - 6],
-                    9..=11 => state.w_GM.0[quantity - 9],
-                    12..=14 => state.a_GM.0[quantity - 12],
-                    _ => state.alpha_GM.0[quantity - 15],
-                }
-            }
-            What::Request { id, component } => match scene.requests.get(id) {
-                Some(formulas) => at.formula(formulas[*component]),
-                None => S::constant(f64::NAN),
-            },
-            What::JointVariable { joint, variable } => {
-                let mut all = scene.joint_variables.iter();
-                let found = all.position(|v| v.joint == *joint && v.name == *variable);
-                found.map_or_else(S::zero, |k| at.joint_variable(k))
-            }
-            What::Action { id, component } => match at.action_of(*id) {
-                Some(a) if *component < 3 => a.force.0[*component],
-                Some(a) => a.torque.0[component - 3],
-                None => S::zero(),
-            },
+    /// Notes where bodies are when the run begins.
+    pub fn begin(&mut self, scene: Configured<'_>, numbers: &[f64]) {
+        if self.origins.is_empty() && !self.bodies.is_empty() {
+            let at = Equations::new(scene, numbers);
+            self.origins = origins(&scene, &at, self.bodies.iter().copied());
         }
+    }
+
+    /// Returns whether a column, time being 0, belongs to an element that is switched off and has
+    /// nothing to show then.
+    pub fn are_off(&self, column: usize, model: &Model) -> bool {
+        let shown = column.checked_sub(1).and_then(|k| self.shown.get(k));
+        let owner = shown.and_then(|shown| shown.request.or(shown.what.exists_by()));
+        owner.is_some_and(|id| !model.is_active(id))
+    }
+
+    /// Returns whether variables of joints are among them.
+    pub fn show_joint_variables(&self) -> bool {
+        let mut all = self.shown.iter();
+        all.any(|shown| matches!(shown.what, What::JointVariable { .. }))
     }
 
     /// The columns as a program of the scene, and what could not be supplied.
     pub fn program(&self, scene: Configured<'_>) -> (Program, Vec<Unsupported>) {
         record_with_complaints(scene, |at| {
-            (self.what.iter())
-                .map(|w| self.value(w, &scene, at))
+            let mut values = Values::new(&scene, at, &self.origins);
+            let is_off = |id: ElementId| scene.inactive.contains(&id);
+            (self.shown.iter())
+                .map(|shown| match shown.request {
+                    Some(id) if is_off(id) => Scalar::constant(f64::NAN),
+                    _ => values.value(&shown.what),
+                })
                 .collect()
         })
     }
 
     /// Number of columns.
     pub fn len(&self) -> usize {
-        self.what.len()
+        self.shown.len()
     }
 
     /// Returns true if there are none.
     pub fn is_empty(&self) -> bool {
-        self.what.is_empty()
+        self.shown.is_empty()
+    }
+}
+
+/// Name of the set of the energies of the model.
+const ENERGY: &str = "ENERGY";
+
+/// Returns the unit of a motion at a level: displacement, velocity, acceleration.
+fn level_unit(level: usize, is_length: bool) -> Unit {
+    let power = level as u8;
+    match is_length {
+        true => Unit::Length(power),
+        false => Unit::Angle(power),
+    }
+}
+
+/// Returns a set without components that has the name of its element.
+fn entity_of(name: String, word: &str, id: ElementId) -> Entity {
+    Entity {
+        name: name.clone(),
+        entity: name,
+        kind: word.into(),
+        id: u64::from(id.number),
+        components: Vec::new(),
     }
 }
 

@@ -15,10 +15,14 @@ mod outcome;
 mod over_time;
 mod phase;
 mod preview;
+mod requests;
 mod rows;
 pub mod script;
+mod selection;
+mod sets;
 mod settings;
 mod shells;
+mod shown;
 mod simulate;
 mod spline_range;
 mod start;
@@ -44,6 +48,7 @@ use limit::SetUp;
 use outcome::units;
 use rows::Gaps;
 pub use rows::Receiver;
+pub use selection::Chosen;
 use start::Kept;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -74,8 +79,14 @@ pub struct Options {
     pub repeat: usize,
     /// further columns
     pub columns: Vec<String>,
-    /// columns of all parts and joints
+    /// sets of results of all elements, as RESULTS asks for them
     pub full: bool,
+    /// positions and angles of parts, whatever else is recorded
+    pub frames: bool,
+    /// sets of eight velocities and eight accelerations of the bodies' centres of mass
+    pub body_rates: bool,
+    /// the elements that have sets; none: all
+    pub only: Vec<Chosen>,
     /// run motions whose displacement or velocity jumps, piece by piece
     pub piecewise: bool,
     /// kinds of elements that are left out where they are not solved
@@ -148,9 +159,13 @@ impl Session {
     pub fn new(model: Model, name: &str, options: Options) -> Self {
         let units = units(&model);
         let mut run = Run::new(name, model.title.clone(), units);
-        let columns = Columns::new(&model, &mut run, &options.columns, options.full, &|_, _| {
-            false
-        });
+        let columns = Columns::chosen(
+            &model,
+            &mut run,
+            &options.columns,
+            &options.selection(),
+            &|_, _| false,
+        );
         run.record.repeats = options.repeat.max(1) as u32;
         let limit = options.limit.map(WorkLimit::begin);
         Self {
@@ -202,7 +217,14 @@ impl Session {
         }
     }
 
-    /// The columns of the results, before there are any.
+    /// Chooses the columns anew after a command has changed the model, while there are no rows.
+    fn model_changed(&mut self) {
+        if self.carried.is_none() && self.run.rows() == 0 {
+            self.choose_columns();
+        }
+    }
+
+    /// Chooses the columns of the results, before there are any rows.
     fn choose_columns(&mut self) {
         let names: Vec<_> = self.hooks.iter().map(closures::Hook::as_name).collect();
         let known = |id: u32, user: &crate::model::Formula| {
@@ -210,7 +232,13 @@ impl Session {
             names.iter().any(|n| n.stands_for(element, user))
         };
         let (run, options) = (&mut self.run, &self.options);
-        self.columns = Columns::new(&self.model, run, &options.columns, options.full, &known);
+        self.columns = Columns::chosen(
+            &self.model,
+            run,
+            &options.columns,
+            &options.selection(),
+            &known,
+        );
     }
 
     /// Tells which VARIABLEs will be changed between simulations: where their functions are

@@ -80,12 +80,13 @@ impl Gaps {
         }
     }
 
-    /// Returns the columns that have gaps in the present simulation, and ends it.
-    fn take(&mut self, run: &Run) -> Vec<(String, f64)> {
+    /// Returns the columns that have gaps in the present simulation, and ends it. `is_off` tells
+    /// which columns belong to something that is switched off.
+    fn take(&mut self, run: &Run, is_off: impl Fn(usize) -> bool) -> Vec<(String, f64)> {
         let seen = self.has_value.iter().zip(&mut self.first);
-        let gaps = run.columns.iter().zip(seen);
-        let gaps = gaps.filter_map(|(column, (has_value, first))| {
-            let at = first.take().filter(|_| *has_value)?;
+        let gaps = run.columns.iter().enumerate().zip(seen);
+        let gaps = gaps.filter_map(|((k, column), (has_value, first))| {
+            let at = first.take().filter(|_| *has_value && !is_off(k))?;
             Some((column.name.clone(), at))
         });
         let gaps: Vec<_> = gaps.collect();
@@ -126,7 +127,9 @@ impl Session {
 
     /// Warns, once for each, of columns that have values, but not in all rows of a simulation.
     pub(super) fn warn_of_gaps(&mut self) {
-        for (column, at) in self.gaps.take(&self.run) {
+        let (columns, model) = (&self.columns, &self.model);
+        let is_off = |column: usize| columns.are_off(column, model);
+        for (column, at) in self.gaps.take(&self.run, is_off) {
             self.warn(RunWarning::Gap { column, at });
         }
     }

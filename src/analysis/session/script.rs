@@ -113,6 +113,7 @@ pub fn obey(
             Command::Change(_) | Command::Activate { .. } => {
                 let applied = session.model.apply(&step.command);
                 applied.map_err(|e| e.map(located))?;
+                session.model_changed();
             }
             Command::Stop => break,
             Command::Show(_) => {}

@@ -241,6 +241,7 @@ impl Session {
         if let Some(program) = &self.columns_program {
             return Ok(program.clone());
         }
+        self.columns.begin(system.configured(), &system.numbers);
         let (program, complaints) = self.columns.program(system.configured());
         for complaint in complaints {
             let wanted = |text: &str| self.options.columns.iter().any(|column| column == text);

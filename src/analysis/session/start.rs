@@ -156,7 +156,7 @@ impl Session {
         let mut options = build::Options {
             mode,
             extra,
-            variables: self.options.full,
+            variables: self.columns.show_joint_variables(),
             skip: self.options.skip.clone(),
             hooks: hooks.collect(),
             zero_user: self.options.zero_user,

@@ -71,6 +71,10 @@ pub const RULES: &[Rule] = &[
     ("contacts have their law", contacts::contacts_have_their_law),
     ("axes are aligned", alignment::axes_are_aligned),
     ("requests ask something", output::requests_ask_something),
+    (
+        "many requests ask something",
+        output::many_requests_ask_something,
+    ),
     ("units are known", output::units_are_known),
     (
         "initial conditions say what is first",

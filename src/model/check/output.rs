@@ -24,6 +24,20 @@ pub(super) fn requests_ask_something(model: &Model, out: &mut Out) {
     }
 }
 
+pub(super) fn many_requests_ask_something(model: &Model, out: &mut Out) {
+    for (&id, many) in &model.many_requests {
+        let who = (ElementKind::Mrequest.id(id), &many.place);
+        for (list, word) in many.idle_words(model) {
+            let what = format!("{list} = {word} names nothing that can be asked");
+            warn(out, "no_effect", who, what);
+            advise(
+                out,
+                "ALL, or numbers of elements between colons; a part needs CM, a force I and J",
+            );
+        }
+    }
+}
+
 pub(super) fn units_are_known(model: &Model, out: &mut Out) {
     let Some(u) = &model.units else {
         return;

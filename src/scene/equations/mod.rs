@@ -233,7 +233,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
     }
 
     /// A marker with all its accelerations.
-    pub(in crate::scene) fn accelerated_marker(&self, m: usize) -> MarkerState<S> {
+    pub fn accelerated_marker(&self, m: usize) -> MarkerState<S> {
         sweep::marker_state(&self.scene.markers[m], &self.solved().links)
     }
 

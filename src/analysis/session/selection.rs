@@ -1,0 +1,125 @@
+//! The choice of what is recorded: RESULTS and OUTPUT of the dataset, and the wishes of the user.
+
+use super::Options;
+use super::sets::why_without;
+use crate::model::{ElementId, ElementKind, Model, SettingsStatement};
+
+/// A word of RESULTS that leaves results out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Omission {
+    /// positions and angles of parts, variables of joints
+    Displacements,
+    /// velocities of parts
+    Velocities,
+    /// accelerations of parts
+    Accelerations,
+    /// what constraints exert
+    ReactionForces,
+    /// what forces exert
+    AppliedForces,
+    /// variables, equations and their inputs and outputs
+    SystemElements,
+    /// where curves touch
+    FloatingMarkers,
+    /// the components of requests
+    Requests,
+    /// what solids exert where they touch
+    Contacts,
+}
+
+impl Omission {
+    /// Returns the word, in capitals.
+    pub(super) const fn keyword(self) -> &'static str {
+        match self {
+            Self::Displacements => "NODISPLACEMENTS",
+            Self::Velocities => "NOVELOCITIES",
+            Self::Accelerations => "NOACCELERATIONS",
+            Self::ReactionForces => "NOREACTIONFORCES",
+            Self::AppliedForces => "NOAPPLIEDFORCES",
+            Self::SystemElements => "NOSYSTEMELEMENTS",
+            Self::FloatingMarkers => "NOFLOATINGMARKERS",
+            Self::Requests => "NOREQUESTS",
+            Self::Contacts => "NOCONTACTS",
+        }
+    }
+}
+
+/// Elements that a user chooses for the record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Chosen {
+    /// one element, as `JOINT/3`
+    Element(ElementId),
+    /// all elements of a kind, as `JOINT`
+    Kind(ElementKind),
+}
+
+impl std::str::FromStr for Chosen {
+    type Err = String;
+
+    /// Reads `JOINT/3` or `JOINT`; refuses kinds without results of their own.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (chosen, kind) = match text.contains('/') {
+            true => text
+                .parse()
+                .map(|id: ElementId| (Chosen::Element(id), id.kind))?,
+            false => text.trim().parse().map(|kind| (Chosen::Kind(kind), kind))?,
+        };
+        match why_without(kind) {
+            Some(why) => Err(format!("{kind} has no results of its own: {why}")),
+            None => Ok(chosen),
+        }
+    }
+}
+
+impl Chosen {
+    fn has(&self, id: ElementId) -> bool {
+        match *self {
+            Chosen::Element(element) => element == id,
+            Chosen::Kind(kind) => kind == id.kind,
+        }
+    }
+}
+
+/// The sets of results that are recorded beside requests.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Selection<'a> {
+    /// every element has its set, but those that RESULTS leaves out
+    pub full: bool,
+    /// positions and angles of parts are recorded whatever else is
+    pub frames: bool,
+    /// bodies have sets of eight velocities and eight accelerations of their centres of mass
+    pub body_rates: bool,
+    /// only these elements have sets; none: all have
+    pub only: &'a [Chosen],
+}
+
+impl Selection<'_> {
+    /// Returns whether an element has a set, whatever RESULTS leaves out of it.
+    pub(super) fn has(&self, id: ElementId) -> bool {
+        self.full && (self.only.is_empty() || self.only.iter().any(|chosen| chosen.has(id)))
+    }
+}
+
+impl Options {
+    /// Returns the sets of results that the options ask for.
+    pub(super) fn selection(&self) -> Selection<'_> {
+        Selection {
+            full: self.full,
+            frames: self.frames,
+            body_rates: self.body_rates,
+            only: &self.only,
+        }
+    }
+}
+
+/// Returns whether RESULTS leaves something out.
+pub(super) fn omits(model: &Model, omission: Omission) -> bool {
+    let results = model.settings.get(&SettingsStatement::Results);
+    results.is_some_and(|r| r.words.contains_key(omission.keyword()))
+}
+
+/// Returns whether OUTPUT has a word, given in capitals.
+pub(super) fn output_says(model: &Model, word: &str) -> bool {
+    let output = model.settings.get(&SettingsStatement::Output);
+    output.is_some_and(|output| output.words.contains_key(word))
+}

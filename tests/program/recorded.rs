@@ -1,0 +1,290 @@
+//! What is recorded: every element that is solved has its set, requests and selections are obeyed, files hold what is
+//! asked for.
+
+use super::command::{cognate, path, scratch};
+use cognate::analysis::session::script::obey;
+use cognate::analysis::session::{Analysis, Chosen, Options, Session};
+use cognate::analysis::watch::Unwatched;
+use cognate::dataset::command::Script;
+use cognate::dataset::manual;
+use cognate::model::{ElementKind, Model};
+use cognate::results::{self, Kind, Run, Status};
+use std::collections::BTreeSet;
+
+/// Steps after which a run of a test ends.
+const MAX_STEPS: usize = 20_000;
+
+fn all_sets() -> Options {
+    Options {
+        full: true,
+        zero_user: true,
+        max_steps: Some(MAX_STEPS),
+        ..Options::default()
+    }
+}
+
+/// The run of a dataset that is simulated to a time.
+fn simulated(text: &str, options: Options, end: f64) -> Run {
+    let model = Model::from_text(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let mut session = Session::new(model, "test", options);
+    let status = session.simulate(Analysis::Transient, end, 10, &mut Unwatched);
+    assert_eq!(
+        status.unwrap_or_else(|e| panic!("{e:?}")),
+        Status::Completed
+    );
+    session.run
+}
+
+#[test]
+fn every_element_of_the_manual_that_is_solved_has_its_set_with_finite_values() {
+    let mut met = BTreeSet::new();
+    for example in manual::examples() {
+        let model = Model::from_text(example.dataset).unwrap();
+        let mut session = Session::new(model.clone(), example.name, all_sets());
+        let script = Script::from_text(example.commands).unwrap();
+        obey(&mut session, &script.steps, |_, _| (), &mut Unwatched)
+            .unwrap_or_else(|e| panic!("{}: {e:?}", example.name));
+        let run = &session.run;
+        let warned: Vec<&str> = run.record.warnings.iter().map(|w| w.code).collect();
+        assert!(
+            !warned.contains(&"no_finite_value"),
+            "{}: {warned:?}",
+            example.name
+        );
+        for (id, element) in model.elements() {
+            let place = element.place();
+            let ground = model.parts.get(&id.number).is_some_and(|p| p.ground);
+            let chosen: Result<Chosen, String> = id.to_string().parse();
+            if chosen.is_err() || !id.kind.is_solved() || ground && id.kind == ElementKind::Part {
+                continue;
+            }
+            let name = place.name.clone();
+            let name = name.unwrap_or_else(|| format!("{}_{}", id.kind, id.number));
+            let set = run.entities.iter().find(|e| e.entity == name);
+            let set = set.unwrap_or_else(|| panic!("{}: {id} has no set", example.name));
+            for component in &set.components {
+                let column = &run.columns[component.column];
+                // commands may have switched it off
+                let n = match session.model.is_active(id) {
+                    true => column.values.len(),
+                    false => 1,
+                };
+                let finite = column.values[..n].iter().all(|x| x.is_finite());
+                assert!(finite, "{}: {}", example.name, column.name);
+            }
+            met.insert(id.kind);
+        }
+    }
+    for &kind in ElementKind::ALL {
+        let is_asked = kind.is_solved() && kind.to_string().parse::<Chosen>().is_ok();
+        assert!(!is_asked || met.contains(&kind), "no example has {kind}");
+    }
+}
+
+/// A cylinder on a slope of part 3 that part 2 slides along and pushes, with a coupler and requests.
+const LIFT: &str = "\
+LIFT
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+PART/1, GROUND
+MARKER/1, PART=1
+MARKER/2, PART=1, REULER=90D,90D,90D
+PART/2, QG=1,2,0, MASS=2, CM=20, IP=.1,.1,.1
+MARKER/20, PART=2, QP=.5,0,0
+MARKER/21, PART=2, QP=-1,-2,0
+PART/3, MASS=3, CM=30, IP=.1,.1,.1
+MARKER/30, PART=3
+MARKER/31, PART=3, REULER=90D,90D,90D
+JOINT/1, REVOLUTE, I=21, J=1
+JOINT/2, TRANSLATIONAL, I=31, J=2
+COUPLER/1, JOINTS=1,2, TYPE=R:T, SCALES=-.5,1
+SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=30, J=2, FUNCTION=12
+MREQUEST/1, DISPLACEMENT, PARTS=ALL
+MREQUEST/2, FORCE, JOINTS=2, APPFORS=SFORCE/1
+REQUEST/3, D, I=20, J=1
+RESULTS/XRF
+END
+";
+
+#[test]
+fn a_coupler_exerts_forces_that_do_no_work_together() {
+    let run = simulated(LIFT, all_sets(), 1.0);
+    let at = |name: &str| run.column(name).unwrap_or_else(|| panic!("{name}"));
+    let (turning, sliding) = (at("COUPLER_1.F1"), at("COUPLER_1.F2"));
+    let (angle, distance) = (
+        at("JOINT_1_VARIABLES.ANGLE"),
+        at("JOINT_2_VARIABLES.DISTANCE"),
+    );
+    for k in 1..run.rows() {
+        // φ̇ F1 + ẋ F2 = 0 where −½ φ + x stays constant
+        assert!((0.5 * sliding[k] + turning[k]).abs() < 1e-9 * sliding[k].abs());
+        let moved = [angle[k] - angle[0], distance[k] - distance[0]];
+        assert!(
+            (0.5 * moved[0].to_radians() - moved[1]).abs() < 1e-9,
+            "{moved:?}"
+        );
+        // M ẍ = 12 + F2
+        let pull = 3.0 * at("PART_3_XFORM.ACCX")[k];
+        assert!(
+            (pull - 12.0 - sliding[k]).abs() < 1e-8,
+            "{pull} {}",
+            sliding[k]
+        );
+    }
+}
+
+#[test]
+fn the_motion_of_a_body_is_the_change_of_its_centre_of_mass_in_ground_axes() {
+    let options = Options {
+        body_rates: true,
+        ..all_sets()
+    };
+    let run = simulated(LIFT, options, 1.0);
+    let at = |name: &str| run.column(name).unwrap_or_else(|| panic!("{name}"));
+    let last = run.rows() - 1;
+    let angle = at("JOINT_1_VARIABLES.ANGLE");
+    let turned = (angle[last] - angle[0]).to_radians();
+    let (sin, cos) = turned.sin_cos();
+    // the centre of mass begins at (1.5, 2)
+    let moved = [1.5 * cos - 2.0 * sin - 1.5, 1.5 * sin + 2.0 * cos - 2.0];
+    let expected = [
+        ("DISPLACEMENT.X", moved[0]),
+        ("DISPLACEMENT.Y", moved[1]),
+        ("DISPLACEMENT.MAG", moved[0].hypot(moved[1])),
+        ("DISPLACEMENT.RZ", turned),
+        ("DISPLACEMENT.RMAG", turned.abs()),
+        ("VELOCITY.VM", 2.5 * at("PART_2_XFORM.WZ")[last].abs()),
+        ("VELOCITY.WM", at("PART_2_XFORM.WZ")[last].abs()),
+        ("ACCELERATION.WDTZ", at("PART_2_XFORM.WDZ")[last]),
+    ];
+    for (name, expected) in expected {
+        let found = at(&format!("PART_2_{name}"));
+        assert!(
+            (found[last] - expected).abs() < 1e-8,
+            "{name}: {} {expected}",
+            found[last]
+        );
+    }
+    assert_eq!(at("PART_2_DISPLACEMENT.MAG")[0], 0.0);
+}
+
+#[test]
+fn many_requests_are_the_requests_of_their_elements() {
+    let run = simulated(LIFT, all_sets(), 1.0);
+    let same = |a: &str, b: &str| {
+        let [a, b] = [a, b].map(|name| run.column(name).unwrap_or_else(|| panic!("{name}")));
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12));
+    };
+    same("MREQUEST_1.PART_2.DX", "REQUEST_3.DX");
+    same("MREQUEST_1.PART_3.DX", "PART_3_XFORM.X");
+    same("MREQUEST_2.JOINT_2.FY", "JOINT_2.FY");
+    same("MREQUEST_2.SFORCE_1.FX", "SFORCE_1.FX");
+    assert!(
+        run.column("MREQUEST_1.PART_1.DX").is_none(),
+        "ground does not move"
+    );
+}
+
+#[test]
+fn what_results_leave_out_and_what_is_switched_off_has_no_columns() {
+    let names = |text: &str, options: Options| -> Vec<String> {
+        let run = simulated(text, options, 0.1);
+        run.columns.into_iter().map(|c| c.name).collect()
+    };
+    let every = names(LIFT, all_sets());
+    for (word, gone) in [
+        ("NODISPLACEMENTS", "PART_2_XFORM.X"),
+        ("NODISPLACEMENTS", "JOINT_1_VARIABLES.ANGLE"),
+        ("NOVELOCITIES", "PART_2_XFORM.VX"),
+        ("NOACCEL", "PART_2_XFORM.ACCX"),
+        ("NOREACTIONFORCES", "JOINT_1.FX"),
+        ("NOAPPLIEDFORCES", "SFORCE_1.FX"),
+        ("NOREQUESTS", "REQUEST_3.DX"),
+    ] {
+        assert!(every.iter().any(|name| name == gone), "{gone}");
+        let left = names(&LIFT.replace("XRF", &format!("XRF, {word}")), all_sets());
+        assert!(!left.iter().any(|name| name == gone), "{word}: {gone}");
+        assert!(left.iter().any(|name| name == "ENERGY.KINETIC"), "{word}");
+    }
+    let only = Options {
+        only: vec!["JOINT/2".parse().unwrap(), "SFORCE".parse().unwrap()],
+        ..all_sets()
+    };
+    let left = names(LIFT, only);
+    assert!(
+        left.iter().any(|name| name == "JOINT_2.FX")
+            && left.iter().any(|name| name == "SFORCE_1.FX")
+    );
+    assert!(
+        !left
+            .iter()
+            .any(|name| name.starts_with("JOINT_1") || name.starts_with("PART_"))
+    );
+    assert!(
+        "MARKER"
+            .parse::<Chosen>()
+            .unwrap_err()
+            .contains("cognate motion")
+    );
+}
+
+#[test]
+fn a_request_that_commands_switch_off_has_no_column_or_no_value_from_there_on() {
+    let commands = |first: &str, then: &str| {
+        let text = format!(
+            "{first}SIMULATE/DYNAMIC, END=0.1, STEPS=2\n{then}SIMULATE/DYNAMIC, END=0.2, STEPS=2\nSTOP\n"
+        );
+        let mut session = Session::new(Model::from_text(LIFT).unwrap(), "test", all_sets());
+        let script = Script::from_text(&text).unwrap();
+        obey(&mut session, &script.steps, |_, _| (), &mut Unwatched).unwrap();
+        session.run
+    };
+    let off = "DEACTIVATE/REQUEST, ID=3\n";
+    assert!(commands(off, "").column("REQUEST_3.DX").is_none());
+    let run = commands("", off);
+    let values = run.column("REQUEST_3.DX").unwrap();
+    assert!(
+        values[1].is_finite() && values[values.len() - 1].is_nan(),
+        "{values:?}"
+    );
+}
+
+#[test]
+fn output_asks_for_its_files_and_they_hold_the_run() {
+    let text = LIFT.replace("RESULTS/XRF", "OUTPUT/REQSAVE, GRSAVE, YPR");
+    let model = scratch("recorded_files", "lift.adm", &text);
+    let out = model.with_file_name("results");
+    let done = cognate(&[
+        "run",
+        path(&model),
+        "--end",
+        "1",
+        "--steps",
+        "4",
+        "--out",
+        path(&out),
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let csv = results::read(&out.join("lift.csv")).unwrap();
+    let gra = results::read(&out.join("lift.gra")).unwrap();
+    assert!(csv.column("REQUEST_3.YAW").is_some() && csv.column("PART_2_XFORM.X").is_none());
+    let (x, x_gra) = (
+        csv.column("MREQUEST_1.PART_3.DX").unwrap(),
+        gra.column("PART_3_XFORM.X").unwrap(),
+    );
+    // the model as it was read comes first
+    assert_eq!(gra.sequences[0].kind, Kind::Input);
+    assert_eq!(x.len() + 1, x_gra.len());
+    assert!(
+        x.iter()
+            .zip(&x_gra[1..])
+            .all(|(a, b)| (a - b).abs() < 1e-5 * (1.0 + a.abs()))
+    );
+    let req = std::fs::read_to_string(out.join("lift.req")).unwrap();
+    let n_requests = 5;
+    assert_eq!(
+        req.lines().count(),
+        3 + n_requests + x.len() * (1 + n_requests),
+        "{req}"
+    );
+    assert!(!out.join("lift.res").exists());
+}
