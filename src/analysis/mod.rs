@@ -17,6 +17,7 @@
 pub mod accuracy;
 pub mod direction;
 pub mod linear;
+pub mod motion;
 pub(in crate::analysis) mod quantity;
 pub mod session;
 pub mod start;

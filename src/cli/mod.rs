@@ -19,9 +19,11 @@ pub mod interrupt;
 mod limit;
 mod linear;
 mod modes;
+mod motion;
 mod output;
 mod plot;
 pub mod progress;
+mod recorded;
 pub mod render;
 mod repl;
 mod report;
@@ -56,6 +58,7 @@ enum Verb {
     Fmt(fmt::Args),
     Functions(functions::Args),
     Linear(linear::Args),
+    Motion(motion::Args),
     Plot(plot::Args),
     Repl(repl::Args),
     Report(report::Args),
@@ -194,6 +197,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Fmt(args) => fmt::run(args),
         Verb::Functions(args) => functions::run(args),
         Verb::Linear(args) => linear::run(args),
+        Verb::Motion(args) => motion::run(args),
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),
         Verb::Report(args) => report::run(args),

@@ -1,6 +1,7 @@
 //! The files of a run: tables that grow while it goes on, and what is written when it is over.
 
 use super::{Failure, linear, remark, summary};
+use crate::analysis::motion::marker_digest;
 use crate::analysis::session::Session;
 use crate::analysis::work_limit::process_seconds;
 use crate::diagnostic::Diagnostic;
@@ -278,6 +279,7 @@ impl Growing {
         started: Instant,
     ) -> Result<(Vec<PathBuf>, String), Diagnostic> {
         self.started = started;
+        session.run.record.markers = marker_digest(&session.model);
         let mut texts = linear::files(session);
         texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));
         let record = self.finish(&mut session.run, texts, picture)?;

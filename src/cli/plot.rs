@@ -1,6 +1,7 @@
 //! `cognate plot`: columns of results as a picture, in the terminal or as a file.
 
 use super::convert::same_file;
+use super::recorded::add_measures;
 use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, render, say, width};
 use crate::diagnostic::Diagnostic;
@@ -26,7 +27,8 @@ Examples:
 pub struct Args {
     /// Results to read: .csv, .json, .res or .gra
     input: PathBuf,
-    /// Column to show (repeatable); the first few when none is given
+    /// Column to show (repeatable), or a displacement, velocity or acceleration of markers, as
+    /// VX(20,10); the first few when none is given
     #[arg(long, value_name = "COLUMN")]
     y: Vec<String>,
     /// Column to show them over; time when not given
@@ -38,6 +40,9 @@ pub struct Args {
     /// Show the values, or what is made of them
     #[arg(long = "as", value_enum, default_value = "values", value_name = "WHAT")]
     shown: ShownName,
+    /// Dataset or command file for motions of markers, where the record does not name it
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
     /// Draw each unit in a panel of its own
     #[arg(long)]
     panels: bool,
@@ -87,7 +92,7 @@ impl From<ShownName> for Shown {
 /// # Errors
 /// When the results cannot be read, have no such column, or no finite value.
 pub fn run(args: &Args) -> Outcome {
-    let sources = sources(args)?;
+    let mut sources = sources(args)?;
     if args.list {
         say(&list(&sources[0].run));
         return Ok(Exit::Done);
@@ -96,6 +101,13 @@ pub fn run(args: &Args) -> Outcome {
         [] if args.statistics => all_names(&sources[0].run, args.x.as_deref()),
         names => names.to_vec(),
     };
+    for (Source { run, .. }, file) in sources
+        .iter_mut()
+        .zip([&args.input].into_iter().chain(&args.over))
+    {
+        let asked: Vec<&str> = names.iter().chain(&args.x).map(String::as_str).collect();
+        add_measures(run, file, args.model.as_deref(), &asked)?;
+    }
     let mut found = channels(&sources, args.x.as_deref(), &names, args.shown.into())?;
     if args.statistics {
         say(&statistics_of(&found, args.json));

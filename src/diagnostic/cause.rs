@@ -25,6 +25,8 @@ pub enum Cause {
     Misaligned,
     /// a formula asks for a value that is not given
     MissingValue,
+    /// results lack functions from which a motion follows
+    NoMotionSet,
     /// an element is left out on request
     Skipped,
     /// a statement that another one of the same element replaces
@@ -53,6 +55,7 @@ impl Cause {
             Self::ImpossibleInertia => "impossible_inertia",
             Self::Misaligned => "misaligned",
             Self::MissingValue => "missing_value",
+            Self::NoMotionSet => "no_motion_set",
             Self::Skipped => "skipped",
             Self::Superseded => "superseded",
             Self::UnexpectedEnd => "unexpected_end",

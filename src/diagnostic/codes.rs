@@ -385,6 +385,27 @@ lower case do not matter. The advice names columns that are spelled alike, or th
     cognate plot run.csv --y slider.x       cognate plot run.csv --list prints the names",
     },
     Code {
+        name: "no_motion_set",
+        summary: "the results lack functions from which the motion of a marker follows",
+        explanation: "\
+The motion of a marker relative to another follows from the motions of their parts: sets of six functions, three of
+translation and three of rotation, for displacements, for velocities and for accelerations. Velocities need the set of
+displacements too, accelerations all three. A table that has requests alone has none of them.
+
+    RESULTS/XRF                                   the dataset asks for all sets
+    cognate run model.acf --format res,csv        so does the format
+    RESULTS/XRF, NOACCELERATIONS                  then there are no accelerations of markers",
+    },
+    Code {
+        name: "other_model",
+        summary: "a model is not the one that the results are of",
+        explanation: "\
+Results do not hold the places of markers in their parts: these are read from the model that the record of the run
+names. Where its markers are not those of the run, what follows would be wrong, and it is refused.
+
+    cognate motion out/run.res --of MARKER/20 --relative-to MARKER/10 --model kept/model.acf",
+    },
+    Code {
         name: "unknown_sequence",
         summary: "the results have no sequence of this name",
         explanation: "\

@@ -20,6 +20,7 @@ pub fn record(run: &Run) -> Value {
         "stop_reason": r.stop_reason,
         "exit_code": r.status.exit_code(),
         "model": r.model,
+        "markers": r.markers,
         "title": run.title,
         "method": r.method,
         "error": r.error,

@@ -175,6 +175,8 @@ pub struct Record {
     pub stop_reason: String,
     /// the file that was run, as the user named it
     pub model: String,
+    /// a text that tells whether a model has the markers of the run
+    pub markers: String,
     /// the method that integrated, and why, when the program chose
     pub method: String,
     /// requested error

@@ -10,6 +10,7 @@ mod broken;
 mod cli;
 mod cli_eval;
 mod manual;
+mod motion;
 mod plots;
 mod recorded;
 mod report;

@@ -1,0 +1,233 @@
+//! Motion of markers after a run, from its record alone: nothing is solved again.
+//!
+//! The record has the frame of every part at every output, with its rates; the model says where a
+//! marker is fixed in its part. A marker's motion follows from both, and any displacement, velocity
+//! or acceleration of the function language from the motions of the markers that it names:
+//!
+//! ```text
+//! p = p_P + R r     v = v_P + ω × R r     a = a_P + α × R r + ω × (ω × R r)
+//! ```
+//!
+//! A level (displacement, velocity, acceleration) needs sets of six functions of the parts
+//! concerned, three of translation and three of rotation: its own, and those of the levels below.
+
+use super::session::columns::{name_of, unit_of};
+use crate::diagnostic::{Cause, Diagnostic};
+use crate::expr::measures::{Family, Measure};
+use crate::expr::program::Input;
+use crate::model::{ElementId, ElementKind, Model, Text, geometry};
+use crate::physics::kinematic;
+use crate::results::{Column, Run};
+use crate::space::{Frame, MarkerState, Vec3, rotation};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// Components of the sets of six functions, level by level.
+const SETS: [[&str; 6]; 3] = [
+    ["X", "Y", "Z", "PSI", "THETA", "PHI"],
+    ["VX", "VY", "VZ", "WX", "WY", "WZ"],
+    ["ACCX", "ACCY", "ACCZ", "WDX", "WDY", "WDZ"],
+];
+const LEVELS: [&str; 3] = ["displacements", "velocities", "accelerations"];
+
+/// A record with the model that it is of.
+#[derive(Debug)]
+pub struct Recorded<'a> {
+    run: &'a Run,
+    model: &'a Model,
+}
+
+/// A measure of markers, as an expression that is nothing else: `DX(20,10)`.
+#[derive(Clone, Copy, Debug)]
+pub struct MarkerMeasure {
+    measure: Measure,
+    arguments: [u32; 4],
+    /// 0 displacement, 1 velocity, 2 acceleration
+    level: usize,
+}
+
+impl MarkerMeasure {
+    /// Reads an expression; `None`: it is something else than one measure of markers.
+    pub fn of(text: &str) -> Option<Self> {
+        let text = Text::from(text);
+        let ast = text.ast().ok()?;
+        let Some(Input::Measure(measure, arguments)) = ast.input(ast.root) else {
+            return None;
+        };
+        let level = match measure.row().family {
+            Family::Displacement => 0,
+            Family::Velocity => 1,
+            Family::Acceleration => 2,
+            Family::GenericForce | Family::ElementForce | Family::System => return None,
+        };
+        Some(Self {
+            measure,
+            arguments,
+            level,
+        })
+    }
+
+    /// Returns the numbers of its markers, ground left out.
+    fn markers(&self) -> impl Iterator<Item = u32> {
+        let first = if self.measure == Measure::Orient {
+            2
+        } else {
+            0
+        };
+        let markers = self.arguments.into_iter().skip(first);
+        markers.filter(|&marker| marker != 0)
+    }
+}
+
+/// The place of a marker in what moves it.
+struct Carried {
+    /// per level, the columns of the six functions of its part; none: ground
+    levels: Option<Vec<[usize; 6]>>,
+    /// the marker in the part's frame
+    frame: Frame<f64>,
+}
+
+impl<'a> Recorded<'a> {
+    /// Takes a record and its model.
+    pub fn new(run: &'a Run, model: &'a Model) -> Self {
+        Self { run, model }
+    }
+
+    /// Returns a measure at every row of the record, as a column of this name.
+    ///
+    /// # Errors
+    /// A marker that does not exist or does not move with a part, or a part without the sets of
+    /// six functions that the measure needs.
+    pub fn column(&self, name: &str, asked: &MarkerMeasure) -> Result<Column, Diagnostic> {
+        let mut carried = BTreeMap::new();
+        for marker in asked.markers() {
+            carried.insert(marker, self.carried(marker, asked.level)?);
+        }
+        let values = (0..self.run.held().len()).map(|place| {
+            let state = |marker: u32| Some(self.state(carried.get(&marker)?, place));
+            kinematic::kinematic_of(asked.measure, asked.arguments, state).unwrap_or(f64::NAN)
+        });
+        Ok(Column {
+            name: name.to_owned(),
+            values: values.collect(),
+            unit: unit_of(&Text::from(name), &self.run.units),
+            bar_of: None,
+        })
+    }
+
+    /// Finds a marker, and the columns that move it up to a level.
+    fn carried(&self, marker: u32, level: usize) -> Result<Carried, Diagnostic> {
+        let id = ElementKind::Marker.id(marker);
+        let unknown = |what: String| Diagnostic::error(Cause::UnknownElement, what);
+        let Some(data) = self.model.markers.get(&marker) else {
+            return Err(unknown(format!("{id} does not exist in the model")));
+        };
+        let body = data.owner.body().filter(|_| !data.floating);
+        let found = body.and_then(|body| {
+            let mut bodies = self.model.bodies();
+            bodies.find(|(id, _)| *id == body)
+        });
+        let Some((body, part)) = found else {
+            let what = format!("{id} is not fixed in a part: its motion is not in the record");
+            return Err(unknown(what));
+        };
+        let rotation = geometry::orientation(&data.orientation, data.qp)
+            .map_err(|why| Diagnostic::error("unfit_value", why).element(id.to_string()))?;
+        let frame = Frame {
+            rotation,
+            position: Vec3(data.qp),
+        };
+        if part.ground {
+            return Ok(Carried {
+                levels: None,
+                frame,
+            });
+        }
+        let name = name_of(&part.place, body);
+        let levels = (0..=level).map(|level| self.set(body, &name, level));
+        Ok(Carried {
+            levels: Some(levels.collect::<Result<_, _>>()?),
+            frame,
+        })
+    }
+
+    /// Finds the columns of the six functions of a part at a level.
+    fn set(&self, body: ElementId, name: &str, level: usize) -> Result<[usize; 6], Diagnostic> {
+        let entities = self.run.entities.iter();
+        let mut by_number = entities.filter(|e| e.kind == "Part" && e.id == u64::from(body.number));
+        // results of other programs may call a part otherwise
+        let other = by_number.next().map(|e| e.name.clone());
+        let find = |component: &str| {
+            let own = self.run.find(&format!("{name}_XFORM.{component}"));
+            own.or_else(|| self.run.find(&format!("{}.{component}", other.as_ref()?)))
+        };
+        let found = SETS[level].map(find);
+        if let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] = found {
+            return Ok([a, b, c, d, e, f]);
+        }
+        let missing = SETS[level].iter().zip(found);
+        let missing: Vec<&str> = (missing.filter(|(_, found)| found.is_none()))
+            .map(|(component, _)| *component)
+            .collect();
+        let what = format!(
+            "the record has no complete set of six {} of {body} ({name}): {} is missing",
+            LEVELS[level],
+            missing.join(", ")
+        );
+        Err(Diagnostic::error(Cause::NoMotionSet, what).help(
+            "RESULTS in the dataset, or --format res or parquet, records them; NOVELOCITIES and NOACCELERATIONS leave them out",
+        ))
+    }
+
+    /// Returns the motion of a marker at a row; rates that it does not need are zero.
+    fn state(&self, carried: &Carried, place: usize) -> MarkerState<f64> {
+        let Some(levels) = &carried.levels else {
+            return MarkerState {
+                R_GM: carried.frame.rotation,
+                p_GM: carried.frame.position,
+                ..MarkerState::ground()
+            };
+        };
+        let at = |level: usize, first: usize| {
+            let values = |set: &[usize; 6]| {
+                Vec3([0, 1, 2].map(|k| {
+                    let column = &self.run.columns[set[first + k]];
+                    let in_degrees = first == 3 && column.unit.starts_with("deg");
+                    let factor = if in_degrees { PI / 180.0 } else { 1.0 };
+                    factor * column.values[place]
+                }))
+            };
+            levels.get(level).map_or_else(Vec3::zero, values)
+        };
+        let [psi, theta, phi] = at(0, 3).0;
+        let R_GP = rotation::from_313(psi, theta, phi);
+        let arm = R_GP.apply(carried.frame.position);
+        let (w, alpha) = (at(1, 3), at(2, 3));
+        MarkerState {
+            R_GM: R_GP * carried.frame.rotation,
+            p_GM: at(0, 0) + arm,
+            w_GM: w,
+            v_GM: at(1, 0) + w.cross(arm),
+            alpha_GM: alpha,
+            a_GM: at(2, 0) + alpha.cross(arm) + w.cross(w.cross(arm)),
+        }
+    }
+}
+
+/// Returns a text that two models have in common where their markers are fixed alike in the same
+/// parts: 16 hexadecimal digits.
+pub fn marker_digest(model: &Model) -> String {
+    // FNV-1a, which needs no table and never changes
+    const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
+    const PRIME: u64 = 0x0000_0100_0000_01b3;
+    let mut digest = OFFSET;
+    for (number, marker) in &model.markers {
+        let (owner, floating) = (marker.owner, marker.floating);
+        let (qp, orientation) = (marker.qp, marker.orientation);
+        let text = format!("{number} {owner:?} {qp:?} {orientation:?} {floating}\n");
+        for byte in text.bytes() {
+            digest = (digest ^ u64::from(byte)).wrapping_mul(PRIME);
+        }
+    }
+    format!("{digest:016x}")
+}
