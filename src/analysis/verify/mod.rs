@@ -16,6 +16,7 @@ pub(in crate::analysis) mod culprit;
 pub(in crate::analysis) mod driving;
 mod free;
 pub mod idle;
+mod json;
 pub(crate) mod massless;
 pub mod outline;
 

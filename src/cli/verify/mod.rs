@@ -4,12 +4,12 @@ mod text;
 
 use super::run::{has_commands, read, script};
 use super::{Exit, Failure, Outcome, complain_in_files, remark, say};
-use crate::analysis::verify::{Verification, verify};
+use crate::analysis::verify::verify;
 use crate::dataset::Dataset;
 use crate::dataset::command::Command;
 use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::model::Model;
-use serde_json::{Value, json};
+use crate::results::json;
 use std::path::{Path, PathBuf};
 
 /// Count the freedoms of a model and explain what is fixed twice and what is free
@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Outcome {
     let doubted: Vec<Diagnostic> = doubted.map(|d| dataset.locate(d)).collect();
     let found = verify(&model).map_err(|d| Failure::in_model(&dataset, d))?;
     if args.json {
-        say(&format!("{:#}\n", as_json(&found)));
+        say(&json::text(&found.json()));
     } else {
         say(&text::of(&found));
     }
@@ -82,58 +82,4 @@ pub fn model_of(path: &Path) -> Result<(Model, Dataset), Failure> {
         remark("no SIMULATE in the command file: this is the model after all its commands");
     }
     Ok((model, job.reading.dataset))
-}
-
-fn finding(d: &Diagnostic) -> Value {
-    json!({ "row": d.element, "message": d.message, "advice": d.help })
-}
-
-/// Returns the findings as JSON.
-fn as_json(v: &Verification) -> Value {
-    let dependent: Vec<Value> = (v.dependent.iter())
-        .map(|d| {
-            let combination: Vec<Value> = (d.combination.iter())
-                .map(|(row, factor)| json!({ "row": row, "factor": factor }))
-                .collect();
-            let fixed_by: Vec<String> = d.fixed_by.iter().map(ToString::to_string).collect();
-            json!({
-                "row": d.row, "element": d.element.to_string(),
-                "direction": d.direction.to_string(), "fixed_by": fixed_by,
-                "combination": combination, "only_here": d.only_here, "words": d.sentence(),
-            })
-        })
-        .collect();
-    let free: Vec<Value> = (v.free.iter())
-        .map(|f| {
-            let parts: Vec<Value> = (f.parts.iter())
-                .map(|p| {
-                    json!({ "part": p.part.to_string(), "words": p.words, "angular": p.angular, "linear": p.linear, "at": p.at })
-                })
-                .collect();
-            json!({ "unknown": f.unknown, "words": f.words, "parts": parts })
-        })
-        .collect();
-    let counted: Vec<Value> = (v.counted.iter())
-        .map(|(what, n, equations)| json!({ "what": what, "elements": n, "equations": equations }))
-        .collect();
-    let undetermined: Vec<Value> = (v.undetermined.iter())
-        .map(|u| json!({ "element": u.element.to_string(), "components": u.components, "axes": u.axes.to_string() }))
-        .collect();
-    json!({
-        "parts": v.parts,
-        "point_masses": v.point_masses,
-        "constraints": counted,
-        "gruebler": v.gruebler,
-        "freedom": v.freedom,
-        "freedom_nearby": v.freedom_nearby,
-        "consistent": v.inconsistent.is_empty(),
-        "inconsistent": v.inconsistent.iter().map(finding).collect::<Vec<_>>(),
-        "redundant": v.redundant(),
-        "dependent": dependent,
-        "reactions_not_unique": undetermined,
-        "advice": v.advice.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "free": free,
-        "assembly": { "iterations": v.assembly.0, "moved": v.assembly.1 },
-        "warnings": v.warned(),
-    })
 }

@@ -1,0 +1,48 @@
+"""ADAMS functions and multibody models on numpy arrays.
+
+Examples
+--------
+>>> import cognate as cg
+>>> cg.expr("STEP5(TIME, 0, 0, 1, 10)*SIN(2*PI*TIME)")(0.25)
+1.03515625
+"""
+
+from ._core import Expr, __version__
+from ._errors import (
+    ColumnError,
+    Diagnostic,
+    Error,
+    ExprError,
+    IncompleteRun,
+    ModelError,
+    ResultsError,
+)
+from ._expr import expr
+from ._linear import LinearSystem, Mode
+from ._model import Model, Options, Session, run
+from ._run import Run, get_results, read_res, read_results
+from ._verify import Verification
+
+__all__ = [
+    "ColumnError",
+    "Diagnostic",
+    "Error",
+    "Expr",
+    "ExprError",
+    "IncompleteRun",
+    "LinearSystem",
+    "Mode",
+    "Model",
+    "ModelError",
+    "Options",
+    "ResultsError",
+    "Run",
+    "Session",
+    "Verification",
+    "__version__",
+    "expr",
+    "get_results",
+    "read_res",
+    "read_results",
+    "run",
+]

@@ -1,0 +1,457 @@
+"""Results: columns as arrays, units, tables, pictures, files."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._errors import ColumnError, Diagnostic
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+__all__ = ["Run", "get_results", "read_res", "read_results"]
+
+
+class Run(Mapping[str, NDArray[np.float64]]):
+    """Results of a run: a mapping from names of columns to arrays.
+
+    Arrays are views of the memory of the run, without a copy; they cannot be written, and keep
+    that memory alive. Names are found without regard to blanks and case. Runs can be pickled.
+
+    Examples
+    --------
+    >>> run["slider.X"]  # doctest: +SKIP
+    array([200., ...])
+    >>> run.units["slider.X"]  # doctest: +SKIP
+    'mm'
+    """
+
+    def __init__(self, core: _core.Results) -> None:
+        self._core = core
+        self._columns = core.columns
+        self._table = core.table
+        self._arrays: dict[int, NDArray[np.float64]] = {}
+        self._record: dict[str, Any] | None = None
+
+    # --- columns -----------------------------------------------------------------------------
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        index = self._core.find(name)
+        if index is None:
+            raise self._missing(name)
+        return self._array(index)
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and self._core.find(name) is not None
+
+    def __iter__(self) -> Iterator[str]:
+        return (self._columns[index][0] for index in self._table)
+
+    def __len__(self) -> int:
+        return len(self._table)
+
+    def _array(self, index: int) -> NDArray[np.float64]:
+        if index not in self._arrays:
+            self._arrays[index] = self._core.column(index)
+        return self._arrays[index]
+
+    def _missing(self, name: str) -> ColumnError:
+        names = [column[0] for column in self._columns]
+        near = get_close_matches(name, names, 3, 0.6)
+        advice = [f"did you mean {', '.join(near)}?"] if near else []
+        advice.append("columns are asked for before a run: model.run(…, columns=[…])")
+        said = Diagnostic("unknown_column", "error", f"there is no column `{name}`", advice=tuple(advice))
+        text = "\n  help: ".join([f"error[{said.code}]: {said.message}", *advice])
+        return ColumnError([Diagnostic(**{**vars(said), "text": text})])
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Time of every row."""
+        return self._array(0)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of all columns, by name, as result files spell them; empty: a pure number."""
+        return {name: unit for name, unit, _ in self._columns}
+
+    @property
+    def names(self) -> list[str]:
+        """Names of all columns, also of those that tables do not show."""
+        return [name for name, _, _ in self._columns]
+
+    @property
+    def entities(self) -> dict[str, dict[str, str]]:
+        """Result sets of elements: the column of every component, by their names."""
+        return {
+            name: {component: self._columns[index][0] for component, index in components}
+            for name, _, _, _, components in self._core.entities
+        }
+
+    @property
+    def sequences(self) -> list[tuple[str, str, slice]]:
+        """Simulations: name, kind, and their rows."""
+        first = self._first_row
+        return [
+            (name, kind, slice(max(start - first, 0), end - first))
+            for name, kind, start, end in self._core.sequences
+            if kind != "modelInput"
+        ]
+
+    @property
+    def _first_row(self) -> int:
+        inputs = [end for _, kind, _, end in self._core.sequences if kind == "modelInput"]
+        return max(inputs, default=0)
+
+    def bars(self, name: str) -> NDArray[np.float64]:
+        """Return the bars of error of a column, of a run with ``accuracy=True``.
+
+        Parameters
+        ----------
+        name : str
+            The column.
+
+        Returns
+        -------
+        ndarray
+            How far its values may be off.
+        """
+        of = self._core.find(name)
+        if of is None:
+            raise self._missing(name)
+        for index, (_, _, bar_of) in enumerate(self._columns):
+            if bar_of == of:
+                return self._array(index)
+        raise self._missing(f"{name}±")
+
+    # --- the record --------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """Base name of files."""
+        return self._core.name
+
+    @property
+    def title(self) -> str:
+        """Title of the dataset."""
+        return self._core.title
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """Status, counts, timings, energy, accuracy and warnings, as ``cognate run --json``."""
+        if self._record is None:
+            self._record = json.loads(self._core.record)
+        return self._record
+
+    @property
+    def status(self) -> str:
+        """How it ended: ``"completed"``, ``"stopped"``, ``"no_equilibrium"``, ``"limit"`` …"""
+        return str(self.record["status"])
+
+    @property
+    def ok(self) -> bool:
+        """True if everything was done that was asked for."""
+        return self.status == "completed"
+
+    @property
+    def stop_reason(self) -> str:
+        """Why it ended early, in a sentence; empty: it did not."""
+        return str(self.record["stop_reason"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know although the run went on."""
+        return [str(warning) for warning in self.record["warnings"]]
+
+    @property
+    def log(self) -> str:
+        """What happened, in order, as the ``.msg`` file tells it."""
+        return self._core.log
+
+    # --- other forms -------------------------------------------------------------------------
+
+    def to_pandas(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
+        """Make a table of pandas, whose index is time.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            The columns; those that tables show where left out.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The table; units are in ``attrs["units"]``.
+        """
+        import pandas
+
+        chosen = self._chosen(columns)
+        data = {self._columns[index][0]: self._array(index) for index in chosen}
+        frame = pandas.DataFrame(data, index=pandas.Index(self.time, name="time"))
+        frame.attrs["units"] = {"time": self._columns[0][1], **self._units(chosen)}
+        return frame
+
+    def to_xarray(self, columns: Sequence[str] | None = None) -> xarray.Dataset:
+        """Make a dataset of xarray over time.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            The columns; those that tables show where left out.
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable for each column, with its unit in ``attrs["units"]``.
+        """
+        import xarray
+
+        variables = {
+            self._columns[index][0]: ("time", self._array(index), {"units": self._columns[index][1]})
+            for index in self._chosen(columns)
+        }
+        time = ("time", self.time, {"units": self._columns[0][1]})
+        return xarray.Dataset(variables, coords={"time": time}, attrs={"title": self.title})
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Write a Parquet file, units in its metadata.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, whose name ends in ``.parquet``.
+        """
+        self._write_as("parquet", path)
+
+    def to_csv(
+        self, path: str | os.PathLike[str], *, units: bool = True, decimal_comma: bool = False
+    ) -> None:
+        """Write comma-separated values.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, whose name ends in ``.csv``.
+        units : bool
+            A row of units below the names.
+        decimal_comma : bool
+            A comma in numbers, and ``;`` between them.
+        """
+        self._write_as("csv", path, units=units, decimal_comma=decimal_comma)
+
+    def to_res(self, path: str | os.PathLike[str]) -> None:
+        """Write a results file that pre- and postprocessors read.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, whose name ends in ``.res``.
+        """
+        self._write_as("res", path)
+
+    def _write_as(self, ending: str, path: str | os.PathLike[str], **style: bool) -> None:
+        if not os.fspath(path).lower().endswith("." + ending):
+            raise ValueError(f"the name of the file ends in .{ending}")
+        self._core.write(path, **style)
+
+    def _chosen(self, columns: Sequence[str] | None) -> list[int]:
+        if columns is None:
+            return [index for index in self._table if index != 0]
+        if isinstance(columns, str):
+            raise TypeError("columns is a list of names, not one text")
+        chosen = []
+        for name in columns:
+            index = self._core.find(name)
+            if index is None:
+                raise self._missing(name)
+            chosen.append(index)
+        return chosen
+
+    def _units(self, chosen: Sequence[int]) -> dict[str, str]:
+        return {self._columns[index][0]: self._columns[index][1] for index in chosen}
+
+    # --- pictures ----------------------------------------------------------------------------
+
+    def plot(self, columns: Sequence[str] | str | None = None, *, ax: Any = None) -> Any:
+        """Plot columns over time with matplotlib; bars of error as bands.
+
+        Parameters
+        ----------
+        columns : sequence of str, or str, optional
+            The columns; those that tables show where left out.
+        ax : matplotlib.axes.Axes, optional
+            Where to plot; a figure with one panel for each unit where left out.
+
+        Returns
+        -------
+        matplotlib.axes.Axes or ndarray of them
+            The axes.
+        """
+        wanted = [columns] if isinstance(columns, str) else columns
+        chosen = [i for i in self._chosen(wanted) if self._columns[i][2] is None]
+        units = list(dict.fromkeys(self._columns[index][1] for index in chosen))
+        if ax is None:
+            from matplotlib import pyplot
+
+            height = 2.4 * max(len(units), 1)
+            _, panels = pyplot.subplots(
+                max(len(units), 1), 1, sharex=True, squeeze=False, figsize=(7, height)
+            )
+            axes = list(panels[:, 0])
+        else:
+            axes = [ax] * max(len(units), 1)
+        for index in chosen:
+            name, unit, _ = self._columns[index]
+            panel = axes[units.index(unit)]
+            (line,) = panel.plot(self.time, self._array(index), label=name)
+            for bar, (_, _, bar_of) in enumerate(self._columns):
+                if bar_of == index:
+                    low, high = self[name] - self._array(bar), self[name] + self._array(bar)
+                    panel.fill_between(self.time, low, high, color=line.get_color(), alpha=0.25)
+        for unit, panel in zip(units, axes):
+            panel.set_ylabel(unit if ax is None else ", ".join(u for u in units if u))
+            panel.legend()
+        axes[-1].set_xlabel(f"time [{self._columns[0][1]}]")
+        return axes[0] if ax is not None or len(axes) == 1 else np.array(axes)
+
+    def animate(self) -> str:
+        """Make a page that shows the moving mechanism.
+
+        Raises
+        ------
+        NotImplementedError
+            This version cannot draw mechanisms yet; `plot` shows columns.
+        """
+        raise NotImplementedError(
+            "this version has no animation of mechanisms; run.plot() shows columns over time"
+        )
+
+    def _repr_html_(self) -> str:
+        record = self.record
+        facts = [
+            ("status", self.status + (f": {self.stop_reason}" if self.stop_reason else "")),
+            ("rows", f"{len(self.time)}"),
+            ("columns", f"{len(self._table)} shown of {len(self._columns)}"),
+            ("method", str(record.get("method", ""))),
+            ("steps", str(record.get("steps", ""))),
+        ]
+        facts += [("warning", warning) for warning in self.warnings]
+        rows = "".join(
+            f"<tr><th>{html.escape(key)}</th><td>{html.escape(value)}</td></tr>"
+            for key, value in facts
+            if value
+        )
+        return f"<table><caption>{html.escape(self.title or self.name)}</caption>{rows}</table>"
+
+    def __repr__(self) -> str:
+        return f"<Run {self.name!r}: {self.status}, {len(self.time)} rows, {len(self)} columns>"
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    def __hash__(self) -> int:
+        return id(self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Run, (self._core,)
+
+
+def read_results(path: str | os.PathLike[str]) -> Run:
+    """Read a file of results: ``.res``, ``.csv``, ``.parquet``, ``.json``, ``.gra``.
+
+    Parameters
+    ----------
+    path : path-like
+        The file; the ending of its name tells the format.
+
+    Returns
+    -------
+    Run
+        Its columns. The record of a file says nothing of how the run went.
+
+    Raises
+    ------
+    ResultsError
+        A file that cannot be read, with the line.
+    """
+    return Run(_core.Results.read(path))
+
+
+def read_res(path: str | os.PathLike[str]) -> Run:
+    """Read a results file (``.res``), as Adams or this package writes it.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    Run
+        Its columns: ``run["REQ_1.X"]``; `Run.entities` names result sets and components.
+
+    Raises
+    ------
+    ResultsError
+        A file that cannot be read, with the line.
+    """
+    return read_results(path)
+
+
+def get_results(
+    path: str | os.PathLike[str],
+    reqs_to_get: Mapping[str, Sequence[str]] | None = None,
+    t_min: float | None = None,
+    t_max: float | None = None,
+) -> tuple[pandas.DataFrame, dict[str, dict[str, str]]]:
+    """Read components of result sets from a results file.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    reqs_to_get : mapping of str to sequence of str, optional
+        Components by result set, ``{"REQ_1": ["X"]}``; all where left out.
+    t_min, t_max : float, optional
+        First and last time.
+
+    Returns
+    -------
+    data : pandas.DataFrame
+        A column ``(result set, component)`` for each; the index is time.
+    units : dict of dict
+        ``units[result set][component]``.
+
+    Raises
+    ------
+    ResultsError
+        A file that cannot be read.
+    ColumnError
+        A result set or component that it does not have.
+    """
+    import pandas
+
+    run = read_results(path)
+    sets = {name: components for name, components in run.entities.items()}
+    wanted = {name: list(sets[name]) for name in sets} if reqs_to_get is None else reqs_to_get
+    data: dict[tuple[str, str], NDArray[np.float64]] = {}
+    units: dict[str, dict[str, str]] = {}
+    unit_of = run.units
+    for name, components in wanted.items():
+        for component in components:
+            column = sets.get(name, {}).get(component, f"{name}.{component}")
+            data[name, component] = run[column]
+            units.setdefault(name, {})[component] = unit_of.get(column, "")
+    frame = pandas.DataFrame(data, index=pandas.Index(run.time, name="time"))
+    low = -np.inf if t_min is None else t_min
+    high = np.inf if t_max is None else t_max
+    return frame[(frame.index >= low) & (frame.index <= high)], units

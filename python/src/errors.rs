@@ -1,0 +1,86 @@
+//! Diagnostics as Python exceptions: the classes stand in `cognate/_errors.py`.
+
+use cognate::Error;
+use cognate::diagnostic::{Diagnostic, Severity};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyTuple};
+
+/// The exception that tells about mistakes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// a mistake in an expression, or a value that it does not have
+    Expr,
+    /// mistakes in a dataset, in commands, or in a model
+    Model,
+    /// a file of results that cannot be read or written
+    Results,
+}
+
+impl Kind {
+    fn class(self) -> &'static str {
+        match self {
+            Kind::Expr => "ExprError",
+            Kind::Model => "ModelError",
+            Kind::Results => "ResultsError",
+        }
+    }
+}
+
+/// Returns a diagnostic as a `cognate.Diagnostic`.
+///
+/// # Errors
+/// Whatever Python raises when the object is made.
+pub fn diagnostic<'py>(py: Python<'py>, d: &Diagnostic) -> PyResult<Bound<'py, PyAny>> {
+    let severity = match d.severity {
+        Severity::Note => "note",
+        Severity::Warning => "warning",
+        Severity::Error => "error",
+    };
+    let known = |place: usize| (place > 0).then_some(place);
+    let fields = PyDict::new(py);
+    fields.set_item("code", d.code)?;
+    fields.set_item("severity", severity)?;
+    fields.set_item("message", &d.message)?;
+    fields.set_item("file", &d.file)?;
+    fields.set_item("line", known(d.line))?;
+    fields.set_item("column", known(d.column))?;
+    fields.set_item("element", &d.element)?;
+    fields.set_item("name", &d.name)?;
+    fields.set_item("argument", d.argument)?;
+    fields.set_item("advice", PyTuple::new(py, &d.help)?)?;
+    fields.set_item("text", d.to_string())?;
+    let class = module(py)?.getattr("Diagnostic")?;
+    class.call((), Some(&fields))
+}
+
+/// Returns diagnostics as a list of `cognate.Diagnostic`.
+///
+/// # Errors
+/// Whatever Python raises when the objects are made.
+pub fn diagnostics<'py>(py: Python<'py>, all: &[Diagnostic]) -> PyResult<Bound<'py, PyList>> {
+    let all: Vec<_> = (all.iter())
+        .map(|d| diagnostic(py, d))
+        .collect::<PyResult<_>>()?;
+    PyList::new(py, all)
+}
+
+/// Returns the exception for mistakes, all of them in its `errors`; `source`: the text of the
+/// expression that they are in.
+pub fn exception(
+    py: Python<'_>,
+    kind: Kind,
+    all: impl Into<Error>,
+    source: Option<&str>,
+) -> PyErr {
+    let all = all.into();
+    let raised = || -> PyResult<PyErr> {
+        let class = module(py)?.getattr(kind.class())?;
+        let value = class.call1((diagnostics(py, all.diagnostics())?, source))?;
+        Ok(PyErr::from_value(value))
+    };
+    raised().unwrap_or_else(|failure| failure)
+}
+
+fn module(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
+    py.import("cognate._errors")
+}

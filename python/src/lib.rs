@@ -1,0 +1,45 @@
+//! The compiled half of the Python package `cognate`: expressions, models, sessions, results.
+//!
+//! Everything that costs time happens here, with Python's lock released; `cognate/*.py` dresses it
+//! for Python. Arrays of results are views of the memory of a [`results::Results`], without a copy.
+//! A mistake of the user becomes one of the exceptions of `cognate/_errors.py`, which hold every
+//! diagnostic.
+//!
+//! ```text
+//! arrays.rs    numbers of Python: scalars, lists, arrays of any layout
+//! errors.rs    diagnostics as exceptions
+//! expr.rs      one expression over arrays
+//! model.rs     datasets
+//! session.rs   simulations, one after another
+//! watch.rs     Ctrl-C and progress while they go on
+//! user.rs      USER(…) as Python callables
+//! results.rs   tables of results, and files
+//! ```
+
+mod arrays;
+mod errors;
+mod expr;
+mod model;
+mod results;
+mod session;
+mod user;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// Compiled part of cognate.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::expr::Expr;
+    #[pymodule_export]
+    use super::model::Model;
+    #[pymodule_export]
+    use super::results::Results;
+    #[pymodule_export]
+    use super::session::{Commands, Session};
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,163 @@
+//! Datasets: read, changed, written, verified.
+
+use crate::errors::{self, Kind};
+use cognate::Error;
+use cognate::analysis::verify;
+use cognate::dataset::command::{Command, Script};
+use cognate::dataset::syntax::Source;
+use cognate::dataset::{self, Dataset, Reading};
+use cognate::diagnostic::{Diagnostic, Severity};
+use cognate::model::{self, ElementKind};
+use cognate::results::json;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A model as its dataset says.
+#[pyclass(module = "cognate._core", frozen)]
+pub struct Model {
+    /// the model, with the changes since it was read
+    pub(crate) model: model::Model,
+    /// the dataset as written, which knows the places
+    dataset: Arc<Dataset>,
+    /// it is no longer as written
+    changed: bool,
+    doubts: Vec<Diagnostic>,
+}
+
+impl Model {
+    fn of(py: Python<'_>, reading: Reading) -> PyResult<Self> {
+        let Reading {
+            dataset,
+            model,
+            diagnostics,
+        } = reading;
+        let is_error = |d: &Diagnostic| d.severity == Severity::Error;
+        let (wrong, doubts): (Vec<_>, Vec<_>) = diagnostics.into_iter().partition(is_error);
+        if !wrong.is_empty() {
+            return Err(errors::exception(py, Kind::Model, wrong, None));
+        }
+        let dataset = Arc::new(dataset);
+        Ok(Self {
+            model,
+            dataset,
+            changed: false,
+            doubts,
+        })
+    }
+
+    /// Returns the exception for mistakes in the model, each with the place of its element.
+    pub fn raise(&self, py: Python<'_>, all: Error) -> PyErr {
+        let located = all.map(|d| self.dataset.locate(d));
+        errors::exception(py, Kind::Model, located, None)
+    }
+
+    /// Returns the folder of its file.
+    pub fn folder(&self) -> Option<PathBuf> {
+        let file = self.dataset.source.file.as_ref().map(PathBuf::from)?;
+        file.parent().map(ToOwned::to_owned)
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// Read a dataset from a file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let reading = py.detach(|| dataset::read(&path));
+        Self::of(
+            py,
+            reading.map_err(|e| errors::exception(py, Kind::Model, e, None))?,
+        )
+    }
+
+    /// Read a dataset from a text; `file`: the name it goes by.
+    #[staticmethod]
+    #[pyo3(signature = (text, file = None))]
+    fn from_text(py: Python<'_>, text: &str, file: Option<&str>) -> PyResult<Self> {
+        let reading = py.detach(|| dataset::read_source(Source::from_text(file, text)));
+        Self::of(py, reading)
+    }
+
+    /// The dataset as text: as written, or as the changes have left it.
+    #[getter]
+    fn text(&self) -> String {
+        if self.changed {
+            self.model.to_text()
+        } else {
+            self.dataset.source.text.clone()
+        }
+    }
+
+    /// The file that it was read from.
+    #[getter]
+    fn file(&self) -> Option<&str> {
+        self.dataset.source.file.as_deref()
+    }
+
+    /// The first line of the dataset.
+    #[getter]
+    fn title(&self) -> &str {
+        &self.model.title
+    }
+
+    /// Every element that is solved: keyword, number, the name that the dataset gives.
+    #[getter]
+    fn elements(&self) -> Vec<(&'static str, u32, Option<String>)> {
+        let mut all = Vec::new();
+        for kind in ElementKind::ALL {
+            for number in self.model.numbers(*kind) {
+                let name = self.model.element(kind.id(number));
+                let name = name.and_then(|element| element.place().name.clone());
+                all.push((kind.keyword(), number, name));
+            }
+        }
+        all
+    }
+
+    /// Warnings and notes about the dataset.
+    #[getter]
+    fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let doubts = self.model.doubts();
+        let more = doubts.into_iter().map(|d| self.dataset.locate(d));
+        let all: Vec<_> = self.doubts.iter().cloned().chain(more).collect();
+        Ok(errors::diagnostics(py, &all)?.into_any())
+    }
+
+    /// Return a model changed by commands that change statements.
+    fn changed(&self, py: Python<'_>, commands: &str) -> PyResult<Self> {
+        let raised = |e: Error| errors::exception(py, Kind::Model, e, None);
+        let mut model = self.model.clone();
+        // a first line that is no command would be taken as the name of a dataset
+        for step in Script::from_text(&format!("\n{commands}\n"))
+            .map_err(raised)?
+            .steps
+        {
+            match &step.command {
+                Command::Change(_) | Command::Activate { .. } => {
+                    model.apply(&step.command).map_err(raised)?;
+                }
+                _ => {
+                    let what = format!("`{}` does not change the model", step.text);
+                    let d = Diagnostic::error("usage", what);
+                    let d = d.help("simulations are asked for by run, or by a command file");
+                    return Err(errors::exception(py, Kind::Model, d, None));
+                }
+            }
+        }
+        let dataset = Arc::clone(&self.dataset);
+        Ok(Self {
+            model,
+            dataset,
+            changed: true,
+            doubts: self.doubts.clone(),
+        })
+    }
+
+    /// Count the freedoms and explain them; returns JSON.
+    fn verify(&self, py: Python<'_>) -> PyResult<String> {
+        let found = py.detach(|| verify::verify(&self.model));
+        let found = found.map_err(|all| self.raise(py, all))?;
+        Ok(json::text(&found.json()))
+    }
+}

@@ -1,0 +1,47 @@
+"""Models that tests share."""
+
+from pathlib import Path
+
+import cognate as cg
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SLIDER_CRANK = ROOT / "examples" / "slider_crank.adm"
+
+FALLING = """a falling ball
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+ACCGRAV/KGRAV=-10
+PART/1, GROUND
+MARKER/1, PART=1
+!                             adams_view_name='ball'
+PART/2, MASS=2, CM=2, IP=1,1,1
+MARKER/2, PART=2
+REQUEST/1, F4=DZ(2)\\, CNAMES="","","","Z","","","","", RESULTS_NAME=ball
+END
+"""
+
+PUSHED = """a cart that a routine pushes
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+PART/1, GROUND
+MARKER/1, PART=1, REULER=90D,90D,0D
+PART/2, MASS=2, CM=2, IP=1,1,1
+MARKER/2, PART=2, REULER=90D,90D,0D
+JOINT/1, TRANSLATIONAL, I=2, J=1
+SFORCE/3, TRANSLATIONAL, I=2, J=1, ACTIONONLY, FUNCTION=USER(50)\\
+END
+"""
+
+
+@pytest.fixture
+def slider_crank():
+    return cg.Model.read(SLIDER_CRANK)
+
+
+@pytest.fixture
+def falling():
+    return cg.Model.from_text(FALLING)
+
+
+@pytest.fixture
+def pushed():
+    return cg.Model.from_text(PUSHED)
