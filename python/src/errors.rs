@@ -66,12 +66,7 @@ pub fn diagnostics<'py>(py: Python<'py>, all: &[Diagnostic]) -> PyResult<Bound<'
 
 /// Returns the exception for mistakes, all of them in its `errors`; `source`: the text of the
 /// expression that they are in.
-pub fn exception(
-    py: Python<'_>,
-    kind: Kind,
-    all: impl Into<Error>,
-    source: Option<&str>,
-) -> PyErr {
+pub fn exception(py: Python<'_>, kind: Kind, all: impl Into<Error>, source: Option<&str>) -> PyErr {
     let all = all.into();
     let raised = || -> PyResult<PyErr> {
         let class = module(py)?.getattr(kind.class())?;

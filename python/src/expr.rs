@@ -84,10 +84,11 @@ impl Compiled {
         give(&self.scalars, work);
     }
 
-    fn batch(&self, inputs: &[&[f64]], out: &mut [&mut [f64]]) {
+    fn batch(&self, inputs: &[&[f64]], out: &mut [&mut [f64]]) -> Result<(), Error> {
         let mut batch = take(&self.batches).unwrap_or_else(|| self.program.batch());
-        batch.run(inputs, out);
+        let outcome = batch.run(inputs, out);
         give(&self.batches, batch);
+        outcome
     }
 }
 
@@ -144,9 +145,8 @@ impl Expr {
                 past
             );
             let d = Diagnostic::error("needs_history", message);
-            return Err(raised(
-                d.help("put it into a model, or ask for it as a column of a run"),
-            ));
+            let advice = "put it into a model, or ask for it as a column of a run";
+            return Err(raised(d.help(advice).into()));
         }
         let inputs = program.inputs().to_vec();
         Ok(Self {
@@ -221,7 +221,7 @@ impl Expr {
         // a number in, a number out, by the shortest way
         if let (Some(time), None, None, None) = (time, inputs, named, &out)
             && self.inputs.len() <= 1
-            && self.time.is_some() == !self.inputs.is_empty()
+            && self.time.is_some() != self.inputs.is_empty()
             && let Ok(time) = time.cast_exact::<PyFloat>()
         {
             let (given, mut result) = ([time.value()], [0.0]);
@@ -476,15 +476,17 @@ impl Expr {
                 .collect();
             let mut out: Vec<&mut [f64]> = results.iter_mut().map(|r| &mut r[from..to]).collect();
             let mut go = || {
-                compiled.batch(&inputs, &mut out);
+                compiled.batch(&inputs, &mut out)?;
                 let all = inputs.iter().copied().chain(out.iter().map(|r| &**r));
-                all.fold(true, |so_far, numbers| so_far & are_finite(numbers))
+                Ok(all.fold(true, |so_far, numbers| so_far & are_finite(numbers)))
             };
             let finite = if n < POINTS_TO_DETACH {
                 go()
             } else {
                 py.detach(&mut go)
             };
+            let finite = finite
+                .map_err(|e: Error| errors::exception(py, Kind::Expr, e, Some(self.expr.text())))?;
             if !finite {
                 self.see(py, &inputs, &mut out, Some(from), invalid)?;
             }

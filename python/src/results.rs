@@ -43,6 +43,12 @@ impl Results {
     }
 }
 
+/// Name of a result set, its element, kind and number, and its components with their columns.
+type Set = (String, String, String, u64, Vec<(String, usize)>);
+
+/// Everything that makes results again: the maker, its arguments.
+type Reduced<'py> = (Bound<'py, PyAny>, (Frame, Vec<Bound<'py, PyArray1<f64>>>));
+
 /// Everything of a table but its numbers, as `__reduce__` hands it on.
 #[derive(FromPyObject, IntoPyObject)]
 #[pyo3(from_item_all)]
@@ -55,7 +61,7 @@ struct Frame {
     columns: Vec<(String, String, Option<usize>)>,
     table: Vec<usize>,
     /// name, element, kind, number, components
-    entities: Vec<(String, String, String, u64, Vec<(String, usize)>)>,
+    entities: Vec<Set>,
     /// name, kind, first row, row after the last
     sequences: Vec<(String, String, usize, usize)>,
     record: String,
@@ -131,10 +137,7 @@ impl Results {
         Ok(Self::with_record(run, frame.record))
     }
 
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Frame, Vec<Bound<'py, PyArray1<f64>>>))> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let run = &slf.get().run;
         let Units {
             angle,
@@ -212,7 +215,7 @@ impl Results {
 
     /// Elements: name of the result set, element, kind, number, and their components with columns.
     #[getter]
-    fn entities(&self) -> Vec<(String, String, String, u64, Vec<(String, usize)>)> {
+    fn entities(&self) -> Vec<Set> {
         let all = self.run.entities.iter().map(|e| {
             let components = e.components.iter().map(|c| (c.name.clone(), c.column));
             (
