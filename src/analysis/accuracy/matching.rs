@@ -40,8 +40,9 @@ pub fn partners(times: &[f64], others: &[f64]) -> Vec<Option<usize>> {
     found
 }
 
-/// Pairs the events of two runs: in order where they have the same number, else each with the
-/// nearest one.
+/// Pairs the events of two runs: in order where they have the same number, else those of which each
+/// is the nearest of the other. An event that one run has alone is that of a branch which is hardly
+/// touched, and says nothing of times.
 pub fn shifts(events: &[f64], others: &[f64]) -> Vec<Shift> {
     let shift = |(&t, &other): (&f64, &f64)| Shift {
         t,
@@ -50,17 +51,20 @@ pub fn shifts(events: &[f64], others: &[f64]) -> Vec<Shift> {
     if events.len() == others.len() {
         return events.iter().zip(others).map(shift).collect();
     }
-    let nearest = |t: &f64| {
-        let k = others.partition_point(|o| o < t);
-        let beside = [k.checked_sub(1), Some(k)].into_iter().flatten();
-        let distances = beside.filter_map(|k| Some((others.get(k)? - t).abs()));
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    let events = events.iter().map(|t| Shift {
-        t: *t,
-        shift: nearest(t),
+    let mutual = events.iter().enumerate().filter_map(|(k, t)| {
+        let l = nearest(others, *t)?;
+        (nearest(events, others[l])? == k).then(|| shift((t, &others[l])))
     });
-    events.filter(|s| s.shift.is_finite()).collect()
+    mutual.collect()
+}
+
+/// Returns the index of the time that is nearest to `t`, the earlier one of two.
+fn nearest(times: &[f64], t: f64) -> Option<usize> {
+    let k = times.partition_point(|o| *o < t);
+    let distance = |k: &usize| (times[*k] - t).abs();
+    let beside = [k.checked_sub(1), (k < times.len()).then_some(k)];
+    let beside = beside.into_iter().flatten();
+    beside.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 #[cfg(test)]
@@ -85,5 +89,12 @@ mod tests {
         let more = shifts(&[1.0, 2.0], &[0.9, 1.8, 2.1]);
         assert!((more[0].shift - 0.1).abs() < 1e-12 && (more[1].shift - 0.1).abs() < 1e-12);
         assert!(shifts(&[1.0], &[]).is_empty());
+    }
+
+    #[test]
+    fn an_event_that_one_run_has_alone_shifts_nothing() {
+        let of = |t: f64| Shift { t, shift: 0.125 };
+        let found = shifts(&[1.0, 1.5, 2.0], &[1.125, 2.125]);
+        assert_eq!(found, [of(1.0), of(2.0)]);
     }
 }

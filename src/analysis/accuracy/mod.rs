@@ -128,9 +128,9 @@ impl Comparison<'_> {
                 + ROUNDING_OF_UNIT * largest_of_unit)
                 .max(f64::MIN_POSITIVE);
         let mut differences = self.differences(values, others);
-        self.blur_at_events(values, &mut differences);
         let unknown: Vec<bool> = differences.iter().map(|d| d.is_nan()).collect();
         envelope(&mut differences);
+        self.blur_at_events(values, &mut differences);
         // of a few outputs, or of what hardly moves, the range says nothing
         let range = (high - low).max(0.0);
         let moves = values.len() >= FEWEST_OUTPUTS && range > LEAST_MOTION * largest_of_unit;
