@@ -5,10 +5,12 @@
 //! standard error.
 
 mod anatomy;
+mod animate;
 pub mod card;
 mod check;
 mod convert;
 pub mod data;
+mod draw;
 mod eval;
 mod example;
 mod explain;
@@ -20,6 +22,7 @@ mod limit;
 mod linear;
 mod modes;
 mod motion;
+mod moved;
 mod output;
 mod plot;
 pub mod progress;
@@ -51,8 +54,10 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Verb {
+    Animate(animate::Args),
     Check(check::Args),
     Convert(convert::Args),
+    Draw(draw::Args),
     Eval(eval::Args),
     Explain(explain::Args),
     Fmt(fmt::Args),
@@ -190,8 +195,10 @@ pub fn main() -> ExitCode {
 /// Runs a command.
 fn obey(cli: &Cli) -> ExitCode {
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
+        Verb::Animate(args) => animate::run(args),
         Verb::Check(args) => check::run(args),
         Verb::Convert(args) => convert::run(args),
+        Verb::Draw(args) => draw::run(args),
         Verb::Eval(args) => eval::run(args),
         Verb::Explain(args) => explain::run(args),
         Verb::Fmt(args) => fmt::run(args),

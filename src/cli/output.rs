@@ -1,6 +1,6 @@
 //! The files of a run: tables that grow while it goes on, and what is written when it is over.
 
-use super::{Failure, linear, remark, summary};
+use super::{Failure, animate, linear, remark, summary};
 use crate::analysis::motion::marker_digest;
 use crate::analysis::session::Session;
 use crate::analysis::work_limit::process_seconds;
@@ -29,6 +29,12 @@ pub struct FileArgs {
     /// RESULTS, req by OUTPUT/REQSAVE, gra by OUTPUT/GRSAVE
     #[arg(long = "format", value_name = "NAME", value_delimiter = ',', value_parser = table_format)]
     pub formats: Vec<Format>,
+    /// Write a page that shows the run in motion, too (NAME.html)
+    #[arg(long)]
+    pub animate: bool,
+    /// Open that page in the browser
+    #[arg(long, requires = "animate")]
+    pub open: bool,
     #[command(flatten)]
     style: StyleArgs,
 }
@@ -116,6 +122,8 @@ struct Growing {
     flushed: Instant,
     /// whether the folder knows that this run is being written
     is_claimed: bool,
+    /// whether a page shows the run in motion, which needs all of its rows
+    is_animated: bool,
     overview: summary::Overview,
     /// why nothing more can be written
     failed: Option<Diagnostic>,
@@ -155,6 +163,7 @@ impl Tables {
             started: Instant::now(),
             flushed: Instant::now(),
             is_claimed: false,
+            is_animated: args.animate,
             overview: summary::Overview::default(),
             failed: None,
         })));
@@ -246,7 +255,8 @@ impl Growing {
             }
             self.flushed = Instant::now();
         }
-        if is_full && self.tables.iter().all(|t| t.sink.may_release()) {
+        let may_release = !self.is_animated && self.tables.iter().all(|t| t.sink.may_release());
+        if is_full && may_release {
             self.overview.take(run);
             run.release();
         }
@@ -282,6 +292,10 @@ impl Growing {
         session.run.record.markers = marker_digest(&session.model);
         let mut texts = linear::files(session);
         texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));
+        if self.is_animated {
+            let page = animate::page_of_run(&session.model, &session.run)?;
+            texts.push((format!("{}.html", session.run.name), page));
+        }
         let record = self.finish(&mut session.run, texts, picture)?;
         Ok((self.folder.files().to_vec(), record))
     }
@@ -316,7 +330,7 @@ impl Growing {
         self.folder.put(&files)?;
         let tables = Format::names(true).into_iter();
         let mut mine: Vec<String> = tables.map(|f| table_name(&run.name, f)).collect();
-        mine.extend(["msg", "svg"].map(own));
+        mine.extend(["msg", "svg", "html"].map(own));
         self.folder.remove_stale(&mine)?;
         // the record
         let seconds = &mut run.record.seconds;

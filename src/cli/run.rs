@@ -26,6 +26,7 @@ Examples:
   cognate run pendulum.acf
   cognate run Controls_Plant_1.msg plant.adm
   cognate run pendulum.adm --end 2 --steps 200 --column 'DX(12,21)'
+  cognate run pendulum.acf --animate --open
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
     /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
@@ -169,6 +170,13 @@ pub fn run(args: &Args) -> Outcome {
     } else {
         tables.complete(&mut session, shown, clock)?
     };
+    if args.output.open {
+        let is_page = |file: &&PathBuf| super::moved::has_ending(file, "html");
+        written
+            .iter()
+            .filter(is_page)
+            .for_each(|file| super::animate::open(file));
+    }
     if args.json {
         say(&record);
     } else if shown && !is_refused {
@@ -280,6 +288,7 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
     let full = model.settings.contains_key(&SettingsStatement::Results)
         || complete.iter().any(|f| args.output.formats.contains(f))
         || args.body_motion
+        || args.output.animate
         || !args.only.is_empty();
     let options = Options {
         error: args.error,

@@ -11,7 +11,7 @@ use super::statement::STATEMENTS;
 use super::syntax::{Item, Source, Token, TokenKind, Tokens};
 use super::value::Value;
 use crate::diagnostic::Span;
-use crate::model::{ElementKind, MarkerOwner, Model};
+use crate::model::{ElementId, ElementKind, MarkerOwner, Model};
 
 /// Columns that Adams View fills.
 const WIDTH: usize = 80;
@@ -112,6 +112,24 @@ impl Model {
         out.push("!");
         out.push("END");
         out.text("\n")
+    }
+}
+
+impl Model {
+    /// Returns the statement of each element, as [`Model::to_text`] writes it, without its name.
+    pub fn statements(&self) -> Vec<(ElementId, String)> {
+        let mut all = Vec::new();
+        for row in STATEMENTS {
+            let Some(kind) = row.kind() else {
+                continue;
+            };
+            for record in row.records(self) {
+                let mut lines = Lines::default();
+                write_record(&mut lines, &record, &[]);
+                all.extend(record.id.map(|id| (kind.id(id), lines.text("\n"))));
+            }
+        }
+        all
     }
 }
 

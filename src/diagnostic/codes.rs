@@ -423,6 +423,18 @@ The columns have no rows, or no value in them is finite.
     SQRT(DX(1,2))     has no value while DX is negative: SQRT(MAX(0, DX(1,2)))",
     },
     Code {
+        name: "no_positions",
+        summary: "results that do not say where the bodies are",
+        explanation: "\
+A picture needs the position and the angles of every body: the sets NAME_XFORM with X, Y, Z, PSI, THETA, PHI. Tables of
+requests (.csv) do not have them.
+
+    cognate animate run.csv --model m.adm       only what was asked for: no positions
+    cognate run m.acf --format res              writes every part
+    cognate animate run.res --model m.adm       shows that run
+    cognate animate m.acf                       solves and shows at once",
+    },
+    Code {
         name: "plot_failed",
         summary: "a plot could not be drawn",
         explanation: "\

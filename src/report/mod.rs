@@ -1,6 +1,7 @@
-//! Pictures of results: curves as SVG and as text for the terminal.
+//! Pictures of results: curves as SVG and as text for the terminal, and mechanisms that move.
 
 pub mod channels;
+pub mod mechanism;
 pub mod plot;
 pub mod svg;
 pub mod terminal;

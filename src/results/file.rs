@@ -124,9 +124,17 @@ pub fn write(run: &Run, path: &Path, style: Style) -> Result<(), Diagnostic> {
 /// # Errors
 /// When the file cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), Diagnostic> {
+    write_bytes(path, text.as_bytes())
+}
+
+/// Writes bytes to a file, all or nothing, as [`write_text`] does.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
     let (part, mut file) = create_beside(path).map_err(|e| unwritable(path, &e))?;
     let written = file
-        .write_all(text.as_bytes())
+        .write_all(bytes)
         .and_then(|()| std::fs::rename(&part, path));
     written.map_err(|e| {
         // a rest that cannot be removed either adds nothing to say

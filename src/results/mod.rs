@@ -24,7 +24,7 @@ mod run;
 mod seconds;
 mod units;
 
-pub use file::{read, write, write_text};
+pub use file::{read, write, write_bytes, write_text};
 pub use log::Event;
 pub use number::{digits, digits_of_six};
 pub use record::{

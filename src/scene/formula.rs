@@ -50,7 +50,7 @@ pub(crate) fn bindings(model: &Model) -> (Bindings, Vec<Diagnostic>) {
 ///
 /// # Errors
 /// Why its data make none.
-pub(super) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
+pub(crate) fn curve(model: &Model, id: u32) -> Result<Arc<Curve>, Diagnostic> {
     let unfit = |what: String| {
         Diagnostic::error(Cause::CurveData, what)
             .element(ElementKind::Curve.id(id))

@@ -6,6 +6,7 @@ mod command;
 #[path = "../common/results.rs"]
 mod result_laws;
 
+mod animation;
 mod broken;
 mod cli;
 mod cli_eval;

@@ -1,0 +1,136 @@
+//! `cognate draw`: one configuration of a model as a picture.
+
+use super::moved::{Moved, Source, has_ending};
+use super::{Exit, Failure, Outcome, interrupt, remark};
+use crate::model::ElementId;
+use crate::report::mechanism::drawing::{Names, Wanted, drawing};
+use crate::report::mechanism::{Pictured, View, drawing_svg};
+use crate::results;
+use std::path::PathBuf;
+
+/// Draw a model as it stands: in its plane or in perspective, with symbols of joints and names
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  cognate draw examples/slider_crank.adm -o crank.svg
+  cognate draw examples/slider_crank.acf --at 0.3 --names all -o crank.svg
+  cognate draw four_bar.acf --at 0.2 --pale 5 --paths -o four_bar.svg
+  cognate draw loop.adm --highlight JOINT/3 --highlight JOINT/4 -o loop.svg")]
+pub struct Args {
+    #[command(flatten)]
+    source: Source,
+    /// Time of the configuration: the nearest output; without it the last one
+    #[arg(long, value_name = "TIME")]
+    at: Option<f64>,
+    /// File to write: .svg; without it NAME.svg, here
+    #[arg(short = 'o', long = "out", value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Names that are written
+    #[arg(long, value_enum, default_value = "bodies")]
+    names: NamesArg,
+    /// Element that stands out, such as JOINT/3 (repeatable)
+    #[arg(long, value_name = "ELEMENT")]
+    highlight: Vec<ElementId>,
+    /// Draw N further configurations of the run, pale
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pale: usize,
+    /// Draw the paths of the markers that requests ask for
+    #[arg(long)]
+    paths: bool,
+    /// Leave out the arrows of forces
+    #[arg(long)]
+    no_forces: bool,
+    /// Direction to look from: an axis of ground, or from the side and above
+    #[arg(long, value_enum, default_value = "best")]
+    from: From,
+    /// Width of the picture, in px
+    #[arg(long, value_name = "PX", default_value_t = 720)]
+    width: u32,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum NamesArg {
+    None,
+    Bodies,
+    All,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum From {
+    /// square to the plane of the mechanism; in perspective where it has none
+    Best,
+    X,
+    Y,
+    Z,
+    /// in perspective
+    Side,
+}
+
+/// Draws a configuration.
+///
+/// # Errors
+/// When the model cannot be assembled or solved, an element does not exist, or the file cannot be
+/// written.
+pub fn run(args: &Args) -> Outcome {
+    interrupt::install();
+    let Moved { model, run } = args.source.get()?;
+    if let Some(unknown) = args
+        .highlight
+        .iter()
+        .find(|id| model.element(**id).is_none())
+    {
+        return Err(Failure::usage(format!(
+            "--highlight {unknown}: there is no such element"
+        )));
+    }
+    let pictured = Pictured::new(&model, &run)?;
+    let out = args.out.clone();
+    let out = out.unwrap_or_else(|| PathBuf::from(format!("{}.svg", run.name)));
+    if !has_ending(&out, "svg") {
+        return Err(Failure::usage(format!(
+            "{}: drawings are .svg",
+            out.display()
+        )));
+    }
+    let times = &pictured.track.times;
+    let last = times.len() - 1;
+    let row = args.at.map_or(last, |at| nearest(times, at));
+    let wanted = Wanted {
+        row,
+        pale: (0..args.pale).map(|k| k * last / args.pale).collect(),
+        names: match args.names {
+            NamesArg::None => Names::None,
+            NamesArg::Bodies => Names::Bodies,
+            NamesArg::All => Names::All,
+        },
+        highlighted: args.highlight.iter().copied().collect(),
+        paths: args.paths,
+        forces: !args.no_forces,
+        view: view(args.from, &pictured.view),
+    };
+    let width = f64::from(args.width.clamp(200, 8000));
+    let text = drawing_svg::svg(&drawing(&pictured, &wanted), width, &run.units.length);
+    results::write_text(&out, &text)?;
+    remark(out.display());
+    Ok(Exit::Done)
+}
+
+/// Returns the row whose time is nearest; of several the last.
+fn nearest(times: &[f64], at: f64) -> usize {
+    let off = |row: usize| (times[row] - at).abs();
+    (0..times.len()).fold(
+        0,
+        |best, row| if off(row) <= off(best) { row } else { best },
+    )
+}
+
+/// Returns the view from a direction; `None`: that of the mechanism.
+fn view(from: From, own: &View) -> Option<View> {
+    match from {
+        From::Best => None,
+        From::X => Some(own.along(0)),
+        From::Y => Some(own.along(1)),
+        From::Z => Some(own.along(2)),
+        From::Side => Some(own.slanted()),
+    }
+}

@@ -1,0 +1,139 @@
+//! A model and a run of it, for pictures: solved now, or read from files of results.
+
+use super::run::{self, KindName, Single};
+use super::{Failure, complain_in_files, interrupt, remark};
+use crate::analysis::session::script::obey;
+use crate::analysis::session::{Options, Session};
+use crate::analysis::watch::Watch;
+use crate::diagnostic::Diagnostic;
+use crate::model::{ElementKind, Model};
+use crate::results::{self, Run, Status};
+use std::path::{Path, PathBuf};
+
+/// A model or a run, as the user names it.
+#[derive(clap::Args)]
+pub struct Source {
+    /// Command file (.acf), dataset (.adm), or results (.res, .parquet, .json, .gra) of a run with
+    /// all its parts
+    pub file: PathBuf,
+    /// Dataset of the results; without it the one of their name beside them
+    #[arg(long, value_name = "FILE")]
+    pub model: Option<PathBuf>,
+    /// End of the simulation, for a dataset without command file
+    #[arg(long, value_name = "TIME")]
+    pub end: Option<f64>,
+    /// Output steps, for a dataset without command file
+    #[arg(long, value_name = "N")]
+    pub steps: Option<usize>,
+    /// Kind of simulation, for a dataset without command file
+    #[arg(long = "type", value_name = "KIND", value_enum)]
+    pub kind: Option<KindName>,
+    /// Leave out elements of this kind where they are not solved (repeatable)
+    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
+    pub skip: Vec<ElementKind>,
+    /// Take what USER(…) would compute as zero
+    #[arg(long = "zero-user")]
+    pub zero_user: bool,
+}
+
+/// A model and a run of it.
+pub struct Moved {
+    /// the model
+    pub model: Model,
+    /// its run
+    pub run: Run,
+}
+
+/// Listens for Ctrl-C.
+struct Listener;
+
+impl Watch for Listener {
+    fn interrupted(&mut self) -> bool {
+        interrupt::requested()
+    }
+}
+
+/// Output steps of a dataset when nobody says.
+const STEPS: usize = 200;
+
+impl Source {
+    /// Solves the model, or reads the run.
+    ///
+    /// # Errors
+    /// When a file has mistakes, or the model cannot work.
+    pub fn get(&self) -> Result<Moved, Failure> {
+        let is_dataset = has_ending(&self.file, "adm");
+        if !is_dataset && !run::has_commands(&self.file) {
+            let run = results::read(&self.file)?;
+            let dataset = self.dataset(&run)?;
+            let model = run::read(&dataset)?.model;
+            return Ok(Moved { model, run });
+        }
+        let job = if is_dataset {
+            let initial = KindName::InitialConditions;
+            let kind = self.kind.or(self.end.is_none().then_some(initial));
+            run::alone(&Single {
+                model: &self.file,
+                dataset: None,
+                kind,
+                end: self.end,
+                steps: self.steps.or(Some(STEPS)),
+            })?
+        } else {
+            run::script(&self.file, self.model.as_deref())?
+        };
+        let options = Options {
+            full: true,
+            skip: self.skip.iter().copied().collect(),
+            zero_user: self.zero_user,
+            ..Options::default()
+        };
+        let mut session = Session::new(job.reading.model, &job.base, options);
+        session.folders = self
+            .file
+            .parent()
+            .map(Path::to_path_buf)
+            .into_iter()
+            .collect();
+        session.run.record.model = self.file.display().to_string();
+        let dataset = job.reading.dataset;
+        let status = obey(&mut session, &job.steps, |_, _| (), &mut Listener)
+            .map_err(|errors| Failure::in_model(&dataset, errors))?;
+        if status != Status::Completed {
+            remark(&session.run.record.stop_reason);
+            complain_in_files(&session.model.doubts());
+        }
+        Ok(Moved {
+            model: session.model,
+            run: session.run,
+        })
+    }
+
+    /// Returns the dataset of a run that was read: the one that is named, the one of the same name
+    /// beside it, or the one that its record names.
+    ///
+    /// # Errors
+    /// When there is none.
+    fn dataset(&self, run: &Run) -> Result<PathBuf, Diagnostic> {
+        if let Some(model) = &self.model {
+            return Ok(model.clone());
+        }
+        let recorded = Path::new(&run.record.model);
+        let beside = self.file.with_extension("adm");
+        let all = [beside, recorded.with_extension("adm")];
+        let found = all.into_iter().find(|p| p.is_file());
+        found.ok_or_else(|| {
+            let what = format!(
+                "{}: results say where bodies are, not what they are",
+                self.file.display()
+            );
+            Diagnostic::error("no_model", what).help("name the dataset: --model FILE.adm")
+        })
+    }
+}
+
+/// Returns whether a file has an ending, in any case.
+pub fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(ending))
+}

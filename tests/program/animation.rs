@@ -1,0 +1,334 @@
+//! `cognate animate`: the page that moves and the `.glb` file, read by a browser and by the validator of glTF where these are
+//! there; without them the tests say that they were skipped.
+
+use super::command::{cognate, path, scratch};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
+}
+
+/// Runs a script of the viewer; `None`: what it needs is not here.
+fn script(name: &str, arguments: &[&str]) -> Option<Value> {
+    if !root("assets/viewer/node_modules").is_dir() {
+        println!("skipped: run npm ci in assets/viewer");
+        return None;
+    }
+    let done = Command::new("node")
+        .arg(root("assets/viewer").join(name))
+        .args(arguments)
+        .output();
+    let Ok(done) = done else {
+        println!("skipped: there is no node");
+        return None;
+    };
+    let text = String::from_utf8(done.stdout).unwrap();
+    assert!(
+        done.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    let found: Value = serde_json::from_str(&text).unwrap();
+    if let Some(why) = found["skipped"].as_str() {
+        println!("skipped: {why}");
+        return None;
+    }
+    Some(found)
+}
+
+/// A pendulum that starts level: no GRAPHICS, one joint.
+const PENDULUM: &str = "A pendulum
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+ACCGRAV/JGRAV=-9.80665
+PART/1, GROUND
+MARKER/10, PART=1
+PART/2, QG=1,0,0, MASS=2, CM=21, IP=0.01,0.01,0.01
+MARKER/20, PART=2, QP=-1,0,0
+MARKER/21, PART=2
+JOINT/1, REVOLUTE, I=20, J=10
+REQUEST/1, DISPLACEMENT, I=21, J=10, COMMENT=tip
+END
+";
+
+fn animated(test: &str, model: &str, ending: &str) -> PathBuf {
+    let model = scratch(test, "m.adm", model);
+    let file = model.with_extension(ending);
+    let done = cognate(&[
+        "animate",
+        path(&model),
+        "--end",
+        "1",
+        "--steps",
+        "50",
+        "-o",
+        path(&file),
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    file
+}
+
+/// The description of a `.glb` file, and the numbers of one of its accessors.
+struct Glb {
+    json: Value,
+    binary: Vec<u8>,
+}
+
+impl Glb {
+    fn read(file: &Path) -> Self {
+        let bytes = std::fs::read(file).unwrap();
+        let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+        assert_eq!(
+            (&bytes[..4], word(4), word(8)),
+            (&b"glTF"[..], 2, bytes.len())
+        );
+        let json = serde_json::from_slice(&bytes[20..20 + word(12)]).unwrap();
+        let binary = bytes[28 + word(12)..].to_vec();
+        Self { json, binary }
+    }
+    fn numbers(&self, accessor: &Value) -> Vec<f32> {
+        let accessor = &self.json["accessors"][accessor.as_u64().unwrap() as usize];
+        let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+        let at = view["byteOffset"].as_u64().unwrap() as usize;
+        let length = view["byteLength"].as_u64().unwrap() as usize;
+        let words = self.binary[at..at + length].chunks_exact(4);
+        words
+            .map(|w| f32::from_le_bytes(w.try_into().unwrap()))
+            .collect()
+    }
+    /// Times and values of the channel of a node.
+    fn channel(&self, node: &str, path: &str) -> (Vec<f32>, Vec<f32>) {
+        let nodes = self.json["nodes"].as_array().unwrap();
+        let node = nodes.iter().position(|n| n["name"] == node).unwrap();
+        let animation = &self.json["animations"][0];
+        let mut all = animation["channels"].as_array().unwrap().iter();
+        let wanted = |c: &&Value| c["target"]["node"] == node && c["target"]["path"] == path;
+        let sampler =
+            &animation["samplers"][all.find(wanted).unwrap()["sampler"].as_u64().unwrap() as usize];
+        (
+            self.numbers(&sampler["input"]),
+            self.numbers(&sampler["output"]),
+        )
+    }
+}
+
+#[test]
+fn the_body_of_a_glb_stays_on_its_circle_and_turns_with_it() {
+    let glb = Glb::read(&animated("animate_glb", PENDULUM, "glb"));
+    let (times, places) = glb.channel("PART_2", "translation");
+    assert_eq!((times[0], *times.last().unwrap()), (0.0, 1.0));
+    for p in places.chunks_exact(3) {
+        assert!(
+            (p[0].hypot(p[1]) - 1.0).abs() < 1e-4 && p[2].abs() < 1e-6,
+            "{p:?}"
+        );
+    }
+    assert!(
+        places.chunks_exact(3).any(|p| p[1] < -0.99),
+        "it falls to the lowest place"
+    );
+    let (_, turns) = glb.channel("PART_2", "rotation");
+    for q in turns.chunks_exact(4) {
+        assert!(
+            (q.iter().map(|x| x * x).sum::<f32>() - 1.0).abs() < 1e-5,
+            "{q:?}"
+        );
+    }
+}
+
+#[test]
+fn the_validator_of_gltf_finds_nothing() {
+    for (name, model) in [
+        ("pendulum", PENDULUM.to_owned()),
+        (
+            "stewart",
+            std::fs::read_to_string(root("tests/scenes/stewart.adm")).unwrap(),
+        ),
+    ] {
+        let file = animated(&format!("animate_valid_{name}"), &model, "glb");
+        let Some(found) = script("validate.mjs", &[path(&file)]) else {
+            return;
+        };
+        assert_eq!(
+            (&found["errors"], &found["warnings"]),
+            (&0.into(), &0.into()),
+            "{found}"
+        );
+        assert_eq!(found["animations"], 1);
+    }
+}
+
+#[test]
+fn rows_at_one_time_and_at_negative_times_make_a_valid_file() {
+    // a static row and dynamic rows share the time of the start, and there are two simulations
+    let model = scratch("animate_times", "m.adm", PENDULUM);
+    let commands = scratch(
+        "animate_times",
+        "m.acf",
+        "FILE/MODEL=m\nSIMULATE/STATICS\nSIMULATE/DYNAMICS, END=0.5, STEPS=10\nSIMULATE/DYNAMICS, END=1, STEPS=10\nSTOP\n",
+    );
+    let file = model.with_extension("glb");
+    let done = cognate(&["animate", path(&commands), "-o", path(&file)]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let glb = Glb::read(&file);
+    for animation in glb.json["animations"].as_array().into_iter().flatten() {
+        for sampler in animation["samplers"].as_array().unwrap() {
+            let times = glb.numbers(&sampler["input"]);
+            assert!(
+                times[0] >= 0.0 && times.windows(2).all(|t| t[0] < t[1]),
+                "{times:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_page_asks_nobody_and_shows_the_numbers_of_the_table() {
+    let acf = root("examples/slider_crank.acf");
+    let folder = scratch("animate_page", "x", "").with_file_name("run");
+    let done = cognate(&[
+        "run",
+        path(&acf),
+        "--animate",
+        "--out",
+        path(&folder),
+        "--format",
+        "csv",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let page = folder.join("slider_crank.html");
+    let text = std::fs::read_to_string(&page).unwrap();
+    for outside in ["src=", "<link", "@import", "type=\"module\""] {
+        let head = text.split("<script>").next().unwrap();
+        assert!(!head.contains(outside), "{outside}");
+    }
+    assert!(
+        text.contains("Three.js Authors") && text.contains("Leon Sorokin"),
+        "licences are kept"
+    );
+    let Some(found) = script(
+        "check.mjs",
+        &[
+            path(&page),
+            "--rows",
+            "0,37,100",
+            "--columns",
+            "slider.X,crank.WZ,slider.FX",
+        ],
+    ) else {
+        return;
+    };
+    assert_eq!(found["requests"], Value::Array(Vec::new()));
+    assert_eq!(found["errors"], Value::Array(Vec::new()));
+    assert!(
+        found["colours"].as_u64() > Some(3),
+        "bodies have colours: {found}"
+    );
+    assert!(
+        found["changed"].as_u64() > Some(300),
+        "the picture changes: {found}"
+    );
+    assert_eq!(found["played"], true);
+    // rows of the table below names and units
+    let table = std::fs::read_to_string(folder.join("slider_crank.csv")).unwrap();
+    let mut lines = table
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let names = lines.next().unwrap();
+    let rows: Vec<_> = lines.skip(1).collect();
+    assert_eq!(found["rows"], rows.len());
+    for (name, values) in found["values"].as_object().unwrap() {
+        let column = names.iter().position(|n| n == name).unwrap();
+        let largest = rows
+            .iter()
+            .map(|r| r[column].parse::<f64>().unwrap().abs())
+            .fold(0.0, f64::max);
+        for (row, value) in [0, 37, 100].into_iter().zip(values.as_array().unwrap()) {
+            let expected: f64 = rows[row][column].parse().unwrap();
+            let off = (value.as_f64().unwrap() - expected).abs();
+            assert!(
+                off <= 1e-7 * largest,
+                "{name} in row {row}: {value}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_run_that_was_read_from_a_file_is_shown_with_its_model() {
+    let model = scratch("animate_read", "m.adm", PENDULUM);
+    let folder = model.with_file_name("out");
+    let formats = "res,json,parquet";
+    let done = cognate(&[
+        "run",
+        path(&model),
+        "--end",
+        "1",
+        "--steps",
+        "20",
+        "--format",
+        formats,
+        "--out",
+        path(&folder),
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let direct = model.with_extension("glb");
+    let options = ["--end", "1", "--steps", "20", "-o", path(&direct)];
+    assert_eq!(
+        cognate(&[&["animate", path(&model)], &options[..]].concat()).code,
+        0
+    );
+    let (times, places) = Glb::read(&direct).channel("PART_2", "translation");
+    for ending in ["res", "parquet"] {
+        let file = folder.join("m").with_extension(ending);
+        let glb = file.with_extension(format!("{ending}.glb"));
+        let done = cognate(&[
+            "animate",
+            path(&file),
+            "--model",
+            path(&model),
+            "-o",
+            path(&glb),
+        ]);
+        assert_eq!(done.code, 0, "{ending}: {}", done.err);
+        let (also, read) = Glb::read(&glb).channel("PART_2", "translation");
+        assert_eq!(times.len(), also.len(), "{ending}");
+        let off = places
+            .iter()
+            .zip(&read)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f32::max);
+        assert!(off < 1e-5, "{ending}: {off}");
+    }
+    // a table of requests does not say where bodies are
+    let table = scratch("animate_read", "t.csv", "time,x\nsec,m\n0,1\n1,2\n");
+    let done = cognate(&["animate", path(&table), "--model", path(&model)]);
+    assert_eq!(done.code, 3);
+    assert!(
+        done.err.contains("no_positions") && done.err.contains("--format res"),
+        "{}",
+        done.err
+    );
+}
+
+#[test]
+fn the_viewer_is_what_its_sources_make() {
+    if !root("assets/viewer/node_modules").is_dir() {
+        println!("skipped: run npm ci in assets/viewer");
+        return;
+    }
+    let Ok(done) = Command::new("node")
+        .arg(root("assets/viewer/build.mjs"))
+        .arg("--check")
+        .output()
+    else {
+        println!("skipped: there is no node");
+        return;
+    };
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+}
