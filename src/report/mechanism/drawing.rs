@@ -562,11 +562,10 @@ fn arrow_between(a: Point, b: Point, width: f64) -> Vec<Mark> {
 fn corners(layers: &[Layer]) -> (Point, Point) {
     let mut found = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let mut add = |p: Point, r: f64| {
-        for k in 0..2 {
-            if p[k].is_finite() {
-                found.0[k] = found.0[k].min(p[k] - r);
-                found.1[k] = found.1[k].max(p[k] + r);
-            }
+        let sides = found.0.iter_mut().zip(&mut found.1).zip(p);
+        for ((low, high), x) in sides.filter(|(_, x)| x.is_finite()) {
+            *low = low.min(x - r);
+            *high = high.max(x + r);
         }
     };
     for mark in layers.iter().flat_map(|l| &l.marks) {

@@ -243,7 +243,7 @@ impl Solid {
                     corner(b, k + 1),
                     corner(a, k + 1),
                 ];
-                solid.push(face.into_iter().rev().collect(), false);
+                solid.push(face.to_vec(), false);
             }
         }
         solid

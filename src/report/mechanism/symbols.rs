@@ -130,9 +130,8 @@ impl Symbols<'_> {
             JointKind::Rackpin => {
                 let radius = joint.pd.unwrap_or(0.0).abs() / 2.0;
                 if radius > 0.0 && !self.shaped.contains(&i.body) {
-                    let mut at = i;
-                    at.frame.rotation = i.frame.rotation * along_z(Vec3::axis(0));
-                    pieces.push(self.wheel(element, at, radius, false));
+                    // I is the pinion, which turns about its z
+                    pieces.push(self.wheel(element, i, radius, false));
                 }
             }
         }
