@@ -5,8 +5,12 @@ use super::{Exit, Failure, Outcome, interrupt, remark};
 use crate::model::ElementId;
 use crate::report::mechanism::drawing::{Names, Wanted, drawing};
 use crate::report::mechanism::{Pictured, View, drawing_svg};
-use crate::results;
-use std::path::PathBuf;
+use crate::results::{self, Run};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Width of a picture when nobody says, in px.
+const WIDTH: u32 = 720;
 
 /// Draw a model as it stands: in its plane or in perspective, with symbols of joints and names
 #[derive(clap::Args)]
@@ -44,7 +48,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "best")]
     from: From,
     /// Width of the picture, in px
-    #[arg(long, value_name = "PX", default_value_t = 720)]
+    #[arg(long, value_name = "PX", default_value_t = WIDTH)]
     width: u32,
 }
 
@@ -86,12 +90,6 @@ pub fn run(args: &Args) -> Outcome {
     let pictured = Pictured::new(&model, &run)?;
     let out = args.out.clone();
     let out = out.unwrap_or_else(|| PathBuf::from(format!("{}.svg", run.name)));
-    if !has_ending(&out, "svg") {
-        return Err(Failure::usage(format!(
-            "{}: drawings are .svg",
-            out.display()
-        )));
-    }
     let times = &pictured.track.times;
     let last = times.len() - 1;
     let row = args.at.map_or(last, |at| nearest(times, at));
@@ -108,11 +106,50 @@ pub fn run(args: &Args) -> Outcome {
         forces: !args.no_forces,
         view: view(args.from, &pictured.view),
     };
-    let width = f64::from(args.width.clamp(200, 8000));
-    let text = drawing_svg::svg(&drawing(&pictured, &wanted), width, &run.units.length);
-    results::write_text(&out, &text)?;
-    remark(out.display());
+    write(&pictured, &wanted, args.width, &run, &out)?;
     Ok(Exit::Done)
+}
+
+/// Draws a configuration in which some elements stand out.
+///
+/// # Errors
+/// When the run has no positions, or the file cannot be written.
+pub fn draw_standing_out(
+    moved: &Moved,
+    highlighted: BTreeSet<ElementId>,
+    file: &Path,
+) -> Result<(), Failure> {
+    let Moved { model, run } = moved;
+    let pictured = Pictured::new(model, run)?;
+    let wanted = Wanted {
+        row: pictured.track.times.len() - 1,
+        pale: Vec::new(),
+        names: Names::All,
+        highlighted,
+        paths: false,
+        forces: false,
+        view: None,
+    };
+    write(&pictured, &wanted, WIDTH, run, file)
+}
+
+/// Writes a drawing.
+fn write(
+    pictured: &Pictured,
+    wanted: &Wanted,
+    width: u32,
+    run: &Run,
+    file: &Path,
+) -> Result<(), Failure> {
+    if !has_ending(file, "svg") {
+        let what = format!("{}: drawings are .svg", file.display());
+        return Err(Failure::usage(what));
+    }
+    let width = f64::from(width.clamp(200, 8000));
+    let text = drawing_svg::svg(&drawing(pictured, wanted), width, &run.units.length);
+    results::write_text(file, &text)?;
+    remark(file.display());
+    Ok(())
 }
 
 /// Returns the row whose time is nearest; of several the last.

@@ -3,7 +3,7 @@
 use super::run::{self, KindName, Single};
 use super::{Failure, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
-use crate::analysis::session::{Options, Session};
+use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Model};
@@ -130,6 +130,23 @@ impl Source {
             Diagnostic::error("no_model", what).help("name the dataset: --model FILE.adm")
         })
     }
+}
+
+/// Assembles a model, without moving it.
+///
+/// # Errors
+/// Mistakes in the model.
+pub fn assembled(model: Model, name: &str) -> Result<Moved, Vec<Diagnostic>> {
+    let options = Options {
+        full: true,
+        ..Options::default()
+    };
+    let mut session = Session::new(model, name, options);
+    session.simulate(Analysis::InitialConditions, 0.0, 1, &mut Listener)?;
+    Ok(Moved {
+        model: session.model,
+        run: session.run,
+    })
 }
 
 /// Returns whether a file has an ending, in any case.

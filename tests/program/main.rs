@@ -10,6 +10,7 @@ mod animation;
 mod broken;
 mod cli;
 mod cli_eval;
+mod gallery;
 mod manual;
 mod motion;
 mod plots;

@@ -3,8 +3,8 @@
 mod text;
 
 use super::run::{has_commands, read, script};
-use super::{Exit, Failure, Outcome, complain_in_files, remark, say};
-use crate::analysis::verify::verify;
+use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, remark, say};
+use crate::analysis::verify::{Verification, verify};
 use crate::dataset::Dataset;
 use crate::dataset::command::Command;
 use crate::diagnostic::{Diagnostic, Error, Severity};
@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Examples:
   cognate verify slider_crank.adm
+  cognate verify four_bar.adm --draw four_bar.svg
   cognate verify robot.acf --json")]
 pub struct Args {
     /// Dataset (.adm), or command file (.acf): then the model as it is before the first simulation
@@ -26,6 +27,9 @@ pub struct Args {
     /// Print the findings as JSON on standard output
     #[arg(long)]
     json: bool,
+    /// Draw the mechanism; what fixes the same twice stands out
+    #[arg(long, value_name = "FILE.svg")]
+    draw: Option<PathBuf>,
 }
 
 /// Counts the freedoms of a model and prints the findings.
@@ -45,12 +49,33 @@ pub fn run(args: &Args) -> Outcome {
         say(&text::of(&found));
     }
     complain_in_files(&doubted);
+    if let Some(file) = args.draw.as_ref().filter(|_| found.inconsistent.is_empty()) {
+        draw_redundant(model, &dataset, &found, file)?;
+    }
     if found.inconsistent.is_empty() {
         return Ok(Exit::Done);
     }
     let located = found.inconsistent.into_iter().map(|d| dataset.locate(d));
     complain_in_files(&located.collect::<Vec<_>>());
     Ok(Exit::Model)
+}
+
+/// Draws a model as it is assembled; elements that fix what others fix already stand out, and these
+/// others.
+///
+/// # Errors
+/// When the file cannot be written, or is no `.svg`.
+fn draw_redundant(
+    model: Model,
+    dataset: &Dataset,
+    found: &Verification,
+    file: &Path,
+) -> Result<(), Failure> {
+    let redundant = found.dependent.iter();
+    let elements = redundant.flat_map(|d| d.fixed_by.iter().copied().chain([d.element]));
+    let assembled = moved::assembled(model, "verify");
+    let moved = assembled.map_err(|errors| Failure::in_model(dataset, errors))?;
+    draw::draw_standing_out(&moved, elements.collect(), file)
 }
 
 /// Returns the model of a dataset, or of a command file as its commands leave it before the first

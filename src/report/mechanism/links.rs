@@ -3,7 +3,7 @@
 
 use super::bodies::{Bodies, Body};
 use super::solid::{Solid, along_z};
-use super::{Form, Piece, Role, Sizes};
+use super::{Form, Piece, Role, Sizes, Trail};
 use crate::model::{ElementId, ElementKind, Family, Model};
 use crate::space::{Frame, Mat3, Vec3, rotation};
 use std::collections::BTreeSet;
@@ -19,13 +19,27 @@ const COPLANAR: f64 = 0.01;
 const FREE_BODY: [f64; 2] = [0.012, 0.16];
 
 /// Returns the links of all bodies that no piece shows so far.
-pub fn links(model: &Model, bodies: &Bodies, sizes: Sizes, drawn: &BTreeSet<usize>) -> Vec<Piece> {
+pub fn links(
+    model: &Model,
+    bodies: &Bodies,
+    sizes: Sizes,
+    drawn: &BTreeSet<usize>,
+    asked: &[Trail],
+) -> Vec<Piece> {
     let mut all = Vec::new();
     for (k, body) in bodies.all.iter().enumerate() {
         if body.is_ground || drawn.contains(&k) {
             continue;
         }
-        let places = places(model, bodies, k, SAME_PLACE * sizes.whole);
+        let same = SAME_PLACE * sizes.whole;
+        let mut places = places(model, bodies, k, same);
+        // a point whose path is seen belongs to the link
+        for point in asked.iter().filter(|t| t.body == k).map(|t| Vec3(t.place)) {
+            let is_new = places.iter().all(|p| (*p - point).norm() > same);
+            if is_new && !places.is_empty() {
+                places.push(point);
+            }
+        }
         let forms = link(&places, body, sizes, || inertia(model, bodies, body));
         all.extend(forms.into_iter().map(|(role, form)| Piece {
             body: k,

@@ -192,7 +192,8 @@ impl Pictured {
         let mut pieces = shapes::shapes(model, &bodies, whole);
         let solid = |p: &&Piece| !matches!(p.form, Form::Line { .. });
         let shaped: BTreeSet<usize> = pieces.iter().filter(solid).map(|p| p.body).collect();
-        pieces.extend(links::links(model, &bodies, sizes, &shaped));
+        let trails = trails(model, &bodies);
+        pieces.extend(links::links(model, &bodies, sizes, &shaped, &trails));
         let symbols = Symbols {
             model,
             bodies: &bodies,
@@ -207,7 +208,7 @@ impl Pictured {
         Ok(Self {
             title: model.title.clone(),
             arrows: arrows(model, &bodies, &track),
-            trails: trails(model, &bodies),
+            trails,
             bodies,
             track,
             pieces,

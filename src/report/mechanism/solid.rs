@@ -8,7 +8,7 @@ use crate::space::{Frame, Mat3, Vec3, rotation};
 use std::f64::consts::TAU;
 
 /// Sides of the polygon that stands for a circle.
-pub const SIDES: usize = 28;
+pub const SIDES: usize = 36;
 
 /// A surface of flat faces.
 #[derive(Clone, Debug, Default, PartialEq)]

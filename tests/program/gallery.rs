@@ -1,0 +1,171 @@
+//! The gallery: every model in `examples/gallery` runs, is drawn, and does what is known of it.
+//!
+//! ```text
+//! ! expect: until T: LEFT = RIGHT +- TOLERANCE          at every output up to T
+//! ! expect: at T: LEFT = RIGHT +- TOLERANCE             at the last output of that time
+//! ```
+
+use super::command::{cognate, path};
+use std::path::{Path, PathBuf};
+
+fn root(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
+}
+
+/// Names and texts of the datasets.
+fn datasets() -> Vec<(String, String)> {
+    let folder = std::fs::read_dir(root("examples/gallery")).unwrap();
+    let mut all: Vec<_> = folder
+        .map(|e| e.unwrap().path())
+        .filter(|p| p.extension().is_some_and(|e| e == "adm"))
+        .map(|p| {
+            (
+                p.file_stem().unwrap().to_string_lossy().into_owned(),
+                std::fs::read_to_string(&p).unwrap(),
+            )
+        })
+        .collect();
+    all.sort();
+    all
+}
+
+/// What is expected: whether at one time only, the time, the difference, its tolerance.
+struct Expectation {
+    at_once: bool,
+    time: f64,
+    difference: String,
+    tolerance: f64,
+}
+
+fn expectations(text: &str) -> Vec<Expectation> {
+    let lines = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("! expect: "));
+    lines
+        .map(|line| {
+            let (when, rest) = line.split_once(": ").unwrap();
+            let (kind, time) = when.split_once(' ').unwrap();
+            let (equation, tolerance) = rest.rsplit_once(" +- ").unwrap();
+            let (left, right) = equation.split_once(" = ").unwrap();
+            Expectation {
+                at_once: match kind {
+                    "at" => true,
+                    "until" => false,
+                    _ => panic!("{line}"),
+                },
+                time: time.parse().unwrap(),
+                difference: format!("({left})-({right})"),
+                tolerance: tolerance.parse().unwrap(),
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn mechanisms_do_what_is_known_of_them() {
+    for (name, text) in datasets() {
+        let expected = expectations(&text);
+        assert!(!expected.is_empty(), "{name}: nothing is known of it");
+        let model = root("examples/gallery").join(format!("{name}.acf"));
+        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+            .join("gallery")
+            .join(&name);
+        let mut arguments = vec![
+            "run",
+            path(&model),
+            "--quiet",
+            "--max-steps",
+            "200000",
+            "--out",
+            path(&folder),
+        ];
+        for e in &expected {
+            arguments.extend(["--column", e.difference.as_str()]);
+        }
+        let done = cognate(&arguments);
+        assert_eq!(done.code, 0, "{name}: {}", done.err);
+        let table = std::fs::read_to_string(folder.join(format!("{name}.csv"))).unwrap();
+        let numbers = |line: &str| {
+            line.split(',')
+                .map(|x| x.parse().unwrap_or(f64::NAN))
+                .collect::<Vec<f64>>()
+        };
+        let rows: Vec<Vec<f64>> = table.lines().skip(2).map(numbers).collect();
+        for (k, e) in expected.iter().enumerate() {
+            let off = |row: &Vec<f64>| row[k + 1].abs();
+            let found = if e.at_once {
+                let same = rows
+                    .iter()
+                    .rfind(|row| (row[0] - e.time).abs() < 1e-9 * (1.0 + e.time));
+                off(same.unwrap_or_else(|| panic!("{name}: there is no output at {}", e.time)))
+            } else {
+                let all = rows.iter().filter(|row| row[0] <= e.time * (1.0 + 1e-12));
+                let worst = all
+                    .map(off)
+                    .fold(0.0, |a: f64, b| if b <= a { a } else { b });
+                assert!(rows.len() > 20, "{name}: {} outputs", rows.len());
+                worst
+            };
+            assert!(
+                found <= e.tolerance,
+                "{name}: {} is {found} off",
+                e.difference
+            );
+        }
+    }
+}
+
+#[test]
+fn the_gallery_shows_at_least_sixteen_and_each_has_its_picture_and_its_paragraph() {
+    let all = datasets();
+    assert!(all.len() >= 16, "{}", all.len());
+    let page = std::fs::read_to_string(root("docs/gallery.md")).unwrap();
+    for (name, text) in all {
+        let picture = root("docs/gallery").join(format!("{name}.svg"));
+        assert!(
+            picture.is_file(),
+            "{name}: cargo run --example gallery draws it"
+        );
+        let look = text.lines().filter_map(|l| l.strip_prefix("! look: "));
+        let look = look.map(str::trim).collect::<Vec<_>>().join(" ");
+        assert!(look.len() > 60, "{name}: what is to be looked at?");
+        for part in [
+            &format!("(gallery/{name}.svg)"),
+            &look,
+            text.lines().next().unwrap(),
+        ] {
+            assert!(
+                page.contains(part),
+                "{name}: cargo run --example gallery writes the page anew: {part}"
+            );
+        }
+    }
+}
+
+#[test]
+fn drawings_are_the_same_every_time_and_name_the_bodies() {
+    let model = root("examples/gallery/slider_crank.acf");
+    let draw = |name: &str| {
+        let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let done = cognate(&[
+            "draw",
+            path(&model),
+            "--at",
+            "0.1",
+            "--names",
+            "all",
+            "-o",
+            path(&file),
+        ]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        std::fs::read_to_string(&file).unwrap()
+    };
+    let (first, second) = (draw("drawn_a.svg"), draw("drawn_b.svg"));
+    assert!(first == second);
+    for name in [">crank<", ">rod<", ">slider<", ">JOINT/1<", ">50 mm<"] {
+        assert!(first.contains(name), "{name}");
+    }
+    let unknown = cognate(&["draw", path(&model), "--highlight", "JOINT/77"]);
+    assert_eq!(unknown.code, 2);
+    assert!(unknown.err.contains("JOINT/77"), "{}", unknown.err);
+}
