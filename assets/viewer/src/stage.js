@@ -150,7 +150,9 @@ export class Stage {
       root.add(group);
       return { group, shaft, tips, head: 8 * thick, at: (row) => [0, 1, 2].map((k) => values[from + k]?.[row] ?? NaN) };
     });
-    return { ...arrow, parts, rows: run.rows, largest: [0, 0] };
+    const place = run.places[arrow.load]?.map((c) => (c === null ? null : run.value(c)));
+    const acts = (row) => place && place.every((column) => column && Number.isFinite(column[row])) && place.map((column) => column[row]);
+    return { ...arrow, parts, acts, rows: run.rows };
   }
 
   trail(trail, run, root, ghost) {
@@ -288,7 +290,8 @@ export class Stage {
       stretched[k].scale.set(1, 1, length);
     });
     for (const arrow of arrows) {
-      const from = point(arrow.body, arrow.place);
+      const known = arrow.acts(row);
+      const from = known ? vector(known) : point(arrow.body, arrow.place);
       const shown = arrow.reaction ? this.options?.reactions : this.options?.forces;
       arrow.parts.forEach((part, kind) => this.point(part, from, part.at(row), arrow.scale[kind], shown));
     }

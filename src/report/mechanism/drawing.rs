@@ -427,9 +427,7 @@ impl Pen<'_> {
             if !(largest > 0.0 && length > 0.02 * sizes.whole) {
                 continue;
             }
-            let from = track
-                .frame(bodies, arrow.body, row)
-                .point(Vec3(arrow.place));
+            let from = arrow.from(bodies, track, row);
             let to = from + f.times(length / f.norm());
             let (a, b) = (self.projection.point(from), self.projection.point(to));
             marks.extend(arrow_between(a, b, 0.35 * sizes.joint));

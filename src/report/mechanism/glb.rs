@@ -146,11 +146,10 @@ impl<'a> File<'a> {
         solid.join(Solid::turned(&head, 16, true));
         let mesh = self.mesh(&[(solid, colours::FORCE)]);
         let places = self.keys.iter().map(|&row| {
-            let frame = pictured.track.frame(&pictured.bodies, arrow.body, row);
             let f = force(row);
             let frame = Frame {
                 rotation: along_z(f),
-                position: frame.point(Vec3(arrow.place)),
+                position: arrow.from(&pictured.bodies, &pictured.track, row),
             };
             (frame, [(f.norm() / largest).max(LEAST_SCALE); 3])
         });

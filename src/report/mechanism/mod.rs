@@ -28,7 +28,7 @@ pub use track::{Load, Track};
 pub use view::View;
 
 use crate::diagnostic::Diagnostic;
-use crate::model::{ElementId, Model};
+use crate::model::{Element, ElementId, ElementKind, Model};
 use crate::results::Run;
 use crate::space::Vec3;
 use solid::along_z;
@@ -131,7 +131,7 @@ pub struct Arrow {
     pub element: ElementId,
     /// index of the body that it acts on
     pub body: usize,
-    /// where it acts, in the frame of the body
+    /// where it acts, in the frame of the body, unless the run says where
     pub place: [f64; 3],
     /// index in [`Track::loads`]
     pub load: usize,
@@ -299,6 +299,15 @@ fn seen(bodies: &Bodies, track: &Track, pieces: &[Piece], start: Corners) -> (Ve
     }
 }
 
+impl Arrow {
+    /// Returns where it acts at a row, in ground.
+    pub fn from(&self, bodies: &Bodies, track: &Track, row: usize) -> Vec3<f64> {
+        let known = track.loads[self.load].places.get(row).map(|p| Vec3(*p));
+        let known = known.filter(|p| p.0.iter().all(|x| x.is_finite()));
+        known.unwrap_or_else(|| track.frame(bodies, self.body, row).point(Vec3(self.place)))
+    }
+}
+
 impl Form {
     /// Returns points that show how far it reaches, in the frame of its body.
     fn marks(&self) -> Vec<[f64; 3]> {
@@ -319,8 +328,7 @@ impl Form {
 /// Returns the forces that a run knows, where they act.
 fn arrows(model: &Model, bodies: &Bodies, track: &Track) -> Vec<Arrow> {
     let of = |(load, known): (usize, &Load)| {
-        let [i, _] = model.element(known.element)?.ends()?;
-        let at = bodies.marker(i)?;
+        let at = bodies.marker(first_marker(model, known.element)?)?;
         Some(Arrow {
             element: known.element,
             body: at.body,
@@ -330,6 +338,35 @@ fn arrows(model: &Model, bodies: &Bodies, track: &Track) -> Vec<Arrow> {
         })
     };
     track.loads.iter().enumerate().filter_map(of).collect()
+}
+
+/// Returns the marker that an element acts on; of a contact that of its first solid.
+fn first_marker(model: &Model, id: ElementId) -> Option<u32> {
+    let vectors = [
+        (ElementKind::Vforce, &model.vforces),
+        (ElementKind::Vtorque, &model.vtorques),
+        (ElementKind::Gforce, &model.gforces),
+    ];
+    let vector = vectors.into_iter().find(|(kind, _)| *kind == id.kind);
+    let vector = vector.and_then(|(_, list)| Some(list.get(&id.number)?.i));
+    let single = model
+        .sforces
+        .get(&id.number)
+        .filter(|_| id.kind == ElementKind::Sforce);
+    let contact = model
+        .contacts
+        .get(&id.number)
+        .filter(|_| id.kind == ElementKind::Contact);
+    let solid = contact.and_then(|c| model.graphics.get(c.i_geometry.first()?));
+    let on_solid = solid.and_then(|g| {
+        let named = g.references().into_iter().map(|(_, target)| target);
+        named
+            .filter(|t| t.kind == ElementKind::Marker)
+            .map(|t| t.number)
+            .last()
+    });
+    let ends = || model.element(id)?.ends().map(|[i, _]| i);
+    vector.or(single.map(|f| f.i)).or(on_solid).or_else(ends)
 }
 
 /// Returns the markers of bodies that move whose place requests ask for, each once.

@@ -238,6 +238,7 @@ fn run(pictured: &Pictured, shown: &Shown<'_>, packed: &mut Packed) -> Value {
         "kinds": kinds(track),
         "poses": poses,
         "loads": track.loads.iter().map(|load| channels.of(&load.columns)).collect::<Vec<_>>(),
+        "places": track.loads.iter().map(|load| load.place_columns.map(|c| channels.of(&c))).collect::<Vec<_>>(),
         "channels": channels.list,
         "leftOut": channels.left_out,
         "sets": channels.sets(run),

@@ -14,6 +14,8 @@ use std::collections::BTreeSet;
 const POSE: [&str; 6] = ["X", "Y", "Z", "PSI", "THETA", "PHI"];
 /// Components of a force and a torque in a set of results, in ground axes.
 const LOAD: [&str; 6] = ["FX", "FY", "FZ", "TX", "TY", "TZ"];
+/// Components of a place in a set of results, in ground.
+const PLACE: [&str; 3] = ["X", "Y", "Z"];
 
 /// The places of the bodies of a model, and its forces, at every row of a run.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +41,10 @@ pub struct Load {
     pub columns: [usize; 6],
     /// fx, fy, fz, tx, ty, tz at each row; NaN where the run has no value
     pub values: Vec<[f64; 6]>,
+    /// columns of where it acts in ground, of an element that says so, such as a contact
+    pub place_columns: Option<[usize; 3]>,
+    /// the same at each row; empty: it acts on a marker
+    pub places: Vec<[f64; 3]>,
 }
 
 impl Track {
@@ -113,17 +119,26 @@ impl Track {
             let is_its = |e: &&Entity| {
                 e.id == u64::from(element.number) && (e.entity == name || e.name == name)
             };
-            let columns =
-                sets.find_map(|e| Some(e).filter(is_its).and_then(|e| columns_of(e, LOAD)));
-            let Some(columns) = columns.filter(|c| seen.insert(c[0])) else {
+            let found = sets.find_map(|e| {
+                let columns = Some(e).filter(is_its).and_then(|e| columns_of(e, LOAD))?;
+                Some((columns, columns_of(e, PLACE)))
+            });
+            let Some((columns, place_columns)) = found.filter(|(c, _)| seen.insert(c[0])) else {
                 continue;
             };
-            let at = |row: usize| columns.map(|c| run.columns[c].values[row]);
-            let values = self.rows.iter().map(|&row| at(row)).collect();
+            let value = |c: usize, row: usize| run.columns[c].values[row];
+            let values = self.rows.iter().map(|&row| columns.map(|c| value(c, row)));
+            let values = values.collect();
+            let places = place_columns.map_or_else(Vec::new, |place| {
+                let at = |row: usize| place.map(|c| value(c, row));
+                self.rows.iter().map(|&row| at(row)).collect()
+            });
             self.loads.push(Load {
                 element,
                 columns,
                 values,
+                place_columns,
+                places,
             });
         }
     }
@@ -136,7 +151,7 @@ impl Track {
 }
 
 /// Returns the columns of the components of a set, if it has all of them.
-fn columns_of(entity: &Entity, names: [&str; 6]) -> Option<[usize; 6]> {
+fn columns_of<const N: usize>(entity: &Entity, names: [&str; N]) -> Option<[usize; N]> {
     let column = |name: &str| entity.components.iter().find(|c| c.name == name);
     let found = names.map(|name| column(name).map(|c| c.column));
     found
