@@ -44,7 +44,9 @@ class Options(TypedDict, total=False):
     accuracy : bool
         Give every column bars of error, from a further run at a smaller request.
     full : bool
-        Columns of all parts and joints; where left out, if the dataset asks for RESULTS.
+        Sets of results of all elements; where left out, if the dataset asks for RESULTS.
+    frames : bool
+        Positions and angles of all parts, whatever else is recorded.
     max_steps : int
         Steps that an integration may try before the run ends with status ``"limit"``.
     limit : float
@@ -64,6 +66,7 @@ class Options(TypedDict, total=False):
     method: str
     accuracy: bool
     full: bool
+    frames: bool
     max_steps: int
     limit: float
     skip: Sequence[str]
@@ -80,6 +83,7 @@ def _choices(model: Model, options: Options) -> dict[str, Any]:
         "method": None,
         "accuracy": False,
         "full": None,
+        "frames": False,
         "max_steps": None,
         "limit": None,
         "skip": [],
@@ -473,6 +477,7 @@ class Session:
 
     def __init__(self, model: Model, **options: Unpack[Options]) -> None:
         self._core = _core.Session(model._core, _choices(model, options))
+        self._model = model._core
 
     @property
     def time(self) -> float:
@@ -494,7 +499,7 @@ class Session:
     @property
     def run(self) -> Run:
         """The results so far, copied."""
-        return Run(self._core.results())
+        return Run(self._core.results(), self._model)
 
     def simulate(
         self,
@@ -617,7 +622,7 @@ class Session:
             close()
 
     def _finish(self) -> Run:
-        run = Run(self._core.finish())
+        run = Run(self._core.finish(), self._model)
         if not run.ok:
             _warn(run, 4)
         return run

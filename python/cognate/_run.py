@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from ._model import Model
+
 __all__ = ["Run", "get_results", "read_res", "read_results"]
 
 
@@ -36,8 +38,9 @@ class Run(Mapping[str, NDArray[np.float64]]):
     'mm'
     """
 
-    def __init__(self, core: _core.Results) -> None:
+    def __init__(self, core: _core.Results, model: _core.Model | None = None) -> None:
         self._core = core
+        self._model = model
         self._columns = core.columns
         self._table = core.table
         self._arrays: dict[int, NDArray[np.float64]] = {}
@@ -70,6 +73,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         near = get_close_matches(name, names, 3, 0.6)
         advice = [f"did you mean {', '.join(near)}?"] if near else []
         advice.append("columns are asked for before a run: model.run(…, columns=[…])")
+        advice.append("after it run.measure(…) finds motions of markers, of a run with full=True")
         said = Diagnostic("unknown_column", "error", f"there is no column `{name}`", advice=tuple(advice))
         text = "\n  help: ".join([f"error[{said.code}]: {said.message}", *advice])
         return ColumnError([Diagnostic(**{**vars(said), "text": text})])
@@ -132,6 +136,31 @@ class Run(Mapping[str, NDArray[np.float64]]):
             if bar_of == of:
                 return self._array(index)
         raise self._missing(f"{name}±")
+
+    def measure(self, expression: str, model: Model | None = None) -> NDArray[np.float64]:
+        """Find a displacement, velocity or acceleration of markers from what has been recorded.
+
+        Parameters
+        ----------
+        expression : str
+            One measure of markers: ``"DX(41,22)"``, ``"WZ(20)"``.
+        model : Model, optional
+            The model of the run; results that were read from a file do not know it.
+
+        Returns
+        -------
+        ndarray
+            Its values at every row; nothing is solved again.
+
+        Raises
+        ------
+        ModelError
+            The motion of a part is not recorded: run with ``full=True``.
+        """
+        of = self._model if model is None else model._core
+        if of is None:
+            raise TypeError("results of a file do not know their model: give it")
+        return self._core.measure(of, expression)
 
     # --- the record --------------------------------------------------------------------------
 
@@ -362,7 +391,13 @@ class Run(Mapping[str, NDArray[np.float64]]):
         return id(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Run, (self._core,)
+        model = None if self._model is None else (self._model.text, self._model.file)
+        return _restored, (self._core, model)
+
+
+def _restored(core: _core.Results, model: tuple[str, str | None] | None) -> Run:
+    """Return the run that was pickled."""
+    return Run(core, None if model is None else _core.Model.from_text(*model))
 
 
 def read_results(path: str | os.PathLike[str]) -> Run:

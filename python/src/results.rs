@@ -1,8 +1,13 @@
 //! Tables of results: columns as arrays without a copy, the record, files.
 
 use crate::errors::{self, Kind};
+use crate::model::Model;
+use cognate::analysis::motion::{MarkerMeasure, Recorded};
+use cognate::diagnostic::Diagnostic;
 use cognate::results::format::Style;
-use cognate::results::{self, Column, Component, Entity, Run, Sequence, Units, json, msg};
+use cognate::results::{
+    self, Column, Component, Entity, Requested, Run, Sequence, Units, json, msg,
+};
 use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -46,6 +51,9 @@ impl Results {
 /// Name of a result set, its element, kind and number, and its components with their columns.
 type Set = (String, String, String, u64, Vec<(String, usize)>);
 
+/// A REQUEST: number, kind, markers, columns of its components.
+type Asked = (u32, u32, [u32; 3], [Option<usize>; 8]);
+
 /// Everything that makes results again: the maker, its arguments.
 type Reduced<'py> = (Bound<'py, PyAny>, (Frame, Vec<Bound<'py, PyArray1<f64>>>));
 
@@ -60,6 +68,7 @@ struct Frame {
     /// name, unit, index of the column that it is the bar of
     columns: Vec<(String, String, Option<usize>)>,
     table: Vec<usize>,
+    requests: Vec<Asked>,
     /// name, element, kind, number, components
     entities: Vec<Set>,
     /// name, kind, first row, row after the last
@@ -130,6 +139,14 @@ impl Results {
             },
             columns: columns.collect::<PyResult<_>>()?,
             table: frame.table,
+            requests: (frame.requests.into_iter())
+                .map(|(id, kind, markers, columns)| Requested {
+                    id,
+                    kind,
+                    markers,
+                    columns,
+                })
+                .collect(),
             entities: entities.collect(),
             sequences: sequences.collect::<PyResult<_>>()?,
             ..Run::default()
@@ -154,6 +171,9 @@ impl Results {
                 .map(|c| (c.name.clone(), c.unit.clone(), c.bar_of))
                 .collect(),
             table: run.table.clone(),
+            requests: (run.requests.iter())
+                .map(|r| (r.id, r.kind, r.markers, r.columns))
+                .collect(),
             entities: (run.entities.iter())
                 .map(|e| {
                     let components = e.components.iter();
@@ -281,6 +301,28 @@ impl Results {
         let array = unsafe { PyArray1::borrow_from_array(&view, slf.clone().into_any()) };
         array.readwrite().make_nonwriteable();
         Ok(array)
+    }
+
+    /// Find a measure of markers from what has been recorded.
+    fn measure<'py>(
+        &self,
+        py: Python<'py>,
+        model: &Bound<'py, Model>,
+        name: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let asked = MarkerMeasure::of(name).ok_or_else(|| {
+            let what = format!("`{name}` is no measure of markers alone");
+            let d = Diagnostic::error("usage", what);
+            let d = d.help("others are asked for before a run: model.run(…, columns=[…])");
+            errors::exception(py, Kind::Model, d, Some(name))
+        })?;
+        let column = Recorded::new(&self.run, &model.get().model).column(name, &asked);
+        let column = column.map_err(|d| errors::exception(py, Kind::Model, d, None))?;
+        let rows = self
+            .run
+            .table_rows()
+            .filter_map(|row| column.values.get(row).copied());
+        Ok(PyArray1::from_iter(py, rows))
     }
 
     /// Write a file; the ending of its name tells the format.

@@ -30,6 +30,7 @@ struct Choices {
     method: Option<String>,
     accuracy: bool,
     full: Option<bool>,
+    frames: bool,
     max_steps: Option<usize>,
     limit: Option<f64>,
     skip: Vec<String>,
@@ -98,12 +99,14 @@ impl Session {
             columns: choices.columns,
             full: (choices.full)
                 .unwrap_or_else(|| of.model.settings.contains_key(&SettingsStatement::Results)),
+            frames: choices.frames,
             piecewise: choices.piecewise,
             skip: skip.collect::<PyResult<BTreeSet<_>>>()?,
             zero_user: choices.zero_user,
             max_steps: choices.max_steps,
             limit: choices.limit,
             accuracy: choices.accuracy,
+            ..Options::default()
         };
         check_columns(py, of, &options.columns)?;
         let raised = Raised::default();

@@ -42,6 +42,17 @@ def test_a_column_that_is_not_there_is_told_with_near_names(run):
     assert isinstance(caught.value, KeyError) and caught.value.code == "unknown_column"
 
 
+def test_motions_of_markers_are_found_after_a_run(slider_crank):
+    run = slider_crank.run(end=1.0, steps=50, columns=["DX(41,22)", "VX(41,22)"], full=True)
+    for name in ("DX(41,22)", "VX(41,22)"):
+        np.testing.assert_allclose(run.measure(name), run[name], rtol=1e-6, atol=1e-6)
+    again = pickle.loads(pickle.dumps(run))
+    np.testing.assert_array_equal(again.measure("DX(41,22)"), run.measure("DX(41,22)"))
+    for wrong in ("DX(41,99)", "2*DX(41,22)", "FX(41,22)"):
+        with pytest.raises(cg.ModelError):
+            run.measure(wrong)
+
+
 def test_bars_of_error_hold(falling):
     run = falling.run(end=1.0, steps=10, accuracy=True)
     assert np.all(run.bars("ball.Z") >= 0)
