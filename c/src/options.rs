@@ -1,0 +1,191 @@
+//! Choices of a session, beyond what its dataset says.
+
+use crate::door::{changed, door, quiet, text, usage};
+use crate::error::CognateError;
+use engine::analysis::session::Options;
+use engine::model::ElementKind;
+use std::ffi::c_char;
+
+/// Choices of a session. What is not chosen is as the dataset says.
+pub struct CognateOptions {
+    pub(crate) options: Options,
+    /// whether columns of all parts and joints are wanted; `None`: if the dataset asks for RESULTS
+    pub(crate) full: Option<bool>,
+    pub(crate) name: String,
+}
+
+impl Default for CognateOptions {
+    fn default() -> Self {
+        let options = Options {
+            repeat: 1,
+            ..Options::default()
+        };
+        Self {
+            options,
+            full: None,
+            name: "run".into(),
+        }
+    }
+}
+
+/// Returns options of which none is chosen.
+#[unsafe(no_mangle)]
+pub extern "C" fn cognate_options_new() -> *mut CognateOptions {
+    quiet(std::ptr::null_mut(), || Box::into_raw(Box::default()))
+}
+
+/// Asks for a further column: any expression of the function language.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_column(
+    options: *mut CognateOptions,
+    expression: *const c_char,
+    error: *mut *mut CognateError,
+) -> bool {
+    let work = || {
+        // SAFETY: a handle and a text of the caller
+        let (options, text) = unsafe {
+            (
+                changed(options, "options")?,
+                text(expression, "expression")?,
+            )
+        };
+        options.options.columns.push(text.to_owned());
+        Ok(true)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, false, work) }
+}
+
+/// Chooses the permitted local error of the integration.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_error(options: *mut CognateOptions, permitted: f64) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        options.options.error = Some(permitted);
+    }
+}
+
+/// Chooses the method of integration by its name; "AUTO" chooses by itself.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_method(
+    options: *mut CognateOptions,
+    name: *const c_char,
+    error: *mut *mut CognateError,
+) -> bool {
+    let work = || {
+        // SAFETY: a handle and a text of the caller
+        let (options, name) = unsafe { (changed(options, "options")?, text(name, "name")?) };
+        options.options.method = Some(name.to_owned());
+        Ok(true)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, false, work) }
+}
+
+/// Chooses the base name of results.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_name(
+    options: *mut CognateOptions,
+    name: *const c_char,
+    error: *mut *mut CognateError,
+) -> bool {
+    let work = || {
+        // SAFETY: a handle and a text of the caller
+        let (options, name) = unsafe { (changed(options, "options")?, text(name, "name")?) };
+        name.clone_into(&mut options.name);
+        Ok(true)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, false, work) }
+}
+
+/// Leaves out elements of a statement ("CONTACT") where they are not solved.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_skip(
+    options: *mut CognateOptions,
+    keyword: *const c_char,
+    error: *mut *mut CognateError,
+) -> bool {
+    let work = || {
+        // SAFETY: a handle and a text of the caller
+        let (options, keyword) =
+            unsafe { (changed(options, "options")?, text(keyword, "keyword")?) };
+        let kind = keyword.to_uppercase().parse::<ElementKind>();
+        let what = format!("{keyword} is no statement");
+        let kind = kind.map_err(|_| usage(what, "give a keyword of datasets: CONTACT"))?;
+        options.options.skip.insert(kind);
+        Ok(true)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, false, work) }
+}
+
+/// Gives every column bars of error (a column "name±" each), from a further run at a smaller
+/// permitted error.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_accuracy(options: *mut CognateOptions, wanted: bool) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        options.options.accuracy = wanted;
+    }
+}
+
+/// Asks for sets of results of all elements, or for none of them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_full(options: *mut CognateOptions, wanted: bool) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        options.full = Some(wanted);
+    }
+}
+
+/// Asks for positions and angles of all parts, whatever else is recorded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_frames(options: *mut CognateOptions, wanted: bool) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        options.options.frames = wanted;
+    }
+}
+
+/// Takes what USER would compute as zero where no routine is given.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_zero_user(options: *mut CognateOptions, wanted: bool) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        options.options.zero_user = wanted;
+    }
+}
+
+/// Runs motions whose displacement or velocity jumps, piece by piece.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_piecewise(options: *mut CognateOptions, wanted: bool) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        options.options.piecewise = wanted;
+    }
+}
+
+/// Limits the processor time of a session [s] and the steps that an integration may try; 0: no
+/// limit. Where one is reached the status is COGNATE_STATUS_LIMIT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_limit(
+    options: *mut CognateOptions,
+    seconds: f64,
+    steps: usize,
+) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        options.options.limit = (seconds > 0.0).then_some(seconds);
+        options.options.max_steps = (steps > 0).then_some(steps);
+    }
+}
+
+/// Gives options back; sessions made with them go on.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_options_free(options: *mut CognateOptions) {
+    if !options.is_null() {
+        // SAFETY: made by `cognate_options_new`, given back once
+        quiet((), || drop(unsafe { Box::from_raw(options) }));
+    }
+}

@@ -1,0 +1,477 @@
+#ifndef COGNATE_H
+#define COGNATE_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+// cognate in C: expressions of the ADAMS function language, models, sessions, user subroutines.
+//
+// Handles (CognateExpr, CognateModel, CognateSession, CognateOptions, CognateError) are opaque, made by the
+// functions that return them and given back by the function of the same name that ends in _free, which
+// takes NULL as well. Texts that come in end with a zero byte and are UTF-8; those that go out belong to
+// the handle that they come from, but for `char *`, which cognate_string_free takes back.
+//
+// Mistakes: a function that can fail takes `CognateError **error`. It may be NULL. Where the function
+// fails it returns NULL or false and puts a CognateError there, which holds every mistake with code,
+// place and advice and is given back by cognate_error_free; where it succeeds it puts NULL there. A NULL
+// where there must be something is such a mistake. No panic leaves a function; after one (code "bug")
+// the handle concerned should be given back.
+//
+// Threads: expressions and errors do not change and may be used by several threads at once, a model as long
+// as nobody calls cognate_model_change. A session and options belong to one thread at a time, which may
+// change between calls; only cognate_session_interrupt may be called while another thread is at work in
+// the session.
+//
+// Callbacks are called in the thread that called cognate. No C++ exception may leave them.
+
+
+// The severity of a diagnostic.
+typedef enum {
+  // information
+  COGNATE_SEVERITY_NOTE,
+  // legal, but probably not as meant
+  COGNATE_SEVERITY_WARNING,
+  // a mistake
+  COGNATE_SEVERITY_ERROR,
+} CognateSeverity;
+
+// The way in which a simulation ended.
+typedef enum {
+  // everything that was asked for was done
+  COGNATE_STATUS_COMPLETED,
+  // the model has no consistent configuration, or contradicts itself
+  COGNATE_STATUS_MODEL,
+  // no equilibrium was found
+  COGNATE_STATUS_NO_EQUILIBRIUM,
+  // the integration could not go on
+  COGNATE_STATUS_STOPPED,
+  // a limit of time or steps was reached
+  COGNATE_STATUS_LIMIT,
+  // cognate_session_interrupt or the progress callback ended it
+  COGNATE_STATUS_INTERRUPTED,
+} CognateStatus;
+
+// The language of an expression.
+typedef enum {
+  // direct-entry functions: radians, TIME
+  COGNATE_DIALECT_FUNCTION,
+  // expressions of the modelling language: degrees, t
+  COGNATE_DIALECT_EXPRESSION,
+} CognateDialect;
+
+// The kind of a simulation.
+typedef enum {
+  // kinematic without freedom, else dynamic
+  COGNATE_KIND_TRANSIENT,
+  // forces move it
+  COGNATE_KIND_DYNAMIC,
+  // motions alone move it
+  COGNATE_KIND_KINEMATIC,
+  // an equilibrium, or one at each output time
+  COGNATE_KIND_STATIC,
+  // assembled positions and velocities
+  COGNATE_KIND_INITIAL_CONDITIONS,
+} CognateKind;
+
+// Every mistake that a function has found.
+typedef struct CognateError CognateError;
+
+// An expression of the function language, checked and compiled.
+typedef struct CognateExpr CognateExpr;
+
+// A multibody model as its dataset (.adm) says.
+typedef struct CognateModel CognateModel;
+
+// Choices of a session. What is not chosen is as the dataset says.
+typedef struct CognateOptions CognateOptions;
+
+// A model and its clock: simulations one after another, each from where the last one ended.
+typedef struct CognateSession CognateSession;
+
+// A mistake, a warning or a note. Its texts belong to the CognateError that it comes from.
+typedef struct {
+  // severity
+  CognateSeverity severity;
+  // stable short name, which `cognate explain CODE` explains
+  const char *code;
+  // one sentence without a full stop
+  const char *message;
+  // file of the text; NULL: none
+  const char *file;
+  // line in that text, from 1; 0: unknown
+  size_t line;
+  // column, from 1, in characters; 0: unknown
+  size_t column;
+  // the element concerned, for example "SFORCE/3"; NULL: none
+  const char *element;
+  // the name that the dataset gives that element; NULL: none
+  const char *name;
+  // what to do, a sentence a line
+  const char *advice;
+  // all of it as the command line prints it
+  const char *text;
+} CognateDiagnostic;
+
+// A routine of the form SFOSUB: fills `results`, which are zero, with 1 number for SFORCE,
+// VARIABLE and DIFF, 6 for GFORCE (FX, FY, FZ, TX, TY, TZ), 3 for VFORCE and VTORQUE.
+//
+// `par`: the `*npar` numbers of USER. `*iflag` is 1 in the first call, which tells by
+// cognate_sysfnc and cognate_sysary what the routine reads, else 0. `*dflag` is always 0:
+// derivatives are found by differences, with the same calls.
+typedef void (*CognateForceRoutine)(const int *id,
+                                    const double *time,
+                                    const double *par,
+                                    const int *npar,
+                                    const int *dflag,
+                                    const int *iflag,
+                                    double *results);
+
+// A routine of the form REQSUB: fills `results`, which are zero, with 8 numbers for REQUEST, 1 for
+// SENSOR.
+typedef void (*CognateOutputRoutine)(const int *id,
+                                     const double *time,
+                                     const double *par,
+                                     const int *npar,
+                                     const int *iflag,
+                                     double *results);
+
+// MOTSUB: fills `value` with the value of the motion (`*iord` = 0) or its first or second
+// derivative in time.
+typedef void (*CognateMotionRoutine)(const int *id,
+                                     const double *time,
+                                     const double *par,
+                                     const int *npar,
+                                     const int *iord,
+                                     const int *iflag,
+                                     double *value);
+
+// A routine with data of the caller's: fills `results`, which are zero.
+//
+// `constants`: the numbers of USER. `values`: those of the expressions that it was registered
+// with. Returns false where it cannot; the simulation then ends with a mistake.
+typedef bool (*CognateRoutine)(void *data,
+                               double time,
+                               const double *constants,
+                               size_t n_constants,
+                               const double *values,
+                               size_t n_values,
+                               double *results,
+                               size_t n_results);
+
+// A callback after each step: called with `data` and the time that has been reached; returns
+// false to end the simulation, with the results so far.
+typedef bool (*CognateProgress)(void *data, double time);
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// Returns the version of the library: "0.1.0".
+const char *cognate_version(void);
+
+// Gives back a text that a function returned as `char *`; NULL is taken as well.
+void cognate_string_free(char *text);
+
+// Returns how many mistakes, warnings and notes there are; 0 for NULL.
+size_t cognate_error_count(const CognateError *error);
+
+// Puts one of them, counted from 0, into `diagnostic`; returns false where there is none.
+bool cognate_error_get(const CognateError *error, size_t index, CognateDiagnostic *diagnostic);
+
+// Gives an error back.
+void cognate_error_free(CognateError *error);
+
+// Reads, checks and compiles an expression; NULL: it has a mistake. `dialect`: a CognateDialect.
+CognateExpr *cognate_expr_parse(const char *source, uint32_t dialect, CognateError **error);
+
+// Returns how many inputs an expression reads.
+size_t cognate_expr_inputs(const CognateExpr *expr);
+
+// Returns the name of an input, counted from 0: "TIME", "DX(1, 2)"; NULL: there is none.
+const char *cognate_expr_input(const CognateExpr *expr, size_t index);
+
+// Evaluates an expression for the values of its inputs, in the order of cognate_expr_input.
+//
+// Returns false where it has no value; the error then names the operation that has none.
+bool cognate_expr_eval(const CognateExpr *expr,
+                       const double *inputs,
+                       size_t n_inputs,
+                       double *value,
+                       CognateError **error);
+
+// Evaluates an expression and its exact derivatives along all inputs, one number for each.
+//
+// `value` may be NULL.
+bool cognate_expr_gradient(const CognateExpr *expr,
+                           const double *inputs,
+                           size_t n_inputs,
+                           double *value,
+                           double *gradient,
+                           CognateError **error);
+
+// Evaluates an expression over columns, one of `n` numbers for each input; for many points some
+// ten times as fast as one by one.
+//
+// `gradients` is NULL, or holds a column of `n` places for each input, which the derivatives
+// along it go into. Points without a value become NaN in `values`; then false is returned and the
+// error names the first. Columns may not overlap those that are written.
+bool cognate_expr_batch(const CognateExpr *expr,
+                        const double *const *inputs,
+                        size_t n_inputs,
+                        size_t n,
+                        double *values,
+                        double *const *gradients,
+                        CognateError **error);
+
+// Gives an expression back.
+void cognate_expr_free(CognateExpr *expr);
+
+// Loads a shared library and computes every USER of the model by its routines: those that ROUTINE
+// names, else sfosub, varsub, difsub, gfosub, vfosub, vtosub, reqsub, sensub, motsub.
+//
+// Their names are looked for as written, in small letters, with an underscore behind (as Fortran
+// compilers write them), and in capitals. The library stays loaded until the session is given
+// back. It may call cognate_sysfnc, cognate_sysary, c_sysfnc and c_sysary.
+bool cognate_session_load(CognateSession *session, const char *path, CognateError **error);
+
+// Reads a dataset from a file; NULL: it has mistakes.
+CognateModel *cognate_model_read(const char *path, CognateError **error);
+
+// Reads a dataset from `length` bytes in memory; NULL: it has mistakes.
+//
+// `file` is NULL, or the file that the bytes stand for: in messages, and for the folder of files
+// that the dataset names.
+CognateModel *cognate_model_from_memory(const char *bytes,
+                                        size_t length,
+                                        const char *file,
+                                        CognateError **error);
+
+// Returns warnings and notes about a model, to be given back by cognate_error_free; NULL for NULL.
+CognateError *cognate_model_warnings(const CognateModel *model);
+
+// Changes a model by statements, one a line, as command files hold them: "PART/2, MASS=3",
+// "DEACTIVATE/MOTION, ID=1". Where one of them is wrong the model stays as it was.
+bool cognate_model_change(CognateModel *model, const char *statements, CognateError **error);
+
+// Returns the dataset of a model as it is now, to be given back by cognate_string_free.
+char *cognate_model_text(const CognateModel *model, CognateError **error);
+
+// Counts the freedoms of a model and tells what is fixed twice and what is free, as JSON, to be
+// given back by cognate_string_free.
+char *cognate_model_verify(const CognateModel *model, CognateError **error);
+
+// Gives a model back; sessions of it go on.
+void cognate_model_free(CognateModel *model);
+
+// Returns options of which none is chosen.
+CognateOptions *cognate_options_new(void);
+
+// Asks for a further column: any expression of the function language.
+bool cognate_options_column(CognateOptions *options, const char *expression, CognateError **error);
+
+// Chooses the permitted local error of the integration.
+void cognate_options_error(CognateOptions *options, double permitted);
+
+// Chooses the method of integration by its name; "AUTO" chooses by itself.
+bool cognate_options_method(CognateOptions *options, const char *name, CognateError **error);
+
+// Chooses the base name of results.
+bool cognate_options_name(CognateOptions *options, const char *name, CognateError **error);
+
+// Leaves out elements of a statement ("CONTACT") where they are not solved.
+bool cognate_options_skip(CognateOptions *options, const char *keyword, CognateError **error);
+
+// Gives every column bars of error (a column "name±" each), from a further run at a smaller
+// permitted error.
+void cognate_options_accuracy(CognateOptions *options, bool wanted);
+
+// Asks for sets of results of all elements, or for none of them.
+void cognate_options_full(CognateOptions *options, bool wanted);
+
+// Asks for positions and angles of all parts, whatever else is recorded.
+void cognate_options_frames(CognateOptions *options, bool wanted);
+
+// Takes what USER would compute as zero where no routine is given.
+void cognate_options_zero_user(CognateOptions *options, bool wanted);
+
+// Runs motions whose displacement or velocity jumps, piece by piece.
+void cognate_options_piecewise(CognateOptions *options, bool wanted);
+
+// Limits the processor time of a session [s] and the steps that an integration may try; 0: no
+// limit. Where one is reached the status is COGNATE_STATUS_LIMIT.
+void cognate_options_limit(CognateOptions *options, double seconds, size_t steps);
+
+// Gives options back; sessions made with them go on.
+void cognate_options_free(CognateOptions *options);
+
+// Computes SFORCE/id, or with id 0 all SFORCEs that have a USER, by SFOSUB.
+bool cognate_session_sfosub(CognateSession *session,
+                            uint32_t id,
+                            CognateForceRoutine routine,
+                            CognateError **error);
+
+// Computes VARIABLE/id, or with id 0 all VARIABLEs that have a USER, by VARSUB.
+bool cognate_session_varsub(CognateSession *session,
+                            uint32_t id,
+                            CognateForceRoutine routine,
+                            CognateError **error);
+
+// Computes DIFF/id, or with id 0 all DIFFs that have a USER, by DIFSUB.
+bool cognate_session_difsub(CognateSession *session,
+                            uint32_t id,
+                            CognateForceRoutine routine,
+                            CognateError **error);
+
+// Computes GFORCE/id, or with id 0 all GFORCEs that have a USER, by GFOSUB.
+bool cognate_session_gfosub(CognateSession *session,
+                            uint32_t id,
+                            CognateForceRoutine routine,
+                            CognateError **error);
+
+// Computes VFORCE/id, or with id 0 all VFORCEs that have a USER, by VFOSUB.
+bool cognate_session_vfosub(CognateSession *session,
+                            uint32_t id,
+                            CognateForceRoutine routine,
+                            CognateError **error);
+
+// Computes VTORQUE/id, or with id 0 all VTORQUEs that have a USER, by VTOSUB.
+bool cognate_session_vtosub(CognateSession *session,
+                            uint32_t id,
+                            CognateForceRoutine routine,
+                            CognateError **error);
+
+// Computes REQUEST/id, or with id 0 all REQUESTs that have a USER, by REQSUB.
+bool cognate_session_reqsub(CognateSession *session,
+                            uint32_t id,
+                            CognateOutputRoutine routine,
+                            CognateError **error);
+
+// Computes SENSOR/id, or with id 0 all SENSORs that have a USER, by SENSUB.
+bool cognate_session_sensub(CognateSession *session,
+                            uint32_t id,
+                            CognateOutputRoutine routine,
+                            CognateError **error);
+
+// Computes MOTION/id, or with id 0 all MOTIONs that have a USER, by MOTSUB.
+bool cognate_session_motsub(CognateSession *session,
+                            uint32_t id,
+                            CognateMotionRoutine routine,
+                            CognateError **error);
+
+// Computes what USER stands for by a routine with data of the caller's.
+//
+// `name`: an element ("SFORCE/3"), the text of its ROUTINE, or the first number of USER.
+// `inputs`: `n_inputs` expressions whose values the routine is given, in this order.
+bool cognate_session_user(CognateSession *session,
+                          const char *name,
+                          const char *const *inputs,
+                          size_t n_inputs,
+                          CognateRoutine routine,
+                          void *data,
+                          CognateError **error);
+
+// Begins a session of a model, at time 0; NULL: an option is wrong. `options` may be NULL.
+CognateSession *cognate_session_new(const CognateModel *model,
+                                    const CognateOptions *options,
+                                    CognateError **error);
+
+// Sets the callback after each step; NULL: none.
+bool cognate_session_progress(CognateSession *session,
+                              CognateProgress callback,
+                              void *data,
+                              CognateError **error);
+
+// Ends the simulation that is going on in another thread, with the results so far.
+void cognate_session_interrupt(const CognateSession *session);
+
+// Simulates on to `end`, a time of the clock, with `steps` output steps. `kind`: a CognateKind.
+//
+// Returns false where the model or the call is wrong. A numerical failure is no mistake: it is
+// told by `status`, which may be NULL, and results so far are kept.
+bool cognate_session_simulate(CognateSession *session,
+                              uint32_t kind,
+                              double end,
+                              uint32_t steps,
+                              CognateStatus *status,
+                              CognateError **error);
+
+// Obeys commands, one a line, as a command file (.acf) holds them. `status`, which may be NULL:
+// how the last simulation ended.
+bool cognate_session_obey(CognateSession *session,
+                          const char *script,
+                          CognateStatus *status,
+                          CognateError **error);
+
+// Returns the clock of a session; NaN where it cannot be told.
+double cognate_session_time(const CognateSession *session);
+
+// Returns the number of columns of the results so far; the first is time.
+size_t cognate_session_columns(const CognateSession *session);
+
+// Returns the name of a column, until the next simulation; NULL: there is none.
+const char *cognate_session_name(const CognateSession *session, size_t column);
+
+// Returns the unit of a column as result files spell it, until the next simulation; "": a pure
+// number; NULL: there is no such column.
+const char *cognate_session_unit(const CognateSession *session, size_t column);
+
+// Finds a column by its name, without regard to blanks and case; SIZE_MAX: there is none.
+size_t cognate_session_find(const CognateSession *session, const char *name);
+
+// Returns the numbers of a column, until the next simulation, and puts how many there are into
+// `n`; NULL: there is no such column.
+const double *cognate_session_column(const CognateSession *session, size_t column, size_t *n);
+
+// Returns the run record as JSON: status, reason, counts, timings, energy, warnings. To be given
+// back by cognate_string_free.
+char *cognate_session_record(const CognateSession *session, CognateError **error);
+
+// Linearizes about the present state, between all plant inputs and outputs: matrices A, B, C, D,
+// names, eigenvalues and mode shapes as JSON, to be given back by cognate_string_free.
+char *cognate_session_linearize(CognateSession *session, CognateError **error);
+
+// Writes the results so far to a file; the ending of its name tells the format: .csv, .parquet,
+// .res, .json, .msg.
+bool cognate_session_write(const CognateSession *session, const char *path, CognateError **error);
+
+// Returns the state of a session as a text, from which another one goes on, also elsewhere. To be
+// given back by cognate_string_free.
+char *cognate_session_state(const CognateSession *session, CognateError **error);
+
+// Goes on from a state.
+bool cognate_session_reload(CognateSession *session, const char *state, CognateError **error);
+
+// Gives a session back.
+void cognate_session_free(CognateSession *session);
+
+// Reads a function of the model (DX, VM, VARVAL …) from within a routine, as SYSFNC of Adams.
+//
+// `ids`: `n` numbers, as they stand in parentheses in the function language. `failed` becomes 1
+// where there is no such function, or no routine is being called, else 0. NULL is a failure.
+void cognate_sysfnc(const char *name, const int *ids, int n, double *value, int *failed);
+
+// Reads several functions of the model from within a routine, as SYSARY of Adams.
+//
+// `name`: TDISP, RDISP, DISP, TVEL, RVEL, VEL, TACC, RACC, ACC, TFORCE, RFORCE or FORCE; 3 or 6
+// numbers go into `values`, and how many into `n_values`.
+void cognate_sysary(const char *name,
+                    const int *ids,
+                    int n,
+                    double *values,
+                    int *n_values,
+                    int *failed);
+
+// cognate_sysfnc under the name that C routines for Adams call.
+void c_sysfnc(const char *name, const int *ids, int n, double *value, int *failed);
+
+// cognate_sysary under the name that C routines for Adams call.
+void c_sysary(const char *name, const int *ids, int n, double *values, int *n_values, int *failed);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* COGNATE_H */
