@@ -353,15 +353,17 @@ class Run(Mapping[str, NDArray[np.float64]]):
         return axes[0] if ax is not None or len(axes) == 1 else np.array(axes)
 
     def animate(self) -> str:
-        """Make a page that shows the moving mechanism.
+        """Make a page that shows the moving mechanism; the command line has it, this package not.
 
         Raises
         ------
         NotImplementedError
-            This version cannot draw mechanisms yet; `plot` shows columns.
+            Always: the message says how the command line shows a run.
         """
         raise NotImplementedError(
-            "this version has no animation of mechanisms; run.plot() shows columns over time"
+            "this package does not draw mechanisms: write a run with frames=True by "
+            'run.to_res("run.res"), then `cognate animate run.res --model MODEL.adm` shows it; '
+            "run.plot() shows columns over time"
         )
 
     def _repr_html_(self) -> str:
