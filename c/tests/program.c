@@ -306,6 +306,70 @@ static void routines_compute_what_user_stands_for(const char *library) {
     CHECK(failed == 1);
 }
 
+// a crank that MOTSUB drives, a free body that GFOSUB pushes, a SENSOR that SENSUB ends the run by
+static const char *DRIVEN =
+    "other routines\n"
+    "UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND\n"
+    "PART/1, GROUND\n"
+    "MARKER/1, PART=1\n"
+    "PART/2, MASS=1, CM=2, IP=1,1,1\n"
+    "MARKER/2, PART=2\n"
+    "JOINT/1, REVOLUTE, I=2, J=1\n"
+    "MOTION/1, JOINT=1, ROTATION, FUNCTION=USER(3)\\\n"
+    "PART/3, MASS=2, CM=3, IP=1,1,1\n"
+    "MARKER/3, PART=3\n"
+    "MARKER/4, PART=1, FLOATING\n"
+    "GFORCE/7, I=3, JFLOAT=4, RM=1, FUNCTION=USER(4)\\\n"
+    "SENSOR/6, FUNCTION=USER(1)\\, VALUE=0.5, ERROR=1E-6, GE, HALT\n"
+    "END\n";
+
+static void motsub(const int *id, const double *time, const double *par, const int *npar,
+                   const int *iord, const int *iflag, double *value) {
+    (void)id, (void)npar, (void)iflag;
+    // par[0]*t² and its derivatives
+    *value = *iord == 0 ? par[0] * *time * *time : *iord == 1 ? 2 * par[0] * *time : 2 * par[0];
+}
+
+static void gfosub(const int *id, const double *time, const double *par, const int *npar,
+                   const int *dflag, const int *iflag, double *results) {
+    (void)id, (void)time, (void)npar, (void)dflag, (void)iflag;
+    results[1] = par[0];
+    results[5] = 2.0;
+}
+
+static void sensub(const int *id, const double *time, const double *par, const int *npar,
+                   const int *iflag, double *results) {
+    (void)id, (void)par, (void)npar, (void)iflag;
+    results[0] = *time;
+}
+
+static void motions_forces_and_sensors_have_routines(void) {
+    CognateError *error = NULL;
+    CognateModel *model = model_of(DRIVEN);
+    CognateOptions *options = cognate_options_new();
+    CHECK(cognate_options_column(options, "AZ(2,1)", &error));
+    CHECK(cognate_options_column(options, "DY(3)", &error));
+    CHECK(cognate_options_column(options, "WZ(3)", &error));
+    cognate_options_error(options, 1e-9);
+    CognateSession *session = cognate_session_new(model, options, &error);
+    NO_ERROR(error);
+    CHECK(cognate_session_motsub(session, 1, motsub, &error));
+    CHECK(cognate_session_gfosub(session, 7, gfosub, &error));
+    CHECK(cognate_session_sensub(session, 6, sensub, &error));
+    CognateStatus status;
+    cognate_session_simulate(session, COGNATE_KIND_DYNAMIC, 2.0, 20, &status, &error);
+    NO_ERROR(error);
+    size_t n;
+    const double *time = column_of(session, "time", &n), t = time[n - 1];
+    NEAR(t, 0.5, 1e-5);
+    NEAR(column_of(session, "AZ(2,1)", &n)[n - 1], 3 * t * t, 1e-9);
+    NEAR(column_of(session, "DY(3)", &n)[n - 1], 0.5 * 4 / 2 * t * t, 1e-8);
+    NEAR(column_of(session, "WZ(3)", &n)[n - 1], 2 * t, 1e-8);
+    cognate_session_free(session);
+    cognate_options_free(options);
+    cognate_model_free(model);
+}
+
 static bool until_one(void *data, double time) {
     (*(int *)data)++;
     return time < 1.0;
@@ -343,6 +407,7 @@ int main(int argc, char **argv) {
     nothing_that_is_passed_breaks_anything();
     a_ball_falls(argv[2]);
     routines_compute_what_user_stands_for(argv[1]);
+    motions_forces_and_sensors_have_routines();
     a_simulation_can_be_ended();
     puts("C: all claims hold");
     return 0;
