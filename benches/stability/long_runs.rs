@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 const METHODS: [&str; 4] = ["DOP853", "RADAU5", "BDF", "NEWMARK"];
 const REQUESTS: [f64; 4] = [1e-4, 1e-6, 1e-8, 1e-10];
 /// Processor time of one run, in s.
-const LIMIT: f64 = 5.0;
+const LIMIT: f64 = 3.0;
 /// Output steps.
 const OUTPUTS: usize = 100;
 

@@ -23,7 +23,7 @@ const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"]
 /// Exponents of the largest and the smallest request.
 const REQUESTS: [i32; 2] = [1, 13];
 /// Processor time of one run, in s.
-const LIMIT: f64 = 0.4;
+const LIMIT: f64 = 0.1;
 /// The request at which costs are told, as an exponent.
 const TOLD: i32 = 6;
 
