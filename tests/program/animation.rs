@@ -332,3 +332,40 @@ fn the_viewer_is_what_its_sources_make() {
         String::from_utf8_lossy(&done.stderr)
     );
 }
+
+#[test]
+fn two_runs_are_shown_over_each_other() {
+    let model = scratch("animate_over", "m.adm", PENDULUM);
+    let folder = model.with_file_name("out");
+    let done = cognate(&[
+        "run",
+        path(&model),
+        "--end",
+        "1",
+        "--steps",
+        "20",
+        "--format",
+        "res",
+        "--out",
+        path(&folder),
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let (other, page) = (folder.join("m.res"), model.with_extension("html"));
+    let options = [
+        "--end",
+        "2",
+        "--steps",
+        "50",
+        "--over",
+        path(&other),
+        "-o",
+        path(&page),
+    ];
+    let done = cognate(&[&["animate", path(&model)], &options[..]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    let Some(found) = script("check.mjs", &[path(&page)]) else {
+        return;
+    };
+    assert_eq!(found["errors"], Value::Array(Vec::new()));
+    assert!(found["changed"].as_u64() > Some(300), "{found}");
+}

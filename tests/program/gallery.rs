@@ -169,3 +169,16 @@ fn drawings_are_the_same_every_time_and_name_the_bodies() {
     assert_eq!(unknown.code, 2);
     assert!(unknown.err.contains("JOINT/77"), "{}", unknown.err);
 }
+
+#[test]
+fn what_is_fixed_twice_stands_out() {
+    let model = root("tests/scenes/four_bar.adm");
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("fixed_twice.svg");
+    let done = cognate(&["verify", path(&model), "--draw", path(&file)]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let text = std::fs::read_to_string(&file).unwrap();
+    // bodies are pale, the joints that fix the same are red
+    let (pale, clear) = text.split_once("</g>").unwrap();
+    assert!(pale.contains("<g opacity=\"0.3\">"));
+    assert!(clear.contains("#d0342c") && clear.contains(">JOINT/4<"));
+}

@@ -137,12 +137,14 @@ export class Stage {
     ];
     const parts = kinds.map(({ from, colour, heads }) => {
       const group = new Group();
-      const ink = new MeshStandardMaterial({ color: colour, roughness: 0.5, emissive: colour, emissiveIntensity: 0.25 });
+      // in front of the bodies: forces act inside of them
+      const ink = new MeshStandardMaterial({ color: colour, roughness: 0.5, emissive: colour, emissiveIntensity: 0.25, depthTest: false, transparent: true });
       const thick = 0.0042 * this.size;
       const shaft = new Mesh(new CylinderGeometry(thick, thick, 1, 12).rotateX(Math.PI / 2).translate(0, 0, 0.5), ink);
       const tips = Array.from({ length: heads }, () => new Mesh(new ConeGeometry(3 * thick, 8 * thick, 16).rotateX(Math.PI / 2), ink));
       group.add(shaft, ...tips);
       for (const mesh of group.children) {
+        mesh.renderOrder = 10;
         mesh.userData = { element: arrow.element, body: arrow.body };
         this.meshes.push(mesh);
       }

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// Points of a curve that is drawn.
 const CURVE_POINTS: usize = 160;
 /// Side of a plane without limits, as a part of the size of the mechanism.
-const UNLIMITED_PLANE: f64 = 1.2;
+const UNLIMITED_PLANE: f64 = 2.0;
 /// Radius of a point, as a part of the size of the mechanism.
 const POINT_RADIUS: f64 = 0.008;
 
