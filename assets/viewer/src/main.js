@@ -46,6 +46,9 @@ async function main() {
   app.innerHTML = PAGE;
   document.body.append(app);
   const [first] = data.runs;
+  data.runs.slice(1).forEach((run, k) => {
+    if (run.name === first.name) run.name += ` (${k + 2})`;
+  });
   byId('title').querySelector('b').textContent = data.title || first.name;
   byId('title').querySelector('span').textContent = data.runs.map((r) => r.name).join(' and ');
 
@@ -279,13 +282,19 @@ async function main() {
     e.preventDefault();
     action();
   });
+  let touched = false;
+  stage.controls.addEventListener('start', () => (touched = true));
   function resize() {
     stage.resize();
     plots.resize();
+    // until somebody moves the eye, all of it is seen
+    if (!touched) stage.fit();
     draw();
   }
   plots.onResize = panels.onPlots = resize;
   window.addEventListener('resize', resize);
+  // legends below the plots take room when they are filled
+  new ResizeObserver(resize).observe(byId('stage'));
 
   pause();
   stage.resize();

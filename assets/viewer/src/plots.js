@@ -109,6 +109,7 @@ export class Plots {
     const { left, top, width, height } = u.bbox;
     if (!(x >= left && x <= left + width)) return;
     u.ctx.save();
+    u.ctx.setLineDash([]);
     u.ctx.strokeStyle = '#d0342c';
     u.ctx.lineWidth = Math.max(1, window.devicePixelRatio || 1);
     u.ctx.beginPath();
