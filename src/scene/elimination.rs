@@ -14,13 +14,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Products of the usual order from which another one is considered.
 const LEAST_FILL: f64 = 1e4;
 /// Products of the usual order over those of another one that takes its place.
-const GAIN: f64 = 4.0;
+const GAIN: f64 = 2.0;
 /// Products beyond which an order of rows is not worth its search.
 const MOST_PRODUCTS: f64 = 2e6;
 /// Products for the articulated inertia of a link, about.
-const PER_LINK: f64 = 160.0;
+const PER_LINK: f64 = 100.0;
 /// Products for one row through a link, about.
-const PER_OPEN_ROW: f64 = 50.0;
+const PER_OPEN_ROW: f64 = 30.0;
 
 /// Chooses how rows that take part are eliminated, from where they have entries at the given row of
 /// numbers. Leaves open whether the mass matrix or articulated inertia is shorter.

@@ -53,7 +53,7 @@ pub struct Placed {
 }
 
 /// Loops through parts, squared and added up, from which a deep forest is considered.
-const MANY_LOOPS: f64 = 4e3;
+const MANY_LOOPS: f64 = 1e3;
 /// That of the forest nearest to ground over that of a deep one which takes its place.
 const GAIN: f64 = 8.0;
 

@@ -274,14 +274,7 @@ pub fn closing(scene: &Scene, places: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut closing = vec![Vec::new(); n + 1];
     for (r, places) in places.iter().enumerate() {
         let carriers = places.iter().map(|&v| carrier_of[v]);
-        let both = carriers.reduce(|mut a, mut b| {
-            // carriers come first
-            while a != b {
-                let later = if a > b { &mut a } else { &mut b };
-                *later = later.and_then(|l: usize| scene.links[l].parent);
-            }
-            a
-        });
+        let both = carriers.reduce(|a, b| scene.common_link([a, b]));
         closing[both.flatten().unwrap_or(n)].push(r);
     }
     closing

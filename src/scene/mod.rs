@@ -483,6 +483,17 @@ impl Scene {
         a
     }
 
+    /// Returns the last link that carries two links or is one of them; `None`: ground alone carries
+    /// both.
+    pub fn common_link(&self, [mut a, mut b]: [LinkIx; 2]) -> LinkIx {
+        // carriers come first, so the later of two links does not carry the other
+        while a != b {
+            let later = if a > b { &mut a } else { &mut b };
+            *later = later.and_then(|l| self.links[l].parent);
+        }
+        a
+    }
+
     /// Pose of a marker in ground as the dataset places its part.
     pub fn drawn(&self, marker: usize) -> Frame<f64> {
         let m = &self.markers[marker];

@@ -17,6 +17,7 @@
 use super::Equations;
 use crate::physics::action::Action;
 use crate::scalar::Scalar;
+use crate::scene::RowKind;
 use crate::scene::programs::weights;
 use crate::scene::solve::{SymmetricFactor, gram, products};
 use crate::scene::sweep::{self, Wrench};
@@ -50,10 +51,47 @@ impl<S: Scalar> Equations<'_, S> {
                 sweep::apply(&mut wrenches, &self.links, link, point, force, torque);
             }
         }
-        sweep::gather(scene, &self.links, &mut wrenches);
+        self.gather_stress(lambda, &mut wrenches);
         (0..scene.constraints.len())
             .map(|c| self.reaction_to(c, lambda, &wrenches))
             .collect()
+    }
+
+    /// Adds to the wrench of each link those of all that it carries, as far as rows with these
+    /// multipliers reach: what carries all links of a row feels nothing of it.
+    fn gather_stress(&self, lambda: &[S], wrenches: &mut [Wrench<S>]) {
+        let scene = self.scene;
+        let mut loaded = vec![false; scene.links.len()];
+        for (r, l) in lambda.iter().enumerate() {
+            if l.is_known_zero() {
+                continue;
+            }
+            let row = self.row(r);
+            let links = row.actions.iter().map(|(m, _)| scene.markers[*m].link);
+            let common = match scene.rows[r].kind {
+                // its expression may read where something stands in ground
+                RowKind::Formula { .. } => None,
+                RowKind::Markers { .. } | RowKind::Displacements(_) | RowKind::Cam { .. } => links
+                    .clone()
+                    .reduce(|a, b| scene.common_link([a, b]))
+                    .flatten(),
+            };
+            for mut next in links {
+                while let Some(l) = next.filter(|_| next != common) {
+                    loaded[l] = true;
+                    next = scene.links[l].parent;
+                }
+            }
+        }
+        for l in (0..scene.links.len()).rev() {
+            if !loaded[l] {
+                wrenches[l] = Wrench::zero();
+            } else if let Some(p) = scene.links[l].parent {
+                let up = sweep::to_parent(&self.links[l].X_PL, wrenches[l]);
+                wrenches[p].force += up.force;
+                wrenches[p].torque += up.torque;
+            }
+        }
     }
 
     /// States of stress of all rows that do not take part, with their shares in the smallest set of
