@@ -3,8 +3,8 @@
 //!
 //! Freedoms are eliminated link by link, from the leaves, as for articulated inertia. A row stays
 //! open while some of its freedoms are left; where the last branch that it touches has been merged,
-//! its multiplier is eliminated too. So the fill is bounded by the number of loops that pass through
-//! one link, while `G M⁻¹ Gᵀ` couples all loops on one tree.
+//! its multiplier is eliminated too. So the fill is bounded by the number of loops that pass
+//! through one link, while `G M⁻¹ Gᵀ` couples all loops on one tree.
 //!
 //! ```text
 //! shown     V = ½ aᵀ I a + μᵀ (J a + e) − ½ μᵀ Σ μ + pᵀ a                        (1)
