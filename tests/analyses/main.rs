@@ -22,6 +22,7 @@ mod loops;
 mod messages;
 mod methods_outside;
 mod outputs;
+mod rates;
 mod references;
 mod saved;
 mod statics;

@@ -174,3 +174,23 @@ fn a_sensor_changes_the_distance_of_outputs_in_kinematic_and_dynamic_runs_alike(
         );
     }
 }
+
+#[test]
+fn a_spline_read_outside_its_data_is_told_however_few_outputs_there_are() {
+    // x = SIN(TIME), of which outputs at multiples of half a turn show nothing
+    let text = format!(
+        "{SLIDER}SPLINE/1, X=-0.9,-0.4,0,0.4,0.9, Y=-0.9,-0.4,0,0.4,0.9\n\
+         SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=11, FUNCTION=-AKISPL(DX(20,1),0,1)\n"
+    );
+    for method in METHODS {
+        for outputs in [2, 100] {
+            let mut s = running::session_by(&text, &["DX(20,1)"], method, 1e-6);
+            running::go(&mut s, Analysis::Dynamic, std::f64::consts::TAU, outputs);
+            let told = s.run.record.warned();
+            assert!(
+                told.iter().any(|w| w.contains("SPLINE/1")),
+                "{method} {outputs}: {told:?}"
+            );
+        }
+    }
+}

@@ -98,7 +98,7 @@ impl Session {
             Diagnostic::error(Cause::Domain, what).element(lost.function.to_string())
         }));
         let mut readings = self.readings(&system);
-        readings.see(std::slice::from_ref(&system.numbers));
+        readings.see(&system.numbers);
         self.warn_of_splines(readings);
         found.extend(driving(&system.scene, &self.model));
         Ok(found)

@@ -180,7 +180,7 @@ impl Session {
             });
             self.weigh(&mut seen.balance, system, rows);
             seen.looks.see(rows);
-            seen.readings.see(rows);
+            rows.iter().for_each(|row| seen.readings.see(row));
             seen.rows = end;
             self.hand_over(rows.len());
         }
@@ -240,6 +240,8 @@ pub(super) struct Follower<'a> {
     watch: &'a mut dyn Watch,
     /// whether these rows are the results, and not those of a repetition
     is_kept: bool,
+    /// all numbers at the end of the last step, where somebody reads them
+    visited: Vec<f64>,
     last: Instant,
 }
 
@@ -256,6 +258,7 @@ impl<'a> Follower<'a> {
             seen,
             watch,
             is_kept,
+            visited: Vec::new(),
             last: Instant::now(),
         }
     }
@@ -267,6 +270,13 @@ impl Watch for Follower<'_> {
     }
     fn progress(&mut self, t: f64, h: f64, stats: &Stats) {
         self.watch.progress(t, h, stats);
+    }
+    fn visit(&mut self, system: &System, t: f64, y: &[f64]) {
+        if self.is_kept && !self.seen.readings.is_empty() {
+            self.visited.clone_from(&system.numbers);
+            (system.scene.layout).set_state(&mut self.visited, t, y);
+            self.seen.readings.see(&self.visited);
+        }
     }
     fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {
         let n = trajectory.rows.len();

@@ -1,5 +1,5 @@
 //! Splines that are read outside their data, where what they yield is extrapolated: their arguments
-//! are evaluated at the rows of results.
+//! are evaluated at the ends of steps and at the rows of results.
 
 use super::Session;
 use crate::analysis::system::System;
@@ -93,29 +93,35 @@ pub(super) struct Readings {
     program: Option<Program>,
     /// by call: the first time outside, and the value that is farthest from the data
     outside: Vec<Option<(f64, f64)>>,
+    work: Work,
+    values: Vec<f64>,
 }
 
 impl Readings {
-    /// Evaluates the arguments at states.
-    pub fn see(&mut self, rows: &[Vec<f64>]) {
+    /// Returns whether nothing reads a spline.
+    pub fn is_empty(&self) -> bool {
+        self.program.is_none()
+    }
+
+    /// Evaluates the arguments at all numbers of a state.
+    pub fn see(&mut self, numbers: &[f64]) {
         let Some(program) = &self.program else {
             return;
         };
-        let mut work = Work::default();
-        let mut values = vec![0.0; self.calls.len()];
-        for row in rows {
-            program.run(row, &mut work, &mut values);
-            for ((call, &value), seen) in self.calls.iter().zip(&values).zip(&mut self.outside) {
-                let beyond = |x: f64| (call.range[0] - x).max(x - call.range[1]);
-                if beyond(value) > ROUNDING * (call.range[1] - call.range[0]) {
-                    let (since, worst) = seen.unwrap_or((row[Layout::TIME], value));
-                    let worst = if beyond(value) > beyond(worst) {
-                        value
-                    } else {
-                        worst
-                    };
-                    *seen = Some((since, worst));
-                }
+        self.values.resize(self.calls.len(), 0.0);
+        program.run(numbers, &mut self.work, &mut self.values);
+        let calls = self.calls.iter().zip(&self.values);
+        for ((call, &value), seen) in calls.zip(&mut self.outside) {
+            let beyond = |x: f64| (call.range[0] - x).max(x - call.range[1]);
+            if beyond(value) > ROUNDING * (call.range[1] - call.range[0]) {
+                let (since, worst) = seen.unwrap_or((numbers[Layout::TIME], value));
+                let since = since.min(numbers[Layout::TIME]);
+                let worst = if beyond(value) > beyond(worst) {
+                    value
+                } else {
+                    worst
+                };
+                *seen = Some((since, worst));
             }
         }
     }
@@ -137,6 +143,7 @@ impl Session {
             outside: vec![None; calls.len()],
             program: Some(program),
             calls,
+            ..Readings::default()
         }
     }
 

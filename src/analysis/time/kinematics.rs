@@ -92,6 +92,8 @@ impl Tracer<'_> {
                 let last = (self.path.now().t, self.path.step());
                 self.out.last_step = Some(last);
                 watch.progress(last.0, last.1, &self.out.stats);
+                let now = self.path.now();
+                watch.visit(self.system, now.t, &now.y);
             }
             match self.path.within(self.system, target) {
                 Ok(y) => break y,

@@ -374,6 +374,7 @@ impl<'a> Leg<'a> {
         self.account(method, step);
         self.out.last_step = Some((step.t1, step.h));
         self.watch.progress(step.t1, step.h, method.stats());
+        self.watch.visit(self.system, step.t1, method.y());
         self.watch.collect(self.system, self.out);
         anew
     }

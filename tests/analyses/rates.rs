@@ -1,0 +1,112 @@
+//! Rates depend on time, state and configuration alone: asked again, in another order, after other questions or beside the equations of
+//! implicit methods, they have the same bits.
+
+use cognate::analysis::start::{assemble, velocities};
+use cognate::analysis::system::System;
+use cognate::analysis::system::implicit::Formulation;
+use cognate::model::Model;
+use cognate::numeric::Ode;
+use cognate::scene::configuration::Configuration;
+use cognate::scene::{Scene, build};
+use proptest::prelude::*;
+
+/// Mechanisms of `tests/data/references`: chains, loops, contacts, stops and bushings.
+const MODELS: [&str; 10] = [
+    "a01_pendulum",
+    "a02_nfourbar_2",
+    "a04_bricard",
+    "a05_flyball",
+    "bistop_slot",
+    "bounce_k1e6",
+    "double_pendulum",
+    "heavy_top",
+    "settle_sphere",
+    "stiff_bushing",
+];
+
+/// A reference as an assembled system, and its state.
+fn system(name: &str) -> (System, Vec<f64>) {
+    let file = format!(
+        "{}/tests/data/references/{name}.adm",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(&file).expect("it is there");
+    let model = Model::from_text(&text).unwrap_or_else(|e| panic!("{e}"));
+    let options = build::Options {
+        mode: 4,
+        ..build::Options::default()
+    };
+    let scene = Scene::compile(&model, &options).expect("a scene");
+    let mut configuration = Configuration::new(&scene);
+    let mut q = scene.initial_q.clone();
+    assemble::positions(&scene, &mut configuration, 0.0, &mut q, &[]).expect("positions");
+    let v = velocities::velocities(scene.within(&configuration), &model, 0.0, &q, &[]);
+    let v = v.expect("velocities");
+    let system = System::new(scene, configuration).expect("a system");
+    let l = system.scene.layout;
+    let mut y = system.numbers[l.y()].to_vec();
+    l.state_mut(&mut y).q.copy_from_slice(&q);
+    l.state_mut(&mut y).v.copy_from_slice(&v);
+    (system, y)
+}
+
+/// States near the first: each number moved by its part of a pattern.
+fn states(y: &[f64], pattern: &[f64]) -> Vec<(f64, Vec<f64>)> {
+    let moved = |k: usize| {
+        let part = |i: usize| pattern[(k + i) % pattern.len()];
+        let numbers = y.iter().enumerate().map(|(i, y)| y + 1e-3 * part(i));
+        (0.01 * k as f64, numbers.collect())
+    };
+    (0..pattern.len()).map(moved).collect()
+}
+
+/// Bits of the rates at a state, or the failure.
+fn rate(system: &mut System, (t, y): &(f64, Vec<f64>)) -> Result<Vec<u64>, usize> {
+    let mut rates = vec![0.0; y.len()];
+    match Ode::rate(system, *t, y, &mut rates) {
+        Ok(()) => Ok(rates.iter().map(|x| x.to_bits()).collect()),
+        Err(failure) => Err(failure.what),
+    }
+}
+
+/// Asks other questions at a state.
+fn ask_otherwise(system: &mut System, (t, y): &(f64, Vec<f64>)) {
+    let n = y.len();
+    let mut switches = vec![0.0; system.branches().len()];
+    system.switches(*t, y, &mut switches);
+    system.row(*t, y);
+    let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
+    let _ = Ode::jacobian(system, *t, y, &mut jacobian, &mut dfdt);
+    let mut projected = y.clone();
+    let _ = Ode::project(system, *t, &mut projected);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    #[test]
+    fn rates_depend_on_time_state_and_configuration_alone(
+        which in 0..MODELS.len(),
+        pattern in prop::collection::vec(-1.0..1.0_f64, 5),
+        order in Just((0..5).collect::<Vec<usize>>()).prop_shuffle(),
+    ) {
+        let name = MODELS[which];
+        let (mut fresh, y) = system(name);
+        let states = states(&y, &pattern);
+        let expected: Vec<_> = states.iter().map(|s| rate(&mut fresh, s)).collect();
+        let (mut other, _) = system(name);
+        for &k in &order {
+            prop_assert_eq!(&rate(&mut other, &states[k]), &expected[k], "{} in another order", name);
+        }
+        for &k in &order {
+            ask_otherwise(&mut other, &states[(k + 1) % states.len()]);
+            prop_assert_eq!(&rate(&mut other, &states[k]), &expected[k], "{} after other questions", name);
+        }
+        let (mut implicit, _) = system(name);
+        if implicit.make_implicit(Formulation::Stabilized).is_ok() {
+            for &k in &order {
+                prop_assert_eq!(&rate(&mut implicit, &states[k]), &expected[k], "{} beside residuals", name);
+            }
+        }
+    }
+}
