@@ -34,6 +34,11 @@ const PARALLELOGRAM: &str = "PART/2, MASS=1, CM=20, IP=1,1,1, WZ=5\nMARKER/20, P
 
 /// Runs a loop by every method with some requests: a column vanishes and energy stays, or the run ends by name.
 fn right_or_told(text: &str, column: &str, requests: &[f64]) {
+    right_or_told_until(3.0, text, column, requests);
+}
+
+/// The same until a time.
+fn right_or_told_until(end: f64, text: &str, column: &str, requests: &[f64]) {
     let (mut wrong, mut completed) = (Vec::new(), 0);
     for method in METHODS {
         for &request in requests {
@@ -43,7 +48,7 @@ fn right_or_told(text: &str, column: &str, requests: &[f64]) {
             };
             let mut s = begin(model(text), "loop", options);
             let status = s
-                .simulate(Analysis::Dynamic, 3.0, 60, &mut Unwatched)
+                .simulate(Analysis::Dynamic, end, 60, &mut Unwatched)
                 .expect("it can be run");
             let record = &s.run.record;
             let drift = record.energy.error();
@@ -97,11 +102,40 @@ fn a_rod_hardly_longer_than_its_crank_stays_on_its_branch() {
 
 #[test]
 fn a_rod_hardly_shorter_than_its_crank_turns_it_back() {
-    for shorter in [1e-3, 1e-6] {
+    for shorter in [1e-3, 1e-6, 1e-9] {
         right_or_told(
             &crank_and_rod(1.0 - shorter),
             "MIN(COS(AZ(21,1)),0)",
             &[1e-4, 1e-6, 1e-8],
         );
+    }
+}
+
+/// The same crank and rod at an angle of the crank, rad.
+fn crank_at(angle: f64, rod: f64) -> String {
+    let (x, y) = (angle.cos(), angle.sin());
+    let down = (y / rod).asin();
+    let slider = x + rod * down.cos();
+    format!(
+        "PART/2, MASS=1, CM=20, IP=1,1,1, WZ=3, REULER={angle:?},0,0\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=1,0,0\n\
+         PART/3, MASS=1, CM=30, IP=1,1,1, QG={x:?},{y:?},0, REULER={:?},0,0\nMARKER/30, PART=3\nMARKER/31, PART=3, QP={rod:?},0,0\n\
+         PART/4, MASS=1, CM=40, IP=1,1,1, QG={slider:?},0,0\nMARKER/40, PART=4\nMARKER/41, PART=4, REULER=90D,90D,0\n\
+         MARKER/11, PART=1, REULER=90D,90D,0\nJOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=21\n\
+         JOINT/3, REVOLUTE, I=31, J=40\nJOINT/4, TRANSLATIONAL, I=41, J=11\n",
+        -down
+    )
+}
+
+#[test]
+fn a_shorter_rod_turns_its_crank_back_wherever_steps_fall() {
+    for angle in [0.3, 1.1] {
+        for shorter in [1e-5, 1e-9] {
+            right_or_told_until(
+                6.0,
+                &crank_at(angle, 1.0 - shorter),
+                "MIN(COS(AZ(21,1)),0)",
+                &[1e-3, 1e-4],
+            );
+        }
     }
 }

@@ -280,6 +280,12 @@ impl System {
         self.singular_steps.is_weak()
     }
 
+    /// Returns whether rows have nearly been dependent since that was last taken note of, also
+    /// between two evaluations of a step.
+    pub fn was_near_dependence(&self) -> bool {
+        self.singular_steps.was_near()
+    }
+
     /// Returns the largest violation in position of a row that takes part, at all numbers of a
     /// state, relative to what counts as one.
     pub fn worst_gap(&mut self, numbers: &[f64]) -> f64 {
@@ -349,6 +355,18 @@ impl System {
     /// Returns a bound of the speed of any angle at a state, rad per time; at a rate, of its
     /// change.
     pub fn spin(&self, y: &[f64]) -> f64 {
+        self.speeds_of_angles(y).map(|(_, speed)| speed).sum()
+    }
+
+    /// Returns the speed of the fastest angle among the coordinates whose places in v are
+    /// `counted`, rad per time.
+    pub fn fastest_angle(&self, y: &[f64], counted: impl Fn(usize) -> bool) -> f64 {
+        let speeds = self.speeds_of_angles(y).filter(|(v, _)| counted(*v));
+        speeds.fold(0.0, |most, (_, speed)| speed.max(most))
+    }
+
+    /// Iterates over the coordinates that are angles: their places in v, and their speeds.
+    fn speeds_of_angles<'a>(&'a self, y: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
         let l = self.scene.layout;
         let speeds = self
             .scene
@@ -358,8 +376,7 @@ impl System {
             .filter(|(c, _)| c.angular);
         speeds
             .filter_map(|(_, f)| f.v)
-            .map(|v| l.state(y).v[v].abs())
-            .sum()
+            .map(move |v| (v, l.state(y).v[v].abs()))
     }
 
     /// Returns how fast coordinates and drives move at a state: the sum of their speeds, rad per

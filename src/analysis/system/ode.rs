@@ -7,6 +7,7 @@
 use super::System;
 use super::recording::Recording;
 use super::rows::ROUNDING;
+use super::singular_step::APPROACHING_PIVOT;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::{Failure, Ode, Relation};
 use crate::scene::Source;
@@ -170,8 +171,11 @@ impl Ode for System {
         let l = self.scene.layout;
         self.recorded.run_rate(&self.numbers);
         let (_, strength) = l.rates(&self.recorded.rate.values);
-        if strength < NEAR_SINGULAR_PIVOT && self.recorded.rows.projection.is_some() {
-            self.evaluate_weak(t, y);
+        if strength < APPROACHING_PIVOT && self.recorded.rows.projection.is_some() {
+            self.singular_steps.see_approach(t, strength);
+            if strength < NEAR_SINGULAR_PIVOT {
+                self.evaluate_weak(t, y);
+            }
         }
         ydot.copy_from_slice(l.rates(&self.recorded.rate.values).0);
         // a sum is finite only if all its terms are

@@ -16,7 +16,14 @@ pub struct SingularSteps {
     weak: bool,
     /// evaluations are made aside, and not taken note of
     paused: bool,
+    /// evaluations of the step in work at which rows are on the way to dependence: time, σ
+    approach: Vec<(f64, f64)>,
+    /// a step may have passed a position where rows are dependent between its evaluations
+    passed_between: bool,
 }
+
+/// Strength of rows below which they may become dependent before the next evaluation.
+pub const APPROACHING_PIVOT: f64 = 0.3;
 
 /// Evaluations remembered, at most.
 const MAX_SEEN: usize = 64;
@@ -50,20 +57,55 @@ impl SingularSteps {
         self.paused
     }
 
+    /// Takes note of an evaluation with rows that approach dependence.
+    pub fn see_approach(&mut self, t: f64, strength: f64) {
+        if self.approach.len() < MAX_SEEN && !self.paused {
+            self.approach.push((t, strength.max(0.0).sqrt()));
+        }
+    }
+
     /// Returns whether an evaluation had weak rows since [`SingularSteps::take_weak`].
     pub fn is_weak(&self) -> bool {
         self.weak
     }
 
+    /// Returns whether rows have nearly been dependent since [`SingularSteps::take_weak`], at an
+    /// evaluation or between two.
+    pub fn was_near(&self) -> bool {
+        self.weak || self.passed_between
+    }
+
     /// Returns whether an evaluation had weak rows since this was last asked.
     pub fn take_weak(&mut self) -> bool {
+        self.passed_between = false;
         std::mem::take(&mut self.weak)
+    }
+
+    /// Finds out whether σ, which falls and rises in proportion to time, vanishes between two
+    /// evaluations of the step from `t`, and forgets them.
+    fn look_between(&mut self, t: f64) {
+        let seen = &mut self.approach;
+        seen.retain(|s| s.0 >= t);
+        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        seen.dedup_by(|a, b| a.0 == b.0);
+        let vanishes = |from: (f64, f64), at: (f64, f64), until: f64| {
+            let slope = (at.1 - from.1) / (at.0 - from.0);
+            slope * (until - at.0) + at.1 <= 0.0
+        };
+        let between = |four: &[(f64, f64)]| {
+            vanishes(four[0], four[1], four[2].0) || vanishes(four[3], four[2], four[1].0)
+        };
+        self.passed_between |= seen.windows(4).any(between);
+        seen.clear();
     }
 
     /// Returns a better length of the step from `t` that was attempted with `h`, if there is one,
     /// and forgets the evaluations after `t`. `gap`: the part of a step without evaluations;
     /// `harmful`: the strength below which an evaluation is too near.
     pub fn place(&mut self, t: f64, h: f64, gap: [f64; 2], harmful: f64) -> Option<f64> {
+        if !self.approach.is_empty() {
+            self.look_between(t);
+        }
         if self.seen.is_empty() {
             return None;
         }
@@ -174,6 +216,19 @@ mod tests {
                 singular_steps.see(t, (2.0 * (t - at)).powi(2));
             }
         }
+    }
+
+    #[test]
+    fn a_position_between_evaluations_that_are_all_far_from_it_is_noticed() {
+        let noticed = |least: f64| {
+            let mut singular_steps = SingularSteps::default();
+            for c in NODES {
+                singular_steps.see_approach(c, (c - 0.48_f64).powi(2) + least * least);
+            }
+            singular_steps.place(0.0, 1.0, GAP, f64::INFINITY);
+            singular_steps.was_near() && !singular_steps.is_weak()
+        };
+        assert!(noticed(0.0) && noticed(1e-4) && !noticed(0.3));
     }
 
     #[test]

@@ -15,7 +15,8 @@ use crate::analysis::time::counting::Counting;
 use crate::analysis::time::energy::Accountant;
 use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
-use crate::analysis::time::ranks::Sides;
+use crate::analysis::time::ranks::{Side, Sides};
+use crate::analysis::time::states::Node;
 use crate::analysis::time::switches::{Switches, Verdict};
 use crate::analysis::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
@@ -94,6 +95,8 @@ pub(super) struct Leg<'a> {
     pub(super) counting: Counting,
     /// what tells branches of loops from each other; `None`: not needed so far
     pub(super) sides: Option<Sides>,
+    /// the end of the last step at which they were looked at, and the rows there
+    pub(super) last_look: Option<(Node, Side)>,
     /// attempted steps, and the time, when the run last came further
     progressed: (usize, f64),
     /// attempted steps after which it must have come further
@@ -153,6 +156,7 @@ impl<'a> Leg<'a> {
             before: vec![0.0; if has_rows { size } else { 0 }],
             counting: Counting::default(),
             sides: None,
+            last_look: None,
             progressed: (0, limits.start),
             stalled_steps: affordable.clamp(least, most),
             changes: 0,

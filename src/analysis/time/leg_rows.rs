@@ -15,6 +15,13 @@ const FOLLOWS_TOLERANCE: f64 = 1e-8;
 const STEP_TOLERANCE: f64 = 1e-6;
 /// Halvings of a step because of rows that are left out, in a row.
 const MAX_HALVINGS: usize = 40;
+/// Turn of the fastest angle in a step, rad, from which on no evaluation need be near a position
+/// where rows are dependent that it has passed.
+const LONG_TURN: f64 = 1.0;
+/// Turn of the fastest angle, rad, in which rows do not become dependent twice.
+const TURN_OF_PIECE: f64 = 1.0;
+/// Pieces in which a step is looked at, at most.
+const MAX_PIECES: f64 = 64.0;
 /// Time to a position where rows are dependent, as a part of the duration, that counts as none.
 const STANDING_TIME: f64 = 1e-6;
 /// Velocities of the largest mechanism all of whose states are kept to find positions where rows
@@ -41,12 +48,15 @@ impl Leg<'_> {
     }
 
     /// Returns whether a step leads to another branch that only comes near the present one, or to
-    /// a position where branches meet, from which rounding would choose one. Methods
-    /// that evaluate rates notice where rows are nearly dependent; after a step of another method
-    /// it is always looked for.
-    pub(super) fn leaves_branch(&mut self, method: &dyn Method<System>, step: &Step) -> bool {
-        let near = !self.limits.may_slide || self.system.is_weak();
-        if self.before.is_empty() || !near {
+    /// a position where branches meet, from which rounding would choose one. Methods that evaluate
+    /// rates notice where rows are, or between evaluations may have been, nearly dependent; after a
+    /// step of another method it is always looked for.
+    pub(super) fn leaves_branch(&mut self, method: &mut dyn Method<System>, step: &Step) -> bool {
+        if self.before.is_empty() {
+            return false;
+        }
+        let near = !self.limits.may_slide || self.system.was_near_dependence();
+        if !near && self.system.fastest_angle(method.y(), |_| true) * step.h <= LONG_TURN {
             return false;
         }
         if self.sides.is_none() {
@@ -55,25 +65,58 @@ impl Leg<'_> {
         let Some(mut sides) = self.sides.take() else {
             return false;
         };
+        let in_loop = |v: usize| sides.coordinates().any(|places| places.contains(&v));
+        let turn = self.system.fastest_angle(method.y(), in_loop) * step.h;
+        if !near && turn <= LONG_TURN {
+            self.sides = Some(sides);
+            return false;
+        }
+        let mut nodes = self.pieces(method, step, turn);
+        let mut looks = Vec::with_capacity(nodes.len());
+        for node in &nodes {
+            // the last look, if that was where this step begins
+            let last = self.last_look.take().filter(|(there, _)| there == node);
+            looks.push(match last {
+                Some((_, side)) => side,
+                None => sides.look(&self.system.numbers_at(node.t, &node.y)),
+            });
+        }
+        let patience = STANDING_TIME * (self.limits.end - self.limits.start);
+        let leaves = nodes.windows(2).zip(looks.windows(2)).any(|(ends, looks)| {
+            let ([a, b], [from, to]) = (ends, looks) else {
+                return false;
+            };
+            let turned = Sides::turned(from, to);
+            match turned.is_empty() {
+                true => sides.stands([from, to], [a.t, b.t], patience),
+                false if !sides.can_judge(&turned) => false,
+                false => !sides.meet(self.system, (&turned, from), [a, b]),
+            }
+        });
+        self.sides = Some(sides);
+        self.last_look = nodes.pop().zip(looks.pop());
+        leaves
+    }
+
+    /// Returns the ends of a step in which the fastest angle turns by `turn` rad, and states
+    /// between them from one to the next of which rows cannot turn twice.
+    fn pieces(&mut self, method: &mut dyn Method<System>, step: &Step, turn: f64) -> Vec<Node> {
         let l = self.system.scene.layout;
         let node = |t: f64, y: &[f64]| Node {
             t,
             y: l.without_multipliers(y).to_vec(),
         };
-        let ends = [node(step.t0, &self.before), node(step.t1, method.y())];
-        let [from, to] = [0, 1].map(|k| {
-            let numbers = self.system.numbers_at(ends[k].t, &ends[k].y);
-            sides.look(&numbers)
-        });
-        let turned = Sides::turned(&from, &to);
-        let patience = STANDING_TIME * (self.limits.end - self.limits.start);
-        let leaves = match turned.is_empty() {
-            true => sides.stands([&from, &to], [step.t0, step.t1], patience),
-            false if !sides.can_judge(&turned) => false,
-            false => !sides.meet(self.system, (&turned, &from), [&ends[0], &ends[1]]),
-        };
-        self.sides = Some(sides);
-        leaves
+        let pieces = (turn / TURN_OF_PIECE).ceil().clamp(1.0, MAX_PIECES) as usize;
+        let mut nodes = vec![node(step.t0, &self.before)];
+        let mut between = method.y().to_vec();
+        for k in 1..pieces {
+            let t = step.t0 + (step.t1 - step.t0) * k as f64 / pieces as f64;
+            if (method.interpolate(self.system, t, &mut between)).is_ok() {
+                nodes.push(node(t, &between));
+            }
+        }
+        nodes.push(node(step.t1, method.y()));
+        nodes
     }
 
     /// Makes the next step half as long as one that has left its branch.

@@ -5,7 +5,7 @@ use crate::scene::layout::Layout;
 use crate::scene::mover::Mover;
 
 /// A state at an instant.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// time
     pub t: f64,
