@@ -270,7 +270,7 @@ pub fn as_json(diagnostics: &[Diagnostic]) -> Value {
         };
         json!({
             "code": d.code, "severity": severity, "message": d.message, "file": d.file, "line": d.line, "column": d.column,
-            "start": d.span.map(|s| s.start), "end": d.span.map(|s| s.end), "element": d.element, "name": d.name, "help": d.help,
+            "start": d.span.map(|s| s.start), "end": d.span.map(|s| s.end), "element": d.element, "part": d.part, "name": d.name, "help": d.help,
             "marks": d.marks.iter().map(|(s, what)| json!({ "start": s.start, "end": s.end, "what": what })).collect::<Vec<_>>(),
         })
     };

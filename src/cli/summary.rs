@@ -266,7 +266,7 @@ fn warnings(all: &[Warning]) -> Vec<String> {
         *count += 1;
         *count <= ALIKE
     };
-    let shown = all.iter().filter(few).map(Warning::named);
+    let shown = all.iter().filter(few).map(Warning::sentence);
     let mut shown: Vec<String> = shown.collect();
     let hidden = all.len() - shown.len();
     if hidden > 0 {
@@ -397,9 +397,9 @@ mod tests {
     fn of_each_kind_of_warning_three_are_shown() {
         let warning = |code, element: String, what: &str| Warning {
             code,
-            sentence: format!("{element}: {what}"),
-            element: Some(element),
+            subject: Some(element.into()),
             name: None,
+            rest: format!(": {what}"),
         };
         let left_out = |k| warning("skipped", format!("CONTACT/{k}"), "is left out");
         let mut all: Vec<Warning> = (0..50).map(left_out).collect();

@@ -51,8 +51,7 @@ impl Dataset {
     /// Adds the place of an element's statement to what is said about it; leaves it unchanged where
     /// that is not known, or a place has been given.
     pub fn locate(&self, d: Diagnostic) -> Diagnostic {
-        let named = d.element.as_deref().and_then(|e| e.split(' ').next());
-        let (None, Some(element)) = (&d.file, named) else {
+        let (None, Some(element)) = (&d.file, &d.element) else {
             return d;
         };
         let mut records = self.records.iter().flatten();

@@ -7,9 +7,11 @@
 mod cause;
 pub mod codes;
 mod error;
+mod subject;
 
 pub use cause::Cause;
 pub use error::Error;
+pub use subject::Subject;
 
 use std::fmt;
 
@@ -60,6 +62,8 @@ pub struct Diagnostic {
     pub column: usize,
     /// the element concerned, for example `SFORCE/3`
     pub element: Option<String>,
+    /// the row, function or state of that element, for example `Zi.Xj`
+    pub part: Option<String>,
     /// keyword of the argument concerned, for example `IP`; where the element was read from a file,
     /// the message stands at that argument
     pub argument: Option<&'static str>,
@@ -84,6 +88,7 @@ impl Diagnostic {
             line: 0,
             column: 0,
             element: None,
+            part: None,
             argument: None,
             name: None,
             marks: Vec::new(),
@@ -115,17 +120,20 @@ impl Diagnostic {
         self.help.push(advice.into());
         self
     }
-    /// Returns the element concerned as its file names it: "JOINT/47 'hinge'".
+    /// Returns the element concerned, and the part of it, as the file names it: "JOINT/47 'hinge'
+    /// Zi.Xj".
     pub fn named(&self) -> Option<String> {
-        let element = self.element.as_ref()?;
-        Some(match &self.name {
-            Some(name) => format!("{element} '{name}'"),
-            None => element.clone(),
-        })
+        Some(self.subject()?.named(self.name.as_deref()))
     }
-    /// Sets the element concerned.
-    pub fn element(mut self, element: impl Into<String>) -> Self {
-        self.element = Some(element.into());
+    /// Returns the element concerned and the part of it.
+    pub fn subject(&self) -> Option<Subject> {
+        let (element, part) = (self.element.clone()?, self.part.clone());
+        Some(Subject { element, part })
+    }
+    /// Sets the element concerned, or the part of one.
+    pub fn element(mut self, subject: impl Into<Subject>) -> Self {
+        let Subject { element, part } = subject.into();
+        (self.element, self.part) = (Some(element), part);
         self
     }
 }

@@ -8,6 +8,7 @@
 //! printed.
 
 use super::{ById, Formula, Model, Place};
+use crate::diagnostic::Subject;
 use crate::expr::signature;
 use std::fmt;
 use std::str::FromStr;
@@ -158,6 +159,12 @@ impl fmt::Display for ElementId {
 impl From<ElementId> for String {
     fn from(element: ElementId) -> Self {
         element.to_string()
+    }
+}
+
+impl From<ElementId> for Subject {
+    fn from(element: ElementId) -> Self {
+        element.to_string().into()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The record of a run: how it ended, what it cost, and what the user should know.
 
 use super::{Kind, Seconds};
+use crate::diagnostic::Subject;
 
 /// The way in which a run, or one simulation of it, ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -212,34 +213,34 @@ pub struct Record {
 impl Record {
     /// Returns the sentences of its warnings.
     pub fn warned(&self) -> Vec<String> {
-        let sentences = self.warnings.iter().map(|w| w.sentence.clone());
-        sentences.collect()
+        self.warnings.iter().map(Warning::sentence).collect()
     }
 }
 
-/// A warning: its kind, the element, and the sentence.
+/// A warning: its kind, the element, and the rest of the sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     /// stable short name of its kind, which `cognate explain` explains
     pub code: &'static str,
-    /// the element or column that it is about
-    pub element: Option<String>,
+    /// the element or column that its sentence begins with
+    pub subject: Option<Subject>,
     /// the name that the dataset gives that element
     pub name: Option<String>,
-    /// all of it in a sentence
-    pub sentence: String,
+    /// the sentence after the subject, from the separator on; all of it where there is no subject
+    pub rest: String,
 }
 
 impl Warning {
     /// Returns the sentence, with the name of the element where the dataset gives one: "JOINT/47
     /// 'hinge': …".
-    pub fn named(&self) -> String {
-        let after = |element: &String| self.sentence.strip_prefix(element.as_str());
-        let rest = self.element.as_ref().and_then(after);
-        match (&self.element, &self.name, rest) {
-            (Some(element), Some(name), Some(rest)) => format!("{element} '{name}'{rest}"),
-            _ => self.sentence.clone(),
-        }
+    pub fn sentence(&self) -> String {
+        let name = self.name.as_deref();
+        let subject = self.subject.as_ref().map(|s| s.named(name));
+        subject.unwrap_or_default() + &self.rest
+    }
+    /// Returns what is said of the subject, without the separator before it.
+    pub fn message(&self) -> &str {
+        self.rest.trim_start_matches([':', ' '])
     }
 }
 

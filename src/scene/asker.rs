@@ -2,6 +2,7 @@
 
 use super::reads::input_name;
 use super::unknown::DifferentialId;
+use crate::diagnostic::Subject;
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
 use crate::model::ElementId;
@@ -70,14 +71,20 @@ impl From<ElementId> for Asker {
 
 impl fmt::Display for Asker {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Function(element, part) => write!(f, "{element} {part}"),
-            Self::Element(element) => element.fmt(f),
-            Self::Column(text) => f.write_str(text),
-            Self::Measure(measure) => f.write_str(measure.name()),
-            Self::Input(input) => f.write_str(&input_name(*input)),
-            Self::Equation(id) => id.fmt(f),
-            Self::Rate(number) => write!(f, "DIF1({number})"),
+        Subject::from(self).fmt(f)
+    }
+}
+
+impl From<&Asker> for Subject {
+    fn from(asker: &Asker) -> Self {
+        match asker {
+            Asker::Function(element, part) => Self::part_of(*element, part.to_string()),
+            Asker::Element(element) => (*element).into(),
+            Asker::Column(text) => (**text).into(),
+            Asker::Measure(measure) => measure.name().into(),
+            Asker::Input(input) => input_name(*input).into(),
+            Asker::Equation(id) => (*id).into(),
+            Asker::Rate(number) => format!("DIF1({number})").into(),
         }
     }
 }

@@ -294,9 +294,8 @@ impl<'m> Builder<'m> {
             Key::Value(d) => equations[*d][0],
         };
         if let Err(unsolvable) = loops::find(&mut self.scene, &guess) {
-            let error = |u: Unsupported| {
-                Diagnostic::error("loop", u.lack.to_string()).element(u.asked_by.to_string())
-            };
+            let error =
+                |u: Unsupported| Diagnostic::error("loop", u.lack.to_string()).element(&u.asked_by);
             c.errors.extend(unsolvable.into_iter().map(error));
         }
     }

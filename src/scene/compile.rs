@@ -6,7 +6,7 @@ use super::{
     ConstraintElement, Coordinate, Link, LinkIx, LinkMotion, MarkerOnLink, PartOnLink, Row,
     RowKind, Source,
 };
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::geometry::orientation;
 use crate::model::{ElementId, ElementKind, Model, Part};
 use crate::physics::joint::{Motion, Tie, quarter_x};
@@ -67,7 +67,7 @@ impl<'m> Compiler<'m> {
         }
     }
 
-    pub fn error(&mut self, element: impl Into<String>, message: impl Into<String>) {
+    pub fn error(&mut self, element: impl Into<Subject>, message: impl Into<String>) {
         self.errors
             .push(Diagnostic::error("model", message).element(element));
     }

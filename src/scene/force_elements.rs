@@ -75,23 +75,12 @@ impl Builder<'_> {
         for (id, f) in model.active(ElementKind::Sforce, &model.sforces) {
             let id = ElementKind::Sforce.id(id);
             let formula = self.formula(c, &Asker::argument(id, "FUNCTION"), &f.function);
-            let (Some(i), Some(j)) = (c.marker(f.i, id), c.marker(f.j, id)) else {
-                continue;
-            };
-            let reaction = (!f.action_only).then(|| self.scene.markers[j].link);
             let law = ForceLaw::Single {
                 rotational: f.rotational,
                 action_only: f.action_only,
                 formula,
             };
-            self.scene.forces.push(ForceElement {
-                id,
-                i,
-                j: Some(j),
-                floating: 0,
-                reaction,
-                law,
-            });
+            self.along(c, id, (f.i, f.j), !f.action_only, law);
         }
     }
 
@@ -103,10 +92,22 @@ impl Builder<'_> {
         ij: (u32, u32),
         law: ForceLaw,
     ) {
+        self.along(c, id, ij, true, law);
+    }
+
+    /// Makes an element between I and J; `reacts`: it reacts on J's part.
+    fn along(
+        &mut self,
+        c: &mut Compiler,
+        id: ElementId,
+        ij: (u32, u32),
+        reacts: bool,
+        law: ForceLaw,
+    ) {
         let (Some(i), Some(j)) = (c.marker(ij.0, id), c.marker(ij.1, id)) else {
             return;
         };
-        let reaction = Some(self.scene.markers[j].link);
+        let reaction = reacts.then(|| self.scene.markers[j].link);
         self.scene.forces.push(ForceElement {
             id,
             i,

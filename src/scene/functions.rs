@@ -41,7 +41,7 @@ impl Builder<'_> {
         let compiled = match super::formula::compile(text, &self.bindings) {
             Ok(compiled) => compiled,
             Err(mut d) => {
-                d.element = Some(owner.to_string());
+                d = d.element(owner);
                 if d.is(Cause::UnknownElement) {
                     c.errors.append(&mut self.unusable);
                 }
@@ -116,7 +116,7 @@ impl Builder<'_> {
         });
         let Some((element, closure)) = known else {
             let message = "USER needs a routine that is not part of the dataset";
-            c.errors.push(Diagnostic::error(Cause::UserRoutine, message).element(owner.to_string()).help(
+            c.errors.push(Diagnostic::error(Cause::UserRoutine, message).element(owner).help(
                 "register a closure for it through the library, switch the element off, or take what USER would compute as zero (--zero-user)",
             ));
             return vec![usize::MAX; n];

@@ -316,8 +316,7 @@ impl Builder<'_> {
                         "reads {} of {what}, which is left out: zero",
                         measure.name()
                     );
-                    let warning =
-                        Diagnostic::warning("reads_zero", what).element(formula.owner.to_string());
+                    let warning = Diagnostic::warning("reads_zero", what).element(&formula.owner);
                     if !told.contains(&warning) {
                         told.push(warning);
                     }

@@ -3,6 +3,7 @@
 //! The state of one simulation finds its place in the next by these. As texts they stand in
 //! messages, among the results and in saved states, which read them back.
 
+use crate::diagnostic::Subject;
 use crate::model::{ElementId, ElementKind};
 use std::fmt;
 use std::str::FromStr;
@@ -142,7 +143,13 @@ impl CoordinateId {
 
 impl fmt::Display for CoordinateId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.element, self.variable)
+        Subject::from(*self).fmt(f)
+    }
+}
+
+impl From<CoordinateId> for Subject {
+    fn from(id: CoordinateId) -> Self {
+        Self::part_of(id.element, id.variable.to_string())
     }
 }
 
@@ -158,9 +165,15 @@ impl DifferentialId {
 
 impl fmt::Display for DifferentialId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.number {
-            None => self.element.fmt(f),
-            Some(number) => write!(f, "{} state {number}", self.element),
+        Subject::from(*self).fmt(f)
+    }
+}
+
+impl From<DifferentialId> for Subject {
+    fn from(id: DifferentialId) -> Self {
+        match id.number {
+            None => id.element.into(),
+            Some(number) => Self::part_of(id.element, format!("state {number}")),
         }
     }
 }

@@ -44,7 +44,7 @@ fn outcome(command: &str) -> String {
         }
     }
     for w in &s.run.record.warnings {
-        let _ = writeln!(said, "{} {}", w.code, w.sentence);
+        let _ = writeln!(said, "{} {}", w.code, w.sentence());
     }
     for column in &s.run.columns {
         let _ = writeln!(said, "{} {:?}", column.name, column.values);

@@ -71,7 +71,7 @@ fn outcome(text: &str, analysis: Analysis) -> String {
         }
     }
     for w in &session.run.record.warnings {
-        let _ = writeln!(said, "{} {}", w.code, w.sentence);
+        let _ = writeln!(said, "{} {}", w.code, w.sentence());
     }
     for column in &session.run.columns {
         let _ = write!(said, "{} {:?} ", column.name, column.unit);

@@ -218,12 +218,11 @@ fn tangents(system: &System) -> Vec<Vec<(usize, f64)>> {
 }
 
 fn undetermined(system: &System, k: usize) -> Vec<Diagnostic> {
-    let name = system
-        .scene
-        .loops
-        .get(k)
-        .map_or_else(String::new, |u| u.asker.to_string());
-    vec![Diagnostic::error("loop", "nothing determines it in this state").element(name)]
+    let d = Diagnostic::error("loop", "nothing determines it in this state");
+    vec![match system.scene.loops.get(k) {
+        Some(unknown) => d.element(&unknown.asker),
+        None => d,
+    }]
 }
 
 /// Linearizes a system about the state in its numbers.

@@ -9,7 +9,7 @@ use crate::analysis::system::System;
 use crate::analysis::time::{ranks, valueless};
 use crate::analysis::trajectory::{Ended, EnergyFlow, Limited, Trajectory};
 use crate::analysis::warning::{RunWarning, Warning};
-use crate::model::{ElementId, Model};
+use crate::model::Model;
 use crate::numeric::{Reason, Stop};
 use crate::results::{self, Counts, Event, RowChange, Status};
 use crate::scene::equations::row_name;
@@ -90,7 +90,7 @@ impl Session {
         for &(at, row, off) in &trajectory.beyond {
             self.warn(RunWarning::BeyondTolerance {
                 at,
-                row: row_name(&scene.rows[row]),
+                row: (&scene.rows[row]).into(),
                 off,
                 is_length: alignment::is_length(scene, row),
                 unit: scene.length_unit.clone(),
@@ -105,12 +105,9 @@ impl Session {
 
     /// Adds a warning to the record and the log, unless it has been given before.
     pub(in crate::analysis) fn warn(&mut self, what: impl Into<Warning>) {
-        let mut warning = what.into().record();
-        let element = warning.element.as_deref().and_then(|e| e.split(' ').next());
-        let element = element.and_then(|e| e.parse::<ElementId>().ok());
-        warning.name = element.and_then(|id| self.model.element(id)?.place().name.clone());
+        let warning = what.into().record(&self.model);
         if !self.run.record.warnings.contains(&warning) {
-            self.run.log.push(Event::Warning(warning.sentence.clone()));
+            self.run.log.push(Event::Warning(warning.sentence()));
             self.run.record.warnings.push(warning);
         }
     }

@@ -50,13 +50,10 @@ impl Session {
             Ok(found) | Err(found) => found,
         };
         let warned = self.run.record.warnings.iter().map(|w| {
-            // a diagnostic begins with its element
-            let element = w.element.clone().unwrap_or_default();
-            let what = w.sentence.strip_prefix(&element).unwrap_or(&w.sentence);
-            let what = what.trim_start_matches([':', ' ']);
-            Diagnostic {
-                element: w.element.clone(),
-                ..Diagnostic::warning(w.code, what)
+            let d = Diagnostic::warning(w.code, w.message());
+            match &w.subject {
+                Some(subject) => d.element(subject.clone()),
+                None => d,
             }
         });
         found.extend(warned);
@@ -95,7 +92,7 @@ impl Session {
                 Loss::Domain(why) => why,
                 Loss::NotFinite | Loss::Pole { .. } => "it has no finite value at the start".into(),
             };
-            Diagnostic::error(Cause::Domain, what).element(lost.function.to_string())
+            Diagnostic::error(Cause::Domain, what).element(&lost.function)
         }));
         let mut readings = self.readings(&system);
         readings.see(&system.numbers);

@@ -269,11 +269,10 @@ impl Session {
         system.numbers[Layout::TIME] = t;
         system.numbers[l.y()].copy_from_slice(&y);
         if let Err(k) = system.resolve() {
-            let name = system.scene.loops[k].asker.to_string();
             let what = "it depends on itself, and no value solves that";
             return Err(vec![
                 Diagnostic::error("loop", what)
-                    .element(name)
+                    .element(&system.scene.loops[k].asker)
                     .help("give an IC near the solution, where it has one"),
             ]);
         }

@@ -100,7 +100,7 @@ fn accused(model: &Model, suspects: &[Suspect], said: Vec<Diagnostic>) -> Diagno
         d = d.help(format!("so it does without {names}"));
     }
     for said in said.iter().take(MOST_NAMED) {
-        let element = said.element.as_deref().unwrap_or_default();
+        let element = said.subject().unwrap_or_default();
         d = d.help(format!("with it {element} {}", said.message));
     }
     d.help

@@ -6,6 +6,7 @@
 use crate::analysis::direction::Axis;
 use crate::analysis::quantity::point;
 use crate::analysis::start::assemble;
+use crate::diagnostic::Subject;
 use crate::model::{ElementId, Model};
 use crate::numeric::rank::Rank;
 use crate::scene::configuration::Configured;
@@ -38,7 +39,7 @@ pub struct Moving {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Free {
     /// the unknown whose rate is one: "JOINT/1 angle"
-    pub unknown: String,
+    pub unknown: Subject,
     /// parts that move, the one that has the unknown first
     pub parts: Vec<Moving>,
     /// "PART/3 slides along its Z; PART/4 goes with it"
@@ -90,7 +91,7 @@ pub(super) fn motions(
                 Some((first, rest)) => sentence(first, rest),
             };
             Free {
-                unknown: coordinate.id.to_string(),
+                unknown: coordinate.id.into(),
                 parts,
                 words,
                 rates: v,

@@ -14,7 +14,7 @@
 
 use super::free::{self, Free, Moving};
 use crate::analysis::start::assemble;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::scene::configuration::Configured;
@@ -102,9 +102,9 @@ pub(crate) fn massless(
             continue;
         }
         let largest = vector.amax();
-        let names: Vec<&str> = (vector.iter().zip(&rest))
+        let names: Vec<String> = (vector.iter().zip(&rest))
             .filter(|(c, _)| c.abs() > 0.1 * largest)
-            .map(|(_, &a)| found[a].unknown.as_str())
+            .map(|(_, &a)| found[a].unknown.to_string())
             .collect();
         let at = rest[vector.iamax()];
         let what = format!(
@@ -125,10 +125,9 @@ fn twists(scene: Configured<'_>, t: f64, q: &[f64], v: &[f64], x: &[f64]) -> Vec
     at.links().iter().map(|l| [l.w, l.v]).collect()
 }
 
-fn element(free: &Free) -> String {
-    free.parts
-        .first()
-        .map_or_else(|| free.unknown.clone(), |p| p.part.to_string())
+fn element(free: &Free) -> Subject {
+    let part = free.parts.first();
+    part.map_or_else(|| free.unknown.clone(), |p| p.part.into())
 }
 
 fn said(model: &Model, free: &Free) -> Diagnostic {

@@ -96,7 +96,7 @@ pub fn outline(model: &Model) -> Result<Outline, Error> {
         ..Outline::default()
     };
     for d in &scene.warnings {
-        let element = d.element.clone().unwrap_or_default();
+        let element = d.subject().unwrap_or_default();
         out.left_out.push(format!("{element} {}", d.message));
     }
     for id in &model.inactive {

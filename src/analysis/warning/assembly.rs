@@ -1,11 +1,11 @@
 //! Warnings of assembly: how the parts of a dataset fit together, before and after.
 
+use super::Names;
 use crate::analysis::direction::Axis;
 use crate::analysis::quantity::{amount, length, short};
-use crate::diagnostic::Cause;
+use crate::diagnostic::{Cause, Subject};
 use crate::model::check::alignment::Misalignment;
 use crate::model::{ElementId, ElementKind};
-use std::fmt;
 
 /// Turned parts that a sentence names beside the first, at most.
 const MAX_NAMED: usize = 3;
@@ -120,8 +120,8 @@ impl AssemblyWarning {
     }
 
     /// Returns the element that it is about.
-    pub(super) fn element(&self) -> ElementId {
-        match *self {
+    pub(super) fn subject(&self) -> Subject {
+        let id = match *self {
             AssemblyWarning::Axes(ref found) => found.element,
             AssemblyWarning::Turned { ref parts } => {
                 (parts.first()).map_or(ElementKind::Part.id(0), |first| first.0)
@@ -133,68 +133,48 @@ impl AssemblyWarning {
             | AssemblyWarning::Embedded { element, .. }
             | AssemblyWarning::LeftOut { element, .. }
             | AssemblyWarning::HeldSum { element, .. } => element,
-        }
+        };
+        id.into()
     }
-}
 
-impl fmt::Display for AssemblyWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = self.element();
+    /// Returns the sentence after the subject.
+    pub(super) fn rest(&self, names: &Names) -> String {
         match self {
             AssemblyWarning::Misaligned {
                 offset, unit, turn, ..
             } => {
                 let off = Self::apart(offset, unit, turn);
-                write!(
-                    f,
-                    "{name}: in the dataset its markers are off by {off}; assembly moves the parts"
-                )
+                format!(": in the dataset its markers are off by {off}; assembly moves the parts")
             }
-            AssemblyWarning::Axes(found) => write!(f, "{name}: {found}"),
-            AssemblyWarning::Turned { parts } => {
-                let by = |angle: f64| format!("by {} deg", short(angle.to_degrees()));
-                let first = parts.first().map_or(0.0, |p| p.1);
-                write!(f, "{name} is turned {} against the dataset", by(first))?;
-                let others = parts.iter().skip(1).take(MAX_NAMED);
-                for (k, (part, angle)) in others.enumerate() {
-                    let before = if k == 0 { "; so are" } else { "," };
-                    write!(f, "{before} {part} {}", by(*angle))?;
-                }
-                match parts.len().saturating_sub(1 + MAX_NAMED) {
-                    0 => Ok(()),
-                    more => write!(f, " and {more} more"),
-                }
-            }
+            AssemblyWarning::Axes(found) => format!(": {found}"),
+            AssemblyWarning::Turned { parts } => turned(parts, names),
             AssemblyWarning::WrongWayRound {
                 markers: [i, j],
                 axis,
                 ..
-            } => write!(
-                f,
-                "{name} is assembled the wrong way round: \
+            } => format!(
+                " is assembled the wrong way round: \
                  the {} axes of {} and {} point against each other",
                 ["x", "y", "z"][*axis],
-                ElementKind::Marker.id(*i),
-                ElementKind::Marker.id(*j)
+                names.of(ElementKind::Marker.id(*i)),
+                names.of(ElementKind::Marker.id(*j))
             ),
-            AssemblyWarning::OppositeAngle { angle, .. } => write!(
-                f,
-                "{name} is off by {} deg: its equation holds at that angle too, and the one that it \
+            AssemblyWarning::OppositeAngle { angle, .. } => format!(
+                " is off by {} deg: its equation holds at that angle too, and the one that it \
                  asks for cannot be reached",
                 short(angle.to_degrees())
             ),
             AssemblyWarning::Coincident {
                 markers: [i, j], ..
-            } => write!(
-                f,
-                "{name}: its markers {} and {} coincide: the line between them has no \
+            } => format!(
+                ": its markers {} and {} coincide: the line between them has no \
                  direction; its force is zero there, so that it can begin, but Adams refuses it",
-                ElementKind::Marker.id(*i),
-                ElementKind::Marker.id(*j)
+                names.of(ElementKind::Marker.id(*i)),
+                names.of(ElementKind::Marker.id(*j))
             ),
             AssemblyWarning::Embedded { depth, unit, .. } => {
                 let depth = length(*depth, unit);
-                write!(f, "{name}: its solids begin {depth} deep within each other")
+                format!(": its solids begin {depth} deep within each other")
             }
             AssemblyWarning::LeftOut {
                 equation,
@@ -205,17 +185,35 @@ impl fmt::Display for AssemblyWarning {
                 ..
             } => {
                 let [off, limit] = [off, limit].map(|x| amount(*x, *is_length, unit));
-                write!(
-                    f,
-                    "{name}: {equation} is redundant but for a misalignment of {off}, and is left out \
+                format!(
+                    ": {equation} is redundant but for a misalignment of {off}, and is left out \
                      (IC/ERROR permits {limit})"
                 )
             }
-            AssemblyWarning::HeldSum { sum, .. } => write!(
-                f,
-                "{name}: its displacements sum up to {sum:.6e} where they are assembled; \
+            AssemblyWarning::HeldSum { sum, .. } => format!(
+                ": its displacements sum up to {sum:.6e} where they are assembled; \
                  that sum is held, not zero"
             ),
         }
     }
+}
+
+/// Returns which parts are turned against the dataset, and by which angle.
+fn turned(parts: &[(ElementId, f64)], names: &Names) -> String {
+    let by = |angle: f64| format!("by {} deg", short(angle.to_degrees()));
+    let first = parts.first().map_or(0.0, |p| p.1);
+    let others = parts.iter().skip(1).take(MAX_NAMED);
+    let others: Vec<String> = others
+        .map(|&(part, angle)| format!("{} {}", names.of(part), by(angle)))
+        .collect();
+    let so_are = if others.is_empty() { "" } else { "; so are " };
+    let more = match parts.len().saturating_sub(1 + MAX_NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!(
+        " is turned {} against the dataset{so_are}{}{more}",
+        by(first),
+        others.join(", ")
+    )
 }

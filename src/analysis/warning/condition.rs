@@ -1,8 +1,9 @@
 //! Warnings of initial conditions: not met, or read in another way than documented.
 
+use super::Names;
 use crate::analysis::quantity::{length, short};
+use crate::diagnostic::Subject;
 use crate::model::{ElementId, ElementKind};
-use std::fmt;
 
 /// Something about an initial condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,8 +62,8 @@ impl ConditionWarning {
     pub(super) const CODE: &'static str = "initial_condition";
 
     /// Returns the element that it is about.
-    pub(super) fn element(&self) -> ElementId {
-        match *self {
+    pub(super) fn subject(&self) -> Subject {
+        let id = match *self {
             ConditionWarning::ViewOrder { ref joints } => {
                 (joints.first()).map_or(ElementKind::Joint.id(0), |first| first.0)
             }
@@ -70,48 +71,44 @@ impl ConditionWarning {
             | ConditionWarning::UnmetRate { element, .. }
             | ConditionWarning::Unmet { element, .. }
             | ConditionWarning::UnmetContact { element, .. } => element,
-        }
+        };
+        id.into()
     }
-}
 
-impl fmt::Display for ConditionWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = self.element();
+    /// Returns the sentence after the subject.
+    pub(super) fn rest(&self, names: &Names) -> String {
         match self {
             ConditionWarning::Exchanged { given, stands, .. } => {
                 let [first, second, stands] = [given[0], given[1], *stands].map(short);
-                write!(
-                    f,
-                    "{name}: its initial condition {first}, {second} is read as \
+                format!(
+                    ": its initial condition {first}, {second} is read as \
                      displacement {first} and velocity {second}, but the parts stand at {stands}; \
                      Adams View writes velocity, displacement: exchange the two if that is meant"
                 )
             }
             ConditionWarning::ViewOrder { joints } => {
                 let [first, second] = joints.first().map_or([0.0; 2], |j| j.1).map(short);
-                write!(
-                    f,
-                    "{name}: its initial condition {first}, {second} is read as \
-                     velocity {first} and displacement {second}, as Adams View writes it"
-                )?;
-                match joints.len() - joints.len().min(1) {
-                    0 => Ok(()),
-                    1 => write!(f, "; so is that of {}", joints[1].0),
-                    more => write!(f, "; so are those of {} and {} more", joints[1].0, more - 1),
-                }
+                let second_joint = joints.get(1).map(|j| names.of(j.0)).unwrap_or_default();
+                let others = match joints.len().saturating_sub(1) {
+                    0 => String::new(),
+                    1 => format!("; so is that of {second_joint}"),
+                    n => format!("; so are those of {second_joint} and {} more", n - 1),
+                };
+                format!(
+                    ": its initial condition {first}, {second} is read as \
+                     velocity {first} and displacement {second}, as Adams View writes it{others}"
+                )
             }
-            ConditionWarning::UnmetRate { found, wanted, .. } => write!(
-                f,
-                "{name} IC cannot be met: the constraints leave a velocity of {found:.6e} instead of {wanted:.6e}"
+            ConditionWarning::UnmetRate { found, wanted, .. } => format!(
+                " IC cannot be met: the constraints leave a velocity of {found:.6e} instead of {wanted:.6e}"
             ),
             ConditionWarning::Unmet {
                 argument,
                 found,
                 wanted,
                 ..
-            } => write!(
-                f,
-                "{name} {argument} cannot be met: \
+            } => format!(
+                " {argument} cannot be met: \
                  the constraints leave {found:.6e} instead of {wanted:.6e}"
             ),
             ConditionWarning::UnmetContact {
@@ -122,11 +119,10 @@ impl fmt::Display for ConditionWarning {
                 ..
             } => {
                 let off = length(*off, unit);
-                write!(
-                    f,
-                    "{name} {argument} cannot be met: the constraints put the contact {off} away from \
+                format!(
+                    " {argument} cannot be met: the constraints put the contact {off} away from \
                      the point of {} next to it",
-                    ElementKind::Curve.id(*curve)
+                    names.of(ElementKind::Curve.id(*curve))
                 )
             }
         }

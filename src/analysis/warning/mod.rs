@@ -1,5 +1,6 @@
 //! Warnings: what the user should know although the analysis goes on. Each is data, and becomes a
-//! sentence here and nowhere else.
+//! sentence here and nowhere else: the element that it is about, as the dataset names it, and the
+//! rest.
 //!
 //! ```text
 //! scene          the compiler took something for something else, or left it out
@@ -19,7 +20,8 @@ pub use condition::ConditionWarning;
 pub use run::{RunWarning, jumps};
 pub use verification::VerificationWarning;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Subject};
+use crate::model::{ElementId, Model};
 use crate::results;
 use std::fmt;
 
@@ -50,43 +52,70 @@ impl Warning {
         }
     }
 
-    /// Returns the element or column that it is about, as sentences name it.
-    pub fn element(&self) -> Option<String> {
+    /// Returns the element or column that its sentence begins with.
+    pub fn subject(&self) -> Option<Subject> {
         match self {
-            Warning::Scene(d) => d.element.clone(),
-            Warning::Assembly(w) => Some(w.element().to_string()),
-            Warning::Condition(w) => Some(w.element().to_string()),
-            Warning::Run(w) => w.element(),
-            Warning::Verification(w) => w.element(),
+            Warning::Scene(d) => Some(owner(d)),
+            Warning::Assembly(w) => Some(w.subject()),
+            Warning::Condition(w) => Some(w.subject()),
+            Warning::Run(w) => w.subject(),
+            Warning::Verification(w) => w.subject(),
         }
     }
 
-    /// Returns it as the record of a run keeps it.
-    pub fn record(&self) -> results::Warning {
+    /// Returns the sentence after the subject, with elements as the dataset names them.
+    fn rest(&self, names: &Names) -> String {
+        match self {
+            Warning::Scene(d) => format!(": {}", d.message),
+            Warning::Assembly(w) => w.rest(names),
+            Warning::Condition(w) => w.rest(names),
+            Warning::Run(w) => w.rest(names),
+            Warning::Verification(w) => w.rest(),
+        }
+    }
+
+    /// Returns the element that it is about, where it is one.
+    fn id(&self) -> Option<ElementId> {
+        self.subject()?.element.parse().ok()
+    }
+
+    /// Returns it as the record of a run of that model keeps it.
+    pub fn record(&self, model: &Model) -> results::Warning {
+        let names = Names(Some(model));
         results::Warning {
             code: self.code(),
-            element: self.element(),
-            name: None,
-            sentence: self.to_string(),
+            subject: self.subject(),
+            name: self.id().and_then(|id| names.name(id)).map(str::to_owned),
+            rest: self.rest(&names),
         }
     }
 }
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Warning::Scene(d) => write!(f, "{}: {}", owner(d), d.message),
-            Warning::Assembly(w) => w.fmt(f),
-            Warning::Condition(w) => w.fmt(f),
-            Warning::Run(w) => w.fmt(f),
-            Warning::Verification(w) => w.fmt(f),
-        }
+        let subject = self.subject().map_or_else(String::new, |s| s.to_string());
+        write!(f, "{subject}{}", self.rest(&Names(None)))
     }
 }
 
-/// Returns the name of the element that a diagnostic is about.
-fn owner(d: &Diagnostic) -> &str {
-    d.element.as_deref().unwrap_or("the model")
+/// The names that a dataset gives its elements; `None`: of no dataset.
+struct Names<'m>(Option<&'m Model>);
+
+impl<'m> Names<'m> {
+    /// Returns the name of an element.
+    fn name(&self, id: ElementId) -> Option<&'m str> {
+        self.0?.element(id)?.place().name.as_deref()
+    }
+
+    /// Returns an element as sentences name it: "JOINT/47 'hinge'".
+    fn of(&self, id: ElementId) -> String {
+        Subject::from(id).named(self.name(id))
+    }
+}
+
+/// Returns the element that a diagnostic is about.
+fn owner(d: &Diagnostic) -> Subject {
+    d.subject().unwrap_or_else(|| "the model".into())
 }
 
 /// Makes each family a case of [`Warning`].

@@ -1,11 +1,11 @@
 //! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
 
+use super::Names;
 use crate::analysis::quantity::{amount, place, short};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::{ElementId, ElementKind};
 use crate::results::{Quantity, RankChange, RowChange};
 use crate::scene::equations::Unsupported;
-use std::fmt;
 
 /// Something that a simulation met.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +20,8 @@ pub enum RunWarning {
     BeyondTolerance {
         /// when it was farthest off
         at: f64,
-        /// "JOINT/4 Zi.Xj"
-        row: String,
+        /// the row: "JOINT/4 Zi.Xj"
+        row: Subject,
         /// how far, in rad or as a length
         off: f64,
         /// whether that is a length
@@ -130,20 +130,16 @@ impl RunWarning {
         }
     }
 
-    /// Returns the element or column that it is about.
-    pub(super) fn element(&self) -> Option<String> {
+    /// Returns the element or column that its sentence begins with.
+    pub(super) fn subject(&self) -> Option<Subject> {
         match self {
-            RunWarning::MotionJumps { motion, .. } => {
-                Some(ElementKind::Motion.id(*motion).to_string())
-            }
-            RunWarning::MethodReplaced(d) => d.element.clone(),
-            RunWarning::ContactsWithoutFreedom(contacts) => {
-                contacts.first().map(ToString::to_string)
-            }
-            RunWarning::EmptyColumn(unsupported) => Some(unsupported.asked_by.to_string()),
-            RunWarning::Gap { column, .. } => Some(column.clone()),
-            RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(|id| id.to_string()),
-            RunWarning::OutsideData { element, .. } => Some(element.to_string()),
+            RunWarning::MotionJumps { motion, .. } => Some(ElementKind::Motion.id(*motion).into()),
+            RunWarning::MethodReplaced(d) => d.subject(),
+            RunWarning::ContactsWithoutFreedom(contacts) => contacts.first().map(|&id| id.into()),
+            RunWarning::EmptyColumn(unsupported) => Some((&unsupported.asked_by).into()),
+            RunWarning::Gap { column, .. } => Some(column.as_str().into()),
+            RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(Subject::from),
+            RunWarning::OutsideData { element, .. } => Some((*element).into()),
             RunWarning::BeyondTolerance { row, .. } => Some(row.clone()),
             RunWarning::NoFreedom
             | RunWarning::Held
@@ -155,87 +151,97 @@ impl RunWarning {
             | RunWarning::CompanionEnded { .. } => None,
         }
     }
-}
 
-impl fmt::Display for RunWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    /// Returns the sentence after the subject; all of it where there is none.
+    pub(super) fn rest(&self, names: &Names) -> String {
         match self {
             RunWarning::NoFreedom => {
-                f.write_str("the mechanism has no freedom: it is moved by its motions alone")
+                "the mechanism has no freedom: it is moved by its motions alone".into()
             }
-            RunWarning::ContactsWithoutFreedom(contacts) => idle_contacts(contacts, f),
+            RunWarning::ContactsWithoutFreedom(contacts) => idle_contacts(contacts, names),
             RunWarning::Held => {
-                f.write_str("no part can move: the constraints hold all of them where they are")
+                "no part can move: the constraints hold all of them where they are".into()
             }
             RunWarning::BeyondTolerance {
                 at,
-                row,
                 off,
                 is_length,
                 unit,
-            } => write!(
-                f,
-                "{row} was left out as redundant, but is off by {} at time {at:.9}: \
+                ..
+            } => format!(
+                " was left out as redundant, but is off by {} at time {at:.9}: \
                  more than IC/ERROR permits",
                 amount(*off, *is_length, unit)
             ),
-            RunWarning::NothingToSimulate { command, now } => write!(
-                f,
-                "{command}: the clock shows {now} already, there is nothing to simulate"
-            ),
+            RunWarning::NothingToSimulate { command, now } => {
+                format!("{command}: the clock shows {now} already, there is nothing to simulate")
+            }
             RunWarning::MotionJumps {
-                motion,
                 quantity,
                 jumps: all,
-            } => {
-                let then = match quantity {
-                    Quantity::Displacement | Quantity::Velocity => "it runs piecewise",
-                    Quantity::Acceleration => "forces jump there",
-                };
-                let motion = ElementKind::Motion.id(*motion);
-                write!(f, "{motion}: {}; {then}", jumps(*quantity, all))
+                ..
+            } => format!(": {}; {}", jumps(*quantity, all), after_jump(*quantity)),
+            RunWarning::MethodReplaced(d) => {
+                let colon = if d.element.is_some() { ": " } else { "" };
+                format!("{colon}{}: RADAU5 takes its place", d.message)
             }
-            RunWarning::MethodReplaced(d) => write!(f, "{}: RADAU5 takes its place", d.message),
-            RunWarning::EmptyColumn(unsupported) => unsupported.fmt(f),
-            RunWarning::Gap { column, at } => {
-                write!(f, "{column} has no finite value at time {at}")
-            }
-            RunWarning::Rank(change) => of_rank(change, f),
+            RunWarning::EmptyColumn(unsupported) => format!(": {}", unsupported.lack),
+            RunWarning::Gap { at, .. } => format!(" has no finite value at time {at}"),
+            RunWarning::Rank(change) => of_rank(change),
             RunWarning::Unstable { at, directions } => {
                 let plural = if *directions == 1 { "" } else { "s" };
-                write!(
-                    f,
+                format!(
                     "the equilibrium at time {at} is unstable in {directions} direction{plural}"
                 )
             }
             RunWarning::OutsideData {
-                element,
                 spline,
                 range,
                 value,
                 since,
-            } => outside_data((*element, *spline), *range, (*value, *since), f),
+                ..
+            } => {
+                let spline = names.of(ElementKind::Spline.id(*spline));
+                outside_data(&spline, *range, *value, *since)
+            }
             RunWarning::BelowRounding {
                 error,
                 below,
                 steps,
-            } => write!(
-                f,
+            } => format!(
                 "an error of {error} is below rounding: it was asked for in vain in {below} of {steps} \
                  steps, which are as exact as rounding permits"
             ),
-            RunWarning::CompanionEnded { request } => write!(
-                f,
+            RunWarning::CompanionEnded { request } => format!(
                 "a run at an error of {request:.1e} ends otherwise than this one: bars of error hold as \
                  far as both go"
             ),
-            RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, *fed_by, f),
-            RunWarning::StabilityLimited { limited, steps } => write!(
-                f,
+            RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, fed_by.is_some()),
+            RunWarning::StabilityLimited { limited, steps } => format!(
                 "the model is stiff: in {limited} of {steps} steps stability, not the error asked \
                  for, kept an explicit method short; RADAU5 or AUTO takes longer ones"
             ),
         }
+    }
+}
+
+/// Returns the way in which a run goes on after what a motion prescribes has jumped.
+fn after_jump(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Displacement | Quantity::Velocity => "it runs piecewise",
+        Quantity::Acceleration => "forces jump there",
+    }
+}
+
+/// Returns by how much the energy of a motion grows; `fed`: the force before it feeds the motion.
+fn growth(factor: f64, fed: bool) -> String {
+    let energy = format!("its energy is {factor:.1e} times that of the first quarter of the run");
+    if fed {
+        format!(
+            " feeds a motion that grows without bound: {energy}; is the sign of its damping right?"
+        )
+    } else {
+        format!("the motion grows without bound: {energy}")
     }
 }
 
@@ -253,62 +259,39 @@ pub fn jumps(quantity: Quantity, all: &[(f64, f64)]) -> String {
     format!("the {what} it prescribes jumps at time {times}")
 }
 
-/// Writes which function reads which spline outside its data: at which value, since when.
-fn outside_data(
-    (element, spline): (ElementId, u32),
-    [first, last]: [f64; 2],
-    (value, since): (f64, f64),
-    f: &mut fmt::Formatter<'_>,
-) -> fmt::Result {
-    write!(
-        f,
-        "{element} reads {} at {} from time {} on, but its data reach from {first} to {last}: \
+/// Returns which spline a function reads outside its data: at which value, since when.
+fn outside_data(spline: &str, [first, last]: [f64; 2], value: f64, since: f64) -> String {
+    format!(
+        " reads {spline} at {} from time {} on, but its data reach from {first} to {last}: \
          beyond them it is extrapolated",
-        ElementKind::Spline.id(spline),
         short(value),
         short(since)
     )
 }
 
-/// Writes which contacts push in a run in which nothing can give way.
-fn idle_contacts(contacts: &[ElementId], f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    let names: Vec<String> = contacts.iter().map(ToString::to_string).collect();
-    write!(
-        f,
-        "{}: in a kinematic run a contact pushes and moves nothing; motions go on through what is in their way",
-        names.join(", ")
+/// Returns which contacts beside the first push in a run in which nothing can give way.
+fn idle_contacts(contacts: &[ElementId], names: &Names) -> String {
+    let others = contacts.iter().skip(1);
+    let others: String = others.map(|&id| format!(", {}", names.of(id))).collect();
+    format!(
+        "{others}: in a kinematic run a contact pushes and moves nothing; motions go on through what \
+         is in their way"
     )
 }
 
-/// Writes by how much the energy of a motion grows, and what feeds it.
-fn growth(factor: f64, fed_by: Option<ElementId>, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    write!(
-        f,
-        "the motion grows without bound: its energy is {factor:.1e} times that of the first quarter \
-         of the run"
-    )?;
-    match fed_by {
-        Some(id) => write!(f, "; {id} feeds it: is the sign of its damping right?"),
-        None => Ok(()),
-    }
-}
-
-/// Writes when and where the rank of the constraints changes.
-fn of_rank(change: &RankChange, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+/// Returns when and where the rank of the constraints changes.
+fn of_rank(change: &RankChange) -> String {
     let (time, rows) = (change.time, change.rows.join(", "));
     match change.change {
-        RowChange::Passes => write!(
-            f,
+        RowChange::Passes => format!(
             "at time {time:.9} the rank of the constraints falls in passing: \
              {rows} depends on others where {}",
             place(&change.place)
         ),
-        RowChange::Restored => write!(
-            f,
+        RowChange::Restored => format!(
             "at time {time:.9} {rows} no longer follows from the others; it is kept from there"
         ),
-        RowChange::Exchanged => write!(
-            f,
+        RowChange::Exchanged => format!(
             "at time {time:.9} other rows are kept: {rows} in place of what they make superfluous"
         ),
     }

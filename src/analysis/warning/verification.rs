@@ -1,10 +1,9 @@
 //! Warnings of verifications: what is taken for granted, and what a simulation would need.
 
 use super::owner;
-use crate::diagnostic::{Cause, Diagnostic};
+use crate::diagnostic::{Cause, Diagnostic, Subject};
 use crate::model::ElementId;
 use crate::scene::left_out::Hidden;
-use std::fmt;
 
 /// Something that a verification takes for granted, or that a simulation would need.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,41 +42,36 @@ impl VerificationWarning {
     }
 
     /// Returns the element that it is about.
-    pub(super) fn element(&self) -> Option<String> {
+    pub(super) fn subject(&self) -> Option<Subject> {
         match self {
-            VerificationWarning::Massless(d) => d.element.clone(),
+            VerificationWarning::Massless(d) => Some(owner(d)),
             VerificationWarning::StandsStill(element)
-            | VerificationWarning::UnknownConstraint { element, .. } => Some(element.to_string()),
+            | VerificationWarning::UnknownConstraint { element, .. } => Some((*element).into()),
             VerificationWarning::FreedomNearby { .. } => None,
         }
     }
-}
 
-impl fmt::Display for VerificationWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    /// Returns the sentence after the subject.
+    pub(super) fn rest(&self) -> String {
         match self {
             VerificationWarning::Massless(d) => {
-                let (owner, what) = (owner(d), &d.message);
-                write!(f, "{owner}: {what}; a dynamic simulation needs it")
+                format!(": {}; a dynamic simulation needs it", d.message)
             }
-            VerificationWarning::StandsStill(element) => write!(
-                f,
-                "{element} is computed by a routine: it is taken to stand still"
-            ),
+            VerificationWarning::StandsStill(_) => {
+                String::from(" is computed by a routine: it is taken to stand still")
+            }
             VerificationWarning::UnknownConstraint {
-                element,
                 equations: n,
                 hidden,
+                ..
             } => {
                 let plural = if *n == 1 { "" } else { "s" };
-                write!(
-                    f,
-                    "{element} is counted with {n} equation{plural}, but what it holds is unknown: \
+                format!(
+                    " is counted with {n} equation{plural}, but what it holds is unknown: \
                      {hidden}; the freedom from the rank is that without it, and up to {n} too large"
                 )
             }
-            VerificationWarning::FreedomNearby { here, nearby } => write!(
-                f,
+            VerificationWarning::FreedomNearby { here, nearby } => format!(
                 "at this position {} of the free directions lead nowhere, or to another branch: \
                  nearby the freedom is {nearby}",
                 here.abs_diff(*nearby)

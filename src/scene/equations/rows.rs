@@ -1,6 +1,7 @@
 //! The rows of G: values, gradients along the freedoms, rates, and what a unit multiplier exerts.
 
 use super::Equations;
+use crate::diagnostic::Subject;
 use crate::physics::action::Action;
 use crate::physics::row::{Drive, Law};
 use crate::scalar::{Dual, Jet, Scalar};
@@ -358,7 +359,13 @@ pub(super) fn moving<S: Scalar>(m: &MarkerState<S>) -> Frame<Jet<S>> {
     Frame { rotation, position }
 }
 
+impl From<&Row> for Subject {
+    fn from(row: &Row) -> Self {
+        Self::part_of(row.element, row.equation.clone())
+    }
+}
+
 /// The name of a row: "JOINT/7 Zi.Xj".
 pub fn row_name(row: &Row) -> String {
-    format!("{} {}", row.element, row.equation)
+    Subject::from(row).to_string()
 }

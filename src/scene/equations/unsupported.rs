@@ -161,12 +161,11 @@ impl Unsupported {
 
     /// Makes an error of it, about the function that asks.
     pub fn error(&self) -> Diagnostic {
-        Diagnostic::error(Cause::Unsupported, self.lack.to_string())
-            .element(self.asked_by.to_string())
+        Diagnostic::error(Cause::Unsupported, self.lack.to_string()).element(&self.asked_by)
     }
 
     /// Makes a warning of it: the column that asks is empty.
     pub fn warning(&self) -> Diagnostic {
-        Diagnostic::warning("unavailable", self.lack.to_string()).element(self.asked_by.to_string())
+        Diagnostic::warning("unavailable", self.lack.to_string()).element(&self.asked_by)
     }
 }

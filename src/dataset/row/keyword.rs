@@ -1,0 +1,62 @@
+//! Words of a file among the names of a table: abbreviations, and near numbers.
+
+use crate::diagnostic::near_names;
+
+/// "did you mean 12 or 121" for a number that is not among those known.
+pub fn near_ids(id: u32, known: impl Iterator<Item = u32>) -> Option<String> {
+    let known: Vec<String> = known.map(|k| k.to_string()).collect();
+    let near = near_names(&id.to_string(), known.iter().map(String::as_str));
+    (!near.is_empty()).then(|| format!("did you mean {}?", near.join(" or ")))
+}
+
+/// The first spelling of a name of the table, in capitals.
+pub fn canonical(name: &str) -> String {
+    name.split('|').next().unwrap_or(name).to_ascii_uppercase()
+}
+
+/// The meaning of a word of a file among the names of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Meaning {
+    /// this one
+    One(usize),
+    /// an abbreviation of several
+    Several(Vec<usize>),
+    /// none
+    Unknown,
+}
+
+/// Which of the names a word means: itself, else the only one it begins, else the first whose
+/// shortest form it has.
+pub fn meaning<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Meaning {
+    let word = word.as_bytes();
+    let mut begins = Vec::new();
+    let mut wins = None;
+    for (k, name) in names.enumerate() {
+        for spelling in name.split('|').map(str::as_bytes) {
+            if spelling.eq_ignore_ascii_case(word) {
+                return Meaning::One(k);
+            }
+            let Some(beginning) = spelling.get(..word.len()) else {
+                continue;
+            };
+            if beginning.eq_ignore_ascii_case(word) && !word.is_empty() {
+                if begins.last() != Some(&k) {
+                    begins.push(k);
+                }
+                let capitals = spelling
+                    .iter()
+                    .take_while(|b| !b.is_ascii_lowercase())
+                    .count();
+                if capitals < spelling.len() && word.len() >= capitals {
+                    wins = wins.or(Some(k));
+                }
+            }
+        }
+    }
+    match (begins.as_slice(), wins) {
+        ([one], _) => Meaning::One(*one),
+        ([], _) => Meaning::Unknown,
+        (_, Some(k)) => Meaning::One(k),
+        _ => Meaning::Several(begins),
+    }
+}
