@@ -417,6 +417,10 @@ fn places_of_numbers_are_known_to_the_layout_alone() {
 fn keywords_of_elements_are_compared_nowhere() {
     use cognate::model::ElementKind;
     let compared = |line: &str, keyword: &str| {
+        // most lines name none
+        if !line.contains(keyword) {
+            return false;
+        }
         let word = format!("\"{keyword}\"");
         let begins = ["", "/"].map(|end| format!("starts_with(\"{keyword}{end}\")"));
         let begins = begins.iter().any(|begins| line.contains(begins));

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use serde_json::{Value, json};
 
 fn finding(d: &Diagnostic) -> Value {
-    json!({ "row": d.element, "message": d.message, "advice": d.help })
+    json!({ "row": d.subject().map(|s| s.to_string()), "message": d.message, "advice": d.help })
 }
 
 impl Verification {
@@ -31,7 +31,7 @@ impl Verification {
                         json!({ "part": p.part.to_string(), "words": p.words, "angular": p.angular, "linear": p.linear, "at": p.at })
                     })
                     .collect();
-                json!({ "unknown": f.unknown, "words": f.words, "parts": parts })
+                json!({ "unknown": f.unknown.to_string(), "words": f.words, "parts": parts })
             })
             .collect();
         let counted: Vec<Value> = (self.counted.iter())

@@ -243,7 +243,7 @@ fn run(pictured: &Pictured, shown: &Shown<'_>, packed: &mut Packed) -> Value {
         "leftOut": channels.left_out,
         "sets": channels.sets(run),
         "facts": facts(run),
-        "warnings": run.record.warnings.iter().map(crate::results::Warning::named).collect::<Vec<_>>(),
+        "warnings": run.record.warnings.iter().map(crate::results::Warning::sentence).collect::<Vec<_>>(),
         "log": if run.log.is_empty() { String::new() } else { msg::write(run) },
     })
 }
