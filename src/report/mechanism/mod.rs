@@ -359,11 +359,9 @@ fn first_marker(model: &Model, id: ElementId) -> Option<u32> {
         .filter(|_| id.kind == ElementKind::Contact);
     let solid = contact.and_then(|c| model.graphics.get(c.i_geometry.first()?));
     let on_solid = solid.and_then(|g| {
-        let named = g.references().into_iter().map(|(_, target)| target);
-        named
-            .filter(|t| t.kind == ElementKind::Marker)
-            .map(|t| t.number)
-            .last()
+        let mut named = g.references().into_iter().map(|(_, target)| target);
+        let marker = named.find(|t| t.kind == ElementKind::Marker);
+        marker.map(|t| t.number)
     });
     let ends = || model.element(id)?.ends().map(|[i, _]| i);
     vector.or(single.map(|f| f.i)).or(on_solid).or_else(ends)
