@@ -105,5 +105,12 @@ pub mod analysis;
 #[cfg(feature = "cli")]
 pub mod report;
 // floor 6
+#[cfg(feature = "solver")]
+pub mod build;
 #[cfg(feature = "cli")]
 pub mod cli;
+
+#[cfg(feature = "solver")]
+pub use analysis::session::{Analysis, Options, Session};
+#[cfg(feature = "solver")]
+pub use build::ModelBuilder;

@@ -305,6 +305,8 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
         max_steps: args.max_steps,
         limit: args.limit,
         accuracy: args.accuracy,
+        keep_states: false,
+        keep_start: false,
     };
     let mut session = Session::new(model, base, options);
     session.run.record.model = args.model.display().to_string();

@@ -6,7 +6,7 @@ use crate::space::Vec3;
 use crate::space::rotation::quaternion_rate;
 
 /// The moves of positions along tangents.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Mover {
     /// coordinates that are their own rate: places in q and v
     simple: Vec<(usize, usize)>,

@@ -145,7 +145,7 @@ pub fn costs(scene: Configured<'_>) -> Vec<(ElementId, usize)> {
 }
 
 /// Where loads, differential equations and motions change branch.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Switching {
     /// one value per switch, changing sign there; reads what the held rates read
     pub switches: Program,

@@ -12,6 +12,7 @@ mod running;
 
 mod accuracy;
 mod allocations;
+mod building;
 mod delays;
 mod doors;
 mod energy;
@@ -25,5 +26,6 @@ mod outputs;
 mod rates;
 mod references;
 mod saved;
+mod sessions;
 mod statics;
 mod systems;

@@ -122,7 +122,9 @@ impl Session {
                 self.warn(RunWarning::Unstable { at: t, directions });
             }
             all.method = format!("EQUILIBRIUM, {stability}");
-            self.more_rows(program, std::slice::from_ref(&system.numbers));
+            let row = std::slice::from_ref(&system.numbers);
+            self.more_rows(program, row);
+            self.remember((system, &system.configuration.active), row, |_| None);
             all.count += 1;
             all.last = Some(system.numbers.clone());
         }

@@ -379,6 +379,31 @@ impl Columns {
         })
     }
 
+    /// Adds an expression after all other columns, shown by tables.
+    pub fn add(&mut self, run: &mut Run, expression: &str) {
+        let units = run.units.clone();
+        let shown = run.table_columns();
+        let column = self.text(run, expression.to_string(), expression, &units);
+        run.table = shown;
+        run.table.push(column);
+    }
+
+    /// Takes the last column away again, which [`add`](Self::add) added.
+    pub fn take_back(&mut self, run: &mut Run) {
+        self.what.pop();
+        self.extra.pop();
+        run.columns.pop();
+        run.table.pop();
+    }
+
+    /// Returns the last column alone.
+    pub fn last_alone(&self) -> Self {
+        Self {
+            what: self.what.last().cloned().into_iter().collect(),
+            extra: Vec::new(),
+        }
+    }
+
     /// Number of columns.
     pub fn len(&self) -> usize {
         self.shown.len()

@@ -9,6 +9,7 @@ mod at_rest;
 mod carried;
 pub mod columns;
 mod companion;
+mod doors;
 mod growth;
 mod limit;
 mod outcome;
@@ -28,6 +29,8 @@ mod spline_range;
 mod start;
 pub mod state;
 mod state_at_start;
+mod state_values;
+mod states;
 mod stop_reason;
 
 use crate::analysis::linear::{self, Linearization};
@@ -50,6 +53,7 @@ use rows::Gaps;
 pub use rows::Receiver;
 pub use selection::Chosen;
 use start::Kept;
+use states::Stretch;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -102,6 +106,11 @@ pub struct Options {
     pub limit: Option<f64>,
     /// give every column bars of error, from further runs at other requests
     pub accuracy: bool,
+    /// keep the states of all rows: columns may then be named after a simulation, see
+    /// [`Session::add_column`]
+    pub keep_states: bool,
+    /// keep the assembled start: after [`Session::reset`] nothing is compiled again
+    pub keep_start: bool,
 }
 
 /// A model and its clock.
@@ -145,6 +154,10 @@ pub struct Session {
     pace: Pace,
     /// the last simulation over time
     last: Integrated,
+    /// states of the rows so far, where they are kept
+    states: Vec<Stretch>,
+    /// assembled starts by their MODE, where they are kept
+    starts: BTreeMap<u32, Kept>,
 }
 
 /// Values of MODE.
@@ -192,6 +205,8 @@ impl Session {
             companion: None,
             pace: Pace::default(),
             last: Integrated::default(),
+            states: Vec::new(),
+            starts: BTreeMap::new(),
         }
     }
 
@@ -207,14 +222,11 @@ impl Session {
         inputs: &[&str],
         law: impl Fn(&closures::Call<'_>, &mut [f64]) + Send + Sync + 'static,
     ) {
-        self.hooks.push(closures::Hook {
+        self.register_hook(closures::Hook {
             name: name.to_string(),
             inputs: inputs.iter().map(ToString::to_string).collect(),
             law: std::sync::Arc::new(law),
         });
-        if self.carried.is_none() {
-            self.choose_columns();
-        }
     }
 
     /// Chooses the columns anew after a command has changed the model, while there are no rows.

@@ -33,6 +33,8 @@ pub type Receiver = Box<dyn FnMut(&mut Run) + Send>;
 pub(super) struct Seen {
     /// the program of the columns for the next rows
     program: Program,
+    /// rows of constraints that took part at the beginning
+    active: Vec<bool>,
     /// choices of rows that it has followed
     selections: usize,
     /// rows seen
@@ -139,6 +141,7 @@ impl Session {
         self.run.begin(kind);
         let mut seen = Seen {
             program: program.clone(),
+            active: system.configuration.active.clone(),
             selections: 0,
             rows: 0,
             balance: Balance::default(),
@@ -175,9 +178,12 @@ impl Session {
             let end = change.map_or(until, |c| c.0.min(until));
             let (from, released) = (seen.rows, trajectory.released);
             let rows = &trajectory.rows[from - released..end - released];
-            columns::append_means(&mut self.run, &seen.program, rows, |k| {
-                trajectory.means.get(&(from + k))
-            });
+            let means = |k: usize| trajectory.means.get(&(from + k));
+            columns::append_means(&mut self.run, &seen.program, rows, means);
+            let chosen = trajectory.selections.get(..seen.selections);
+            let chosen = chosen.and_then(|c| c.last()).map(|c| &c.2[..]);
+            let active = chosen.unwrap_or(&seen.active);
+            self.remember((system, active), rows, means);
             self.weigh(&mut seen.balance, system, rows);
             seen.looks.see(rows);
             rows.iter().for_each(|row| seen.readings.see(row));

@@ -231,6 +231,7 @@ impl Session {
         });
         let first = std::slice::from_ref(&system.numbers);
         self.rows(Kind::InitialConditions, program, first);
+        self.remember((system, &system.configuration.active), first, |_| None);
     }
 
     /// Returns the program of the columns; warns of columns that cannot be computed.

@@ -17,7 +17,7 @@ use crate::analysis::system::{System, complaints};
 use crate::analysis::system::{closures, samples};
 use crate::analysis::verify::culprit::blamed;
 use crate::analysis::warning::Warning;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Error};
 use crate::model::{Formula, Model, Place};
 use crate::scene::Scene;
 use crate::scene::build;
@@ -97,6 +97,36 @@ impl Session {
         Some((system, kept.assembly))
     }
 
+    /// Returns the system as it was assembled at the start, where a session has gone back to it and
+    /// nothing is different but constants that commands change.
+    fn rewound(&self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
+        let kept = self.starts.get(&mode)?;
+        let same = inputs.is_empty()
+            && self.carried.is_none()
+            && without_constants(&self.model, &kept.system.scene) == kept.model;
+        if !same {
+            return None;
+        }
+        let (mut system, assembly) = (kept.system.clone(), kept.assembly.clone());
+        let before = system.numbers.clone();
+        self.set_constants(&system.scene, &mut system.numbers);
+        if system.numbers != before {
+            if !system.scene.samplers.is_empty() {
+                return None;
+            }
+            let l = system.scene.layout;
+            system.configuration.external = system.numbers[l.external()].to_vec();
+            let y = system.numbers[l.y()].to_vec();
+            self.put(&mut system, (self.time(), &y), mode).ok()?;
+        }
+        Some((system, assembly))
+    }
+
+    /// Compiles the model for a MODE, as the present columns need it.
+    pub(super) fn compile_again(&mut self, mode: u32) -> Result<Arc<Scene>, Error> {
+        Ok(self.compile(mode, &[])?.0)
+    }
+
     /// Compiles the model for a MODE, with VARIABLEs that are inputs, and brings it into its state.
     pub(super) fn prepare(
         &mut self,
@@ -105,6 +135,9 @@ impl Session {
     ) -> Result<(System, Assembly), Vec<Diagnostic>> {
         if let Some(again) = self.again(mode, inputs) {
             return Ok(again);
+        }
+        if let Some(begun) = self.rewound(mode, inputs) {
+            return Ok(begun);
         }
         (self.columns_program, self.row_values) = (None, None);
         self.model.checked()?;
@@ -139,6 +172,10 @@ impl Session {
         let system = self.system(start, v)?;
         phase.end(&mut self.run.record.seconds, |s| &mut s.record);
         self.within_limit(SetUp::Recording)?;
+        if first && self.options.keep_start && inputs.is_empty() {
+            let start = Kept::new(&self.model, mode, system.clone(), assembly.clone());
+            self.starts.insert(mode, start);
+        }
         Ok((system, assembly))
     }
 
@@ -255,11 +292,26 @@ impl Session {
 
     /// Records the programs and puts the system into its state, with past, samples and sensors.
     fn system(&self, start: Start, v: Vec<f64>) -> Result<System, Vec<Diagnostic>> {
-        let (mode, t, l) = (start.mode, start.t, start.scene.layout);
+        let (mode, t) = (start.mode, start.t);
         let mut y = start.q;
         y.extend(v);
         y.extend(start.x);
         let mut system = System::with_hooks(start.scene, start.configuration, &self.hooks)?;
+        self.put(&mut system, (t, &y), mode)?;
+        Ok(system)
+    }
+
+    /// Brings a system into a state: its past, the numbers that follow, and what sensors see.
+    ///
+    /// # Errors
+    /// Formulas that depend on themselves and have no value.
+    fn put(
+        &self,
+        system: &mut System,
+        (t, y): (f64, &[f64]),
+        mode: u32,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let l = system.scene.layout;
         let carried = self.carried.as_ref();
         if let Some(carried) = carried {
             system.recorded.external.delays.begin(t, &carried.past);
@@ -267,7 +319,7 @@ impl Session {
             system.recorded.external.delays.begin(t, &BTreeMap::new());
         }
         system.numbers[Layout::TIME] = t;
-        system.numbers[l.y()].copy_from_slice(&y);
+        system.numbers[l.y()].copy_from_slice(y);
         if let Err(k) = system.resolve() {
             let what = "it depends on itself, and no value solves that";
             return Err(vec![
@@ -276,7 +328,7 @@ impl Session {
                     .help("give an IC near the solution, where it has one"),
             ]);
         }
-        let row = system.row(t, &y);
+        let row = system.row(t, y);
         system.numbers.copy_from_slice(&row);
         system.count_turns(t, &row[l.y()]);
         let none = BTreeMap::new();
@@ -285,7 +337,7 @@ impl Session {
         if mode != STATIC {
             system.begin_sensing();
         }
-        Ok(system)
+        Ok(())
     }
 
     /// Returns the shells of contacts, read when they are first asked for.

@@ -35,11 +35,11 @@ pub fn file_name(name: &str) -> String {
     }
 }
 
-/// A state that was read: the model, and the state of its session.
-#[derive(Debug)]
+/// A state: the model, and where its session stands.
+#[derive(Clone, Debug)]
 pub struct Saved {
-    model: Model,
-    carried: Option<Carried>,
+    pub(super) model: Model,
+    pub(super) carried: Option<Carried>,
 }
 
 impl Saved {

@@ -42,7 +42,7 @@ const MOVED_ALONG: usize = 4;
 const ROUNDING_MARGIN: f64 = 8.0;
 
 /// Solves the loops of a scene.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(in crate::analysis) struct AlgebraicLoops {
     residual: Program,
     /// ∂ρ/∂z by rows, where it is not too long   (n × n)

@@ -20,7 +20,7 @@ use crate::scene::{Scene, Source};
 const MAX_TURN_PER_STEP: f64 = std::f64::consts::FRAC_PI_2;
 
 /// The switching functions of a configuration, and the branches that are held.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Branches {
     /// values that change sign where a force or a differential equation changes branch
     pub(super) switching: Option<Switching>,

@@ -112,7 +112,7 @@ fn law(kind: &HookKind, element: ElementId, hooks: &[Hook]) -> Result<Callable, 
 }
 
 /// A closure with its places in the row of numbers and what it is given.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Bound {
     law: Callable,
     element: ElementId,
@@ -218,7 +218,7 @@ impl Bound {
 }
 
 /// The closures of a system.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Closures {
     all: Vec<Bound>,
     work: Work,

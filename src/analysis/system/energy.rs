@@ -14,7 +14,7 @@ use crate::scene::programs::record_more;
 const INWARDS: f64 = 1e-8;
 
 /// The program of energy and powers, and what it reads.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct EnergyProgram {
     /// T, V, then the powers; those only where something does work
     program: Recording,

@@ -9,7 +9,7 @@ use crate::scene::configuration::Configured;
 use crate::scene::equations::Unsupported;
 
 /// The external inputs of a system that follow from its state and its past.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ExternalInputs {
     /// values of the past
     pub delays: Delays,

@@ -38,7 +38,7 @@ pub enum Formulation {
 }
 
 /// The implicit equations of a scene.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Implicit {
     formulation: Formulation,
     layout: ImplicitLayout,

@@ -20,7 +20,7 @@ use std::sync::Arc;
 const MAX_DENSITY: f64 = 0.25;
 
 /// Derivatives of all rates with respect to all unknowns, then to time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Gradient {
     /// recorded: rate by rate   (n × (n + 1))
     Recorded(Box<Recording>),
@@ -40,7 +40,7 @@ impl Gradient {
 }
 
 /// The derivatives of the rates of a configuration, found when they are first asked for.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Derivatives {
     /// those of the rate, and of the one with branches held
     gradients: [Option<Gradient>; 2],

@@ -9,7 +9,7 @@ use crate::numeric::pattern::Pattern;
 const SMALLEST_PIVOT: f64 = 1e-14;
 
 /// The matrix of a set of loops, and its factors.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct LoopFactors {
     /// entries, in the order of their pattern
     pub(super) entries: Vec<f64>,
@@ -17,7 +17,7 @@ pub(super) struct LoopFactors {
 }
 
 /// Loops that share unknowns with each other and with no other.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Part {
     /// rows and columns, as many of each
     block: Block,

@@ -55,7 +55,7 @@ use std::sync::Arc;
 use turns::Look;
 
 /// A scene with its programs, ready to be integrated.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct System {
     /// what is computed
     pub scene: Arc<Scene>,

@@ -131,7 +131,7 @@ impl Past {
 }
 
 /// A delayed value.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Delay {
     id: DelayId,
     /// its place in the row of numbers
@@ -145,7 +145,7 @@ struct Delay {
 }
 
 /// The delayed values of a system.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Delays {
     all: Vec<Delay>,
     work: Work,

@@ -33,7 +33,7 @@ const SUSPECTED: f64 = 1.0;
 const MAX_TURN_PER_STEP: f64 = 2.0;
 
 /// The logarithms of narrow factors of the functions of a model, at the ends of a step.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Peaks {
     /// logarithms, then angles; `None`: there are no logarithms
     program: Option<Program>,
@@ -46,7 +46,7 @@ pub struct Peaks {
     values: Vec<f64>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Course {
     values: Vec<f64>,
     slopes: Vec<f64>,

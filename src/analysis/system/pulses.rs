@@ -36,7 +36,7 @@ const REST_BEND: f64 = 1e-6;
 const PULSE_BEND: f64 = 100.0;
 
 /// Functions of a model that read TIME and nothing else.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Pulses {
     /// reads the time alone
     program: Option<Program>,

@@ -38,7 +38,7 @@ const MAX_DEPTH_OF_MATRIX: usize = 40;
 const LEAST_USUAL_PIVOT: f64 = 0.01;
 
 /// The programs of a scene in one configuration, with their scratch.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(in crate::analysis) struct Recorded {
     /// ẏ, then the strength of the rows: their weakest pivot over its usual size   (n + 1)
     pub(super) rate: Recording,

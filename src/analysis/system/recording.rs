@@ -3,7 +3,7 @@
 use crate::expr::program::{Program, Work};
 
 /// A recorded program, its scratch and its outputs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Recording {
     pub program: Program,
     work: Work,

@@ -19,7 +19,7 @@ use crate::scene::programs::{self, record};
 pub(super) const ROUNDING: f64 = 1e-14;
 
 /// The rows of a configuration.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Rows {
     /// least changes onto the rows: Δq as a tangent, Δv, those of contacts on curves
     /// (2 n_v + n_contacts); `None`: no row takes part

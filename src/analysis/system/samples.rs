@@ -38,7 +38,7 @@ pub struct Held {
     pub due: f64,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Sampled {
     id: ElementId,
     /// places of the states, and of the results that they become next, in the row of numbers
@@ -60,7 +60,7 @@ impl Sampled {
 }
 
 /// The sampled systems of a scene.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Samples {
     all: Vec<Sampled>,
 }

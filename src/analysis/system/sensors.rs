@@ -18,7 +18,7 @@ use crate::scene::programs::record;
 use std::f64::consts::{PI, TAU};
 
 /// The sensors of a system.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Sensors {
     /// expressions that are watched, then those that are evaluated (zero where there is none)
     /// (2 n)

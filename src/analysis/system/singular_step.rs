@@ -8,7 +8,7 @@
 //! none of them is near.
 
 /// The distances of rows from dependence at the evaluations of a step.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct SingularSteps {
     /// time, σ
     seen: Vec<(f64, f64)>,

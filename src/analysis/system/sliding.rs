@@ -31,7 +31,7 @@ use crate::scene::slopes::WIDTH;
 const BESIDE: f64 = 1e-12;
 
 /// One of the branches between which the motion stays.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Branch {
     /// how much of it there is in the mean
     pub part: f64,
@@ -42,7 +42,7 @@ pub(super) struct Branch {
 }
 
 /// The switches that slide, and the part of each branch that holds.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Slides {
     /// their indices   (m)
     which: Vec<usize>,

@@ -32,7 +32,7 @@ const DISTANCE: f64 = 4.0 * f64::EPSILON;
 const SHORTEST_STRETCH: f64 = 1e-10;
 
 /// The functions of time alone, with the next time at which one breaks.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct TimeEvents {
     /// `None`: there are no functions of time alone, or none breaks
     program: Option<Program>,
@@ -54,7 +54,7 @@ struct TimeEvent {
 }
 
 /// The values at one time.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Point {
     work: Work,
     numbers: Vec<f64>,

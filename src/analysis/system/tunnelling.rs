@@ -8,7 +8,7 @@ use crate::scene::equations::Unsupported;
 use crate::scene::programs::record;
 
 /// The motions of all pairs of bodies, recorded.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ThicknessBounds {
     /// three numbers per pair; `None`: there are no pairs
     motions: Option<Recording>,

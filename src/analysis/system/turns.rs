@@ -43,7 +43,7 @@ pub struct Look {
 }
 
 /// The angles of a configuration whose turns no coordinate knows.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Turns {
     /// angle, rate, speed and prescribed acceleration of each   (4 n)
     recording: Recording,

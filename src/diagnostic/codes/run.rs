@@ -268,4 +268,13 @@ Solids of contacts are convex. Hollows of the shell are filled; the message says
 
     GRAPHICS/3, SHELL, RM=20, FILE=half.stl     a hollow body as two convex ones, both in IGEOM",
     },
+    Code {
+        name: "late_column",
+        summary: "a column cannot be computed for rows that are there already",
+        explanation: "\
+A program named a column after a simulation. Its values in the rows so far follow from their states, where these were kept
+(`Options::keep_states`), the model is as it was, and the expression has no past (DELAY, angles that count turns).
+
+    session.add_column(\"DX(41,22)\")?;     before the first simulation it always can be",
+    },
 ];

@@ -11,7 +11,7 @@ use crate::scene::slopes::WIDTH;
 
 /// Programs of one form of the implicit equations. All read the numbers, then ẏ, λ, μ, and what may
 /// come after.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Written {
     residual: Program,
     /// multipliers at a state
@@ -24,7 +24,7 @@ pub(super) struct Written {
 }
 
 /// Derivatives of the residual.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Jacobian {
     /// recorded: entries (row, column), the output that is ∂F/∂y, the one that is ∂F/∂ẏ
     Recorded {

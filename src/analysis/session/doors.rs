@@ -1,0 +1,135 @@
+//! Doors of a session for programs: simulations without hooks, rows as they come, columns that are
+//! named whenever they are wanted, and the way back to the start.
+
+use super::{Analysis, Gaps, Session};
+use crate::analysis::system::closures::Hook;
+use crate::analysis::watch::Unwatched;
+use crate::analysis::work_limit::WorkLimit;
+use crate::diagnostic::{Diagnostic, Error};
+use crate::model::Text;
+use crate::results::{Run, Status};
+
+impl Session {
+    /// Runs one simulation as [`simulate`](Self::simulate) does, with nobody looking on.
+    ///
+    /// # Errors
+    /// Those of [`simulate`](Self::simulate).
+    pub fn run_to(&mut self, analysis: Analysis, end: f64, steps: usize) -> Result<Status, Error> {
+        self.simulate(analysis, end, steps, &mut Unwatched)
+    }
+
+    /// Computes what `USER(…)` stands for by a closure that is shared; see
+    /// [`register`](Self::register).
+    pub fn register_hook(&mut self, hook: Hook) {
+        self.hooks.push(hook);
+        self.starts.clear();
+        if self.carried.is_none() {
+            self.choose_columns();
+        }
+    }
+
+    /// Hands each row of results to a closure while simulations go on: the values of all columns of
+    /// [`Session::run`] in their order, time first. The rows are not kept then, however long a run
+    /// is. They come some at a time, at most a second late.
+    ///
+    /// ```
+    /// use cognate::{Analysis, Model, Options, Session};
+    /// use std::sync::mpsc::channel;
+    /// let model = Model::read("examples/slider_crank.adm")?;
+    /// let mut session = Session::new(model, "crank", Options::default());
+    /// let (sender, rows) = channel();
+    /// session.stream(move |row| drop(sender.send(row[0])));
+    /// session.run_to(Analysis::Dynamic, 0.1, 10)?;
+    /// let times: Vec<f64> = rows.try_iter().collect();
+    /// assert_eq!((times.len(), times[10]), (11, 0.1));
+    /// # Ok::<(), cognate::Error>(())
+    /// ```
+    pub fn stream(&mut self, mut row: impl FnMut(&[f64]) + Send + 'static) {
+        let mut values = Vec::new();
+        self.receive(Box::new(move |run: &mut Run| {
+            for k in 0..run.held().len() {
+                values.clear();
+                values.extend(run.columns.iter().map(|column| column.values[k]));
+                row(&values);
+            }
+            run.release();
+        }));
+    }
+
+    /// Adds a column: an expression of the function language, by which the run then knows it.
+    ///
+    /// After a simulation its values in the rows so far are computed from their states, which
+    /// [`Options::keep_states`](super::Options::keep_states) keeps.
+    ///
+    /// # Errors
+    /// A mistake in the expression; after a simulation also rows whose states have not been kept, a
+    /// model that has been changed since, and expressions with a past.
+    pub fn add_column(&mut self, expression: &str) -> Result<(), Error> {
+        if self.run.find(expression).is_some() {
+            return Ok(());
+        }
+        Text::from(expression).expression()?;
+        if self.run.rows() > 0 {
+            return self.add_late_column(expression);
+        }
+        self.options.columns.push(expression.to_string());
+        self.choose_columns();
+        self.columns_program = None;
+        self.starts.clear();
+        Ok(())
+    }
+
+    /// Goes back to the start, without results: the next simulation begins as the first did, with
+    /// the model as it is now.
+    ///
+    /// With [`Options::keep_start`](super::Options::keep_start) nothing is compiled or assembled
+    /// again where the model differs by nothing but VARIABLEs that are numbers and were told by
+    /// [`will_change`](Self::will_change).
+    ///
+    /// ```
+    /// use cognate::model::Formula;
+    /// use cognate::{Analysis, Model, Options, Session};
+    /// let text = "a drop\nPART/1, GROUND\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n\
+    ///     VARIABLE/3, FUNCTION=1\nVFORCE/1, I=2, JFLOAT=9, FX=VARVAL(3), FY=0, FZ=0\n\
+    ///     MARKER/9, PART=1, FLOATING\nEND\n";
+    /// let options = Options { keep_start: true, ..Options::default() };
+    /// let mut session = Session::new(Model::from_text(text)?, "drop", options);
+    /// session.add_column("DX(2)")?;
+    /// session.will_change([3]);
+    /// for force in [1.0, 2.0, 4.0] {
+    ///     session.reset();
+    ///     let number = Formula::text(force.to_string());
+    ///     session.model.variables.entry(3).or_default().function = number;
+    ///     session.run_to(Analysis::Dynamic, 1.0, 10)?;
+    ///     let way = session.run.column("DX(2)").and_then(|x| x.last().copied());
+    ///     assert!(way.is_some_and(|x| (x - 0.5 * force).abs() < 1e-6));
+    /// }
+    /// # Ok::<(), cognate::Error>(())
+    /// ```
+    pub fn reset(&mut self) {
+        let before = &self.run;
+        let mut run = Run::new(
+            before.name.clone(),
+            self.model.title.clone(),
+            before.units.clone(),
+        );
+        run.record.repeats = before.record.repeats;
+        run.record.model.clone_from(&before.record.model);
+        self.run = run;
+        let program = self.columns_program.take();
+        self.choose_columns();
+        self.columns_program = program;
+        (self.carried, self.kept, self.companion) = (None, None, None);
+        (self.linear, self.saved) = (Vec::new(), std::collections::BTreeMap::new());
+        (self.gaps, self.states) = (Gaps::default(), Vec::new());
+        (self.halted, self.used_up) = (false, None);
+        self.limit = self.options.limit.map(WorkLimit::begin);
+    }
+
+    /// Refuses a column that cannot be computed for the rows so far.
+    pub(super) fn late(expression: &str, why: &str) -> Error {
+        let what = format!("`{expression}` cannot be computed for the rows so far: {why}");
+        let said = Diagnostic::error("late_column", what);
+        said.help("name it before the first simulation").into()
+    }
+}

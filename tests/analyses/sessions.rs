@@ -1,0 +1,260 @@
+//! Sessions as programs use them: results do not depend on when a column is named, whether rows are streamed or kept, or on which thread and how often a session has run before.
+
+use crate::running::{Analysis, Options, Session, begin, whole};
+
+use cognate::Error;
+use cognate::dataset::manual::example;
+use cognate::model::Formula;
+use cognate::results::Status;
+use std::sync::mpsc::channel;
+
+const COLUMNS: [&str; 3] = ["AZ(21,1)", "WZ(21,1)", "FX(21,1)"];
+
+/// A pendulum in three dimensions with a number that a program changes, switches and a motion that ends.
+const PENDULUM: &str = "pendulum
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, MASS=2, CM=20, IP=0.1,0.1,0.1
+MARKER/20, PART=2, QP=1,0,0
+MARKER/21, PART=2
+JOINT/1, REVOLUTE, I=21, J=1
+ACCGRAV/JGRAV=-9.81
+VARIABLE/3, FUNCTION=0.2
+SFORCE/3, ROTATION, I=21, J=1, FUNCTION=-VARVAL(3)*WZ(21,1)-IF(AZ(21,1)+1:5*AZ(21,1)+5,0,0)
+SENSOR/1, FUNCTION=AZ(21,1)\\, VALUE=-0.5, LE, EVALUATE=TIME
+END
+";
+
+fn session(options: Options) -> Session {
+    begin(whole(PENDULUM), "pendulum", options)
+}
+
+fn with_columns() -> Options {
+    Options {
+        columns: COLUMNS.map(String::from).to_vec(),
+        ..Options::default()
+    }
+}
+
+fn go(s: &mut Session, end: f64) {
+    let done = s.run_to(Analysis::Dynamic, end, 20);
+    assert_eq!(done, Ok(Status::Completed));
+}
+
+/// All values of the columns, by their bits.
+fn bits(s: &Session) -> Vec<Vec<u64>> {
+    let column = |name: &str| s.run.column(name).expect("a column").iter();
+    COLUMNS
+        .map(|name| column(name).map(|x| x.to_bits()).collect())
+        .to_vec()
+}
+
+fn expected(end: f64) -> Vec<Vec<u64>> {
+    let mut s = session(with_columns());
+    go(&mut s, end);
+    bits(&s)
+}
+
+#[test]
+fn columns_named_before_or_after_hold_the_same_bits() {
+    let mut before = session(Options::default());
+    for column in COLUMNS {
+        before.add_column(column).expect("an expression");
+    }
+    let mut after = session(Options {
+        keep_states: true,
+        ..Options::default()
+    });
+    for s in [&mut before, &mut after] {
+        assert_eq!(s.run_to(Analysis::Static, 0.0, 1), Ok(Status::Completed));
+        go(s, 1.0);
+        go(s, 1.5);
+    }
+    for column in COLUMNS {
+        after.add_column(column).expect("an expression");
+        after.add_column(column).expect("it is there already");
+    }
+    for s in [&mut before, &mut after] {
+        go(s, 2.0);
+    }
+    assert_eq!(bits(&after), bits(&before));
+    assert_eq!(after.run.table, before.run.table);
+}
+
+fn refused(outcome: Result<(), Error>) -> &'static str {
+    outcome.expect_err("a mistake").code()
+}
+
+#[test]
+fn a_late_column_that_cannot_be_computed_is_refused_and_changes_nothing() {
+    let mut s = session(with_columns());
+    go(&mut s, 0.5);
+    assert_eq!(refused(s.add_column("DX(20)")), "late_column");
+    let keep_states = true;
+    let mut s = session(Options {
+        keep_states,
+        ..with_columns()
+    });
+    go(&mut s, 0.5);
+    let n = s.run.columns.len();
+    assert_eq!(
+        refused(s.add_column("DELAY(DX(20), 0.1, 0)")),
+        "late_column"
+    );
+    assert_eq!(refused(s.add_column("DX(99)")), "unsupported");
+    assert_eq!(refused(s.add_column("DX(")), "unexpected_end");
+    s.model.gravity = [0.0; 3];
+    assert_eq!(refused(s.add_column("DX(20)")), "late_column");
+    assert_eq!(s.run.columns.len(), n);
+    go(&mut s, 1.0);
+}
+
+#[test]
+fn streamed_rows_are_the_rows_of_a_run() {
+    let mut kept = session(with_columns());
+    let mut streamed = session(with_columns());
+    let (sender, rows) = channel();
+    streamed.stream(move |row| drop(sender.send(row.to_vec())));
+    for s in [&mut kept, &mut streamed] {
+        go(s, 1.0);
+        go(s, 1.5);
+    }
+    let rows: Vec<Vec<f64>> = rows.try_iter().collect();
+    assert_eq!(rows.len(), kept.run.rows());
+    assert!(streamed.run.held().is_empty());
+    for (k, column) in kept.run.columns.iter().enumerate() {
+        let of_rows: Vec<f64> = rows.iter().map(|row| row[k]).collect();
+        assert_eq!(of_rows, column.values, "{}", column.name);
+    }
+}
+
+#[test]
+fn a_session_that_is_reset_runs_again_to_the_last_bit() {
+    let first = expected(1.5);
+    for keep_start in [false, true] {
+        let mut s = session(Options {
+            keep_start,
+            ..with_columns()
+        });
+        for _ in 0..3 {
+            go(&mut s, 1.5);
+            assert_eq!(bits(&s), first);
+            s.reset();
+            assert_eq!((s.time(), s.run.rows()), (0.0, 0));
+        }
+    }
+}
+
+fn number(s: &mut Session, x: f64) {
+    let variable = s.model.variables.get_mut(&3).expect("the variable");
+    variable.function = Formula::text(x.to_string());
+}
+
+#[test]
+fn a_number_that_is_changed_between_runs_does_what_a_new_session_would() {
+    let keep_start = true;
+    let mut again = session(Options {
+        keep_start,
+        ..with_columns()
+    });
+    again.will_change([3]);
+    for x in [0.1, 3.0, 0.2] {
+        let mut new = session(with_columns());
+        new.will_change([3]);
+        again.reset();
+        for s in [&mut again, &mut new] {
+            number(s, x);
+            go(s, 1.5);
+        }
+        assert_eq!(bits(&again), bits(&new), "{x}");
+        let compiled = again.run.record.seconds.compile;
+        assert_eq!(compiled > 0.0, x == 0.1, "the first run alone is compiled");
+    }
+    // another model is compiled anew
+    again.reset();
+    again.model.gravity = [0.0; 3];
+    go(&mut again, 1.5);
+    assert!(again.run.record.seconds.compile > 0.0);
+}
+
+#[test]
+fn models_of_the_manual_run_again_to_the_last_bit() {
+    for name in ["slider_crank", "control", "gears", "contact"] {
+        let text = example(name).expect("a model").dataset;
+        let options = || Options {
+            full: true,
+            keep_start: true,
+            ..Options::default()
+        };
+        let mut s = begin(whole(text), name, options());
+        let mut runs = Vec::new();
+        for _ in 0..2 {
+            s.reset();
+            let done = s.run_to(Analysis::Transient, 0.05, 10);
+            assert_eq!(done, Ok(Status::Completed), "{name}");
+            let all = s
+                .run
+                .columns
+                .iter()
+                .map(|c| c.values.iter().map(|x| x.to_bits()));
+            runs.push(all.map(Iterator::collect).collect::<Vec<Vec<u64>>>());
+        }
+        assert_eq!(runs[0], runs[1], "{name}");
+    }
+}
+
+#[test]
+fn a_state_is_taken_changed_and_gone_on_from() {
+    let mut s = session(with_columns());
+    assert_eq!(s.state().values().count(), 0);
+    go(&mut s, 1.0);
+    let there = s.state();
+    go(&mut s, 1.5);
+    let on = bits(&s).map_last();
+    assert_eq!(there.time(), 1.0);
+    s.set_state(&there).expect("the same model");
+    go(&mut s, 1.5);
+    assert_eq!(bits(&s).map_last(), on);
+    // another speed
+    let mut other = there.clone();
+    let (name, speed) = other.values().last().expect("unknowns");
+    other.set(&name, speed + 1.0).expect("a known name");
+    assert_eq!(other.value(&name), Some(speed + 1.0));
+    s.set_state(&other).expect("the same model");
+    go(&mut s, 1.5);
+    assert_ne!(bits(&s).map_last(), on);
+    assert_eq!(refused(other.set("nobody", 1.0)), "unknown_name");
+    assert_eq!(refused(other.set(&name, f64::NAN)), "unfit_value");
+    let part = there.part(2).expect("the part");
+    assert!((part.p_GM.norm()) < 1e-9 && part.w_GM.norm() > 0.0);
+    assert!(there.part(3).is_none());
+}
+
+/// The last value of each column.
+trait Last {
+    fn map_last(self) -> Vec<u64>;
+}
+
+impl Last for Vec<Vec<u64>> {
+    fn map_last(self) -> Vec<u64> {
+        self.iter().map(|c| *c.last().expect("rows")).collect()
+    }
+}
+
+#[test]
+fn a_session_goes_to_another_thread_and_back() {
+    let mut s = session(with_columns());
+    go(&mut s, 0.7);
+    let mut s = std::thread::spawn(move || {
+        go(&mut s, 1.0);
+        s
+    })
+    .join()
+    .expect("the thread");
+    go(&mut s, 1.5);
+    let mut alone = session(with_columns());
+    for end in [0.7, 1.0, 1.5] {
+        go(&mut alone, end);
+    }
+    assert_eq!(bits(&s), bits(&alone));
+}
