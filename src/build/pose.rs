@@ -59,7 +59,8 @@ impl Stand {
             Stand::With { body, marker } => {
                 let there = marker_frame(model, *marker);
                 let nowhere = || {
-                    let what = format!("MARKER/{marker}, with which it stands, has no place");
+                    let other = ElementKind::Marker.id(*marker);
+                    let what = format!("{other}, with which it stands, has no place");
                     Diagnostic::error("no_direction", what)
                 };
                 (body, there.ok_or_else(nowhere)?)
