@@ -1,17 +1,5 @@
 //! cognate: the ADAMS function language and the multibody solver that speaks it.
 //!
-//! # A guide
-//!
-//! | to | begin with |
-//! |---|---|
-//! | evaluate an expression, differentiate it, find its mistakes | [`expr::Expr`] |
-//! | write a formula once, for values, derivatives, rates, batches | [`scalar::Scalar`] |
-//! | read a model, simulate it, read the results | `model::Model`, `analysis::session::Session` |
-//! | check a dataset, or convert results | `dataset`, `results` |
-//! | integrate equations of your own | `numeric` |
-//!
-//! An expression is read, checked and evaluated in two lines:
-//!
 //! ```
 //! use cognate::expr::Expr;
 //! let f = Expr::parse("STEP5(TIME, 0, 0, 1, 10) * SIN(2*PI*TIME)")?;
@@ -19,33 +7,182 @@
 //! # Ok::<(), cognate::Error>(())
 //! ```
 //!
-//! A model is read, simulated, and its results are read by the names of their columns:
+//! It evaluates the functions that engineers write into their models, with derivatives; it reads
+//! their models (`.adm`) and commands (`.acf`), or takes models that a program makes; it moves the
+//! mechanisms, finds equilibria and modes; and it says what is wrong with all of these, by place
+//! and name, with advice.
 //!
-//! ```no_run
-//! # #[cfg(feature = "solver")] {
-//! use cognate::analysis::{session::{Analysis, Options, Session}, watch::Unwatched};
-//! let model = cognate::model::Model::read("examples/slider_crank.adm")?;
-//! let options = Options { columns: vec!["DX(41,22)".into()], ..Options::default() };
-//! let mut session = Session::new(model, "crank", options);
-//! session.simulate(Analysis::Dynamic, 2.0, 400, &mut Unwatched).ok();
-//! let x = session.run.column("DX(41,22)");
-//! # }
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # A map
+//!
+//! | to | begin with |
+//! |---|---|
+//! | read an expression, find its mistakes | [`expr::Expr`] |
+//! | evaluate it often, with derivatives | [`expr::Evaluator`] |
+//! | write a formula once, for values, derivatives, rates, batches | [`scalar::Scalar`] |
+//! | read a model | `Model::read` |
+//! | make a model | `ModelBuilder` |
+//! | simulate it, read the results | `Session` |
+//! | count its freedoms, find its modes | `analysis::verify`, `analysis::linear` |
+//! | check a dataset, write it in a regular form | `dataset` |
+//! | read and write results | `results` |
+//! | integrate equations of your own | `numeric` |
+//! | tell a mistake to a user | [`Error`], [`diagnostic::Diagnostic`] |
+//!
+//! # Programs
+//!
+//! These, and longer ones in `examples/`, run as they stand.
+//!
+//! **Mistakes** come with a code, a place and advice:
+//!
 //! ```
+//! use cognate::expr::Expr;
+//! let error = Expr::parse("2*STPE(TIME, 1, 0, 2, 1)").unwrap_err();
+//! assert_eq!((error.code(), error.first().column), ("unknown_name", 3));
+//! assert_eq!(error.first().help, ["did you mean STEP?"]);
+//! ```
+//!
+//! **Inputs** of a formula are known before it is evaluated, by the names of the language:
+//!
+//! ```
+//! use cognate::expr::Expr;
+//! let spring = Expr::parse("-25*(DM(10,20) - 10) - 2*VR(10,20)")?;
+//! let names: Vec<String> = spring.inputs().iter().map(|input| input.to_string()).collect();
+//! assert_eq!(names, ["DM(10, 20)", "VR(10, 20)"]);
+//! # Ok::<(), cognate::Error>(())
+//! ```
+//!
+//! **An evaluator** is compiled once and then fast: values, slopes, rates in time, columns.
+//!
+//! ```
+//! use cognate::expr::Evaluator;
+//! let mut f = Evaluator::parse("TIME**3")?;
+//! assert_eq!(f.eval(&[2.0])?, 8.0);
+//! assert_eq!(f.gradient(&[2.0])?, [12.0]);
+//! assert_eq!(f.rates(&[[2.0, 1.0, 0.0]])?, [8.0, 12.0, 12.0]); // TIME runs with rate 1
+//! assert_eq!(f.batch(&[&[1.0, 2.0, 3.0]])?, [1.0, 8.0, 27.0]);
+//! # Ok::<(), cognate::Error>(())
+//! ```
+//!
+//! **A dataset** is read, simulated, and looked at by the names of columns:
+//!
+//! ```
+//! # #[cfg(not(feature = "solver"))] fn main() {}
+//! # #[cfg(feature = "solver")] fn main() -> Result<(), cognate::Error> {
+//! use cognate::{Analysis, Model, Options, Session};
+//! let model = Model::read("examples/slider_crank.adm")?;
+//! let mut session = Session::new(model, "crank", Options::default());
+//! session.add_column("DX(41,22)")?;
+//! session.run_to(Analysis::Dynamic, 0.5, 100)?;
+//! assert_eq!(session.run.column("DX(41,22)").map(<[f64]>::len), Some(101));
+//! # Ok(()) }
+//! ```
+//!
+//! **A model is made** by names; numbers are handed out, and written datasets keep the names:
+//!
+//! ```
+//! # #[cfg(not(feature = "solver"))] fn main() {}
+//! # #[cfg(feature = "solver")] fn main() -> Result<(), cognate::Error> {
+//! use cognate::{Analysis, ModelBuilder, Options};
+//! let model = ModelBuilder::new("pendulum");
+//! model.units("MKS").gravity([0.0, -9.81, 0.0]);
+//! let rod = model.part("rod").mass(2.0).inertia([0.0, 0.2, 0.2]).center([0.5, 0.0, 0.0]);
+//! model.revolute("hinge", &rod.at([0.0; 3]), &model.ground());
+//! assert!(model.build()?.to_text().contains("adams_view_name='hinge'"));
+//!
+//! let mut session = model.session(Options::default())?;
+//! session.run_to(Analysis::Dynamic, 1.0, 10)?;
+//! # Ok(()) }
+//! ```
+//!
+//! **Laws are closures** where text is not enough:
+//!
+//! ```
+//! # #[cfg(not(feature = "solver"))] fn main() {}
+//! # #[cfg(feature = "solver")] fn main() -> Result<(), cognate::Error> {
+//! use cognate::ModelBuilder;
+//! let model = ModelBuilder::new("a mass on a spring");
+//! let mass = model.part("mass").mass(1.0).inertia([1.0; 3]).center([0.0; 3]);
+//! let (i, j) = (mass.at([0.0; 3]), model.ground().at([0.0, 0.0, -1.0]));
+//! let spring = model.force("spring", &i, &j);
+//! spring.law([format!("DM({i},{j})")], |_time, [length]| -100.0 * (length - 1.0).powi(3));
+//! # model.build()?;
+//! # Ok(()) }
+//! ```
+//!
+//! **All mistakes of a model** are told at once, by the names of elements:
+//!
+//! ```
+//! # #[cfg(not(feature = "solver"))] fn main() {}
+//! # #[cfg(feature = "solver")] fn main() {
+//! use cognate::ModelBuilder;
+//! let model = ModelBuilder::new("two mistakes");
+//! let wheel = model.part("wheel").mass(f64::NAN);
+//! model.revolute("axle", &wheel, &model.ground());
+//! let error = model.build().unwrap_err();
+//! assert_eq!(error.diagnostics().len(), 2);
+//! assert!(error.to_string().contains("PART/2 'wheel': error[unfit_value]: MASS is NaN"));
+//! # }
+//! ```
+//!
+//! **Rest and modes**: an equilibrium, and the eigenvalues about it:
+//!
+//! ```
+//! # #[cfg(not(feature = "solver"))] fn main() {}
+//! # #[cfg(feature = "solver")] fn main() -> Result<(), cognate::Error> {
+//! use cognate::{Analysis, ModelBuilder, Options, analysis::linear::Wanted};
+//! let model = ModelBuilder::new("a mass on a spring");
+//! let mass = model.part("mass").mass(4.0).inertia([1.0; 3]).center([0.0; 3]);
+//! let (i, j) = (mass.at([0.0, 0.0, 1.0]), model.ground().at([0.0; 3]));
+//! model.translational("guide", &i, &model.ground());
+//! model.spring("spring", &i, &j).set("K", 100).set("LENGTH", 1).set("C", 0);
+//! let mut session = model.session(Options::default())?;
+//! session.run_to(Analysis::Static, 0.0, 1)?;
+//! let linear = session.linearize(&Wanted::default())?;
+//! assert!(linear.table().contains("0.79577")); // √(k/m)/2π in Hz
+//! # Ok(()) }
+//! ```
+//!
+//! **Results** are a table with units, which any format writes and reads:
+//!
+//! ```
+//! # #[cfg(not(feature = "solver"))] fn main() {}
+//! # #[cfg(feature = "solver")] fn main() -> Result<(), cognate::Error> {
+//! use cognate::{Analysis, Model, Options, Session, results};
+//! let model = Model::read("examples/slider_crank.adm")?;
+//! let mut session = Session::new(model, "crank", Options::default());
+//! session.run_to(Analysis::Dynamic, 0.1, 10)?;
+//! let text = results::csv::write(&session.run, true);
+//! let read = results::csv::read(text.as_bytes())?;
+//! assert_eq!((read.rows(), &read.units.length), (11, &session.run.units.length));
+//! # Ok(()) }
+//! ```
+//!
+//! # Errors
+//!
+//! What a caller has done wrong is an [`Error`]: all mistakes at once, each with a code (which
+//! `cognate explain CODE` explains), place, element by name, and advice. It is a
+//! [`std::error::Error`], prints completely, and works with `?`. What happens in numbers is no
+//! error but a `Status` (`results::Status`) with the results so far: the time, the step and the
+//! name of the worst row. Nothing that is passed to the library makes it panic.
 //!
 //! # Conventions
 //!
 //! Lengths, masses, forces and times are in the units of the model, angles in radians. Vectors are
 //! named after their frames: `p_JI_K` is the position of I from J expressed in K, `R_GP` turns
-//! vectors of P into vectors of G. Every mistake of a user is a [`diagnostic::Diagnostic`] with a
-//! code, a place and advice. The same input gives the same bits in every run.
+//! vectors of P into vectors of G. The same input gives the same bits in every run.
 //!
 //! # Features
 //!
-//! Without any, the crate is an evaluator of expressions and has no linear algebra in its
-//! dependency tree. `native` makes code of the processor at hand for programs that run often;
-//! without it there is no unsafe Rust here. `solver` adds models and their simulation, `geometry`
-//! the contacts of convex solids that need parry, `cli` the command line.
+//! | feature | brings |
+//! |---|---|
+//! | none | the evaluator: `expr`, `scalar`, `space`; no linear algebra in its dependency tree |
+//! | `native` | code of the processor for programs that run often (x86-64 under Linux) |
+//! | `solver` | models, their simulation, results |
+//! | `geometry` | contacts of convex solids, by parry |
+//! | `parquet` | results as Parquet |
+//! | `cli` | the command line and the prompt |
+//!
+//! Without `native` there is no unsafe Rust here.
 //!
 //! # Floors
 //!
@@ -53,7 +190,7 @@
 //! the table of joints; results stand beside the scene because they know nothing of it:
 //!
 //! ```text
-//! 6  cli                        the command line
+//! 6  build  cli                 models made by programs; the command line
 //! 5  analysis   report          simulations of a scene; plots of results
 //! 4  dataset  scene  results    files of models; equations; records and files of results
 //! 3  model                      the elements as the user wrote them

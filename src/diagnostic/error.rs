@@ -12,11 +12,13 @@ use std::sync::Arc;
 /// that was met on the way is its [source](std::error::Error::source).
 ///
 /// ```
+/// # #[cfg(feature = "solver")] {
 /// use cognate::Model;
 /// let error = Model::from_text("t\nPART/1, GROUND\nJOINT/3, FIXED, I=12, J=11\nEND\n").unwrap_err();
 /// let found: Vec<_> = error.diagnostics().iter().map(|d| (d.code, d.line, d.column)).collect();
 /// assert_eq!(found, [("unknown_element", 3, 16), ("unknown_element", 3, 22)]);
 /// assert_eq!(error.first().element.as_deref(), Some("JOINT/3"));
+/// # }
 /// ```
 #[derive(Clone)]
 pub struct Error(Box<Inner>);

@@ -23,6 +23,7 @@
 //! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | grammars, tree, and back to source |
 //! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
+//! | | `evaluator.rs` | a program with its work space: values, slopes, rates, columns |
 //! | | `finite.rs` | operands without a finite value that an operation could lose |
 //! | | `smoothness.rs` | places where it is not smooth, and the derivative that jumps there |
 //!
@@ -34,6 +35,7 @@ pub mod ast;
 mod check;
 pub mod compile;
 pub mod dimension;
+mod evaluator;
 mod expression;
 mod finite;
 mod foreign;
@@ -52,6 +54,7 @@ mod token;
 pub mod walk;
 
 pub use check::{DEEPEST_NESTING, Limits, MOST_CHARACTERS};
+pub use evaluator::Evaluator;
 pub use expression::{Expr, input_named};
 pub use lint::lint;
 pub use parse::{parse, parse_with_limits};

@@ -21,7 +21,7 @@ use crate::scene::programs::record_with_complaints;
 use std::collections::BTreeMap;
 
 /// A column as it is evaluated.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Shown {
     what: What,
     /// the request it belongs to, which a command may switch off
@@ -381,16 +381,15 @@ impl Columns {
 
     /// Adds an expression after all other columns, shown by tables.
     pub fn add(&mut self, run: &mut Run, expression: &str) {
-        let units = run.units.clone();
         let shown = run.table_columns();
-        let column = self.text(run, expression.to_string(), expression, &units);
+        let column = self.text(run, expression.to_string(), expression, None);
         run.table = shown;
         run.table.push(column);
     }
 
     /// Takes the last column away again, which [`add`](Self::add) added.
     pub fn take_back(&mut self, run: &mut Run) {
-        self.what.pop();
+        self.shown.pop();
         self.extra.pop();
         run.columns.pop();
         run.table.pop();
@@ -399,8 +398,8 @@ impl Columns {
     /// Returns the last column alone.
     pub fn last_alone(&self) -> Self {
         Self {
-            what: self.what.last().cloned().into_iter().collect(),
-            extra: Vec::new(),
+            shown: self.shown.last().cloned().into_iter().collect(),
+            ..Self::default()
         }
     }
 

@@ -116,10 +116,9 @@ impl Session {
         run.record.repeats = before.record.repeats;
         run.record.model.clone_from(&before.record.model);
         self.run = run;
-        let program = self.columns_program.take();
         self.choose_columns();
-        self.columns_program = program;
         (self.carried, self.kept, self.companion) = (None, None, None);
+        self.columns_program = None;
         (self.linear, self.saved) = (Vec::new(), std::collections::BTreeMap::new());
         (self.gaps, self.states) = (Gaps::default(), Vec::new());
         (self.halted, self.used_up) = (false, None);

@@ -10,7 +10,7 @@
 use super::System;
 
 /// The traces of a step while evaluations are made aside.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Traces {
     /// unknowns of algebraic loops   (n_loops)
     unknowns: Vec<f64>,

@@ -233,7 +233,7 @@ impl Program {
     ///
     /// # Errors
     /// Fewer values than inputs, or more places than outputs.
-    pub(super) fn check_counts(&self, values: usize, places: usize) -> Result<(), Error> {
+    pub(in crate::expr) fn check_counts(&self, values: usize, places: usize) -> Result<(), Error> {
         let (inputs, outputs) = (self.inputs.len(), self.n_outputs());
         let number = |n: usize, one: &str| match n {
             1 => format!("1 {one}"),
