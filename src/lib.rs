@@ -159,7 +159,7 @@
 //!
 //! # Errors
 //!
-//! What a caller has done wrong is an [`Error`]: all mistakes at once, each with a code (which
+//! Mistakes of a caller are an [`Error`]: all of them at once, each with a code (which
 //! `cognate explain CODE` explains), place, element by name, and advice. It is a
 //! [`std::error::Error`], prints completely, and works with `?`. What happens in numbers is no
 //! error but a `Status` (`results::Status`) with the results so far: the time, the step and the
