@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// use cognate::Model;
 /// let error = Model::from_text("t\nPART/1, GROUND\nJOINT/3, FIXED, I=12, J=11\nEND\n").unwrap_err();
 /// let found: Vec<_> = error.diagnostics().iter().map(|d| (d.code, d.line, d.column)).collect();
-/// assert_eq!(found, [("unknown_element", 3, 16), ("unknown_element", 3, 22)]);
+/// assert_eq!(found, [("unknown_element", 3, 17), ("unknown_element", 3, 23)]);
 /// assert_eq!(error.first().element.as_deref(), Some("JOINT/3"));
 /// # }
 /// ```
