@@ -16,6 +16,8 @@
 
 pub mod accuracy;
 pub mod direction;
+#[cfg(feature = "geometry")]
+pub mod interference;
 pub mod linear;
 pub mod motion;
 pub(in crate::analysis) mod quantity;

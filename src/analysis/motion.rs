@@ -115,6 +115,22 @@ impl<'a> Recorded<'a> {
         })
     }
 
+    /// Returns the frame of a marker in ground at every row of the record.
+    ///
+    /// # Errors
+    /// As [`Recorded::column`].
+    pub fn frames(&self, marker: u32) -> Result<Vec<Frame<f64>>, Diagnostic> {
+        let carried = self.carried(marker, 0)?;
+        let frame = |place: usize| {
+            let state = self.state(&carried, place);
+            Frame {
+                rotation: state.R_GM,
+                position: state.p_GM,
+            }
+        };
+        Ok((0..self.run.held().len()).map(frame).collect())
+    }
+
     /// Finds a marker, and the columns that move it up to a level.
     fn carried(&self, marker: u32, level: usize) -> Result<Carried, Diagnostic> {
         let id = ElementKind::Marker.id(marker);

@@ -17,6 +17,8 @@ mod explain;
 mod fmt;
 pub mod formula;
 mod functions;
+#[cfg(feature = "geometry")]
+mod interference;
 pub mod interrupt;
 mod limit;
 mod linear;
@@ -62,6 +64,8 @@ enum Verb {
     Explain(explain::Args),
     Fmt(fmt::Args),
     Functions(functions::Args),
+    #[cfg(feature = "geometry")]
+    Interference(interference::Args),
     Linear(linear::Args),
     Motion(motion::Args),
     Plot(plot::Args),
@@ -203,6 +207,8 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Explain(args) => explain::run(args),
         Verb::Fmt(args) => fmt::run(args),
         Verb::Functions(args) => functions::run(args),
+        #[cfg(feature = "geometry")]
+        Verb::Interference(args) => interference::run(args),
         Verb::Linear(args) => linear::run(args),
         Verb::Motion(args) => motion::run(args),
         Verb::Plot(args) => plot::run(args),

@@ -128,6 +128,30 @@ fn solid(graphics: ElementId, shape: &Shape) -> Result<Placed, Untouchable> {
     }
 }
 
+/// Returns the solid of a GRAPHICS and the marker in whose frame it stands; `None`: it is a curve,
+/// a drawing, or stands in a file.
+pub fn solid_of(graphics: ElementId, shape: &Shape) -> Option<(u32, Solid)> {
+    match shape {
+        Shape::Box { .. }
+        | Shape::Cylinder { .. }
+        | Shape::Frustum { .. }
+        | Shape::Ellipsoid { .. }
+        | Shape::Torus { .. }
+        | Shape::Plane { .. }
+        | Shape::Point { .. } => {
+            let placed = solid(graphics, shape).ok()?;
+            (!is_degenerate(&placed.solid)).then_some((placed.marker, placed.solid))
+        }
+        Shape::Circle { .. }
+        | Shape::Arc { .. }
+        | Shape::Curve { .. }
+        | Shape::External { .. }
+        | Shape::Shell { .. }
+        | Shape::Other(_)
+        | Shape::Nothing => None,
+    }
+}
+
 /// Returns true if a solid has no size.
 fn is_degenerate(solid: &Solid) -> bool {
     let bad = |x: f64| x.is_nan() || x <= 0.0 || x == f64::INFINITY;

@@ -11,6 +11,8 @@ mod broken;
 mod cli;
 mod cli_eval;
 mod gallery;
+#[cfg(feature = "geometry")]
+mod interference;
 mod manual;
 mod motion;
 mod plots;

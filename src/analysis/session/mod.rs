@@ -22,7 +22,7 @@ pub mod script;
 mod selection;
 mod sets;
 mod settings;
-mod shells;
+pub(in crate::analysis) mod shells;
 mod shown;
 mod simulate;
 mod spline_range;

@@ -21,12 +21,13 @@ pub fn load(model: &Model, folders: &[PathBuf]) -> BTreeMap<u32, Result<Shell, S
         else {
             continue;
         };
-        out.entry(id).or_insert_with(|| shell(file, folders));
+        out.entry(id).or_insert_with(|| shell_of(file, folders));
     }
     out
 }
 
-fn shell(name: &str, folders: &[PathBuf]) -> Result<Shell, String> {
+/// Reads the shell in a file; or the reason why there is none.
+pub fn shell_of(name: &str, folders: &[PathBuf]) -> Result<Shell, String> {
     let refuse = |why: String| format!("stands in {name:?}: {why}; {ADVICE}");
     let kernel = [
         ".x_t", ".x_b", ".xmt_txt", ".xmt_bin", ".xmt", ".step", ".stp", ".igs", ".iges", ".sat",

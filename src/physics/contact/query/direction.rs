@@ -35,7 +35,7 @@ const LARGEST_STEP: f64 = 0.1;
 
 impl Query {
     /// Returns I's farthest point against n and J's along it, in J's frame.
-    fn farthest(&self, pose: &Pose, n: Vector) -> (Vector, Vector) {
+    pub(super) fn farthest(&self, pose: &Pose, n: Vector) -> (Vector, Vector) {
         (
             self.i.support_point(pose, -n),
             self.j.local_support_point(n),

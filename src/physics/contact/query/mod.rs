@@ -22,6 +22,7 @@ mod flat;
 pub mod hull;
 mod points;
 mod polytope;
+pub mod separation;
 
 use super::{Solid, TOUCH_NUMBERS};
 pub(super) use body::Body;
