@@ -10,7 +10,7 @@
 //! | `X`, `Y`, `Z` | of CONTACT, PTCV and CVCV: where they touch | ground |
 //! | `DEPTH`, `COUNT` | deepest overlap of the solids of a CONTACT, number of places | – |
 //! | `S1`, `S2` | parameters of the curves where they touch | – |
-//! | `VX` … `WZ` of FRICTION | velocity and angular velocity of the slip | marker J |
+//! | `VX` … `WZ` of FRICTION | velocity and angular velocity of the slip | marker I |
 //! | `FX_12` … | of NFORCE: on each of its I markers | ground |
 //!
 //! Names and order of those sets that real results of Adams have are theirs.
@@ -285,9 +285,11 @@ impl Group {
             Group::Slip => {
                 let translation = ["VX", "VY", "VZ"].map(|name| (name, Unit::Length(1)));
                 let rotation = ["WX", "WY", "WZ"].map(|name| (name, Unit::Angle(1)));
-                let all = translation.into_iter().chain(rotation).zip(14..);
-                all.map(|((name, unit), k)| of_text(name, unit, format!("FRICTION({n},{k})")))
-                    .collect()
+                let all = translation.into_iter().chain(rotation);
+                numbered(all, |component| What::Slip {
+                    friction: n,
+                    component,
+                })
             }
             Group::Nodes => nodes(model, n),
             Group::Value => vec![of_text("Q", Unit::Number, format!("VARVAL({n})"))],

@@ -50,6 +50,9 @@ pub(super) enum What {
     Multiplier(u32),
     /// of the touches of a CONTACT: 0–2 place, 3 depth of the deepest, 4 their number
     Touch { contact: u32, component: usize },
+    /// the slip that a FRICTION resists, along the axes of the joint's I marker: 0–2 velocity, 3–5
+    /// angular velocity
+    Slip { friction: u32, component: usize },
     /// 0–2 the place in ground where a PTCV or CVCV touches, 3 and 4 the parameters of its curves
     CurveContact { id: ElementId, component: usize },
     /// of the whole model: see [`ENERGIES`]
@@ -73,6 +76,7 @@ impl What {
             | What::Transmitted { .. }
             | What::Multiplier(_)
             | What::Touch { .. }
+            | What::Slip { .. }
             | What::Energy(_) => None,
         }
     }
@@ -258,6 +262,10 @@ impl<'a, 's, S: Scalar> Values<'a, 's, S> {
                 let touched = || touched(scene, at, *contact);
                 self.touches.entry(*contact).or_insert_with(touched)[*component]
             }
+            What::Slip {
+                friction,
+                component,
+            } => self.slip(*friction, *component),
             What::CurveContact { id, component } => {
                 let found = self.scene.cams.iter().position(|c| c.id == *id);
                 found.map_or(nothing, |c| match component {
@@ -309,6 +317,20 @@ impl<'a, 's, S: Scalar> Values<'a, 's, S> {
         };
         let ([x, y, z], [rx, ry, rz]) = (translation.0, rotation.0);
         Some([x, y, z, size(translation), rx, ry, rz, size(rotation)])
+    }
+
+    fn slip(&self, friction: u32, component: usize) -> S {
+        let id = ElementKind::Friction.id(friction);
+        let found = self.scene.forces.iter().find(|force| force.id == id);
+        let slip = found.and_then(|f| Some((f.slip(self.at)?, self.at.marker(f.i).R_GM)));
+        slip.map_or_else(S::zero, |(slip, axes)| {
+            let vector = if component < 3 {
+                slip.velocity
+            } else {
+                slip.spin
+            };
+            axes.column(component % 3).dot(vector)
+        })
     }
 
     fn between_axes(&self, i: u32, j: u32, axis: usize) -> Option<S> {
