@@ -33,6 +33,7 @@ pub mod render;
 mod repl;
 mod report;
 mod run;
+mod runs;
 mod statements;
 mod summary;
 mod table;
@@ -72,6 +73,7 @@ enum Verb {
     Repl(repl::Args),
     Report(report::Args),
     Run(run::Args),
+    Runs(runs::Args),
     Statements(statements::Args),
     Verify(verify::Args),
 }
@@ -215,6 +217,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Repl(args) => repl::run(args),
         Verb::Report(args) => report::run(args),
         Verb::Run(args) => run::run(args),
+        Verb::Runs(args) => runs::run(args),
         Verb::Statements(args) => statements::run(args),
         Verb::Verify(args) => verify::run(args),
     });

@@ -15,7 +15,7 @@ use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::model::{ElementKind, Model, SettingsStatement};
 use crate::numeric::Stats;
 use crate::results::format::Format;
-use crate::results::{Event, Run, Status, json};
+use crate::results::{self, Event, Run, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -27,6 +27,7 @@ Examples:
   cognate run Controls_Plant_1.msg plant.adm
   cognate run pendulum.adm --end 2 --steps 200 --column 'DX(12,21)'
   cognate run pendulum.acf --animate --open
+  cognate run pendulum.acf --name stiff --out results
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
     /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
@@ -55,6 +56,9 @@ pub struct Args {
     /// Folder that results are written to
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Name of the run, which its files begin with; without it the model's or OUTPUT_PREFIX
+    #[arg(long, value_name = "NAME", value_parser = run_name)]
+    name: Option<String>,
     /// Solve N times and report the median time
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeat: usize,
@@ -148,7 +152,8 @@ pub fn run(args: &Args) -> Outcome {
     let doubts = remark_on_warnings(args, &job);
     let (model, dataset, steps) = (job.reading.model, job.reading.dataset, job.steps);
     check_columns(args, &model, &steps)?;
-    let mut session = open(args, model, &job.base);
+    let name = args.name.as_ref().unwrap_or(&job.base);
+    let mut session = open(args, model, name);
     session.run.record.seconds.begin(clock, job.read_seconds);
     let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
     guard.iter().for_each(|g| g.follow(&session, &tables));
@@ -204,6 +209,14 @@ pub fn run(args: &Args) -> Outcome {
         remark(&session.run.record.stop_reason);
     }
     Ok(exit(status))
+}
+
+/// Reads the name of a run: that of a file.
+fn run_name(text: &str) -> Result<String, String> {
+    match results::kept::is_run_name(text) {
+        true => Ok(text.to_owned()),
+        false => Err("a run is named as a file is, without a folder: --out DIR".to_owned()),
+    }
 }
 
 /// Notes in the record why a model could not be run; returns the status, and the mistakes.

@@ -406,6 +406,33 @@ names. Where its markers are not those of the run, what follows would be wrong, 
     cognate motion out/run.res --of MARKER/20 --relative-to MARKER/10 --model kept/model.acf",
     },
     Code {
+        name: "unknown_run",
+        summary: "there is no run of this name",
+        explanation: "\
+A run is named as its files are, with their folder: results/crank stands for results/crank.json, the record, and all
+files that the record claims. One of these files names it, too.
+
+    cognate runs results                          lists the runs of a folder
+    cognate runs delete results/crank",
+    },
+    Code {
+        name: "run_exists",
+        summary: "a file of the new name of a run is there already",
+        explanation: "\
+Renaming a run renames its record and its files. None of them replaces a file that is there, whoever made it.
+
+    cognate runs rename results/crank stiff       refused while results/stiff.csv is there",
+    },
+    Code {
+        name: "no_shared_time",
+        summary: "two runs have no output time in common",
+        explanation: "\
+Runs are compared at the output times that both have, where nothing has to be estimated. Where there are none, the
+second can be taken as straight between its outputs, which adds the error of that.
+
+    cognate runs compare a b --interpolate",
+    },
+    Code {
         name: "unknown_sequence",
         summary: "the results have no sequence of this name",
         explanation: "\

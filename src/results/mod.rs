@@ -5,11 +5,13 @@
 //! columns are components of which element. The story is the [`Record`] (status, counts, timings,
 //! warnings) and the log of [`Event`]s. Formats know these types and nothing of each other.
 
+pub mod comparison;
 pub mod csv;
 mod file;
 pub mod format;
 pub mod gra;
 pub mod json;
+pub mod kept;
 mod log;
 pub mod msg;
 mod number;

@@ -193,7 +193,7 @@ impl OutputFolder {
 
 /// Returns the files that a record lists, with the sizes that they may have; none if it is no
 /// record of this program.
-fn listed(path: &Path, name: &str) -> BTreeMap<String, Vec<u64>> {
+pub(super) fn listed(path: &Path, name: &str) -> BTreeMap<String, Vec<u64>> {
     let mut earlier: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     let value = std::fs::read(path).ok();
     let value = value.and_then(|text| serde_json::from_slice::<Value>(&text).ok());

@@ -19,4 +19,5 @@ mod plots;
 mod recorded;
 mod report;
 mod results;
+mod runs;
 mod written;
