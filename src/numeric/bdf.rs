@@ -90,6 +90,8 @@ struct Past {
     constant: usize,
     /// steps since the start
     steps: usize,
+    /// steps before a longer one is tried: one has just been found too long
+    wait: usize,
     /// still in the phase that doubles the step and raises the order
     rising: bool,
     /// ψ of (1)
@@ -108,7 +110,8 @@ impl Past {
         self.ydot.copy_from_slice(&other.ydot);
         (self.t, self.h_used, self.k_used) = (other.t, other.h_used, other.k_used);
         (self.h, self.k, self.constant) = (other.h, other.k, other.constant);
-        (self.steps, self.rising, self.psi) = (other.steps, other.rising, other.psi);
+        (self.steps, self.wait) = (other.steps, other.wait);
+        (self.rising, self.psi) = (other.rising, other.psi);
     }
 
     /// Sets ψ₁ and φ₁ for a first step of length `h`: it knows one rate only.
@@ -158,6 +161,7 @@ impl Bdf {
             k: 1,
             constant: 0,
             steps: 0,
+            wait: 0,
             rising: true,
             psi: [0.0; MAX_ORDER + 2],
             phi: std::array::from_fn(|_| zeros()),
@@ -213,7 +217,7 @@ impl Bdf {
             .min(self.options.h_max);
         let past = &mut self.past;
         (past.t, past.h, past.k, past.h_used, past.k_used) = (t, h, 1, 0.0, 0);
-        (past.constant, past.steps, past.rising) = (0, 0, true);
+        (past.constant, past.steps, past.wait, past.rising) = (0, 0, 0, true);
         past.psi = [h; MAX_ORDER + 2];
         past.phi.iter_mut().for_each(|phi| phi.fill(0.0));
         past.phi[0].copy_from_slice(&self.next.y);
@@ -359,6 +363,7 @@ impl Bdf {
         });
         let past = &mut self.past;
         past.steps += 1;
+        past.wait = past.wait.saturating_sub(1);
         (past.k_used, past.h_used, past.t) = (k, h, t1);
         if errors.k_new < k || k == self.max_order {
             past.rising = false;
@@ -389,7 +394,7 @@ impl Bdf {
             }
             past.k = k_next;
             let factor = (2.0 * estimate + 1e-4).powf(-1.0 / (k_next + 1) as f64);
-            if factor >= 2.0 {
+            if factor >= 2.0 && past.wait == 0 {
                 h_next = 2.0 * h;
             } else if factor <= 1.0 {
                 h_next = h * factor.clamp(0.5, 0.9);
@@ -553,6 +558,9 @@ impl<P: Dae + ?Sized> Method<P> for Bdf {
                     let mut factor = failed.rejection.factor;
                     if let Some(k) = failed.order {
                         failed_tests += 1;
+                        // long enough that a higher order is tried at steps of one length: at
+                        // order 1 every other step was too long, and the order never rose
+                        self.past.wait = k + 2;
                         (self.past.k, factor) = match failed_tests {
                             1 => (k, factor),
                             2 => (k, 0.25),

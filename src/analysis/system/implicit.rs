@@ -2,8 +2,11 @@
 //!
 //! ```text
 //! I3    q̇ = N(q) v                  M v̇ + h = f + Gᵀλ      ẋ = s      g(t, q) = 0                     y = q | v | x | λ
-//! SI2   q̇ = N(q) (v + Gᵀμ)          M v̇ + h = f + Gᵀλ      ẋ = s      g = 0,  G v + ġ₀ = 0            y = q | v | x | λ | μ
+//! SI2   q̇ = N(q) (v + A Gᵀμ)        M v̇ + h = f + Gᵀλ      ẋ = s      g = 0,  G v + ġ₀ = 0            y = q | v | x | λ | μ
 //! ```
+//!
+//! A is diagonal: 1 for lengths, 1/L² for angles, L the length of the mechanism. Without it the
+//! multiplier would move angles and lengths by amounts that depend on the unit of length.
 //!
 //! Both are recorded from the same equations as the explicit rates. I3 controls the errors of
 //! positions only; the second multiplier of SI2, zero but for the error of the method, lets the
@@ -25,7 +28,7 @@ use crate::scene::Scene;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::layout::ImplicitLayout;
-use crate::scene::programs::{Switching, held_with, record, record_more};
+use crate::scene::programs::{Switching, held_with, record, record_more, weights};
 use written::Written;
 
 /// The levels of the rows that an implicit method sees.
@@ -64,9 +67,11 @@ fn residual<S: Scalar>(
         .map(|r| at.row(r))
         .collect();
     let mut v = at.velocities().to_vec();
+    let metric = weights(scene);
+    let length = scene.length * scene.length;
     for (row, &mu) in rows.iter().zip(mu) {
         for &(k, g) in &row.gradient {
-            v[k] += g * mu;
+            v[k] += g * mu * S::constant(metric[k] / length);
         }
     }
     let minus = |rates: &[S], values: Vec<S>| -> Vec<S> {
