@@ -1,6 +1,6 @@
 //! Numbers that Python gives: scalars, lists, and arrays of any type, layout and shape.
 
-use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -23,6 +23,14 @@ impl<'py> Values<'py> {
     pub fn of(given: &Bound<'py, PyAny>) -> PyResult<Self> {
         if let Ok(number) = given.cast_exact::<PyFloat>() {
             return Ok(Values::Scalar(number.value()));
+        }
+        // the usual case by the shortest way: an array of float64 in C order
+        if given.get_type().is(given.py().get_type::<PyUntypedArray>())
+            && let Ok(array) = given.cast::<PyArrayDyn<f64>>()
+            && array.is_c_contiguous()
+            && array.ndim() > 0
+        {
+            return Ok(Values::Array(array.clone()));
         }
         let py = given.py();
         let array = numpy(py)?.call_method1("asarray", (given,))?;

@@ -593,9 +593,15 @@ fn is_mapping(py: Python<'_>, object: &Bound<'_, PyAny>) -> PyResult<bool> {
     object.is_instance(&class)
 }
 
-/// Returns true if all numbers are finite; looks at all of them, as that vectorizes.
+/// Returns true if all numbers are finite.
 fn are_finite(numbers: &[f64]) -> bool {
-    numbers
-        .iter()
-        .fold(true, |so_far, x| so_far & x.is_finite())
+    // x·0 is NaN where x is not finite; eight sums side by side become vector instructions
+    let (eights, rest) = numbers.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for eight in eights {
+        for (sum, x) in sums.iter_mut().zip(eight) {
+            *sum += x * 0.0;
+        }
+    }
+    sums.iter().all(|sum| *sum == 0.0) && rest.iter().all(|x| x.is_finite())
 }
