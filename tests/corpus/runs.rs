@@ -609,7 +609,11 @@ fn models_that_lack_something_stand_without_it() {
         };
         let mut session = begin(model, file, options);
         go(&mut session, Analysis::InitialConditions, 0.0, 1);
-        let warnings = &session.run.record.warned();
+        let unnamed = session.run.record.warnings.iter().map(|w| {
+            let name = None;
+            cognate::results::Warning { name, ..w.clone() }.sentence()
+        });
+        let warnings: Vec<String> = unnamed.collect();
         for said in [gone, reader] {
             assert!(warnings.iter().any(|w| w.contains(said)), "{file}: {said}");
         }
@@ -634,7 +638,7 @@ fn a_planar_robot_is_put_together_as_in_adams_with_its_initial_condition_as_view
     assert!(
         warnings
             .iter()
-            .any(|w| w.starts_with("JOINT/20: its initial condition")
+            .any(|w| w.starts_with("JOINT/20 'Tran3': its initial condition")
                 && w.contains("as Adams View writes it")),
         "{warnings:?}"
     );
