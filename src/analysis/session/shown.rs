@@ -435,7 +435,7 @@ mod tests {
                 assert!((v.norm() - angle).abs() < 1e-12, "{angle}: {v:?}");
                 let along = v.dot(axis);
                 // half a turn one way is half a turn the other way
-                let along = if angle > 3.141_592 {
+                let along = if angle > PI - 1e-6 {
                     along.abs()
                 } else {
                     along
