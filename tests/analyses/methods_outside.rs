@@ -2,7 +2,7 @@
 
 use crate::running;
 
-use running::{Analysis, go, off, session_by};
+use running::{Analysis, begin, go, model, off, options_by, session_by};
 
 const METHODS: [&str; 5] = ["DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
 const REQUESTS: [f64; 2] = [1e-3, 1e-5];
@@ -85,6 +85,36 @@ fn a_force_that_reads_the_past_of_a_body_pushes_it_later() {
             };
             let off = off(&s, "DZ(2,3,3)", exact);
             assert!(off < 100.0 * error, "{method} {error:e}: {off:e}");
+        }
+    }
+}
+
+/// A crank, a rod and a slider under gravity, with lengths in a unit of which a metre has `scale`.
+fn crank_rod_and_slider(scale: f64) -> String {
+    let (crank, rod, both) = (0.05 * scale, 0.15 * scale, 0.2 * scale);
+    let [small, large] = [1e-3, 1e-2].map(|inertia| inertia * scale * scale);
+    let gravity = -9.80665 * scale;
+    format!(
+        "PART/2, MASS=2, CM=20, IP={small:?},{small:?},{small:?}, WZ=30\nMARKER/20, PART=2\nMARKER/21, PART=2, QP={crank:?},0,0\n\
+         PART/3, MASS=0.5, CM=30, IP={large:?},{large:?},{large:?}, QG={crank:?},0,0\nMARKER/30, PART=3\nMARKER/31, PART=3, QP={rod:?},0,0\n\
+         PART/4, MASS=1, CM=40, IP={small:?},{small:?},{small:?}, QG={both:?},0,0\nMARKER/40, PART=4\nMARKER/41, PART=4, REULER=90D,90D,0\n\
+         MARKER/11, PART=1, REULER=90D,90D,0\nACCGRAV/JGRAV={gravity:?}\nJOINT/1, REVOLUTE, I=20, J=1\n\
+         JOINT/2, SPHERICAL, I=30, J=21\nJOINT/3, CYLINDRICAL, I=31, J=40\nJOINT/4, TRANSLATIONAL, I=41, J=11\n"
+    )
+}
+
+#[test]
+fn the_unit_of_length_hardly_changes_the_steps_of_implicit_methods() {
+    for method in ["BDF", "HHT", "NEWMARK", "RADAU5"] {
+        let steps = [1.0, 1e3, 1e-3].map(|scale| {
+            let options = options_by(&[], method, 1e-5);
+            let mut s = begin(model(&crank_rod_and_slider(scale)), "crank", options);
+            go(&mut s, Analysis::Dynamic, 0.5, 50);
+            s.run.record.counts.steps as f64
+        });
+        for other in steps {
+            let ratio = other / steps[0];
+            assert!((0.8..1.25).contains(&ratio), "{method}: {steps:?}");
         }
     }
 }
