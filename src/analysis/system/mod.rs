@@ -7,10 +7,12 @@
 //! recorded     the programs of a configuration: rate, rows, branches, loops, turns; remade as a whole
 //! ode          ẏ = f(t, y), projection; jacobian: its derivatives
 //! implicit     F(t, y, ẏ) = 0
+//! numbers      of an instant, from time and state; speeds, accepted: what is asked of them
 //! external_inputs (past, closures), sensors, samples     numbers that programs read but do not compute
 //! pulses, peaks, time_events, tunnelling, singular_step     how long a step may be
 //! ```
 
+mod accepted;
 mod algebraic_loops;
 mod aside;
 pub mod branches;
@@ -20,6 +22,7 @@ pub mod external_inputs;
 pub mod implicit;
 mod jacobian;
 mod loop_factors;
+mod numbers;
 mod ode;
 pub mod past;
 pub(super) mod peaks;
@@ -31,26 +34,22 @@ pub mod samples;
 pub mod sensors;
 mod singular_step;
 mod sliding;
+mod speeds;
 pub(super) mod time_events;
 mod tunnelling;
 pub mod turns;
 
 use crate::diagnostic::{Diagnostic, Error};
 use crate::numeric::Ode;
-use crate::scalar::Dual;
+use crate::scene::Scene;
 use crate::scene::broken::{Broken, broken};
 use crate::scene::configuration::{Configuration, Configured, Elimination};
-use crate::scene::equations::{Equations, Unsupported};
-use crate::scene::layout::Layout;
+use crate::scene::equations::Unsupported;
 use crate::scene::mover::Mover;
-use crate::scene::slopes::WIDTH;
-use crate::scene::{Coordinate, Scene, Source};
 use branches::Branches;
 use closures::Hook;
 use recorded::Recorded;
-use samples::Held;
 use singular_step::SingularSteps;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use turns::Look;
 
@@ -122,7 +121,7 @@ impl System {
             unsolved: None,
             stage: Vec::with_capacity(scene.layout.n_y()),
             mover: Mover::new(&scene),
-            numbers: first_numbers(here),
+            numbers: numbers::first_numbers(here),
             scene,
             configuration,
         })
@@ -351,256 +350,4 @@ impl System {
         self.look_at_turns(t, y, &mut look);
         self.take_turns(&look);
     }
-
-    /// Returns a bound of the speed of any angle at a state, rad per time; at a rate, of its
-    /// change.
-    pub fn spin(&self, y: &[f64]) -> f64 {
-        self.speeds_of_angles(y).map(|(_, speed)| speed).sum()
-    }
-
-    /// Returns the speed of the fastest angle among the coordinates whose places in v are
-    /// `counted`, rad per time.
-    pub fn fastest_angle(&self, y: &[f64], counted: impl Fn(usize) -> bool) -> f64 {
-        let speeds = self.speeds_of_angles(y).filter(|(v, _)| counted(*v));
-        speeds.fold(0.0, |most, (_, speed)| speed.max(most))
-    }
-
-    /// Iterates over the coordinates that are angles: their places in v, and their speeds.
-    fn speeds_of_angles<'a>(&'a self, y: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let l = self.scene.layout;
-        let speeds = self
-            .scene
-            .coordinates
-            .iter()
-            .zip(&self.scene.freedoms)
-            .filter(|(c, _)| c.angular);
-        speeds
-            .filter_map(|(_, f)| f.v)
-            .map(move |v| (v, l.state(y).v[v].abs()))
-    }
-
-    /// Returns how fast coordinates and drives move at a state: the sum of their speeds, rad per
-    /// time; lengths are measured by that of the mechanism.
-    pub fn pace(&self, t: f64, y: &[f64]) -> f64 {
-        let numbers = self.numbers_at(t, y);
-        let at = Equations::new(self.configured(), &numbers);
-        let v = self.scene.layout.state(y).v;
-        let speed = |c: &Coordinate| {
-            let rate = match c.source {
-                Source::Free { v: k, .. } => v[k],
-                Source::Driven(m) => at.prescribed(m).first,
-            };
-            let one = if c.angular { 1.0 } else { self.scene.length };
-            rate.abs() / one
-        };
-        self.scene.coordinates.iter().map(speed).sum()
-    }
-
-    /// Returns how far motions that are angles go from the present numbers to a time, rad.
-    pub fn turn_of_drives(&self, t: f64) -> f64 {
-        let mut numbers = self.numbers.clone();
-        let now = Equations::new(self.configured(), &numbers);
-        let value = |at: &Equations<'_, f64>, m| at.prescribed(m).value;
-        let motions = 0..self.scene.motions.len();
-        let angles: Vec<usize> = motions.filter(|&m| self.scene.drives_an_angle(m)).collect();
-        let before: Vec<f64> = angles.iter().map(|&m| value(&now, m)).collect();
-        drop(now);
-        numbers[Layout::TIME] = t;
-        let then = Equations::new(self.configured(), &numbers);
-        let ways = angles.iter().zip(before);
-        ways.map(|(&m, before)| (value(&then, m) - before).abs())
-            .sum()
-    }
-
-    /// Takes the sensors as they stand at the start of a simulation.
-    pub fn begin_sensing(&mut self) {
-        self.recorded
-            .sensors
-            .begin(&self.scene.sensors, &mut self.numbers);
-    }
-
-    /// Returns the sensors that are triggered at an accepted state, by their places in
-    /// [`Scene::sensors`]; SENVAL is new then. `switched`: a switch was located at this state.
-    pub fn sense(&mut self, t: f64, y: &[f64], switched: bool) -> Vec<usize> {
-        if self.recorded.sensors.is_empty() {
-            return Vec::new();
-        }
-        self.set(t, y);
-        let sensors = &self.scene.sensors;
-        self.recorded
-            .sensors
-            .sense(sensors, &mut self.numbers, switched)
-    }
-
-    /// Evaluates by how much the expressions of sensors are beyond their values   (n_sensors)
-    pub fn beyond_sensors(&mut self, t: f64, y: &[f64], values: &mut Vec<f64>) {
-        self.set(t, y);
-        let sensors = &self.scene.sensors;
-        self.recorded.sensors.beyond(sensors, &self.numbers, values);
-    }
-
-    /// Returns whether a sensor that waits for its value passes it between two such evaluations.
-    pub fn passes_sensor(&self, before: &[f64], after: &[f64]) -> bool {
-        self.recorded
-            .sensors
-            .passes(&self.scene.sensors, before, after)
-    }
-
-    /// Goes on as the last simulation left the samples, or takes the first ones here.
-    ///
-    /// # Errors
-    /// A period that is not positive.
-    pub fn begin_sampling(&mut self, held: &BTreeMap<u32, Held>) -> Result<(), Diagnostic> {
-        self.recorded.samples.begin(&mut self.numbers, held)
-    }
-
-    /// Sets the samples back to where the simulation begins.
-    pub fn restart_sampling(&mut self) {
-        self.recorded.samples.restart(&mut self.numbers);
-    }
-
-    /// Takes the samples that are due at an accepted state; returns whether a state has changed.
-    pub fn sample(&mut self, t: f64, y: &[f64]) -> bool {
-        let due = self.recorded.samples.due_at(t);
-        let changed = self.recorded.samples.take(&due, &mut self.numbers);
-        self.set(t, y);
-        self.recorded.samples.prepare_next(&due, &self.numbers);
-        changed
-    }
-
-    /// Returns all numbers at a state, projected onto the rows.
-    pub fn row(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        let mut y = y.to_vec();
-        let kept = y.clone();
-        if self.put_on_rows(t, &mut y).is_err() {
-            y = kept;
-        }
-        self.row_of(t, &y)
-    }
-
-    /// Returns all numbers at a state that is on the rows.
-    pub fn row_of(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        self.set(t, y);
-        if !self.recorded.external.is_empty() {
-            self.recorded.external.evaluate(&mut self.numbers, true);
-        }
-        self.numbers.clone()
-    }
-
-    /// Returns, for a state whose numbers are `row`, the numbers on the branches between which the
-    /// motion stays, and the part of each in the mean that is what happens: dry friction at rest is
-    /// between its values on both sides. Empty: nothing slides.
-    pub fn rows_of_branches(&mut self, row: &[f64]) -> Vec<(f64, Vec<f64>)> {
-        if !self.recorded.branches.is_sliding() {
-            return Vec::new();
-        }
-        let y = &row[self.scene.layout.y()];
-        let mut sizes = vec![1.0; y.len()];
-        Ode::typical(self, &mut sizes);
-        (sizes.iter_mut().zip(y)).for_each(|(size, y)| *size = size.max(y.abs()));
-        let found = self.recorded.branches.between(row, &sizes);
-        let mut rows = Vec::with_capacity(found.len());
-        for mut branch in found {
-            let mut state = y.to_vec();
-            (state.iter_mut().zip(&branch.shift)).for_each(|(y, shift)| *y += shift);
-            (self.recorded.branches).exchange_sides(&mut branch.sides);
-            self.set(row[Layout::TIME], &state);
-            (self.recorded.branches).exchange_sides(&mut branch.sides);
-            if !self.recorded.external.is_empty() {
-                self.recorded.external.evaluate(&mut self.numbers, true);
-            }
-            rows.push((branch.part, self.numbers.clone()));
-        }
-        self.numbers.copy_from_slice(row);
-        rows
-    }
-
-    /// Returns all numbers with time and state put into them; multipliers after the state are of no
-    /// concern.
-    pub(super) fn numbers_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
-        let mut numbers = self.numbers.clone();
-        self.scene.layout.set_state(&mut numbers, t, y);
-        numbers
-    }
-
-    /// Takes over time and state, and solves the loops there; multipliers after the state are of no
-    /// concern.
-    pub(super) fn set(&mut self, t: f64, y: &[f64]) {
-        self.scene.layout.set_state(&mut self.numbers, t, y);
-        self.fill(false);
-    }
-
-    /// Solves the loops at the present numbers, after some of them have been changed.
-    ///
-    /// # Errors
-    /// The index of a loop without a solution near, in [`Scene::loops`].
-    pub fn resolve(&mut self) -> Result<(), usize> {
-        self.fill(true);
-        self.unsolved.map_or(Ok(()), Err)
-    }
-
-    /// Fills in the numbers that follow from time and state; `output`: also those that only results
-    /// show.
-    fn fill(&mut self, output: bool) {
-        if !self.recorded.external.is_empty() {
-            self.recorded.external.evaluate(&mut self.numbers, output);
-        }
-        if let Some(loops) = &mut self.recorded.loops {
-            // where branches are held, the branch that the state says may have no solution
-            let held = self.recorded.branches.fill_loops(&mut self.numbers);
-            self.unsolved = if held {
-                None
-            } else {
-                loops.solve(&mut self.numbers).err()
-            };
-        }
-    }
-
-    /// Puts in along which directions closures' results and loops' unknowns change, where `along`
-    /// says it of the other numbers.
-    pub fn depend_along(&self, along: &mut [Vec<u32>]) {
-        self.recorded.external.closures.depend(along);
-        if let Some(loops) = &self.recorded.loops {
-            loops.depend(along);
-        }
-    }
-
-    /// Puts the derivatives of closures' results and loops' unknowns along the directions of a row
-    /// of numbers into their places; `first`: at new numbers. A longer row is that of the held
-    /// programs.
-    ///
-    /// # Errors
-    /// The index of a loop that nothing determines, in [`Scene::loops`].
-    pub fn follow_along(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
-        self.recorded.external.closures.follow(numbers, first);
-        let recorded = &mut self.recorded;
-        let held = recorded.branches.is_holding() && numbers.len() > self.scene.layout.len();
-        let loops = if held {
-            &mut recorded.branches.loops
-        } else {
-            &mut recorded.loops
-        };
-        match loops {
-            Some(loops) => loops.follow(numbers, first),
-            None => Ok(()),
-        }
-    }
-}
-
-/// Returns the numbers before the first step: angles, guesses of loops, and external inputs.
-fn first_numbers(scene: Configured<'_>) -> Vec<f64> {
-    let l = scene.layout;
-    let mut numbers = vec![0.0; l.len()];
-    for (z, unknown) in numbers[l.loops()].iter_mut().zip(&scene.loops) {
-        *z = unknown.guess;
-    }
-    let angles = numbers[l.turns()].iter_mut();
-    for (x, angle) in angles.zip(scene.configuration.angles()) {
-        *x = angle;
-    }
-    let external = numbers[l.external()].iter_mut();
-    for (x, value) in external.zip(&scene.configuration.external) {
-        *x = *value;
-    }
-    numbers
 }

@@ -1,0 +1,64 @@
+//! Sensors and samples at accepted states.
+
+use super::System;
+use super::samples::Held;
+use crate::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+
+impl System {
+    /// Takes the sensors as they stand at the start of a simulation.
+    pub fn begin_sensing(&mut self) {
+        self.recorded
+            .sensors
+            .begin(&self.scene.sensors, &mut self.numbers);
+    }
+
+    /// Returns the sensors that are triggered at an accepted state, by their places in
+    /// [`Scene::sensors`]; SENVAL is new then. `switched`: a switch was located at this state.
+    pub fn sense(&mut self, t: f64, y: &[f64], switched: bool) -> Vec<usize> {
+        if self.recorded.sensors.is_empty() {
+            return Vec::new();
+        }
+        self.set(t, y);
+        let sensors = &self.scene.sensors;
+        self.recorded
+            .sensors
+            .sense(sensors, &mut self.numbers, switched)
+    }
+
+    /// Evaluates by how much the expressions of sensors are beyond their values   (n_sensors)
+    pub fn beyond_sensors(&mut self, t: f64, y: &[f64], values: &mut Vec<f64>) {
+        self.set(t, y);
+        let sensors = &self.scene.sensors;
+        self.recorded.sensors.beyond(sensors, &self.numbers, values);
+    }
+
+    /// Returns whether a sensor that waits for its value passes it between two such evaluations.
+    pub fn passes_sensor(&self, before: &[f64], after: &[f64]) -> bool {
+        self.recorded
+            .sensors
+            .passes(&self.scene.sensors, before, after)
+    }
+
+    /// Goes on as the last simulation left the samples, or takes the first ones here.
+    ///
+    /// # Errors
+    /// A period that is not positive.
+    pub fn begin_sampling(&mut self, held: &BTreeMap<u32, Held>) -> Result<(), Diagnostic> {
+        self.recorded.samples.begin(&mut self.numbers, held)
+    }
+
+    /// Sets the samples back to where the simulation begins.
+    pub fn restart_sampling(&mut self) {
+        self.recorded.samples.restart(&mut self.numbers);
+    }
+
+    /// Takes the samples that are due at an accepted state; returns whether a state has changed.
+    pub fn sample(&mut self, t: f64, y: &[f64]) -> bool {
+        let due = self.recorded.samples.due_at(t);
+        let changed = self.recorded.samples.take(&due, &mut self.numbers);
+        self.set(t, y);
+        self.recorded.samples.prepare_next(&due, &self.numbers);
+        changed
+    }
+}
