@@ -22,6 +22,7 @@
 //! | read a model | `Model::read` |
 //! | make a model | `ModelBuilder` |
 //! | simulate it, read the results | `Session` |
+//! | run it many times | `analysis::sweep` |
 //! | count its freedoms, find its modes | `analysis::verify`, `analysis::linear` |
 //! | check a dataset, write it in a regular form | `dataset` |
 //! | read and write results | `results` |

@@ -24,6 +24,7 @@ pub(in crate::analysis) mod quantity;
 pub mod session;
 pub mod start;
 pub mod statics;
+pub mod sweep;
 pub mod system;
 pub mod time;
 pub mod trajectory;

@@ -17,7 +17,7 @@ use crate::expr::measures::{Family, Measure};
 use crate::expr::program::Input;
 use crate::model::{ElementId, ElementKind, Model, Text, geometry};
 use crate::physics::kinematic;
-use crate::results::{Column, Run};
+use crate::results::{Column, Run, digest};
 use crate::space::{Frame, MarkerState, Vec3, rotation};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -233,17 +233,10 @@ impl<'a> Recorded<'a> {
 /// Returns a text that two models have in common where their markers are fixed alike in the same
 /// parts: 16 hexadecimal digits.
 pub fn marker_digest(model: &Model) -> String {
-    // FNV-1a, which needs no table and never changes
-    const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
-    const PRIME: u64 = 0x0000_0100_0000_01b3;
-    let mut digest = OFFSET;
-    for (number, marker) in &model.markers {
+    let text = model.markers.iter().map(|(number, marker)| {
         let (owner, floating) = (marker.owner, marker.floating);
         let (qp, orientation) = (marker.qp, marker.orientation);
-        let text = format!("{number} {owner:?} {qp:?} {orientation:?} {floating}\n");
-        for byte in text.bytes() {
-            digest = (digest ^ u64::from(byte)).wrapping_mul(PRIME);
-        }
-    }
-    format!("{digest:016x}")
+        format!("{number} {owner:?} {qp:?} {orientation:?} {floating}\n")
+    });
+    digest(text.flat_map(String::into_bytes))
 }

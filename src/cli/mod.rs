@@ -36,12 +36,13 @@ mod run;
 mod runs;
 mod statements;
 mod summary;
+mod sweep;
 mod table;
 mod verify;
 mod width;
 
 use crate::dataset::Dataset;
-use crate::diagnostic::{Cause, Diagnostic};
+use crate::diagnostic::{Cause, Diagnostic, Error};
 use clap::{Parser, Subcommand};
 use render::Sources;
 use std::io::Write;
@@ -75,6 +76,7 @@ enum Verb {
     Run(run::Args),
     Runs(runs::Args),
     Statements(statements::Args),
+    Sweep(sweep::Args),
     Verify(verify::Args),
 }
 
@@ -155,6 +157,17 @@ impl From<Diagnostic> for Failure {
     }
 }
 
+impl From<Error> for Failure {
+    /// All mistakes of a caller of the library.
+    fn from(error: Error) -> Self {
+        let first = Self::from(error.first().clone());
+        Self {
+            diagnostics: error.into_diagnostics(),
+            ..first
+        }
+    }
+}
+
 impl Failure {
     /// Creates a failure from mistakes in files; their texts are read again, to show the places.
     pub fn in_files(exit: Exit, diagnostics: Vec<Diagnostic>) -> Self {
@@ -219,6 +232,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Run(args) => run::run(args),
         Verb::Runs(args) => runs::run(args),
         Verb::Statements(args) => statements::run(args),
+        Verb::Sweep(args) => sweep::run(args),
         Verb::Verify(args) => verify::run(args),
     });
     let exit = match std::panic::catch_unwind(verb) {

@@ -58,22 +58,38 @@ impl Progress {
     }
     /// Shows that `time` has been reached, in s, after so many steps.
     pub fn at(&self, time: f64, steps: usize) {
+        self.show(
+            time,
+            || format!("time {time:.4}, {steps} steps"),
+            || {
+                let end = self.end;
+                format!("time {time:.6} of {end}, {steps} steps")
+            },
+        );
+    }
+    /// Shows that so many of all runs are done.
+    pub fn runs(&self, done: usize, all: usize) {
+        let text = || format!("{done} of {all} runs");
+        self.show(done as f64, text, text);
+    }
+    /// Shows a part of the whole, where it is time for that.
+    fn show(&self, at: f64, in_bar: impl Fn() -> String, in_line: impl Fn() -> String) {
         let elapsed = self.begun.elapsed();
         if elapsed < self.next.get() {
             return;
         }
-        let part = ((time - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
+        let part = ((at - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
         match &self.shown {
             Shown::Nowhere => {}
             Shown::Bar(bar) => {
                 bar.set_position((part * LENGTH as f64) as u64);
-                bar.set_message(format!("time {time:.4}, {steps} steps"));
+                bar.set_message(in_bar());
             }
             Shown::Lines => {
                 super::remark(format!(
-                    "{:.1} % done: time {time:.6} of {}, {steps} steps, {:.0} s",
+                    "{:.1} % done: {}, {:.0} s",
                     100.0 * part,
-                    self.end,
+                    in_line(),
                     elapsed.as_secs_f64()
                 ));
                 // twice as long each time

@@ -96,10 +96,12 @@ fn to_text(rows: &[Vec<String>], separator: u8) -> String {
 }
 
 /// Reads a table; a second row that holds no number is the row of units. Cells may be
-/// separated by `;`, numbers then have a decimal comma.
+/// separated by `;`, numbers then have a decimal comma. Columns behind the first that hold no
+/// number at all are words, and left out.
 ///
 /// # Errors
-/// When a row has more or fewer cells than the first, or a cell holds no number, with the line.
+/// When a row has more or fewer cells than the first, or a cell among numbers holds none, with the
+/// line.
 pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     let decimal_comma = has_decimal_commas(bytes);
     let number = |cell: &str| match decimal_comma {
@@ -116,6 +118,7 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
         units: Units::default(),
         ..Run::default()
     };
+    let mut words: Vec<Words> = Vec::new();
     let mut record = ::csv::ByteRecord::new();
     while reader
         .read_byte_record(&mut record)
@@ -153,16 +156,18 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
             }
             continue;
         }
-        for ((column, value), cell) in run.columns.iter_mut().zip(numbers).zip(&cells) {
-            let value = value.ok_or_else(|| {
-                malformed(
-                    line,
-                    format!("`{cell}` in column `{}` is no number", column.name),
-                )
-            })?;
-            column.values.push(value);
+        words.resize_with(run.columns.len(), Words::default);
+        for ((column, words), (value, cell)) in
+            (run.columns.iter_mut().zip(&mut words)).zip(numbers.into_iter().zip(cells))
+        {
+            words.n_numbers += usize::from(value.is_some());
+            if value.is_none() && words.first.is_none() {
+                words.first = Some((line, cell));
+            }
+            column.values.push(value.unwrap_or(f64::NAN));
         }
     }
+    leave_words_out(&mut run, &words)?;
     if run.columns.is_empty() {
         return Err(malformed(0, "there is no row of names"));
     }
@@ -171,6 +176,33 @@ pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
     let name = format!("{}_001", kind.name());
     run.sequences.push(Sequence { name, kind, rows });
     Ok(run)
+}
+
+/// Cells of a column that hold no number.
+#[derive(Default)]
+struct Words {
+    n_numbers: usize,
+    /// line and text of the first
+    first: Option<(usize, String)>,
+}
+
+/// Leaves out the columns of words.
+///
+/// # Errors
+/// A word among numbers, or in the first column; the first of them.
+fn leave_words_out(run: &mut Run, words: &[Words]) -> Result<(), Diagnostic> {
+    let is_wrong = |k: usize, words: &Words| k == 0 || words.n_numbers > 0;
+    let wrong = words.iter().enumerate().filter(|(k, w)| is_wrong(*k, w));
+    let first = wrong.filter_map(|(k, w)| Some((k, w.first.as_ref()?)));
+    if let Some((k, (line, cell))) = first.min_by_key(|(_, (line, _))| *line) {
+        let name = &run.columns[k].name;
+        let what = format!("`{cell}` in column `{name}` is no number");
+        return Err(malformed(*line, what));
+    }
+    let mut words = words.iter();
+    let has_words = |words: &Words| words.first.is_some();
+    run.columns.retain(|_| !words.next().is_some_and(has_words));
+    Ok(())
 }
 
 /// Returns whether cells are separated by `;`: it comes first of the two separators outside of
@@ -241,9 +273,19 @@ mod tests {
     }
 
     #[test]
+    fn columns_of_words_are_left_out() {
+        let read = read(b"run,x,why\n-,m,-\n0,1,\n1,2,stopped\n").unwrap();
+        let names: Vec<&str> = read.columns.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["run", "x"]);
+        assert_eq!((read.rows(), read.columns[1].unit.as_str()), (2, "m"));
+    }
+
+    #[test]
     fn mistakes_are_told_with_their_line() {
         let line = |text: &str| read(text.as_bytes()).unwrap_err().line;
         assert_eq!(line("time,x\n0,1\n1,oops\n"), 3);
+        assert_eq!(line("time,x,y\n0,1,a\n1,2,3\n1,oops,4\n"), 2);
+        assert_eq!(line("time,x\n0,1\nlate,1\n"), 3);
         assert_eq!(line("time,x\ns,m\n0\n"), 3);
         assert_eq!(line(""), 0);
     }

@@ -7,6 +7,7 @@
 
 pub mod comparison;
 pub mod csv;
+mod digest;
 mod file;
 pub mod format;
 pub mod gra;
@@ -26,6 +27,7 @@ mod run;
 mod seconds;
 mod units;
 
+pub use digest::digest;
 pub use file::{read, write, write_bytes, write_text};
 pub use log::Event;
 pub use number::{digits, digits_of_six};

@@ -28,4 +28,5 @@ mod references;
 mod saved;
 mod sessions;
 mod statics;
+mod sweeps;
 mod systems;

@@ -6,6 +6,7 @@
 
 use cognate::analysis::session::script::obey;
 pub use cognate::analysis::session::{Analysis, Options, Session};
+use cognate::analysis::sweep::Sweep;
 use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::diagnostic::Diagnostic;
@@ -150,4 +151,11 @@ pub fn last(s: &Session, column: &str) -> f64 {
 pub fn off(s: &Session, column: &str, exact: impl Fn(f64) -> f64) -> f64 {
     let rows = values(s, "time").iter().zip(values(s, column));
     rows.map(|(&t, x)| (x - exact(t)).abs()).fold(0.0, f64::max)
+}
+
+/// A sweep over the runs of a whole dataset up to `end`.
+pub fn sweep(text: &str, end: f64, steps: usize) -> Sweep {
+    let mut sweep = Sweep::over(whole(text), Analysis::Transient, end, steps);
+    sweep.options.max_steps = Some(MAX_STEPS);
+    sweep
 }

@@ -20,4 +20,5 @@ mod recorded;
 mod report;
 mod results;
 mod runs;
+mod sweep;
 mod written;

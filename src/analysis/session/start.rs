@@ -111,7 +111,8 @@ impl Session {
         let before = system.numbers.clone();
         self.set_constants(&system.scene, &mut system.numbers);
         if system.numbers != before {
-            if !system.scene.samplers.is_empty() {
+            // formulas that read themselves are solved from the guesses of the model alone
+            if !(system.scene.samplers.is_empty() && system.scene.loops.is_empty()) {
                 return None;
             }
             let l = system.scene.layout;

@@ -277,4 +277,29 @@ A program named a column after a simulation. Its values in the rows so far follo
 
     session.add_column(\"DX(41,22)\")?;     before the first simulation it always can be",
     },
+    Code {
+        name: "bad_sweep",
+        summary: "a parameter, value, design or measure of a sweep that means nothing",
+        explanation: "\
+Nothing has been run. A parameter is a number of the model by its name: an argument of a statement, one number of a list, or
+the FUNCTION of an element. Values are A:B:N or a list. A measure is one number made of an expression.
+
+    --set 'PART/2.MASS=1,2,5'            three values
+    --set 'VARIABLE/3=0.1:0.5:9'         the FUNCTION of VARIABLE/3 becomes each of nine numbers
+    --set 'MARKER/21.QP(1)=10:20:3'      the first number of QP
+    --measure 'max(ABS(FX(10,20)))'      max, min, mean, rms, first, last, time_of_max, time_of_min
+
+What a command of the runs changes cannot be a parameter: the command would undo what the sweep sets.",
+    },
+    Code {
+        name: "other_sweep",
+        summary: "a table is there already, and is not that of this sweep",
+        explanation: "\
+A sweep goes on with the table that is there, where model, commands, options, parameters and measures are the same and every
+row of it is a point of the design. Otherwise nothing is run and the table is kept.
+
+    cognate sweep crank.acf --set 'PART/2.MASS=1:5:9' --measure 'max(slider.X)' --out mass.csv
+
+To begin anew, name another file, or remove the table and the .sweep.json beside it.",
+    },
 ];

@@ -1,0 +1,261 @@
+//! Parameters of a sweep: numbers of the model by their names, through the table of statements.
+
+use crate::dataset::command::Command;
+use crate::dataset::row::{
+    Argument, Given, Meaning, Record, Statement, canonical, meaning, near_ids,
+};
+use crate::dataset::statement::{self, STATEMENTS};
+use crate::dataset::value::{Kind, Number, Value};
+use crate::diagnostic::{Cause, Diagnostic, Error, Span, near_names};
+use crate::model::{ElementKind, Formula, Model, Place};
+
+/// A number of the model that a sweep sets.
+///
+/// | name | is |
+/// |---|---|
+/// | `PART/2.MASS` | an argument of a statement with a number |
+/// | `MARKER/21.QP(1)` | the first number of an argument that is a list |
+/// | `ACCGRAV.JGRAV` | an argument of a statement without a number |
+/// | `VARIABLE/3` | its FUNCTION, which becomes the number; of any statement that has one |
+///
+/// Keywords may be abbreviated as in datasets. Numbers are in the units of the model, angles in
+/// radians.
+#[derive(Clone)]
+pub struct Parameter {
+    row: &'static dyn Statement,
+    id: Option<u32>,
+    /// index of the argument in its row
+    argument: usize,
+    kind: Kind,
+    /// place in a list, from 0
+    place: Option<usize>,
+    name: String,
+}
+
+/// Makes the error of a name.
+fn wrong(code: impl Into<&'static str>, name: &str, what: String) -> Diagnostic {
+    Diagnostic::error(code, format!("`{name}`: {what}"))
+}
+
+/// Adds near names as advice.
+fn with_near(d: Diagnostic, word: &str, known: &[String]) -> Diagnostic {
+    let near = near_names(word, known.iter().map(String::as_str));
+    match near.is_empty() {
+        true => d,
+        false => d.help(format!("did you mean {}?", near.join(" or "))),
+    }
+}
+
+impl Parameter {
+    /// Finds a number of a model by its name.
+    ///
+    /// # Errors
+    /// Names of statements, elements and arguments that do not exist, with near names; arguments
+    /// that hold no number or change nothing.
+    pub fn new(model: &Model, name: &str) -> Result<Self, Error> {
+        let name = name.trim();
+        let (head, argument) = match name.split_once('.') {
+            Some((head, argument)) => (head.trim(), Some(argument.trim())),
+            None => (name, None),
+        };
+        let (row, id) = element(model, name, head)?;
+        let arguments = row.arguments();
+        let (argument, place) = match argument {
+            Some(text) => listed(name, text)?,
+            None => ("FUNCTION", None),
+        };
+        let index = found(row, name, &arguments, argument)?;
+        let (kind, keyword) = (arguments[index].kind, arguments[index].keyword());
+        if arguments[index].idle || row.is_idle() {
+            let d = wrong("no_effect", name, format!("{keyword} changes nothing"));
+            return Err(d.into());
+        }
+        let is_list = matches!(kind, Kind::Reals { .. });
+        let is_number = matches!(kind, Kind::Real { .. } | Kind::Formula) || is_list;
+        if !is_number || is_list != place.is_some() {
+            let takes = kind.describe();
+            let d = wrong("bad_sweep", name, format!("{keyword} takes {takes}"));
+            return Err(match is_list {
+                true => d.help(format!("{keyword}(1) is the first of them")).into(),
+                false => d.help("a sweep sets numbers and functions").into(),
+            });
+        }
+        let head = match id {
+            Some(id) => format!("{}/{id}", canonical(row.keyword())),
+            None => canonical(row.keyword()),
+        };
+        let shown = match (keyword.as_str(), place) {
+            ("FUNCTION", _) => head,
+            (keyword, None) => format!("{head}.{keyword}"),
+            (keyword, Some(k)) => format!("{head}.{keyword}({})", k + 1),
+        };
+        let parameter = Self {
+            row,
+            id,
+            argument: index,
+            kind,
+            place,
+            name: shown,
+        };
+        if place.is_some() {
+            parameter.value(model, 0.0)?;
+        }
+        Ok(parameter)
+    }
+
+    /// The name, in full.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The kind and number of the element.
+    pub(super) fn element(&self) -> (Option<ElementKind>, Option<u32>) {
+        (self.row.kind(), self.id)
+    }
+
+    /// Returns whether both are the same number.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+
+    /// Returns whether a command changes this number.
+    pub(super) fn is_changed_by(&self, record: &Record) -> bool {
+        let same = record.row.keyword() == self.row.keyword() && record.id == self.id;
+        same && record.given.iter().any(|g| g.argument == self.argument)
+    }
+
+    /// Sets the number in a model.
+    ///
+    /// # Errors
+    /// A list that is shorter, and what the statement refuses.
+    pub fn set(&self, model: &mut Model, x: f64) -> Result<(), Error> {
+        let given = Given {
+            argument: self.argument,
+            value: self.value(model, x)?,
+            span: Span::default(),
+        };
+        model.apply(&Command::Change(Record {
+            row: self.row,
+            id: self.id,
+            given: vec![given],
+            kept: Vec::new(),
+            place: Place::default(),
+            head: Span::default(),
+            mistaken: false,
+        }))
+    }
+
+    /// Returns the value of the argument with the number in its place.
+    fn value(&self, model: &Model, x: f64) -> Result<Value, Error> {
+        let number = Number::plain(x);
+        let Some(place) = self.place else {
+            return Ok(match self.kind {
+                Kind::Formula => Value::Formula(Formula::text(number.to_string())),
+                _ => Value::Real(number),
+            });
+        };
+        let records = self.row.records(model);
+        let mine = records.into_iter().find(|record| record.id == self.id);
+        let given = mine.into_iter().flat_map(|record| record.given);
+        let mut lists = given.filter_map(|g| match g.value {
+            Value::Reals(all) if g.argument == self.argument => Some(all),
+            _ => None,
+        });
+        let mut all = lists.next().unwrap_or_default();
+        let n = all.len();
+        match all.get_mut(place) {
+            Some(old) => *old = number,
+            None => {
+                let what = format!("the model gives {n} numbers there");
+                return Err(wrong("bad_sweep", &self.name, what).into());
+            }
+        }
+        Ok(Value::Reals(all))
+    }
+}
+
+/// Finds the statement of `PART/2` or `ACCGRAV`.
+fn element(
+    model: &Model,
+    name: &str,
+    head: &str,
+) -> Result<(&'static dyn Statement, Option<u32>), Error> {
+    let (word, number) = match head.split_once('/') {
+        Some((word, number)) => (word.trim(), Some(number.trim())),
+        None => (head, None),
+    };
+    let Meaning::One(k) = statement::find(word) else {
+        let d = wrong(
+            "unknown_statement",
+            name,
+            format!("there is no statement {word}"),
+        );
+        let known: Vec<String> = STATEMENTS.iter().map(|s| canonical(s.keyword())).collect();
+        return Err(with_near(d, word, &known).into());
+    };
+    let row = STATEMENTS[k];
+    let keyword = canonical(row.keyword());
+    let Some(kind) = row.kind() else {
+        return match number {
+            None => Ok((row, None)),
+            Some(_) => Err(wrong("bad_sweep", name, format!("{keyword} has no number")).into()),
+        };
+    };
+    let Some(id) = number.and_then(|n| n.parse().ok()) else {
+        let d = wrong(
+            "bad_sweep",
+            name,
+            format!("{keyword} needs the number of its element"),
+        );
+        return Err(d.help(format!("{keyword}/1.ARGUMENT")).into());
+    };
+    let known = model.numbers(kind);
+    if !known.contains(&id) {
+        let mut d = wrong(
+            Cause::UnknownElement,
+            name,
+            format!("{} does not exist", kind.id(id)),
+        );
+        d.help.extend(near_ids(id, known.into_iter()));
+        return Err(d.into());
+    }
+    Ok((row, Some(id)))
+}
+
+/// Splits `QP(2)` into the keyword and its place from 0.
+fn listed<'a>(name: &str, text: &'a str) -> Result<(&'a str, Option<usize>), Error> {
+    let Some((keyword, rest)) = text.split_once('(') else {
+        return Ok((text, None));
+    };
+    let number = rest.strip_suffix(')').and_then(|n| n.trim().parse().ok());
+    match number.and_then(|n: usize| n.checked_sub(1)) {
+        Some(place) => Ok((keyword.trim(), Some(place))),
+        None => {
+            let what = format!("({rest} is no place in a list, counted from 1");
+            Err(wrong("bad_sweep", name, what).into())
+        }
+    }
+}
+
+/// Finds an argument of a statement.
+fn found(
+    row: &'static dyn Statement,
+    name: &str,
+    arguments: &[Argument],
+    word: &str,
+) -> Result<usize, Error> {
+    if let Meaning::One(k) = meaning(word, arguments.iter().map(|a| a.name)) {
+        return Ok(k);
+    }
+    let keyword = canonical(row.keyword());
+    let d = wrong(
+        "unknown_argument",
+        name,
+        format!("{keyword} has no argument {word}"),
+    );
+    let known: Vec<String> = arguments.iter().map(Argument::keyword).collect();
+    let d = with_near(d, word, &known);
+    Err(d
+        .help(format!("cognate statements {keyword} lists its arguments"))
+        .into())
+}
