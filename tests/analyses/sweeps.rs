@@ -89,7 +89,7 @@ fn a_row_is_that_of_its_dataset_alone_to_the_bit() {
                 .replace("QP=1", &format!("QP={length}"))
                 .replace("JGRAV=-9.81", &format!("JGRAV={g}"));
             let options = Options {
-                columns: ["abs(WZ(21,1))", "AZ(21,1)", "FX(21,1)"]
+                columns: ["WZ(21,1)", "AZ(21,1)", "FX(21,1)"]
                     .map(String::from)
                     .to_vec(),
                 ..Options::default()

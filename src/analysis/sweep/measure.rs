@@ -80,7 +80,7 @@ impl Measure {
             let all = known.join(", ");
             return Err(d.help(format!("one of these stands outside: {all}")).into());
         };
-        let inside = inside_abs(of).filter(|inside| session.run.find(inside).is_some());
+        let inside = inside_abs(of).filter(|inside| is_sound(inside, session));
         let is_absolute = inside.is_some();
         let of = inside.unwrap_or(of);
         let recorded = session.run.find(of);
@@ -150,6 +150,11 @@ fn inside_abs(text: &str) -> Option<&str> {
     let (word, rest) = text.split_once('(')?;
     let is_abs = word.trim().eq_ignore_ascii_case("abs");
     rest.strip_suffix(')').filter(|_| is_abs).map(str::trim)
+}
+
+/// Returns whether a text is a column of the results, or an expression without mistakes.
+fn is_sound(text: &str, session: &Session) -> bool {
+    session.run.find(text).is_some() || session.model.check_expression(text).is_empty()
 }
 
 /// Returns advice about columns of the results that are called nearly so.
