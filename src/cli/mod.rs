@@ -8,6 +8,7 @@ mod anatomy;
 mod animate;
 pub mod card;
 mod check;
+mod configuration;
 mod convert;
 pub mod data;
 mod draw;
@@ -60,6 +61,7 @@ struct Cli {
 enum Verb {
     Animate(animate::Args),
     Check(check::Args),
+    Configuration(configuration::Args),
     Convert(convert::Args),
     Draw(draw::Args),
     Eval(eval::Args),
@@ -216,6 +218,7 @@ fn obey(cli: &Cli) -> ExitCode {
     let verb = std::panic::AssertUnwindSafe(|| match &cli.verb {
         Verb::Animate(args) => animate::run(args),
         Verb::Check(args) => check::run(args),
+        Verb::Configuration(args) => configuration::run(args),
         Verb::Convert(args) => convert::run(args),
         Verb::Draw(args) => draw::run(args),
         Verb::Eval(args) => eval::run(args),

@@ -15,17 +15,9 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// When there is no such file, it has mistakes, or it has changed since the run.
 pub(super) fn model_of(results: &Path, given: Option<&Path>) -> Result<Model, Failure> {
+    let file = model_file(results, given)?;
     let record = record_of(results);
     let text = |key: &str| record.as_ref().and_then(|r| r[key].as_str());
-    let file = match (given, text("model")) {
-        (Some(given), _) => given.to_owned(),
-        (None, Some(named)) => beside(results, Path::new(named)),
-        (None, None) => {
-            let what = format!("{} has no record that names its model", results.display());
-            let d = Diagnostic::error("no_model", what);
-            return Err(d.help("--model FILE names it").into());
-        }
-    };
     let model = as_commands_leave_it(&file)?;
     let expected = text("markers");
     if expected.is_some_and(|digest| digest != marker_digest(&model)) {
@@ -39,8 +31,26 @@ pub(super) fn model_of(results: &Path, given: Option<&Path>) -> Result<Model, Fa
     Ok(model)
 }
 
+/// Returns the file that was run: the `given` one, else that which the record of results names.
+///
+/// # Errors
+/// When there is no record that names one.
+pub(super) fn model_file(results: &Path, given: Option<&Path>) -> Result<PathBuf, Failure> {
+    let record = record_of(results);
+    let named = record.as_ref().and_then(|r| r["model"].as_str());
+    match (given, named) {
+        (Some(given), _) => Ok(given.to_owned()),
+        (None, Some(named)) => Ok(beside(results, Path::new(named))),
+        (None, None) => {
+            let what = format!("{} has no record that names its model", results.display());
+            let d = Diagnostic::error("no_model", what);
+            Err(d.help("--model FILE names it").into())
+        }
+    }
+}
+
 /// Reads the record beside results.
-fn record_of(results: &Path) -> Option<Value> {
+pub(super) fn record_of(results: &Path) -> Option<Value> {
     let text = std::fs::read(results.with_extension("json")).ok()?;
     let record: Value = serde_json::from_slice(&text).ok()?;
     record["model"].is_string().then_some(record)

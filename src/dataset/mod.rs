@@ -9,6 +9,7 @@
 //! that knows arguments by name.
 
 mod check;
+mod clock;
 pub mod command;
 mod idle;
 pub mod lens;

@@ -10,6 +10,7 @@ mod animation;
 mod broken;
 mod cli;
 mod cli_eval;
+mod configuration;
 mod gallery;
 #[cfg(feature = "geometry")]
 mod interference;

@@ -10,6 +10,7 @@ use crate::scene::Scene;
 use crate::scene::equations::Equations;
 use crate::scene::history::{AngleId, DelayId};
 use crate::scene::layout::{Layout, State};
+use crate::scene::loops::Key;
 use crate::scene::unknown::UnknownId;
 use crate::space::{MarkerState, Vec3};
 use std::collections::BTreeMap;
@@ -35,6 +36,8 @@ pub(super) struct Carried {
     pub(super) samples: BTreeMap<u32, samples::Held>,
     /// the past of delayed values
     pub(super) past: BTreeMap<DelayId, past::Past>,
+    /// values of VARIABLEs that read themselves, by their numbers: where Newton's iteration begins
+    pub(super) guesses: BTreeMap<u32, f64>,
 }
 
 impl Carried {
@@ -60,12 +63,24 @@ impl Session {
             sensors: sensed(&system.scene, &numbers),
             samples: system.recorded.samples.held(&numbers),
             past: system.recorded.external.delays.past(),
+            guesses: guesses(&system.scene, &numbers),
             unknowns: [&unknowns.q[..], &unknowns.v, &unknowns.x].concat(),
             at_rest: false,
             parts,
             numbers,
         });
     }
+}
+
+/// Returns the values of VARIABLEs that have places among the unknowns of loops.
+fn guesses(scene: &Scene, numbers: &[f64]) -> BTreeMap<u32, f64> {
+    let loops = scene.loops.iter().zip(&numbers[scene.layout.loops()]);
+    let known: BTreeMap<Key, f64> = loops.map(|(u, &value)| (u.key, value)).collect();
+    let value = |formula: &usize| known.get(&Key::Formula(*formula)).copied();
+    let variables = scene.variables.iter();
+    variables
+        .filter_map(|(&id, formula)| Some((id, value(formula)?)))
+        .collect()
 }
 
 /// Returns SENVAL of each sensor.

@@ -6,6 +6,7 @@
 
 mod arguments;
 mod at_rest;
+pub mod beginning;
 mod carried;
 pub mod columns;
 mod companion;

@@ -248,6 +248,7 @@ fn carried(v: &Value) -> Option<Carried> {
         sensors: sensors?,
         samples: samples?,
         past: past.collect::<Option<_>>()?,
+        guesses: BTreeMap::new(),
     })
 }
 
