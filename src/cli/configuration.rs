@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Examples:
   cognate configuration crank.acf --at 0.3 -o later.adm
-  cognate configuration crank.acf --at 0.3 -o later.adm --commands later.acf    with the commands that are left
+  cognate configuration crank.acf --at 0.3 -o later.adm --commands later.acf
   cognate configuration results/crank.res --at 0.3 -o later.adm
   cognate configuration drop.adm --at 0.1 --error 1e-9 -o later.adm")]
 pub struct Args {
@@ -264,7 +264,8 @@ fn commands(out: &Path, model: &Model, left: &[Step], at: f64) -> String {
     }
     for (kind, numbers) in off {
         for numbers in numbers.chunks(10) {
-            text += &format!("DEACTIVATE/{}, ID={}\n", kind.keyword(), numbers.join(","));
+            let numbers = numbers.join(",");
+            text += &["DEACTIVATE/", kind.keyword(), ", ID=", &numbers, "\n"].concat();
         }
     }
     for step in left {
@@ -303,5 +304,5 @@ fn simulate_line(simulate: &Simulate, at: f64) -> String {
         simulate.dtout.map(|dt| format!(", DTOUT={dt:?}")),
     ];
     let given: String = given.into_iter().flatten().collect();
-    format!("SIMULATE/{kind}{given}\n")
+    ["SIMULATE/", kind, &given, "\n"].concat()
 }

@@ -23,7 +23,8 @@ impl Model {
     /// # Examples
     /// ```
     /// use cognate::model::Model;
-    /// let mut model = Model::from_text("t\nPART/1, GROUND\nVARIABLE/1, FUNCTION=SIN(TIME)\nEND\n")?;
+    /// let text = "t\nPART/1, GROUND\nVARIABLE/1, FUNCTION=SIN(TIME)\nEND\n";
+    /// let mut model = Model::from_text(text)?;
     /// model.begin_at(0.5);
     /// assert!(model.to_text().contains("SIN((TIME+0.5))"));
     /// # Ok::<(), cognate::Error>(())

@@ -182,6 +182,30 @@ REQUEST/1, F2=DX(20,1)\\F3=DY(20,1)\\F4=TZ(10,21)\\F6=SIN(AZ(20,1))
 }
 
 #[test]
+fn the_creep_of_friction_which_a_dataset_has_no_words_for_is_told() {
+    let block = "\
+MARKER/10, PART=1, REULER=90D,90D,90D
+PART/2, MASS=1, CM=20, IP=1,1,1, VX=1
+MARKER/20, PART=2
+MARKER/21, PART=2, REULER=90D,90D,90D
+JOINT/1, TRANSLATIONAL, I=21, J=10
+FRICTION/1, JOINT=1, MU_STATIC=0.3, MU_DYNAMIC=0.2
+DIFF/1, IC=5, FUNCTION=0
+ACCGRAV/KGRAV=-9.81
+REQUEST/1, F2=DX(20,1)
+";
+    let model = scratch(
+        "configuration_creep",
+        "whole.adm",
+        &format!("{HEAD}{block}END\n"),
+    );
+    let (later, said) = configured(&model, "0.7");
+    let text = std::fs::read_to_string(later).unwrap();
+    assert!(text.contains(", IC = 5\n"), "{text}");
+    assert!(said.contains("FRICTION/1: its states begin anew"), "{said}");
+}
+
+#[test]
 fn commands_that_are_left_go_on_with_the_dataset() {
     let model = scratch(
         "configuration_commands",

@@ -1,5 +1,5 @@
-//! The dataset that begins where a simulation has led: parts stand and move as they do there, states
-//! of equations and motions have their values, the clock is counted from there.
+//! The dataset that begins where a simulation has led: parts stand and move as they do there,
+//! states of equations and motions have their values, the clock is counted from there.
 //!
 //! Every program that reads datasets can go on from it. What a dataset has no words for is told.
 
@@ -36,6 +36,8 @@ pub enum Change {
     Turns(String, f64),
     /// a TFSISO, which has no initial states, is written as this LSE
     TransferFunction(ElementId, ElementId),
+    /// states for which a dataset has no initial values, as the creep of FRICTION
+    States(ElementId),
     /// DELAY begins without a past
     Past(String),
     /// a SENSOR has not evaluated anything
@@ -58,6 +60,10 @@ impl fmt::Display for Change {
             Change::TransferFunction(was, is) => write!(
                 f,
                 "{was} is written as {is} of the same states, which can begin with their values"
+            ),
+            Change::States(id) => write!(
+                f,
+                "{id}: its states begin anew, a dataset has no initial values for them"
             ),
             Change::Past(owner) => write!(f, "{owner}: DELAY begins without its past"),
             Change::Sensor(id) => write!(f, "{id}: the value that it evaluated is not kept"),
@@ -148,10 +154,12 @@ fn begin_equations(model: &mut Model, carried: &Carried, changes: &mut Vec<Chang
         let UnknownId::Differential(DifferentialId { element, number }) = unknown else {
             continue;
         };
-        match (number, model.differentials.get_mut(&element.number)) {
-            (None, Some(equation)) => equation.ic[0] = Some(value),
+        let is_diff = element.kind == ElementKind::Diff && number.is_none();
+        let equation = model.differentials.get_mut(&element.number);
+        match equation.filter(|_| is_diff) {
+            Some(equation) => equation.ic[0] = Some(value),
             // states come in their order
-            _ => systems.entry(element).or_default().push(value),
+            None => systems.entry(element).or_default().push(value),
         }
     }
     for (variable, &value) in &carried.guesses {
@@ -179,6 +187,7 @@ fn begin_equations(model: &mut Model, carried: &Carried, changes: &mut Vec<Chang
                     changes.push(Change::TransferFunction(element, is));
                 }
             }
+            _ if states.iter().any(|x| *x != 0.0) => changes.push(Change::States(element)),
             _ => {}
         }
     }
@@ -213,7 +222,8 @@ fn add<T>(all: &mut ById<T>, element: T) -> u32 {
 /// Writes a transfer function as the linear system of the same states:
 ///
 /// ```text
-/// ẋ_k = x_{k+1}      ẋ_n = (u − a0 x1 − a1 x2 …)/a_n      y = Σ (b_k − a_k d) x_{k+1} + d u,  d = b_n/a_n
+/// ẋ_k = x_{k+1}      ẋ_n = (u − a0 x1 − a1 x2 …)/a_n
+/// y = Σ (b_k − a_k d) x_{k+1} + d u                   d = b_n/a_n
 /// ```
 ///
 /// Arrays keep their numbers, so that all that reads them stays as it is.
