@@ -4,7 +4,7 @@
 //! Two orders keep what is recorded short where loops share parts. Rows may be eliminated
 //! [where their loops close](super::loop_factor) instead of all at the end, and where masses do not
 //! matter rows may stand in an order of least degree. Either is taken only where the usual order
-//! fills in: below [`LEAST_FILL`] products, or for less than [`GAIN`] times fewer, nothing changes.
+//! fills in: below `LEAST_FILL` products, or for less than `GAIN` times fewer, nothing changes.
 
 use super::configuration::{Configured, Elimination, Way};
 use super::equations::{Equations, KINEMATIC, STATIC};

@@ -14,7 +14,7 @@ impl System {
     }
 
     /// Returns the sensors that are triggered at an accepted state, by their places in
-    /// [`Scene::sensors`]; SENVAL is new then. `switched`: a switch was located at this state.
+    /// `Scene::sensors`; SENVAL is new then. `switched`: a switch was located at this state.
     pub fn sense(&mut self, t: f64, y: &[f64], switched: bool) -> Vec<usize> {
         if self.recorded.sensors.is_empty() {
             return Vec::new();

@@ -73,7 +73,7 @@ impl System {
     /// Solves the loops at the present numbers, after some of them have been changed.
     ///
     /// # Errors
-    /// The index of a loop without a solution near, in [`Scene::loops`].
+    /// The index of a loop without a solution near, in `Scene::loops`.
     pub fn resolve(&mut self) -> Result<(), usize> {
         self.fill(true);
         self.unsolved.map_or(Ok(()), Err)
@@ -110,7 +110,7 @@ impl System {
     /// programs.
     ///
     /// # Errors
-    /// The index of a loop that nothing determines, in [`Scene::loops`].
+    /// The index of a loop that nothing determines, in `Scene::loops`.
     pub fn follow_along(&mut self, numbers: &mut [Dual<WIDTH>], first: bool) -> Result<(), usize> {
         self.recorded.external.closures.follow(numbers, first);
         let recorded = &mut self.recorded;

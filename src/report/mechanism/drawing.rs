@@ -76,7 +76,7 @@ pub enum Mark {
     Stroke {
         /// its points
         points: Vec<Point>,
-        /// width   [length]; 0: a thin line
+        /// width   (length); 0: a thin line
         width: f64,
         /// colour
         colour: [u8; 3],

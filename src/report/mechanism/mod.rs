@@ -40,7 +40,7 @@ const ROD: f64 = 0.009;
 /// Half the length of the symbol of a joint, as a part of the size of the mechanism.
 const JOINT: f64 = 0.016;
 
-/// The sizes of what has none of its own   [length].
+/// The sizes of what has none of its own   (length).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes {
     /// diagonal of the whole mechanism
@@ -133,7 +133,7 @@ pub struct Arrow {
     pub body: usize,
     /// where it acts, in the frame of the body, unless the run says where
     pub place: [f64; 3],
-    /// index in [`Track::loads`]
+    /// index in `Track::loads`
     pub load: usize,
     /// whether it is the reaction of a joint or motion
     pub is_reaction: bool,

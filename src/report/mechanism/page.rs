@@ -1,7 +1,7 @@
 //! One HTML page that shows runs in motion: no server, no network, nothing beside it.
 //!
 //! The page holds the viewer (`assets/viewer.js.gz`, made by `assets/viewer/build.mjs`) and the
-//! data of the runs, as text: a description in JSON, then packed columns ([`super::pack`]), all
+//! data of the runs, as text: a description in JSON, then packed columns (`pack.rs`), all
 //! compressed. The viewer reads them with what browsers have; it runs from `file:`.
 
 use super::bodies::name_of;

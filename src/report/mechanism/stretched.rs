@@ -32,7 +32,7 @@ pub struct Stretched {
     pub from: (usize, [f64; 3]),
     /// body and point of the other end
     pub to: (usize, [f64; 3]),
-    /// its radius   [length]
+    /// its radius   (length)
     pub radius: f64,
     /// red, green, blue
     pub colour: [u8; 3],

@@ -18,7 +18,7 @@ const AZIMUTH: f64 = 0.65;
 pub struct View {
     /// middle of what is seen, in ground
     pub centre: Vec3<f64>,
-    /// diagonal of what is seen   [length]
+    /// diagonal of what is seen   (length)
     pub size: f64,
     /// direction from the middle to the eye, of unit length
     pub eye: Vec3<f64>,

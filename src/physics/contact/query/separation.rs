@@ -21,7 +21,7 @@ enum How {
 /// The distance of two solids at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// along the direction in which they overlap least   [length]; negative: they overlap
+    /// along the direction in which they overlap least   (length); negative: they overlap
     pub distance: f64,
     /// between the points that are nearest along that direction, in ground
     pub place: Vec3<f64>,
