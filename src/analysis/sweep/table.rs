@@ -11,7 +11,7 @@
 
 use super::{Parameter, Row, Sweep};
 use crate::diagnostic::{Cause, Diagnostic, Error};
-use crate::results::{Column, Kind, Run, Sequence, Status, digest, write_text};
+use crate::results::{Column, Kind, Run, Sequence, Status, digest, digits, write_text};
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -163,7 +163,7 @@ fn heads(sweep: &Sweep) -> (Vec<String>, Vec<String>) {
 
 /// Returns the cells of a row.
 fn cells(row: &Row) -> Vec<String> {
-    let number = |x: &f64| format!("{x:?}");
+    let number = |x: &f64| digits(*x);
     let mut cells = vec![row.run.to_string()];
     cells.extend(row.values.iter().chain(&row.measures).map(number));
     cells.push(row.status.exit_code().to_string());
