@@ -44,7 +44,7 @@ MARKER/30, PART=3
 JOINT/1, TRANSLATIONAL, I=21, J=10
 JOINT/2, REVOLUTE, I=30, J=12
 MOTION/1, JOINT=2, VELOCITY, FUNCTION=2+COS(3*TIME), ICDISP=0.2
-SFORCE/1, TRANSLATION, I=20, J=1, ACTIONONLY, FUNCTION=ARYVAL(6,1)+ARYVAL(3,1)+VARVAL(2)-DIF(1)
+SFORCE/1, TRANSLATION, I=20, J=10, ACTIONONLY, FUNCTION=ARYVAL(6,1)+ARYVAL(3,1)+VARVAL(2)-DIF(1)
 DIFF/1, IC=0.5, FUNCTION=DX(20,1)-DIF(1)+TIME
 VARIABLE/1, FUNCTION=SIN(4*TIME)
 VARIABLE/2, IC=1, FUNCTION=0.3*COS(VARVAL(2))+TIME
@@ -179,6 +179,36 @@ REQUEST/1, F2=DX(20,1)\\F3=DY(20,1)\\F4=TZ(10,21)\\F6=SIN(AZ(20,1))
         said.contains("AZ(20,1,0,0) begins within half a turn of zero: 2 turns"),
         "{said}"
     );
+}
+
+#[test]
+fn a_configuration_after_statics_moves_with_the_velocities_of_the_dataset() {
+    let spring = "\
+MARKER/10, PART=1, REULER=90D,90D,90D
+PART/2, MASS=1, CM=20, IP=1,1,1, VX=0.5, QG=0.3,0,0
+MARKER/20, PART=2
+MARKER/21, PART=2, REULER=90D,90D,90D
+JOINT/1, TRANSLATIONAL, I=21, J=10, IC=0.3
+SFORCE/1, TRANSLATION, I=20, J=10, ACTIONONLY, FUNCTION=4*(1-DX(20,1))
+REQUEST/1, F2=DX(20,1)\\F3=VX(20,1)
+";
+    let model = scratch(
+        "configuration_statics",
+        "whole.adm",
+        &format!("{HEAD}{spring}END\n"),
+    );
+    let acf = model.with_extension("acf");
+    let script = "FILE/MODEL=whole\nSIMULATE/STATIC\nSIMULATE/DYNAMIC, END=1, STEPS=10\n";
+    std::fs::write(&acf, script).unwrap();
+    let (later, said) = configured(&acf, "0");
+    assert!(
+        said.contains("JOINT/1: its initial conditions are left out"),
+        "{said}"
+    );
+    // about its rest at 1 with angular velocity 2: x = 1 + 0.5/2 sin 2t
+    let rest = ran(&later, "1", "10");
+    let x = rest.columns[1].values.last().unwrap();
+    assert!((x - (1.0 + 0.25 * 2.0_f64.sin())).abs() < 1e-7, "{x}");
 }
 
 #[test]

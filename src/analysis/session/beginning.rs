@@ -32,6 +32,8 @@ pub struct Beginning {
 /// Something of a state that a dataset does not tell, or tells in another way.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
+    /// initial conditions of a joint or of a contact on a curve, which were those of another place
+    InitialConditions(ElementId),
     /// an angle begins within half a turn of zero: its name, the turns that are left out
     Turns(String, f64),
     /// a TFSISO, which has no initial states, is written as this LSE
@@ -51,6 +53,10 @@ pub enum Change {
 impl fmt::Display for Change {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Change::InitialConditions(id) => write!(
+                f,
+                "{id}: its initial conditions are left out, parts have places and velocities"
+            ),
             Change::Turns(angle, turns) => {
                 write!(
                     f,
@@ -79,6 +85,7 @@ impl fmt::Display for Change {
 impl Saved {
     /// Returns the model that begins where this state stands; `None` before the first simulation.
     ///
+    /// After statics parts have the velocities of the dataset, with which dynamics then begin.
     /// Initial conditions of joints and of contacts on curves, which were those of another place,
     /// are left out. Elements that are switched off stay so in [`Model::inactive`], which a dataset
     /// does not tell.
@@ -96,7 +103,11 @@ impl Saved {
     /// ```
     pub fn beginning(&self) -> Option<Beginning> {
         let carried = self.carried.as_ref()?;
+        let mut changes = left_out(&self.model, carried.at_rest);
         let mut model = moved(&self.model, carried);
+        if carried.at_rest {
+            begin_from_rest(&mut model, &self.model);
+        }
         for contact in model.points_on_curves.values_mut() {
             (contact.start, contact.velocity, contact.start_marker) = (None, None, None);
         }
@@ -105,7 +116,6 @@ impl Saved {
                 (side.start, side.velocity, side.start_marker) = (None, None, None);
             }
         }
-        let mut changes = Vec::new();
         begin_motions(&mut model, carried);
         begin_equations(&mut model, carried, &mut changes);
         changes.extend(turns(carried));
@@ -120,6 +130,37 @@ impl Saved {
             time: carried.t,
             changes,
         })
+    }
+}
+
+/// Returns the joints and contacts whose initial conditions, which were those of another place, are
+/// left out. After statics the rates of joints stay.
+fn left_out(model: &Model, at_rest: bool) -> Vec<Change> {
+    let of_joint = |[place, rate]: [Option<f64>; 2]| place.is_some() || rate.is_some() && !at_rest;
+    let joints = model.joints.iter();
+    let joints = joints.filter(|(_, j)| of_joint(j.ic_translation) || of_joint(j.ic_rotation));
+    let points = (model.points_on_curves.iter()).filter(|(_, contact)| contact.start.is_some());
+    let curves = model.curves_on_curves.iter();
+    let curves = curves.filter(|(_, c)| c.i.start.is_some() || c.j.start.is_some());
+    let joints = joints.map(|(&id, _)| ElementKind::Joint.id(id));
+    let points = points.map(|(&id, _)| ElementKind::Ptcv.id(id));
+    let curves = curves.map(|(&id, _)| ElementKind::Cvcv.id(id));
+    let all = joints.chain(points).chain(curves);
+    all.map(Change::InitialConditions).collect()
+}
+
+/// Lets parts move as the dataset says: a simulation after statics begins with these velocities.
+fn begin_from_rest(model: &mut Model, dataset: &Model) {
+    let bodies = model.parts.iter_mut().zip(dataset.parts.values());
+    let points = model.point_masses.iter_mut();
+    let points = points.zip(dataset.point_masses.values());
+    for ((_, part), given) in bodies.chain(points) {
+        (part.vm, part.wm) = (given.vm, given.wm);
+        (part.velocity, part.angular_velocity) = (given.velocity, given.angular_velocity);
+    }
+    for (joint, given) in model.joints.values_mut().zip(dataset.joints.values()) {
+        joint.ic_translation[1] = given.ic_translation[1];
+        joint.ic_rotation[1] = given.ic_rotation[1];
     }
 }
 
