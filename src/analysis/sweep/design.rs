@@ -68,11 +68,13 @@ impl Values {
             Self::Range(a, b, Some(n)) => {
                 let last = (n - 1) as f64;
                 let at = |k: usize| {
-                    // the ends are exact, and round numbers come out round
+                    // the ends are exact
                     if k + 1 == n {
                         return b;
                     }
-                    (a * (last - k as f64) + b * k as f64) / last
+                    let x = (a * (last - k as f64) + b * k as f64) / last;
+                    // fifteen digits, so that round numbers come out round
+                    format!("{x:.14e}").parse().unwrap_or(x)
                 };
                 Ok((0..n).map(at).collect())
             }
