@@ -265,7 +265,10 @@ mod tests {
     use super::*;
     use crate::results::{Kind, Units};
 
-    fn run(times: &[f64], channels: &[(&str, fn(f64) -> f64)]) -> Run {
+    /// A channel: its name, and its value as a function of time.
+    type Channel<'a> = (&'a str, fn(f64) -> f64);
+
+    fn run(times: &[f64], channels: &[Channel]) -> Run {
         let mut run = Run::new("r", "t", Units::default());
         for (name, _) in channels {
             run.add_column(*name, "mm");
