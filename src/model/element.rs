@@ -173,7 +173,7 @@ impl FromStr for ElementId {
 
     /// Reads `JOINT/3`: a full keyword in any case, a slash and a number.
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is not KEYWORD/number");
+        let wrong = || format!("`{text}` is not KEYWORD/number, such as MARKER/41");
         let (keyword, number) = text.trim().split_once('/').ok_or_else(wrong)?;
         let kind: ElementKind = keyword.trim().parse()?;
         Ok(kind.id(number.trim().parse().map_err(|_| wrong())?))

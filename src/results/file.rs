@@ -25,7 +25,11 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
             "formats that can be read: {}",
             Format::names(false).join(", ")
         );
-        in_file(unknown_format(&extension, &known))
+        let unknown = unknown_format(&extension, &known);
+        in_file(match extension.as_str() {
+            "adm" | "acf" => unknown.help("a model has results once it has been run: cognate run"),
+            _ => unknown,
+        })
     })?;
     let mut run = if path.is_dir() {
         read_parts(path, &extension, reader)
