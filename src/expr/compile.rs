@@ -15,6 +15,9 @@ use crate::diagnostic::{Cause, Diagnostic, Span};
 use std::cell::RefCell;
 use std::f64::consts::PI;
 
+/// Times the smallest number above zero, a number whose reciprocal is finite: 2⁶⁴.
+const LARGE: f64 = 18_446_744_073_709_551_616.0;
+
 /// A value of the past that a program reads as [`Input::Delayed`]:
 /// `DELAY(expression, delay, history, options)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,10 +180,12 @@ impl<'a> Compiler<'a> {
                 }
                 let value = builder.binary(operation(op), a, b);
                 match op {
-                    // recorded equations take 0/x for 0 and x/x for 1, at x = 0 too
+                    // recorded equations take 0/x for 0 and x/x for 1, at x = 0 too; x is made
+                    // large, as 1/x alone is infinite for the smallest numbers as well
                     Written::Div if a == b || builder.constant_of(a) == Some(0.0) => {
-                        let one = builder.constant(1.0);
-                        let reciprocal = builder.binary(BinaryOp::Div, one, b);
+                        let (one, large) = (builder.constant(1.0), builder.constant(LARGE));
+                        let enlarged = builder.binary(BinaryOp::Mul, b, large);
+                        let reciprocal = builder.binary(BinaryOp::Div, one, enlarged);
                         builder.binary(BinaryOp::Kept, value, reciprocal)
                     }
                     _ => value,

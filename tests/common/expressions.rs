@@ -90,6 +90,47 @@ pub const PREPARED: [(Function, usize); 9] = [
     (Function::Bistop, 2),
 ];
 
+const OPERATORS: [BinaryOp; 5] = [
+    BinaryOp::Add,
+    BinaryOp::Sub,
+    BinaryOp::Mul,
+    BinaryOp::Div,
+    BinaryOp::Pow,
+];
+
+/// Numbers at the ends of what numbers there are, and between: with a reciprocal that is a number and without, with a square
+/// and without.
+pub const EXTREMES: [f64; 12] = [
+    0.0,
+    5e-324,
+    8.854e-321,
+    5.5e-309,
+    f64::MIN_POSITIVE,
+    1e-160,
+    0.75,
+    2.0,
+    1e17,
+    1e160,
+    1e308,
+    f64::MAX,
+];
+
+/// A call or an operation whose operands are extreme numbers of either sign, or the time.
+pub fn extreme(bytes: &[u8], dialect: Dialect) -> Ast {
+    let mut maker = Maker {
+        bytes,
+        contents: Contents::all(dialect),
+        nodes: Vec::new(),
+    };
+    let root = maker.extreme();
+    Ast {
+        dialect,
+        spans: vec![Span::default(); maker.nodes.len()],
+        nodes: maker.nodes,
+        root,
+    }
+}
+
 /// Deepest tree; the reader takes 256 levels of parentheses, and a level here needs one or two of them.
 const DEEPEST: usize = 40;
 
@@ -131,13 +172,7 @@ impl Maker<'_> {
             5..=9 => {
                 let a = self.expression(depth + 1);
                 let b = self.expression(depth + 1);
-                let op = [
-                    BinaryOp::Add,
-                    BinaryOp::Sub,
-                    BinaryOp::Mul,
-                    BinaryOp::Div,
-                    BinaryOp::Pow,
-                ][self.pick(5)];
+                let op = OPERATORS[self.pick(5)];
                 self.push(Node::Binary(op, a, b))
             }
             10 => {
@@ -178,6 +213,7 @@ impl Maker<'_> {
         let literal = match self.pick(16) {
             k @ 0..12 => NICE[k],
             12 | 13 => self.pick(256) as f64 / 16.0,
+            14 => EXTREMES[self.pick(EXTREMES.len())],
             _ => {
                 let bits = [(); 8].map(|()| self.pick(256) as u8);
                 let x = f64::from_bits(u64::from_le_bytes(bits)).abs();
@@ -187,6 +223,46 @@ impl Maker<'_> {
         let degrees =
             self.contents.dialect == Dialect::Function && self.pick(8) == 7 && literal < 1e307;
         self.push(Node::Number { literal, degrees })
+    }
+
+    fn extreme(&mut self) -> NodeIx {
+        let known: Vec<Function> = Function::ALL
+            .iter()
+            .copied()
+            .filter(|&f| f.row().dialect == self.contents.dialect && f != Function::Delay)
+            .collect();
+        let what = self.pick(5 + known.len());
+        let Some(&function) = what.checked_sub(5).and_then(|k| known.get(k)) else {
+            let (a, b) = (self.extreme_operand(), self.extreme_operand());
+            return self.push(Node::Binary(OPERATORS[what % 5], a, b));
+        };
+        let (least, most) = Callee::Function(function).arity();
+        let count = least + self.pick((most - least).min(4) + 1);
+        let args = (0..count)
+            .map(|k| match Callee::Function(function).argument(k) {
+                Kind::Number => self.extreme_operand(),
+                kind => self.identifier(kind),
+            })
+            .collect();
+        self.push(Node::Call {
+            callee: Callee::Function(function),
+            args,
+        })
+    }
+
+    fn extreme_operand(&mut self) -> NodeIx {
+        match self.pick(4) {
+            0 => self.push(Node::Constant(Constant::Time)),
+            1 => {
+                let literal = EXTREMES[self.pick(EXTREMES.len())];
+                let size = self.literal(literal);
+                self.push(Node::Negate(size))
+            }
+            _ => {
+                let literal = EXTREMES[self.pick(EXTREMES.len())];
+                self.literal(literal)
+            }
+        }
     }
 
     fn measure(&mut self) -> NodeIx {

@@ -5,10 +5,11 @@ use crate::expressions;
 use cognate::expr::ast::Dialect;
 use cognate::expr::program::Work;
 use cognate::expr::walk::Host;
-use cognate::expr::{Expr, Profile, parse};
+use cognate::expr::{Evaluator, Expr, Profile, parse};
 use cognate::scalar::{Dual, Lanes, Scalar};
 use expressions::{
-    Anything, bindings, laws_of_texts, laws_of_trees, prepared_call, program_is_the_walker, run,
+    Anything, EXTREMES, bindings, engines_agree, extreme, laws_of_texts, laws_of_trees,
+    prepared_call, program_is_the_walker, run,
 };
 use proptest::prelude::*;
 use std::time::{Duration, Instant};
@@ -43,6 +44,18 @@ proptest! {
     }
 
     #[test]
+    fn operations_on_extreme_numbers_give_the_walkers_bits(
+        bytes in prop::collection::vec(any::<u8>(), 0..16),
+        time in prop::sample::select(EXTREMES.to_vec()),
+    ) {
+        for dialect in [Dialect::Function, Dialect::Expression] {
+            let ast = extreme(&bytes, dialect);
+            program_is_the_walker(&ast, time);
+            engines_agree(&ast, time);
+        }
+    }
+
+    #[test]
     fn any_text_is_read_or_refused_with_a_place(text in hostile()) {
         laws_of_texts(&text);
     }
@@ -67,6 +80,23 @@ fn shortest(mut run: impl FnMut()) -> Duration {
         start.elapsed()
     };
     [(); 10].map(once).into_iter().min().unwrap_or_default()
+}
+
+#[test]
+fn zero_over_a_number_is_zero_and_a_number_over_itself_is_one_however_small_it_is() {
+    for x in EXTREMES.into_iter().skip(1).flat_map(|x| [x, -x]) {
+        for (text, expected) in [
+            (format!("0/({x:e})"), 0.0_f64.to_bits()),
+            (format!("({x:e})/({x:e})"), 1.0_f64.to_bits()),
+            ("0/TIME".to_string(), 0.0_f64.to_bits()),
+            ("TIME/TIME".to_string(), 1.0_f64.to_bits()),
+        ] {
+            let mut evaluator = Evaluator::parse(&text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            let inputs = vec![x; evaluator.inputs().len()];
+            let got = evaluator.eval(&inputs).map(|value| value.abs().to_bits());
+            assert_eq!(got.ok(), Some(expected), "{text} at {x:e}");
+        }
+    }
 }
 
 #[test]
