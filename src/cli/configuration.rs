@@ -7,7 +7,6 @@ use super::run::{self, KindName, Single};
 use super::{Exit, Failure, Outcome, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
-use crate::analysis::watch::Watch;
 use crate::dataset;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Cause, Diagnostic};
@@ -47,6 +46,9 @@ pub struct Args {
     /// Permitted local error of the integration; that of the run where results are given
     #[arg(long, value_name = "E")]
     error: Option<f64>,
+    /// Method of integration (AUTO chooses by itself); that of the model where none is given
+    #[arg(long, value_name = "NAME")]
+    method: Option<String>,
     /// Kind of simulation, for a dataset without command file
     #[arg(long = "type", value_name = "KIND", value_enum)]
     kind: Option<KindName>,
@@ -56,15 +58,6 @@ pub struct Args {
     /// Take what USER(…) would compute as zero
     #[arg(long = "zero-user")]
     zero_user: bool,
-}
-
-/// Listens for Ctrl-C.
-struct Listener;
-
-impl Watch for Listener {
-    fn interrupted(&mut self) -> bool {
-        interrupt::requested()
-    }
 }
 
 /// Writes a configuration as a dataset.
@@ -99,6 +92,7 @@ pub fn run(args: &Args) -> Outcome {
         error: args
             .error
             .or_else(|| recorded.and_then(|r| r["error"].as_f64())),
+        method: args.method.clone(),
         skip: args.skip.iter().copied().collect(),
         zero_user: args.zero_user,
         ..Options::default()
@@ -115,7 +109,7 @@ pub fn run(args: &Args) -> Outcome {
 }
 
 /// Returns why a run does not reach a time.
-fn not_reached(session: &Session, at: f64) -> Failure {
+pub(super) fn not_reached(session: &Session, at: f64) -> Failure {
     let reason = &session.run.record.stop_reason;
     let end = digits_of_six(session.time());
     let what = match reason.is_empty() {
@@ -133,7 +127,7 @@ fn not_reached(session: &Session, at: f64) -> Failure {
 
 /// Leads a session to a time; returns the commands that are left, the one that was cut first, or
 /// `None` where the run ends before.
-fn lead(
+pub(super) fn lead(
     session: &mut Session,
     steps: &[Step],
     at: f64,
@@ -151,13 +145,19 @@ fn lead(
             let status = match (at > now, session.run.rows() > 0) {
                 // the state of this time is there already
                 (false, true) => Status::Completed,
-                (false, false) => {
-                    session.simulate(Analysis::InitialConditions, at, 1, &mut Listener)?
-                }
+                (false, false) => session.simulate(
+                    Analysis::InitialConditions,
+                    at,
+                    1,
+                    &mut interrupt::Listener,
+                )?,
                 // conversion saturates
-                (true, _) => {
-                    session.simulate(analysis, at, (share as usize).max(1), &mut Listener)?
-                }
+                (true, _) => session.simulate(
+                    analysis,
+                    at,
+                    (share as usize).max(1),
+                    &mut interrupt::Listener,
+                )?,
             };
             if status != Status::Completed || session.halted() {
                 return Ok(None);
@@ -183,7 +183,7 @@ fn lead(
             session,
             std::slice::from_ref(step),
             |_, _| (),
-            &mut Listener,
+            &mut interrupt::Listener,
         )?;
         let is_over = matches!(step.command, Command::Stop) || session.halted();
         if status != Status::Completed || is_over {

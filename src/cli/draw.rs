@@ -1,11 +1,12 @@
 //! `cognate draw`: one configuration of a model as a picture.
 
-use super::moved::{Moved, Source, has_ending};
+use super::moved::{Moved, Source};
 use super::{Exit, Failure, Outcome, interrupt, remark};
-use crate::model::ElementId;
+use crate::model::{ElementId, Model};
 use crate::report::mechanism::drawing::{Names, Wanted, drawing};
 use crate::report::mechanism::{Pictured, View, drawing_svg};
-use crate::results::{self, Run};
+use crate::report::picture::{self, PictureFormat};
+use crate::results::Run;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +19,7 @@ const WIDTH: u32 = 720;
 Examples:
   cognate draw examples/slider_crank.adm -o crank.svg
   cognate draw examples/slider_crank.acf --at 0.3 --names all -o crank.svg
-  cognate draw four_bar.acf --at 0.2 --pale 5 --paths -o four_bar.svg
+  cognate draw four_bar.acf --at 0.2 --pale 5 --paths -o four_bar.png
   cognate draw loop.adm --highlight JOINT/3 --highlight JOINT/4 -o loop.svg")]
 pub struct Args {
     #[command(flatten)]
@@ -26,7 +27,7 @@ pub struct Args {
     /// Time of the configuration: the nearest output; without it the last one
     #[arg(long, value_name = "TIME")]
     at: Option<f64>,
-    /// File to write: .svg; without it NAME.svg, here
+    /// File to write: .svg, .png or .pdf; without it NAME.svg, here
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Names that are written
@@ -110,6 +111,24 @@ pub fn run(args: &Args) -> Outcome {
     Ok(Exit::Done)
 }
 
+/// Draws the configuration of a run that is nearest to a time.
+///
+/// # Errors
+/// When the run has no positions, or the file cannot be written.
+pub fn draw_at(model: &Model, run: &Run, at: f64, file: &Path) -> Result<(), Failure> {
+    let pictured = Pictured::new(model, run)?;
+    let wanted = Wanted {
+        row: nearest(&pictured.track.times, at),
+        pale: Vec::new(),
+        names: Names::Bodies,
+        highlighted: BTreeSet::new(),
+        paths: false,
+        forces: true,
+        view: None,
+    };
+    write(&pictured, &wanted, WIDTH, run, file)
+}
+
 /// Draws a configuration in which some elements stand out.
 ///
 /// # Errors
@@ -141,13 +160,13 @@ fn write(
     run: &Run,
     file: &Path,
 ) -> Result<(), Failure> {
-    if !has_ending(file, "svg") {
-        let what = format!("{}: drawings are .svg", file.display());
+    if PictureFormat::of(file).is_none() {
+        let what = format!("{}: drawings are .svg, .png and .pdf", file.display());
         return Err(Failure::usage(what));
     }
     let width = f64::from(width.clamp(200, 8000));
     let text = drawing_svg::svg(&drawing(pictured, wanted), width, &run.units.length);
-    results::write_text(file, &text)?;
+    picture::write(&text, file)?;
     remark(file.display());
     Ok(())
 }

@@ -57,8 +57,9 @@ pub struct Args {
     /// Give a value to a function of the model, such as 'VARVAL(3)=2.5' (repeatable)
     #[arg(long, value_name = "CALL=VALUE")]
     set: Vec<String>,
-    /// Plot value and derivatives as SVG, in place of the table; with --json, both
-    #[arg(long, value_name = "FILE.svg")]
+    /// Plot value and derivatives to a file (.svg, .png or .pdf), in place of the table; with
+    /// --json, both
+    #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
@@ -194,7 +195,7 @@ fn evaluate(args: &Args, text: &str) -> Outcome {
             }
             .into(),
         );
-        let written = plot::write_svg(&picture, file)?;
+        let written = plot::write_one(&picture, file)?;
         if !args.json {
             return Ok(written);
         }

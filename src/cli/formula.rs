@@ -106,6 +106,12 @@ impl Formula {
         Ok(sample)
     }
 
+    /// Returns whether all inputs but the time have a value.
+    pub fn is_given(&self, data: &Data) -> bool {
+        let mut asked = self.asked.iter();
+        asked.all(|&input| input == Input::Time || data.value(input, 0.0).is_some())
+    }
+
     /// Evaluates without rates.
     fn value(&mut self, time: Option<f64>, data: &Data) -> f64 {
         let given = |&input: &Input| {

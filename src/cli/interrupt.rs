@@ -4,6 +4,7 @@
 //! Where nothing polls (while a large model is put together), a run that has no results yet ends by
 //! itself a moment later.
 
+use crate::analysis::watch::Watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -28,6 +29,21 @@ pub fn requested() -> bool {
         SEEN.store(true, Ordering::Relaxed);
     }
     stop
+}
+
+/// Hears Ctrl-C for an analysis.
+pub struct Listener;
+
+impl Watch for Listener {
+    fn interrupted(&mut self) -> bool {
+        requested()
+    }
+}
+
+/// Forgets that the user asked to stop: what was going on has ended, and the program goes on.
+pub fn forget() {
+    STOP.store(false, Ordering::Relaxed);
+    SEEN.store(false, Ordering::Relaxed);
 }
 
 /// Notes that there are results from now on, which are kept when the user interrupts.

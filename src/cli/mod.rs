@@ -12,6 +12,7 @@ mod configuration;
 mod convert;
 pub mod data;
 mod draw;
+mod elements;
 mod eval;
 mod example;
 mod explain;
@@ -64,6 +65,7 @@ enum Verb {
     Configuration(configuration::Args),
     Convert(convert::Args),
     Draw(draw::Args),
+    Elements(elements::Args),
     Eval(eval::Args),
     Explain(explain::Args),
     Fmt(fmt::Args),
@@ -221,6 +223,7 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Configuration(args) => configuration::run(args),
         Verb::Convert(args) => convert::run(args),
         Verb::Draw(args) => draw::run(args),
+        Verb::Elements(args) => elements::run(args),
         Verb::Eval(args) => eval::run(args),
         Verb::Explain(args) => explain::run(args),
         Verb::Fmt(args) => fmt::run(args),

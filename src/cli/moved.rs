@@ -4,7 +4,6 @@ use super::run::{self, KindName, Single};
 use super::{Failure, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
-use crate::analysis::watch::Watch;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Model};
 use crate::results::{self, Run, Status};
@@ -42,15 +41,6 @@ pub struct Moved {
     pub model: Model,
     /// its run
     pub run: Run,
-}
-
-/// Listens for Ctrl-C.
-struct Listener;
-
-impl Watch for Listener {
-    fn interrupted(&mut self) -> bool {
-        interrupt::requested()
-    }
 }
 
 /// Output steps of a dataset when nobody says.
@@ -97,8 +87,13 @@ impl Source {
             .collect();
         session.run.record.model = self.file.display().to_string();
         let dataset = job.reading.dataset;
-        let status = obey(&mut session, &job.steps, |_, _| (), &mut Listener)
-            .map_err(|errors| Failure::in_model(&dataset, errors))?;
+        let status = obey(
+            &mut session,
+            &job.steps,
+            |_, _| (),
+            &mut interrupt::Listener,
+        )
+        .map_err(|errors| Failure::in_model(&dataset, errors))?;
         if status != Status::Completed {
             remark(&session.run.record.stop_reason);
             complain_in_files(&session.model.doubts());
@@ -142,7 +137,12 @@ pub fn assembled(model: Model, name: &str) -> Result<Moved, Vec<Diagnostic>> {
         ..Options::default()
     };
     let mut session = Session::new(model, name, options);
-    session.simulate(Analysis::InitialConditions, 0.0, 1, &mut Listener)?;
+    session.simulate(
+        Analysis::InitialConditions,
+        0.0,
+        1,
+        &mut interrupt::Listener,
+    )?;
     Ok(Moved {
         model: session.model,
         run: session.run,

@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::report::channels::{Channels, Shown, Source, channels};
 use crate::report::terminal::{Style, terminal};
 use crate::report::transform::{Statistics, statistics};
-use crate::report::{Curve, Plot, svg};
+use crate::report::{Curve, Plot, picture, svg};
 use crate::results::{self, Run};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 Examples:
   cognate plot run.csv --list
   cognate plot run.csv --y 'DX(12,21)'
-  cognate plot run.csv --y slider.X --y slider.VX --out out.svg       two units: an axis at either side
+  cognate plot run.csv --y slider.X --y slider.VX --out out.png       two units: an axis at either side
   cognate plot a/run.csv --over b/run.res --y slider.X                 two runs
   cognate plot run.csv --x slider.X --y slider.VX --out phase.svg      a phase plot
   cognate plot run.csv --y slider.VX --as spectrum
@@ -49,7 +49,7 @@ pub struct Args {
     /// Title above the picture
     #[arg(long)]
     title: Option<String>,
-    /// Write a file instead of drawing in the terminal: .svg
+    /// Write a file instead of drawing in the terminal: .svg, .png or .pdf
     #[arg(long, short, value_name = "FILE", alias = "svg")]
     out: Option<PathBuf>,
     /// Print ends, extremes and means of the columns instead
@@ -152,7 +152,8 @@ fn sources(args: &Args) -> Result<Vec<Source>, Diagnostic> {
 /// Returns the names of the columns of a table, but that of x.
 fn all_names(run: &Run, x: Option<&str>) -> Vec<String> {
     let x = x.and_then(|x| run.find(x)).unwrap_or(0);
-    let columns = run.table_columns().into_iter().filter(|&c| c != x);
+    let is_shown = |c: &usize| *c != x && run.columns[*c].bar_of.is_none();
+    let columns = run.table_columns().into_iter().filter(is_shown);
     columns
         .filter_map(|c| Some(run.columns.get(c)?.name.clone()))
         .collect()
@@ -230,7 +231,7 @@ fn statistics_as_json(curve: &Curve, found: Option<Statistics>) -> Value {
 /// # Errors
 /// When there is nothing to draw, or the file cannot be written.
 fn write(plots: &[Plot], file: &Path) -> Outcome {
-    results::write_text(file, &svg::panels(plots)?)?;
+    picture::write(&svg::panels(plots)?, file)?;
     remark(format!("plot in {}", file.display()));
     Ok(Exit::Done)
 }
@@ -239,7 +240,7 @@ fn write(plots: &[Plot], file: &Path) -> Outcome {
 ///
 /// # Errors
 /// When there is nothing to draw, or the file cannot be written.
-pub fn write_svg(plot: &Plot, file: &Path) -> Outcome {
+pub fn write_one(plot: &Plot, file: &Path) -> Outcome {
     write(std::slice::from_ref(plot), file)
 }
 

@@ -399,6 +399,17 @@ pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
         return Err(Failure::usage(what));
     }
     let (reading, read_seconds) = timed_read(args.model)?;
+    Ok(Job {
+        reading,
+        base: stem(args.model),
+        steps: vec![alone_step(args)?],
+        remarks: Vec::new(),
+        read_seconds,
+    })
+}
+
+/// Returns the simulation that options describe, as a command.
+pub(super) fn alone_step(args: &Single<'_>) -> Result<Step, Failure> {
     let kind = match args.kind.unwrap_or(KindName::Transient) {
         KindName::Dynamic => SimulationKind::Dynamic,
         KindName::Kinematic => SimulationKind::Kinematic,
@@ -423,17 +434,10 @@ pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
         steps,
         dtout: None,
     };
-    let step = Step {
+    Ok(Step {
         command: Command::Simulate(simulate),
         text: "SIMULATE".into(),
         line: 0,
-    };
-    Ok(Job {
-        reading,
-        base: stem(args.model),
-        steps: vec![step],
-        remarks: Vec::new(),
-        read_seconds,
     })
 }
 

@@ -11,6 +11,7 @@
 mod check;
 mod clock;
 pub mod command;
+mod edit;
 mod idle;
 pub mod lens;
 pub mod manual;

@@ -345,7 +345,7 @@ fn token(pair: &Pair<Rule>) -> Token {
 }
 
 /// The name in a comment `! adams_view_name='…'`.
-fn view_name(comment: &str) -> Option<String> {
+pub(super) fn view_name(comment: &str) -> Option<String> {
     const KEY: &str = "adams_view_name";
     let at = comment
         .as_bytes()

@@ -462,6 +462,16 @@ requests (.csv) do not have them.
     cognate animate m.acf                       solves and shows at once",
     },
     Code {
+        name: "picture_format",
+        summary: "the name of a file tells no format of pictures that is known",
+        explanation: "\
+Pictures are written as .svg, .png and .pdf, which the ending of a file's name tells. PNG and PDF are features of the
+program: one that was built without them says so, and writes .svg.
+
+    cognate plot run.csv --y slider.X --out x.txt      is it a picture? --out x.png
+    cognate convert run.csv run.json                   results in other formats",
+    },
+    Code {
         name: "plot_failed",
         summary: "a plot could not be drawn",
         explanation: "\

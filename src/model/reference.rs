@@ -1,6 +1,7 @@
 //! Who names whom: every number by which one element refers to another, and every FUNCTION, with
 //! its owner.
 
+use super::check::references::named;
 use super::{ById, ElementId, ElementKind, Family, Formula, Model, Part, Place};
 
 /// One element names another.
@@ -59,6 +60,25 @@ impl Model {
                 formula,
             }));
         }
+        all
+    }
+
+    /// Returns the elements that name an element, by a number of theirs or in a function, each once.
+    pub fn named_by(&self, id: ElementId) -> Vec<ElementId> {
+        let by_number = self.references().into_iter();
+        let by_number = by_number.filter(|r| r.target == id).map(|r| r.element);
+        let in_functions = self.formulas().into_iter().filter(|owned| {
+            let Formula::Expression { text, .. } = owned.formula else {
+                return false;
+            };
+            let targets = text.expression().map(|expr| named(&expr));
+            targets.is_ok_and(|all| all.iter().any(|(_, target)| *target == id))
+        });
+        let mut all: Vec<ElementId> = by_number
+            .chain(in_functions.map(|owned| owned.element))
+            .collect();
+        all.sort_unstable();
+        all.dedup();
         all
     }
 

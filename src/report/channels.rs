@@ -119,13 +119,18 @@ fn label_of_x(run: &Run, x: Option<&str>, label: &str, shown: Shown) -> String {
 /// Returns a curve as it is to be shown, with its name and its unit.
 fn changed(curve: Curve, shown: Shown, unit_of_x: &str) -> Curve {
     let Curve {
-        name, unit, points, ..
+        name,
+        unit,
+        points,
+        bars,
+        ..
     } = curve;
     match shown {
         Shown::Values => Curve {
             name,
             unit,
             points,
+            bars,
             ..Curve::default()
         },
         Shown::Derivative => Curve {

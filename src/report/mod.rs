@@ -2,6 +2,7 @@
 
 pub mod channels;
 pub mod mechanism;
+pub mod picture;
 pub mod plot;
 pub mod svg;
 pub mod terminal;

@@ -37,6 +37,7 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
         contents(path).and_then(|bytes| reader(whole_lines(path, &bytes)))
     }
     .map_err(in_file)?;
+    run.find_bars();
     if run.name.is_empty() {
         run.name = path
             .file_stem()

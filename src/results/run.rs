@@ -164,6 +164,9 @@ pub struct Sequence {
     pub rows: Range<usize>,
 }
 
+/// End of the name of a column of bars of error.
+const BAR: char = '±';
+
 impl Run {
     /// Makes a run without rows, whose first column is time.
     pub fn new(name: impl Into<String>, title: impl Into<String>, units: Units) -> Self {
@@ -199,7 +202,7 @@ impl Run {
         for of in 1..n {
             let column = &self.columns[of];
             let bar = Column {
-                name: format!("{}±", column.name),
+                name: format!("{}{BAR}", column.name),
                 unit: column.unit.clone(),
                 values: vec![f64::NAN; column.values.len()],
                 bar_of: Some(of),
@@ -210,6 +213,15 @@ impl Run {
         self.table = (shown.into_iter())
             .flat_map(|of| std::iter::once(of).chain(bar_of(of)))
             .collect();
+    }
+    /// Marks as bars of error the columns of a table that was read which are named so: `slider.X±`
+    /// are those of `slider.X`.
+    pub fn find_bars(&mut self) {
+        for bar in 0..self.columns.len() {
+            let named = self.columns[bar].name.strip_suffix(BAR);
+            let of = named.and_then(|name| self.columns.iter().position(|c| c.name == name));
+            self.columns[bar].bar_of = self.columns[bar].bar_of.or(of);
+        }
     }
     /// Returns the index of the column of bars of a column, if it has one.
     pub fn bars(&self, of: usize) -> Option<usize> {

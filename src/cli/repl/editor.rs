@@ -2,8 +2,9 @@
 //! on.
 
 use super::super::statements;
+use super::commands::COMMANDS;
 use super::names::{Names, words};
-use super::session::{COMMANDS, Session};
+use super::session::Session;
 use crate::dataset::manual;
 use crate::expr::ast::{Callee, Dialect};
 use crate::expr::{Profile, Symbol, names, parse, symbol};
@@ -145,20 +146,71 @@ impl Hinter for Helper {
     type Hint = Signature;
 
     fn hint(&self, line: &str, at: usize, _: &Context<'_>) -> Option<Signature> {
-        let before = line.get(..at)?.trim_end();
-        let name = before.strip_suffix('(')?;
-        let name = &name[word_start(name, name.len())..];
-        let signature = match symbol(name, self.dialect, Profile::Ideas)? {
+        let before = line.get(..at).filter(|_| at == line.len())?;
+        let call = open_call(before)?;
+        let signature = match symbol(call.name, self.dialect, Profile::Ideas)? {
             Symbol::Constant(_) => return None,
             Symbol::If => "IF(selector: negative, zero, positive)".into(),
             Symbol::Callee(callee) => Callee::signature(callee),
         };
-        (at == line.len()).then(|| {
-            signature
-                .split_once('(')
-                .map(|(_, rest)| Signature(rest.to_owned()))
-        })?
+        rest_of(&signature, call.n_arguments, call.is_begun).map(Signature)
     }
+}
+
+/// The call that the cursor stands in.
+struct OpenCall<'l> {
+    name: &'l str,
+    /// separators so far: as many arguments are complete
+    n_arguments: usize,
+    /// something of the present argument has been typed
+    is_begun: bool,
+}
+
+/// Returns the innermost call whose parenthesis is open at the end of a text.
+fn open_call(before: &str) -> Option<OpenCall<'_>> {
+    let (mut depth, mut n_arguments) = (0_usize, 0);
+    let is_begun = !before.trim_end().ends_with(['(', ',', ':']);
+    for (at, c) in before.char_indices().rev() {
+        match c {
+            ')' => depth += 1,
+            '(' if depth > 0 => depth -= 1,
+            '(' => {
+                let head = before[..at].trim_end();
+                let name = &head[word_start(head, head.len())..];
+                let call = OpenCall {
+                    name,
+                    n_arguments,
+                    is_begun,
+                };
+                return (!name.is_empty()).then_some(call);
+            }
+            ',' | ':' if depth == 0 => n_arguments += 1,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Returns what is left of a signature behind some complete arguments, and behind the present one
+/// where it has been begun; `None` where there is nothing left to type.
+fn rest_of(signature: &str, n_arguments: usize, is_begun: bool) -> Option<String> {
+    let (_, arguments) = signature.split_once('(')?;
+    let separators = arguments.match_indices([',', ':']).map(|(at, _)| at);
+    let starts: Vec<usize> = std::iter::once(0)
+        .chain(separators.map(|at| at + 1))
+        .collect();
+    let goes_on = arguments.contains('…') || arguments.contains("...");
+    let from = match starts.get(n_arguments) {
+        Some(&from) => from,
+        // the last may be repeated
+        None if goes_on => starts[starts.len() - 1],
+        None => return None,
+    };
+    if !is_begun {
+        return Some(arguments[from..].trim_start().to_owned());
+    }
+    let next = arguments[from..].find([',', ':', ')', '[']);
+    next.map(|at| arguments[from + at..].to_owned())
 }
 
 /// Colours of the terminal's own palette: functions, constants and names, numbers, commands,
@@ -302,6 +354,22 @@ mod tests {
         let hint = |line: &str| helper().hint(line, line.len(), &context).map(|h| h.0);
         assert_eq!(hint("1+step("), Some("x, x0, h0, x1, h1)".into()));
         assert_eq!(hint("(").or(hint("TIME(")).or(hint("STEP")), None);
+        // and kept while they are typed
+        assert_eq!(hint("step(TIME"), Some(", x0, h0, x1, h1)".into()));
+        assert_eq!(hint("step(TIME, "), Some("x0, h0, x1, h1)".into()));
+        assert_eq!(
+            hint("2*STEP(SIN(3*TIME), 0, (1+2)"),
+            Some(", x1, h1)".into())
+        );
+        assert_eq!(hint("STEP(TIME, 0, 0, 1, 2"), Some(")".into()));
+        assert_eq!(
+            hint("STEP(TIME, 0, 0, 1, 2)").or(hint("STEP(1,2,3,4,5,")),
+            None
+        );
+        assert_eq!(
+            hint("IF(TIME-1: "),
+            Some("negative, zero, positive)".into())
+        );
     }
 
     #[test]

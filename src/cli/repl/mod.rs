@@ -1,16 +1,18 @@
 //! `cognate repl`: expressions and their values, one after another.
 //!
-//! `session.rs` executes a line, whatever its origin; `names.rs` holds the names that a session
-//! defines; `editor.rs` helps while typing. At a terminal lines come from the editor; piped in,
+//! `session.rs` executes a line, whatever its origin; `commands.rs` is the TABLE of commands;
+//! `names.rs` holds the names that a session defines, `model.rs` its model; `editor.rs` helps while typing. At a terminal lines come from the editor; piped in,
 //! they are read as they are, only results are printed, and the exit code tells whether all went
 //! well.
 
+mod commands;
 mod editor;
+mod model;
 mod names;
 mod session;
 
 use super::render::{self, Sources};
-use super::{Exit, Outcome, complain, say};
+use super::{Exit, Outcome, complain, interrupt, say};
 use editor::Helper;
 use rustyline::error::ReadlineError;
 use rustyline::history::DefaultHistory;
@@ -84,6 +86,10 @@ fn answer(reply: Reply, exit: &mut Exit) -> bool {
             complain(&[*diagnostic], &Sources::of(text));
             *exit = Exit::Input;
         }
+        Reply::Failed(failure) => {
+            complain(&failure.diagnostics, &failure.sources);
+            *exit = failure.exit;
+        }
         Reply::Quit => return true,
     }
     false
@@ -97,6 +103,8 @@ fn at_terminal(session: &mut Session) -> Outcome {
             format!("the terminal cannot be used: {e}"),
         )
     };
+    // Ctrl-C ends what is being solved, not the session
+    interrupt::install();
     let config = Config::builder()
         .completion_type(CompletionType::List)
         .build();
@@ -117,6 +125,7 @@ fn at_terminal(session: &mut Session) -> Outcome {
             Ok(line) => {
                 // a history that cannot grow is no reason to stop
                 let _ = editor.add_history_entry(line.as_str());
+                interrupt::forget();
                 if answer(session.execute(&line), &mut Exit::Done) {
                     break;
                 }

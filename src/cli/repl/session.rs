@@ -1,17 +1,20 @@
 //! The execution of a line at the prompt: an expression is evaluated, a command (`:name`) changes
 //! or shows something.
 
+use super::commands::{COMMANDS, unknown_command, usage};
+use super::model::Loaded;
 use super::names::{Expansion, Names};
-use crate::cli::anatomy;
 use crate::cli::eval::DialectName;
 use crate::cli::formula::{Formula, Setting, derivative_names, give, times};
+use crate::cli::{Failure, anatomy};
 use crate::cli::{card, explain, plot, statements};
-use crate::diagnostic::{Cause, Diagnostic, near_names};
+use crate::diagnostic::{Cause, Diagnostic};
 use crate::expr::ast::Dialect;
 use crate::expr::{Profile, parse, symbol};
+use crate::report::picture::{self, PictureFormat};
 use crate::report::terminal::terminal;
 use crate::report::{Curve, Plot, svg::svg};
-use crate::results::{digits, write_text};
+use crate::results::digits;
 use std::path::Path;
 
 /// The answer to a line.
@@ -22,55 +25,11 @@ pub enum Reply {
     Doubtful(Vec<Diagnostic>, String, String),
     /// a mistake, and the text that its place refers to
     Mistake(Box<Diagnostic>, String),
+    /// a model that cannot be read or solved
+    Failed(Box<Failure>),
     /// the end of the session
     Quit,
 }
-
-/// The TABLE of commands: name, arguments, effect.
-pub const COMMANDS: [(&str, &str, &str); 14] = [
-    (
-        ":help",
-        "[NAME]",
-        "this list, or what a function, statement, code or command is",
-    ),
-    (":functions", "", "all names of the language"),
-    (
-        ":statements",
-        "[NAME]",
-        "the statements of datasets and the commands, or one of them",
-    ),
-    (
-        ":let",
-        "[NAME = EXPRESSION | VARVAL(3) = VALUE]",
-        "name a part of later expressions, or give a function of the model its value",
-    ),
-    (":time", "[T]", "set TIME"),
-    (
-        ":derivative",
-        "[0|1|2]",
-        "show derivatives over time up to this order",
-    ),
-    (
-        ":marker",
-        "[ID X Y Z | ID {\"r\": [x,y,z], \"v\": …}]",
-        "place a marker",
-    ),
-    (":markers", "FILE.json", "read states of markers"),
-    (":splines", "FILE.json", "read data of splines"),
-    (":curves", "FILE.json", "read points of curves"),
-    (
-        ":plot",
-        "EXPRESSION FIRST LAST [FILE.svg]",
-        "plot an expression over TIME",
-    ),
-    (
-        ":explain",
-        "EXPRESSION [FIRST LAST]",
-        "its tree with values, inputs, switches, class, breakpoints and program",
-    ),
-    (":dialect", "[function|expression]", "change the language"),
-    (":quit", "", "end the session"),
-];
 
 /// Number of samples of a plot.
 const SAMPLES: f64 = 400.0;
@@ -85,6 +44,8 @@ pub struct Session {
     order: usize,
     /// names for parts of expressions: as defined, with earlier names replaced
     pub names: Names,
+    /// the model that was loaded
+    model: Option<Loaded>,
 }
 
 impl Session {
@@ -100,6 +61,7 @@ impl Session {
             time: 0.0,
             order: 0,
             names: Names::default(),
+            model: None,
         }
     }
 
@@ -163,6 +125,11 @@ impl Session {
                 .map(|()| format!("{} curves\n", self.setting.data.bindings.curves.len())),
             ":plot" => return self.plot(rest),
             ":explain" => return self.explain(rest),
+            ":load" | ":info" | ":list" | ":show" | ":rename" | ":delete" | ":save" | ":verify"
+            | ":run" | ":draw" => {
+                let done = self.about_model(command, rest);
+                return done.map_or_else(|f| Reply::Failed(Box::new(f)), Reply::Text);
+            }
             ":dialect" => self.set_dialect(rest),
             ":quit" | ":q" | ":exit" => return Reply::Quit,
             unknown => Err(unknown_command(unknown)),
@@ -174,8 +141,11 @@ impl Session {
     }
 
     /// Evaluates an expression at the time of the session.
-    fn evaluate(&self, text: &str) -> Reply {
+    fn evaluate(&mut self, text: &str) -> Reply {
         let expansion = self.names.expand(text);
+        if self.is_of_model(&expansion.text) {
+            return self.value_in_model(&expansion);
+        }
         let done = Formula::new(&expansion.text, &self.setting).and_then(|mut f| {
             let sample = f.sample(Some(self.time), self.order, &self.setting.data)?;
             Ok((f.expr.warnings(), sample))
@@ -198,6 +168,77 @@ impl Session {
         } else {
             let doubts = doubts.into_iter().map(|d| expansion.as_typed(d));
             Reply::Doubtful(doubts.collect(), expansion.typed, text)
+        }
+    }
+
+    /// Returns whether the model has to be asked for the value of an expression: it names what
+    /// nobody has given here.
+    fn is_of_model(&self, text: &str) -> bool {
+        if self.model.is_none() || self.setting.dialect != Dialect::Function {
+            return false;
+        }
+        match Formula::new(text, &self.setting) {
+            Ok(formula) => !formula.is_given(&self.setting.data),
+            Err(d) => d.is(Cause::UnknownElement),
+        }
+    }
+
+    /// Evaluates an expression in the model, at the time of the session.
+    fn value_in_model(&mut self, expansion: &Expansion) -> Reply {
+        let Some(model) = self.model.as_mut().filter(|_| self.order == 0) else {
+            let what = "rates of functions of the model are not computed at the prompt";
+            let d = Diagnostic::error("unavailable", what);
+            let advice = "VX, WZ, ACCX and their like are rates; `:derivative 0` shows values";
+            return mistake(d.help(advice), expansion);
+        };
+        match model.value(&expansion.text, self.time) {
+            Ok(value) => Reply::Text(digits(value) + "\n"),
+            Err(failure) => failed(Box::new(failure), expansion),
+        }
+    }
+
+    /// Executes a command about the model.
+    ///
+    /// # Errors
+    /// When none is loaded, it has mistakes, or the command cannot be done.
+    fn about_model(&mut self, command: &str, rest: &str) -> Result<String, Failure> {
+        let wrong = || Failure::from(usage(command));
+        if command == ":load" {
+            let file = Some(rest).filter(|file| !file.is_empty());
+            let model = Loaded::read(Path::new(file.ok_or_else(wrong)?))?;
+            let said = model.info();
+            (self.model, self.time) = (Some(model), 0.0);
+            return Ok(said);
+        }
+        let Some(model) = &mut self.model else {
+            return Err(Failure::usage("there is no model: `:load FILE` reads one"));
+        };
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        let element = |word: &str| word.parse().map_err(|e: String| Failure::usage(e));
+        let silent = |()| String::new();
+        match (command, words.as_slice()) {
+            (":info", []) => Ok(model.info()),
+            (":list", []) => Ok(model.list(None)),
+            (":list", [kind]) => {
+                let kind = kind.parse().map_err(|e: String| Failure::usage(e))?;
+                Ok(model.list(Some(kind)))
+            }
+            (":show", [id]) => Ok(model.show(element(id)?)?),
+            (":rename", [id, ..]) if words.len() > 1 => {
+                let name = rest[id.len()..].trim().trim_matches('\'');
+                Ok(model.rename(element(id)?, name).map(silent)?)
+            }
+            (":delete", [id]) => Ok(model.delete(element(id)?).map(silent)?),
+            (":save", [_, ..]) => Ok(model.save(Path::new(rest)).map(silent)?),
+            (":verify", []) => model.verify(),
+            (":draw", [_, ..]) => model.draw(self.time, Path::new(rest)).map(silent),
+            (":run", []) => model.solve(None, None),
+            (":run", [end]) => model.solve(Some(end.parse().map_err(|_| wrong())?), None),
+            (":run", [end, steps]) => {
+                let end = end.parse().map_err(|_| wrong())?;
+                model.solve(Some(end), Some(steps.parse().map_err(|_| wrong())?))
+            }
+            _ => Err(wrong()),
         }
     }
 
@@ -364,25 +405,43 @@ impl Session {
         Ok(String::new())
     }
 
-    /// `EXPRESSION FIRST LAST [FILE.svg]`
-    fn plot(&self, text: &str) -> Reply {
+    /// `EXPRESSION [FIRST LAST] [FILE]`
+    fn plot(&mut self, text: &str) -> Reply {
         let (text, file) = match text.rsplit_once(char::is_whitespace) {
-            Some((rest, file)) if file.to_lowercase().ends_with(".svg") => {
+            Some((rest, file)) if PictureFormat::of(Path::new(file)).is_some() => {
                 (rest.trim_end(), Some(file))
             }
             _ => (text, None),
         };
-        let Some((expression, first, last)) = range_at_the_end(text) else {
-            return Reply::Mistake(Box::new(usage(":plot")), text.to_owned());
-        };
+        let ranged = range_at_the_end(text);
+        let expression = ranged.map_or(text, |(expression, ..)| expression);
+        let span = ranged.map(|(_, first, last)| (first, last));
         let expansion = self.names.expand(expression);
-        let picture = self.picture(&expansion.text, expression, first, last);
-        let shown = picture.and_then(|picture| match file {
-            Some(file) => {
-                write_text(Path::new(file), &svg(&picture)?).map(|()| format!("plot in {file}\n"))
+        let of_model = self.is_of_model(&expansion.text);
+        let drawn = match (span, &mut self.model) {
+            _ if expression.is_empty() => Err(Box::new(usage(":plot").into())),
+            (None, None) => Err(Box::new(usage(":plot").into())),
+            (span, Some(model)) if of_model || span.is_none() => {
+                model.plot(&expansion.text, span).map_err(Box::new)
             }
+            (None, Some(_)) => Err(Box::new(usage(":plot").into())),
+            (Some((first, last)), _) => {
+                match self.picture(&expansion.text, expression, first, last) {
+                    Ok(picture) => Ok(picture),
+                    Err(d) => return mistake(d, &expansion),
+                }
+            }
+        };
+        let picture = match drawn {
+            Ok(picture) => picture,
+            Err(failure) => return failed(failure, &expansion),
+        };
+        let shown = match file {
+            Some(file) => svg(&picture)
+                .and_then(|text| picture::write(&text, Path::new(file)))
+                .map(|()| format!("plot in {file}\n")),
             None => terminal(&picture, plot::terminal_style()),
-        });
+        };
         shown.map_or_else(|d| mistake(d, &expansion), Reply::Text)
     }
 
@@ -458,6 +517,15 @@ fn mistake(said: Diagnostic, expansion: &Expansion) -> Reply {
     Reply::Mistake(Box::new(expansion.as_typed(said)), expansion.typed.clone())
 }
 
+/// What a model could not do, at its place in the expression that was typed where it is about that.
+fn failed(failure: Box<Failure>, expansion: &Expansion) -> Reply {
+    let about_expression = |d: &Diagnostic| d.file.is_none() && d.span.is_some();
+    match failure.diagnostics.as_slice() {
+        [only] if about_expression(only) => mistake(only.clone(), expansion),
+        _ => Reply::Failed(failure),
+    }
+}
+
 /// A mistake about a name that the language does not know, with the command that defines it, where
 /// the name could be a number: `k*2`, `k = 3`.
 fn with_let(said: Diagnostic, expansion: &Expansion) -> Diagnostic {
@@ -497,25 +565,6 @@ fn bare_command(line: &str) -> Option<(&'static str, &str)> {
     (one_name && (command == "help" || rest.trim().is_empty())).then_some((command, rest.trim()))
 }
 
-fn usage(command: &str) -> Diagnostic {
-    let row = COMMANDS.iter().find(|c| c.0 == command);
-    let form = row.map_or(String::new(), |(name, arguments, _)| {
-        format!("{name} {arguments}")
-    });
-    Diagnostic::error("usage", format!("{command} is used like this: {form}"))
-}
-
-/// Returns the mistake of a command that does not exist, with near names.
-fn unknown_command(name: &str) -> Diagnostic {
-    let near = near_names(name, COMMANDS.iter().map(|c| c.0));
-    let d = Diagnostic::error("usage", format!("there is no command {name}"));
-    if near.is_empty() {
-        d.help(":help lists them")
-    } else {
-        d.help(format!("did you mean {}?", near.join(" or ")))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -526,6 +575,7 @@ mod tests {
             Reply::Text(text) => text,
             Reply::Doubtful(doubts, _, text) => format!("{} {text}", doubts[0].code),
             Reply::Mistake(d, _) => d.code.to_owned(),
+            Reply::Failed(failure) => failure.diagnostics[0].code.to_owned(),
             Reply::Quit => "bye".into(),
         };
         lines

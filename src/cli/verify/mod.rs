@@ -1,6 +1,6 @@
 //! `cognate verify`: the freedoms of a model, its redundant constraints, and its free motions.
 
-mod text;
+pub mod text;
 
 use super::run::{has_commands, read, script};
 use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, remark, say};
@@ -27,8 +27,8 @@ pub struct Args {
     /// Print the findings as JSON on standard output
     #[arg(long)]
     json: bool,
-    /// Draw the mechanism; what fixes the same twice stands out
-    #[arg(long, value_name = "FILE.svg")]
+    /// Draw the mechanism (.svg, .png, .pdf); what fixes the same twice stands out
+    #[arg(long, value_name = "FILE")]
     draw: Option<PathBuf>,
 }
 
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Outcome {
 /// others.
 ///
 /// # Errors
-/// When the file cannot be written, or is no `.svg`.
+/// When the file cannot be written, or is no picture.
 fn draw_redundant(
     model: Model,
     dataset: &Dataset,

@@ -15,6 +15,15 @@ file that is no command is taken as the name of the dataset; FILE/MODEL=name is 
     FILE/MODEL=slider_crank     means slider_crank.adm beside the command file",
     },
     Code {
+        name: "element_in_use",
+        summary: "an element that is to be deleted is named by others",
+        explanation: "\
+A model without it would name what is not there. Delete the others first or with it, or let them name another.
+
+    cognate elements belt.adm --delete JOINT/1 -o out.adm                     COUPLER/1 names it
+    cognate elements belt.adm --delete JOINT/1 --delete COUPLER/1 -o out.adm  both go",
+    },
+    Code {
         name: "no_mass",
         summary: "a part can move in a direction in which it has neither mass nor inertia",
         explanation: "\
