@@ -45,6 +45,7 @@ const pixels = (row) => tab.evaluate((row) => {
 found.colours = (await pixels(0)).colours;
 found.changed = (await pixels(Math.floor((rows - 1) / 3))).changed;
 found.rows = rows;
+found.overlaps = await tab.evaluate(() => cognate.data.overlaps.map(({ elements, depth, row, place }) => ({ elements, depth, row, place: place.map((c) => c[row]), before: place.map((c) => Number.isFinite(c[0])) })));
 for (const row of (option('--rows') ?? '').split(',').filter(Boolean).map(Number)) {
   await tab.evaluate((row) => cognate.toRow(row), row);
   for (const column of (option('--columns') ?? '').split(',').filter(Boolean)) {

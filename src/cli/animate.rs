@@ -1,6 +1,6 @@
 //! `cognate animate`: a run as a page that moves, or as an animated `.glb` file.
 
-use super::moved::{Moved, Source, has_ending};
+use super::moved::{Moved, Source, has_ending, pictured};
 use super::{Exit, Failure, Outcome, interrupt, remark, run};
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
@@ -17,7 +17,8 @@ Examples:
   cognate animate examples/slider_crank.acf --open
   cognate animate pendulum.adm --end 2 --steps 200 -o pendulum.html -o pendulum.glb
   cognate animate run.res --model pendulum.adm
-  cognate animate pendulum.acf --over earlier.res")]
+  cognate animate pendulum.acf --over earlier.res
+  cognate animate press.acf --interference --open")]
 pub struct Args {
     #[command(flatten)]
     source: Source,
@@ -28,6 +29,10 @@ pub struct Args {
     /// A further run of the same mechanism, shown pale over the first (.res, .parquet, .json, .gra)
     #[arg(long, value_name = "RUN")]
     over: Option<PathBuf>,
+    /// Mark on the page where solids overlap
+    #[cfg(feature = "geometry")]
+    #[arg(long)]
+    interference: bool,
     /// Open the page in the browser
     #[arg(long)]
     open: bool,
@@ -46,13 +51,26 @@ pub fn run(args: &Args) -> Outcome {
         return Err(Failure::usage(what));
     }
     let is_solved = run::has_commands(&args.source.file) || has_ending(&args.source.file, "adm");
-    let Moved { model, run } = args.source.get()?;
+    let Moved {
+        model,
+        run,
+        folders,
+    } = args.source.get()?;
     let over = args.over.as_deref().map(results::read).transpose()?;
     let mut out = args.out.clone();
     if out.is_empty() {
         out.push(PathBuf::from(format!("{}.html", run.name)));
     }
-    let pictured = Pictured::new(&model, &run)?;
+    let mut pictured = pictured(&model, &run, &folders)?;
+    #[cfg(feature = "geometry")]
+    if args.interference {
+        pictured.overlaps = super::interference::overlaps(&model, &run, &folders)?;
+        if pictured.overlaps.is_empty() {
+            remark("no solids overlap");
+        }
+    }
+    #[cfg(not(feature = "geometry"))]
+    let _ = &mut pictured;
     for file in &out {
         if has_ending(file, "glb") {
             results::write_bytes(file, &glb::glb(&pictured))?;
@@ -96,8 +114,8 @@ fn page_of(
 ///
 /// # Errors
 /// When the run does not say where its parts are.
-pub fn page_of_run(model: &Model, run: &Run) -> Result<String, Diagnostic> {
-    page_of(model, &Pictured::new(model, run)?, run, None)
+pub fn page_of_run(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<String, Diagnostic> {
+    page_of(model, &pictured(model, run, folders)?, run, None)
 }
 
 /// Opens a page in the browser, without waiting for it; says where the page is when there is none.

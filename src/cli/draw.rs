@@ -1,8 +1,9 @@
 //! `cognate draw`: one configuration of a model as a picture.
 
-use super::moved::{Moved, Source};
+use super::moved::{Moved, Source, pictured};
 use super::{Exit, Failure, Outcome, interrupt, remark};
-use crate::model::{ElementId, Model};
+use crate::analysis::session::Session;
+use crate::model::ElementId;
 use crate::report::mechanism::drawing::{Names, Wanted, drawing};
 use crate::report::mechanism::{Pictured, View, drawing_svg};
 use crate::report::picture::{self, PictureFormat};
@@ -78,7 +79,11 @@ enum From {
 /// written.
 pub fn run(args: &Args) -> Outcome {
     interrupt::install();
-    let Moved { model, run } = args.source.get()?;
+    let Moved {
+        model,
+        run,
+        folders,
+    } = args.source.get()?;
     if let Some(unknown) = args
         .highlight
         .iter()
@@ -88,7 +93,7 @@ pub fn run(args: &Args) -> Outcome {
             "--highlight {unknown}: there is no such element"
         )));
     }
-    let pictured = Pictured::new(&model, &run)?;
+    let pictured = pictured(&model, &run, &folders)?;
     let out = args.out.clone();
     let out = out.unwrap_or_else(|| PathBuf::from(format!("{}.svg", run.name)));
     let times = &pictured.track.times;
@@ -115,8 +120,9 @@ pub fn run(args: &Args) -> Outcome {
 ///
 /// # Errors
 /// When the run has no positions, or the file cannot be written.
-pub fn draw_at(model: &Model, run: &Run, at: f64, file: &Path) -> Result<(), Failure> {
-    let pictured = Pictured::new(model, run)?;
+pub fn draw_at(session: &Session, at: f64, file: &Path) -> Result<(), Failure> {
+    let run = &session.run;
+    let pictured = pictured(&session.model, run, &session.folders)?;
     let wanted = Wanted {
         row: nearest(&pictured.track.times, at),
         pale: Vec::new(),
@@ -138,8 +144,12 @@ pub fn draw_standing_out(
     highlighted: BTreeSet<ElementId>,
     file: &Path,
 ) -> Result<(), Failure> {
-    let Moved { model, run } = moved;
-    let pictured = Pictured::new(model, run)?;
+    let Moved {
+        model,
+        run,
+        folders,
+    } = moved;
+    let pictured = pictured(model, run, folders)?;
     let wanted = Wanted {
         row: pictured.track.times.len() - 1,
         pale: Vec::new(),

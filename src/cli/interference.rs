@@ -9,6 +9,8 @@ use super::{Exit, Failure, Outcome, remark, say, width};
 use crate::analysis::interference::{Interference, Pair, interference};
 use crate::analysis::motion::Recorded;
 use crate::model::{ElementId, Model};
+use crate::physics::contact::query::separation::Gap;
+use crate::report::mechanism::Overlap;
 use crate::results::{self, Component, Entity, Run, digits_of_six};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -90,6 +92,39 @@ pub fn run(args: &Args) -> Outcome {
         true => Exit::CheckFailed,
         false => Exit::Done,
     })
+}
+
+/// Returns where solids of different bodies overlap at the rows of a run that tables show.
+///
+/// # Errors
+/// When the run lacks the motion of parts.
+pub fn overlaps(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Vec<Overlap>, Failure> {
+    let recorded = Recorded::new(run, model);
+    let found = interference(&recorded, model, &[], folders)?;
+    let shown: Vec<usize> = run.table_places(run.held()).collect();
+    let mut all = Vec::new();
+    for pair in found.pairs {
+        let gaps: Vec<_> = shown
+            .iter()
+            .map(|&row| pair.gaps.get(row).copied().flatten())
+            .collect();
+        let overlapping = |gap: &Option<Gap>| gap.filter(|gap| gap.distance < 0.0);
+        let deepest = gaps.iter().enumerate();
+        let deepest = deepest.filter_map(|(row, gap)| Some((row, overlapping(gap)?.distance)));
+        let Some((deepest, distance)) = deepest.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+            continue;
+        };
+        all.push(Overlap {
+            elements: pair.graphics,
+            places: gaps
+                .iter()
+                .map(|gap| overlapping(gap).map(|gap| gap.place.0))
+                .collect(),
+            depth: -distance,
+            deepest,
+        });
+    }
+    Ok(all)
 }
 
 /// Returns the folders in which files of shells are looked for: those of the model and of the
@@ -178,8 +213,12 @@ fn over_time(run: &Run, model: &Model, found: &Interference) -> Run {
         for (k, component) in ["DISTANCE", "X", "Y", "Z"].into_iter().enumerate() {
             let column = out.add_column(format!("{set}.{component}"), &run.units.length);
             let value = |gap: &Option<_>| match gap {
-                Some(crate::physics::contact::query::separation::Gap { distance, place }) => {
-                    if k == 0 { *distance } else { place.0[k - 1] }
+                Some(Gap { distance, place }) => {
+                    if k == 0 {
+                        *distance
+                    } else {
+                        place.0[k - 1]
+                    }
                 }
                 None => f64::NAN,
             };

@@ -148,7 +148,12 @@ pub fn run(args: &Args) -> Outcome {
         }
         None => {
             let n_rows = group.table_rows().count();
-            say(&summary::table(&group, n_rows, width::columns()));
+            say(&summary::table(
+                &group,
+                n_rows,
+                width::columns(),
+                "--out FILE writes all",
+            ));
         }
     }
     Ok(Exit::Done)

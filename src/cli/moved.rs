@@ -4,8 +4,10 @@ use super::run::{self, KindName, Single};
 use super::{Failure, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
+use crate::dataset::surface::Surfaces;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Model};
+use crate::report::mechanism::Pictured;
 use crate::results::{self, Run, Status};
 use std::path::{Path, PathBuf};
 
@@ -41,6 +43,20 @@ pub struct Moved {
     pub model: Model,
     /// its run
     pub run: Run,
+    /// folders in which the files of its shells are looked for
+    pub folders: Vec<PathBuf>,
+}
+
+/// Makes the picture of a model and one of its runs; says which shells in files are not drawn.
+///
+/// # Errors
+/// When the run does not say where the bodies of the model are.
+pub fn pictured(model: &Model, run: &Run, folders: &[PathBuf]) -> Result<Pictured, Diagnostic> {
+    let surfaces = Surfaces::read(model, folders);
+    for (graphics, why) in &surfaces.unread {
+        remark(format!("{graphics} is not drawn: {why}"));
+    }
+    Pictured::new(model, run, &surfaces)
 }
 
 /// Output steps of a dataset when nobody says.
@@ -57,7 +73,13 @@ impl Source {
             let run = results::read(&self.file)?;
             let dataset = self.dataset(&run)?;
             let model = run::read(&dataset)?.model;
-            return Ok(Moved { model, run });
+            let folders = [dataset.parent(), self.file.parent()];
+            let folders = folders.into_iter().flatten().map(Path::to_path_buf);
+            return Ok(Moved {
+                model,
+                run,
+                folders: folders.collect(),
+            });
         }
         let job = if is_dataset {
             let initial = KindName::InitialConditions;
@@ -101,6 +123,7 @@ impl Source {
         Ok(Moved {
             model: session.model,
             run: session.run,
+            folders: session.folders,
         })
     }
 
@@ -131,7 +154,11 @@ impl Source {
 ///
 /// # Errors
 /// Mistakes in the model.
-pub fn assembled(model: Model, name: &str) -> Result<Moved, Vec<Diagnostic>> {
+pub fn assembled(
+    model: Model,
+    name: &str,
+    folders: Vec<PathBuf>,
+) -> Result<Moved, Vec<Diagnostic>> {
     let options = Options {
         full: true,
         ..Options::default()
@@ -146,6 +173,7 @@ pub fn assembled(model: Model, name: &str) -> Result<Moved, Vec<Diagnostic>> {
     Ok(Moved {
         model: session.model,
         run: session.run,
+        folders,
     })
 }
 

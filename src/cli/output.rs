@@ -226,7 +226,13 @@ impl Tables {
     pub fn overview(&self, run: &Run) -> String {
         let n_rows = run.table_rows().count();
         let width = super::width::columns();
-        summary::table(self.growing().overview.of(run), n_rows, width)
+        let growing = &mut self.growing();
+        summary::table(
+            growing.overview.of(run),
+            n_rows,
+            width,
+            "the files have all",
+        )
     }
 }
 
@@ -293,7 +299,7 @@ impl Growing {
         let mut texts = linear::files(session);
         texts.extend(session.saved.iter().map(|(n, t)| (n.clone(), t.clone())));
         if self.is_animated {
-            let page = animate::page_of_run(&session.model, &session.run)?;
+            let page = animate::page_of_run(&session.model, &session.run, &session.folders)?;
             texts.push((format!("{}.html", session.run.name), page));
         }
         let record = self.finish(&mut session.run, texts, picture)?;

@@ -13,8 +13,8 @@ const ROWS: usize = 9;
 const SIMULATIONS: usize = 4;
 
 /// Prints a few rows of the table, from the first to the last at equal distances, and as many of
-/// its columns as fit into a width; says what is left out of `n_rows` in all.
-pub fn table(run: &Run, n_rows: usize, width: usize) -> String {
+/// its columns as fit into a width; says what is left out of `n_rows` in all, and who has it.
+pub fn table(run: &Run, n_rows: usize, width: usize, who_has_all: &str) -> String {
     let mut columns = run.table_columns();
     columns.retain(|&c| c < run.columns.len());
     let rows: Vec<usize> = run.table_rows().collect();
@@ -64,7 +64,7 @@ pub fn table(run: &Run, n_rows: usize, width: usize) -> String {
     }
     let mut text = table.first(n);
     if !left_out.is_empty() {
-        text += &format!("… {}; the files have all\n", left_out.join(", "));
+        text += &format!("… {}; {who_has_all}\n", left_out.join(", "));
     }
     text
 }
@@ -348,7 +348,7 @@ mod tests {
         run.begin(Kind::Dynamic);
         (0..=1000).for_each(|k| run.push(&[f64::from(k) * 1e-3, -1e-7 * f64::from(k)]));
         run.end();
-        let text = table(&run, 1001, 80);
+        let text = table(&run, 1001, 80, "the files have all");
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 2 + ROWS + 1);
         assert!(lines[0].ends_with("a rather long expression") && lines[1].ends_with("mm"));
@@ -357,7 +357,7 @@ mod tests {
             "{text}"
         );
         assert_eq!(lines[11], "… 9 of 1001 rows; the files have all");
-        assert_eq!(table(&Run::new("r", "t", Units::default()), 0, 80), "");
+        assert_eq!(table(&Run::new("r", "t", Units::default()), 0, 80, ""), "");
     }
 
     #[test]
@@ -369,7 +369,7 @@ mod tests {
             run.push(&[0.0, 0.1 + 0.2]);
             run.end();
         }
-        let text = table(&run, 2, 80);
+        let text = table(&run, 2, 80, "");
         assert!(
             text.contains("phase") && text.contains("static") && text.contains("dynamic"),
             "{text}"

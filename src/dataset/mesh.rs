@@ -12,10 +12,27 @@
 //! is, whatever its name ends with. Nothing is reserved on the word of a file: there are never more
 //! points than bytes.
 
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Largest file that is read, in bytes.
 pub const MOST_BYTES: u64 = 1 << 28;
+
+/// Finds the file of this name, as given or beside the dataset; of a path of another machine its
+/// last part.
+pub fn find(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let here = [PathBuf::new()];
+    let all = folders.iter().chain(&here);
+    let mut named = all.flat_map(|folder| [folder.join(name), folder.join(last)]);
+    named.find(|p: &PathBuf| Path::is_file(p))
+}
+
+/// Returns whether a file is a binary STL.
+pub(super) fn is_binary(name: &str, bytes: &[u8]) -> bool {
+    let is_stl = name.to_ascii_lowercase().ends_with(".stl");
+    binary_facets(bytes).is_some_and(|n| 84 + 50 * n == bytes.len() || is_stl && !is_text(bytes))
+}
 
 /// The points of a shell.
 ///
@@ -23,9 +40,7 @@ pub const MOST_BYTES: u64 = 1 << 28;
 /// Mistakes in the file, with the line where there is one.
 pub fn points(name: &str, bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     let ends = |ending: &str| name.to_ascii_lowercase().ends_with(ending);
-    if let Some(n) = binary_facets(bytes)
-        && (84 + 50 * n == bytes.len() || ends(".stl") && !is_text(bytes))
-    {
+    if let Some(n) = binary_facets(bytes).filter(|_| is_binary(name, bytes)) {
         return binary(bytes, n);
     }
     let text = String::from_utf8_lossy(bytes);
@@ -102,17 +117,19 @@ fn lines(text: &str, begins: &str) -> Result<Vec<[f64; 3]>, String> {
     Ok(out)
 }
 
-/// Line by line, as the lines of a shell count its points: blank lines and remarks are none.
-fn shell(text: &str) -> Result<Vec<[f64; 3]>, String> {
-    let all = text.lines().enumerate();
-    let mut rows = all.filter_map(|(k, line)| {
+/// Returns the words of each line of a shell with its number: blank lines and remarks are none.
+pub(super) fn rows_of_shl(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
+    text.lines().enumerate().filter_map(|(k, line)| {
         let line = line.split(['!', '#']).next().unwrap_or_default();
-        let words: Vec<&str> = line
-            .split(|c: char| c.is_whitespace() || c == ',')
-            .collect();
-        let words: Vec<&str> = words.into_iter().filter(|w| !w.is_empty()).collect();
+        let words = line.split(|c: char| c.is_whitespace() || c == ',');
+        let words: Vec<&str> = words.filter(|w| !w.is_empty()).collect();
         (!words.is_empty()).then_some((k + 1, words))
-    });
+    })
+}
+
+/// Line by line, as the lines of a shell count its points.
+fn shell(text: &str) -> Result<Vec<[f64; 3]>, String> {
+    let mut rows = rows_of_shl(text);
     let Some((_, head)) = rows.next() else {
         return Ok(Vec::new());
     };

@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod read;
 pub mod row;
 pub mod statement;
+pub mod surface;
 pub mod syntax;
 pub mod value;
 pub mod write;

@@ -21,6 +21,8 @@ pub enum Cause {
     FileUnwritable,
     /// inertias that no body has
     ImpossibleInertia,
+    /// a column cannot be computed for the rows so far
+    LateColumn,
     /// axes of a loop are parallel within tolerance, not exactly
     Misaligned,
     /// a formula asks for a value that is not given
@@ -53,6 +55,7 @@ impl Cause {
             Self::Domain => "domain",
             Self::FileUnwritable => "file_unwritable",
             Self::ImpossibleInertia => "impossible_inertia",
+            Self::LateColumn => "late_column",
             Self::Misaligned => "misaligned",
             Self::MissingValue => "missing_value",
             Self::NoMotionSet => "no_motion_set",

@@ -63,7 +63,8 @@ impl Model {
         all
     }
 
-    /// Returns the elements that name an element, by a number of theirs or in a function, each once.
+    /// Returns the elements that name an element, by a number of theirs or in a function, each
+    /// once.
     pub fn named_by(&self, id: ElementId) -> Vec<ElementId> {
         let by_number = self.references().into_iter();
         let by_number = by_number.filter(|r| r.target == id).map(|r| r.element);

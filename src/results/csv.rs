@@ -19,6 +19,9 @@ pub fn write(run: &Run, units: bool) -> String {
     super::format::text(&mut Table::new(style), run)
 }
 
+/// Name of the column of words that tells what the model did in each row.
+const PHASE: &str = "phase";
+
 /// A table that is being written.
 #[derive(Debug)]
 pub struct Table {
@@ -42,6 +45,12 @@ impl TableText for Table {
         if self.style.units {
             rows.push(columns().map(|c| unit_cell(&c.unit)).collect());
         }
+        if run.has_phases {
+            let cells = [PHASE.to_owned(), unit_cell("")];
+            rows.iter_mut()
+                .zip(cells)
+                .for_each(|(row, cell)| row.push(cell));
+        }
         let separator = self.style.separator();
         text.extend_from_slice(to_text(&rows, separator).as_bytes());
     }
@@ -61,6 +70,11 @@ impl TableText for Table {
                     let point = text[from..].iter_mut().find(|c| **c == b'.');
                     point.into_iter().for_each(|c| *c = b',');
                 }
+            }
+            if run.has_phases {
+                text.push(separator);
+                let kind = run.kind_of(run.released + place);
+                text.extend_from_slice(kind.map_or("", Kind::name).as_bytes());
             }
             text.push(b'\n');
         }

@@ -30,6 +30,9 @@ pub struct Run {
     pub log: Vec<Event>,
     /// rows at the beginning that have been written to files and are no longer held
     pub released: usize,
+    /// tables for other tools have a column `phase` with the kind of simulation of each row:
+    /// equilibria and motion follow each other, and their rows may share a time
+    pub has_phases: bool,
 }
 
 /// One quantity over all rows.
@@ -329,6 +332,13 @@ impl Run {
         let inputs = self.sequences.iter().filter(|s| s.kind == Kind::Input);
         let inputs: Vec<Range<usize>> = inputs.map(|s| s.rows.clone()).collect();
         rows.filter(move |row| !inputs.iter().any(|rows| rows.contains(row)))
+    }
+    /// Returns the kind of the simulation that a row belongs to, also while that simulation goes
+    /// on.
+    pub fn kind_of(&self, row: usize) -> Option<Kind> {
+        let begun = self.sequences.iter().rev();
+        let mut begun = begun.skip_while(|s| s.rows.start > row);
+        begun.next().map(|s| s.kind)
     }
     /// Returns the index of the column with this name, without regard to blanks and case.
     pub fn find(&self, name: &str) -> Option<usize> {

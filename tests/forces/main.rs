@@ -16,6 +16,7 @@ mod contact_laws;
 mod contact_rapier;
 mod contact_shells;
 mod contact_wires;
+mod directions;
 mod forces;
 mod friction;
 mod pulses;

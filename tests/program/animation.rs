@@ -369,3 +369,70 @@ fn two_runs_are_shown_over_each_other() {
     assert_eq!(found["errors"], Value::Array(Vec::new()));
     assert!(found["changed"].as_u64() > Some(300), "{found}");
 }
+
+/// A ball of radius 0.5 that is driven along x at 4 m/s, and a post that it grazes from x = 3 to 4, 0.3 deep.
+const GRAZE: &str = "\
+graze
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+PART/1, GROUND
+MARKER/2, PART=1, QP=3,-2,-1
+MARKER/10, PART=1, REULER=90D,90D,90D
+PART/2, MASS=1, CM=20, IP=1,1,1
+MARKER/20, PART=2
+MARKER/21, PART=2, REULER=90D,90D,90D
+JOINT/1, TRANSLATIONAL, I=21, J=10
+MOTION/1, JOINT=1, FUNCTION=4*TIME
+GRAPHICS/1, ELLIPSOID, CM=20, XSCALE=1, YSCALE=1, ZSCALE=1
+GRAPHICS/2, BOX, CORNER=2, X=1, Y=1.8, Z=2
+END
+";
+
+#[cfg(feature = "geometry")]
+#[test]
+fn overlaps_are_marked_where_and_when_geometry_says() {
+    let model = scratch("animate_overlaps", "graze.adm", GRAZE);
+    let page = model.with_extension("html");
+    let animate = |end: &str| {
+        let all = [
+            "animate",
+            path(&model),
+            "--end",
+            end,
+            "--steps",
+            "40",
+            "--interference",
+            "-o",
+            path(&page),
+        ];
+        let done = cognate(&all);
+        assert_eq!(done.code, 0, "{}", done.err);
+        done.err
+    };
+    assert!(animate("0.5").contains("no solids overlap"));
+    assert!(!animate("1").contains("no solids overlap"));
+    let Some(found) = script("check.mjs", &[path(&page)]) else {
+        return;
+    };
+    assert_eq!(found["errors"], Value::Array(Vec::new()));
+    let overlap = &found["overlaps"][0];
+    assert_eq!(
+        overlap["elements"],
+        serde_json::json!(["GRAPHICS/1", "GRAPHICS/2"])
+    );
+    assert!(
+        (overlap["depth"].as_f64().unwrap() - 0.3).abs() < 1e-3,
+        "{overlap}"
+    );
+    let place: Vec<f64> = overlap["place"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(Value::as_f64)
+        .collect();
+    // at the middle of the overlap, while the ball is beside the post
+    assert!(
+        place[0] > 2.9 && place[0] < 4.1 && (place[1] + 0.35).abs() < 0.16 && place[2].abs() < 1e-3,
+        "{overlap}"
+    );
+    assert_eq!(overlap["before"], serde_json::json!([false, false, false]));
+}

@@ -5,7 +5,7 @@
 //! ! expect: at T: LEFT = RIGHT +- TOLERANCE             at the last output of that time
 //! ```
 
-use super::command::{cognate, path};
+use super::command::{cognate, path, scratch};
 use std::path::{Path, PathBuf};
 
 fn root(file: &str) -> PathBuf {
@@ -181,4 +181,41 @@ fn what_is_fixed_twice_stands_out() {
     let (pale, clear) = text.split_once("</g>").unwrap();
     assert!(pale.contains("<g opacity=\"0.3\">"));
     assert!(clear.contains("#d0342c") && clear.contains(">JOINT/4<"));
+}
+
+#[test]
+fn shells_of_files_are_drawn_and_those_that_are_not_there_are_told() {
+    let text = |shells: &str| {
+        format!(
+            "shells\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\n\
+             MARKER/21, PART=2, QP=2,1,1\n{shells}END\n"
+        )
+    };
+    let wedge = "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    scratch("draw_shells", "wedge.obj", wedge);
+    let draw = |name: &str, shells: &str| {
+        let model = scratch("draw_shells", name, &text(shells));
+        let picture = model.with_extension("svg");
+        let done = cognate(&["draw", path(&model), "--from", "side", "-o", path(&picture)]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        (
+            std::fs::read_to_string(picture)
+                .unwrap()
+                .matches("<path")
+                .count(),
+            done.err,
+        )
+    };
+    let (without, _) = draw("without.adm", "");
+    let (with, said) = draw("with.adm", "GRAPHICS/1, SHELL, RM=20, FILE=wedge.obj\n");
+    assert!(
+        with > without && !said.contains("not drawn"),
+        "{with} {without} {said}"
+    );
+    let (absent, said) = draw("absent.adm", "GRAPHICS/1, SHELL, RM=20, FILE=absent.stl\n");
+    assert_eq!(absent, without);
+    assert!(
+        said.contains("GRAPHICS/1 is not drawn") && said.contains("no such file"),
+        "{said}"
+    );
 }

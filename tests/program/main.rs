@@ -8,15 +8,20 @@ mod result_laws;
 
 mod animation;
 mod broken;
+mod capabilities;
 mod cli;
 mod cli_eval;
 mod configuration;
+mod elements;
+mod first_hour;
 mod gallery;
 #[cfg(feature = "geometry")]
 mod interference;
 mod manual;
 mod motion;
 mod plots;
+mod prompt;
+mod readers;
 mod recorded;
 mod report;
 mod results;

@@ -88,3 +88,51 @@ fn columns_are_listed_and_json_is_read_like_csv() {
         "{csv}{json}"
     );
 }
+
+#[test]
+fn pictures_have_the_format_that_their_names_say() {
+    let table = fall("plot_formats", "a.csv", 9.0);
+    let formats = [
+        ("svg", &b"<svg"[..]),
+        ("png", b"\x89PNG"),
+        ("PDF", b"%PDF-"),
+    ];
+    for (ending, begins) in formats {
+        let file = table.with_file_name(format!("a.{ending}"));
+        let done = cognate(&["plot", path(&table), "--y", "drop.X", "--out", path(&file)]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        let bytes = std::fs::read(&file).unwrap();
+        assert!(bytes.starts_with(begins) && bytes.len() > 3000, "{ending}");
+    }
+    let file = table.with_file_name("a.txt");
+    let done = cognate(&["plot", path(&table), "--out", path(&file)]);
+    assert!(
+        done.code == 3 && done.err.contains("picture_format"),
+        "{}",
+        done.err
+    );
+    assert!(!file.exists());
+}
+
+#[test]
+fn bars_of_error_that_are_read_are_bands_and_no_columns() {
+    let mut text = "time,x,x±\nsec,mm,mm\n".to_owned();
+    (0..20).for_each(|k| text += &format!("{k},{},0.5\n", k * k));
+    let table = scratch("plot_bands", "a.csv", &text);
+    let picture = table.with_file_name("a.svg");
+    let done = cognate(&["plot", path(&table), "--out", path(&picture)]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let drawn = std::fs::read_to_string(&picture).unwrap();
+    assert_eq!(
+        (
+            drawn.matches("<polygon").count(),
+            drawn.matches("x±").count()
+        ),
+        (1, 0)
+    );
+    let statistics = cognate(&["plot", path(&table), "--statistics"]).out;
+    assert!(!statistics.contains('±'), "{statistics}");
+    // by its name it is a column as any other
+    let asked = cognate(&["plot", path(&table), "--y", "x±", "--statistics"]).out;
+    assert!(asked.contains("x±"), "{asked}");
+}

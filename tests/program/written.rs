@@ -148,6 +148,42 @@ fn assert_is_a_beginning(table: &Run) {
 }
 
 #[test]
+fn rows_of_rest_and_of_motion_at_one_time_are_told_apart() {
+    let (folder, _) = pendulum("phases");
+    let commands = |name: &str, text: &str| {
+        let file = scratch("phases", name, &format!("FILE/MODEL=p\n{text}STOP\n"));
+        let done = cognate(&["run", path(&file), "--quiet", "--out", path(&folder)]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        std::fs::read_to_string(folder.join(name).with_extension("csv")).unwrap()
+    };
+    let both = "SIMULATE/STATIC\nSIMULATE/DYNAMIC, END=1, STEPS=4\n";
+    let table = commands("both.acf", both);
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(
+        lines[0].ends_with(",phase") && lines[1].ends_with(",-"),
+        "{table}"
+    );
+    // assembled, then at rest, at one time
+    assert!(
+        lines[2].starts_with("0,") && lines[2].ends_with(",initialConditions"),
+        "{table}"
+    );
+    assert!(
+        lines[3].starts_with("0,") && lines[3].ends_with(",static"),
+        "{table}"
+    );
+    let dynamic: Vec<&&str> = lines.iter().filter(|l| l.ends_with(",dynamic")).collect();
+    assert!(
+        dynamic.len() >= 4 && dynamic.last() == lines.iter().last().as_ref(),
+        "{table}"
+    );
+    // a column of words is none of numbers
+    assert_eq!(read(&folder.join("both.csv")).find("phase"), None);
+    let alone = commands("alone.acf", "SIMULATE/DYNAMIC, END=1, STEPS=4\n");
+    assert!(!alone.contains("phase"), "{alone}");
+}
+
+#[test]
 fn the_rows_of_a_run_that_is_killed_are_on_the_disk_and_stay_there() {
     let (folder, file) = pendulum("killed");
     let parts = ["csv", "res", "parquet"].map(|e| folder.join(format!("p.{e}.part1")));

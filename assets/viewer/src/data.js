@@ -23,6 +23,8 @@ export async function readData(text) {
     run.times = column(run.time);
     run.tracks = run.poses.map((pose) => pose && pose.map(column));
     run.value = (channel) => column(run.channels[channel].column);
+    // of the first run alone
+    if (run === data.runs[0]) for (const overlap of data.overlaps) overlap.place = overlap.place.map(column);
   }
   return data;
 }

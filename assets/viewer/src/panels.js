@@ -137,6 +137,10 @@ export class Panels {
       for (const [name, value] of run.facts) table.append(make('tr', {}, make('td', { textContent: name }), make('td', { textContent: value })));
       box.append(table);
       for (const warning of run.warnings) box.append(make('div', { className: 'warning', textContent: warning }));
+      for (const { elements, depth, row } of run === this.data.runs[0] ? this.data.overlaps : []) {
+        const text = `${elements.join(' and ')} overlap, deepest by ${digits(depth)} ${this.data.unit ?? ''} at ${digits(run.times[row])} ${run.timeUnit}`;
+        box.append(make('div', { className: 'warning', textContent: text }));
+      }
       if (run.leftOut) box.append(make('div', { className: 'warning', textContent: `${run.leftOut} further columns of this run are not on this page; they are in its tables.` }));
     }
   }

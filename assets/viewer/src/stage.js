@@ -3,7 +3,7 @@
 import {
   BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, EdgesGeometry,
   Group, HemisphereLight, Line, LineBasicMaterial, LineLoop, LineSegments, Mesh, MeshStandardMaterial, PCFShadowMap,
-  PerspectiveCamera, PlaneGeometry, Quaternion, Raycaster, Scene, ShadowMaterial, Vector2, Vector3, WebGLRenderer,
+  PerspectiveCamera, PlaneGeometry, Quaternion, Raycaster, Scene, ShadowMaterial, SphereGeometry, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
@@ -104,7 +104,18 @@ export class Stage {
     const arrows = ghost ? [] : data.arrows.map((arrow) => this.arrow(arrow, run, root));
     measure(arrows);
     const trails = data.trails.map((trail) => this.trail(trail, run, root, ghost));
-    return { run, root, bodies, stretched, arrows, trails, joints };
+    const overlaps = ghost ? [] : data.overlaps.map((overlap) => this.overlap(overlap, root));
+    return { run, root, bodies, stretched, arrows, trails, joints, overlaps };
+  }
+
+  /** Makes the mark of two solids that overlap: seen through everything. */
+  overlap(overlap, root) {
+    const ink = new MeshStandardMaterial({ color: '#ff1744', emissive: '#ff1744', emissiveIntensity: 0.6, depthTest: false, transparent: true, opacity: 0.85 });
+    const mark = new Mesh(new SphereGeometry(0.013 * this.size, 24, 16), ink);
+    mark.renderOrder = 11;
+    mark.visible = false;
+    root.add(mark);
+    return { mark, at: (row) => overlap.place.map((column) => column[row]) };
   }
 
   piece(piece, ghost) {
@@ -269,7 +280,7 @@ export class Stage {
 
   /** Places a run between two of its rows; arrows are those of the first. */
   place(index, row, next, part) {
-    const { run, bodies, stretched, arrows = [], trails = [] } = this.runs[index];
+    const { run, bodies, stretched, arrows = [], trails = [], overlaps = [] } = this.runs[index];
     const turned = new Quaternion();
     run.tracks.forEach((track, body) => {
       if (!track) return;
@@ -296,6 +307,11 @@ export class Stage {
       const from = known ? vector(known) : point(arrow.body, arrow.place);
       const shown = arrow.reaction ? this.options?.reactions : this.options?.forces;
       arrow.parts.forEach((part, kind) => this.point(part, from, part.at(row), arrow.scale[kind], shown));
+    }
+    for (const { mark, at } of overlaps) {
+      const place = at(row);
+      mark.visible = place.every(Number.isFinite);
+      if (mark.visible) mark.position.set(...place);
     }
     for (const trail of trails) {
       if (!trail) continue;

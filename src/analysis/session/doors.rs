@@ -5,7 +5,7 @@ use super::{Analysis, Gaps, Session};
 use crate::analysis::system::closures::Hook;
 use crate::analysis::watch::Unwatched;
 use crate::analysis::work_limit::WorkLimit;
-use crate::diagnostic::{Diagnostic, Error};
+use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::model::Text;
 use crate::results::{Run, Status};
 
@@ -128,7 +128,7 @@ impl Session {
     /// Refuses a column that cannot be computed for the rows so far.
     pub(super) fn late(expression: &str, why: &str) -> Error {
         let what = format!("`{expression}` cannot be computed for the rows so far: {why}");
-        let said = Diagnostic::error("late_column", what);
+        let said = Diagnostic::error(Cause::LateColumn, what);
         said.help("name it before the first simulation").into()
     }
 }

@@ -99,6 +99,7 @@ pub fn obey(
         _ => None,
     });
     session.will_change(changed);
+    session.run.has_phases |= has_phases(steps);
     for step in steps {
         session.run.log.push(Event::Command(step.text.clone()));
         let located = |d: Diagnostic| located(d, step);
@@ -137,6 +138,16 @@ pub fn obey(
         }
     }
     Ok(status)
+}
+
+/// Returns whether some simulations look for rest and others do not: their rows may share a time.
+fn has_phases(steps: &[Step]) -> bool {
+    let kinds = steps.iter().filter_map(|step| match &step.command {
+        Command::Simulate(simulate) => Some(simulate.kind == SimulationKind::Static),
+        _ => None,
+    });
+    let kinds: Vec<bool> = kinds.collect();
+    kinds.contains(&true) && kinds.contains(&false)
 }
 
 /// Gives a diagnostic the place of its command, unless it has a better one.

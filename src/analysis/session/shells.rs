@@ -5,7 +5,7 @@ use crate::dataset::mesh;
 use crate::model::{Model, Shape};
 use crate::scene::contacts::Shell;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Advice about a shell that cannot be used.
 const ADVICE: &str = "export it as STL, OBJ or SHL in the units of the model, beside the dataset";
@@ -40,7 +40,7 @@ pub fn shell_of(name: &str, folders: &[PathBuf]) -> Result<Shell, String> {
             "a solid of a CAD kernel, which cannot be read".into(),
         ));
     }
-    let Some(path) = find(name, folders) else {
+    let Some(path) = mesh::find(name, folders) else {
         return Err(refuse("there is no such file".into()));
     };
     let size = std::fs::metadata(&path).map_or(0, |m| m.len());
@@ -70,14 +70,4 @@ fn hull(points: &[[f64; 3]]) -> Result<(Vec<[f64; 3]>, f64), String> {
 #[cfg(not(feature = "geometry"))]
 fn hull(_: &[[f64; 3]]) -> Result<(Vec<[f64; 3]>, f64), String> {
     Err("this program was built without the feature geometry".into())
-}
-
-/// Finds the file of this name, as given or beside the dataset; of a path of another machine its
-/// last part.
-fn find(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
-    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    let here = [PathBuf::new()];
-    let all = folders.iter().chain(&here);
-    let mut named = all.flat_map(|folder| [folder.join(name), folder.join(last)]);
-    named.find(|p: &PathBuf| Path::is_file(p))
 }

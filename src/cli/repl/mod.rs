@@ -1,9 +1,9 @@
 //! `cognate repl`: expressions and their values, one after another.
 //!
 //! `session.rs` executes a line, whatever its origin; `commands.rs` is the TABLE of commands;
-//! `names.rs` holds the names that a session defines, `model.rs` its model; `editor.rs` helps while typing. At a terminal lines come from the editor; piped in,
-//! they are read as they are, only results are printed, and the exit code tells whether all went
-//! well.
+//! `names.rs` holds the names that a session defines, `model.rs` its model; `editor.rs` helps while
+//! typing. At a terminal lines come from the editor; piped in, they are read as they are, only
+//! results are printed, and the exit code tells whether all went well.
 
 mod commands;
 mod editor;

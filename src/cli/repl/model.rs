@@ -7,16 +7,19 @@
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::verify::verify;
+use crate::analysis::work_limit::process_seconds;
+use crate::cli::render::Sources;
 use crate::cli::run::{self, Single};
+use crate::cli::{Exit, complain_in_files, width};
 use crate::cli::{Failure, configuration, draw, elements, interrupt, summary, verify as verifying};
-use crate::cli::{complain_in_files, width};
 use crate::dataset::Reading;
 use crate::dataset::command::{Command, Step};
-use crate::diagnostic::{Diagnostic, Error, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::report::{Curve, Plot};
 use crate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Output steps of a run when nobody says.
 const STEPS: usize = 200;
@@ -31,8 +34,11 @@ pub struct Loaded {
     steps: Vec<Step>,
     /// the mechanism at the time that was asked for last
     present: Option<Session>,
-    /// the last run
+    /// the last run, and the end and the output steps that were asked for
     run: Option<Session>,
+    asked: (Option<f64>, Option<usize>),
+    /// expressions that cannot be computed for the rows of a run that is over
+    columns: Vec<String>,
 }
 
 /// The rows of a run between two times; `None`: all of them.
@@ -58,6 +64,8 @@ impl Loaded {
             steps,
             present: None,
             run: None,
+            asked: (None, None),
+            columns: Vec::new(),
         })
     }
 
@@ -124,6 +132,7 @@ impl Loaded {
     fn changed(&mut self, reading: Reading) {
         self.reading = reading;
         (self.present, self.run) = (None, None);
+        self.columns.clear();
     }
 
     /// Writes the dataset as it is now.
@@ -169,8 +178,9 @@ impl Loaded {
     /// # Errors
     /// When there are neither commands nor an end, or the model cannot work.
     pub fn solve(&mut self, end: Option<f64>, steps: Option<usize>) -> Result<String, Failure> {
-        let mut session = self.session(Vec::new());
+        let mut session = self.session(self.columns.clone());
         let alone;
+        let (clock, used) = (Instant::now(), process_seconds().unwrap_or_default());
         let commands = match end {
             None if self.steps.iter().any(is_simulation) => &self.steps,
             None => {
@@ -184,13 +194,18 @@ impl Loaded {
         };
         let solved = obey(&mut session, commands, |_, _| (), &mut interrupt::Listener);
         let status = solved.map_err(|errors| self.failure(errors))?;
+        let seconds = &mut session.run.record.seconds;
+        seconds.total = clock.elapsed().as_secs_f64();
+        seconds.processor = process_seconds().map_or(seconds.total, |now| now - used);
         let run = &session.run;
-        let mut text = summary::table(run, run.table_rows().count(), width::columns());
+        let n_rows = run.table_rows().count();
+        let mut text = summary::table(run, n_rows, width::columns(), ":plot shows all");
         text += &summary::facts(run, &[]);
         if status != Status::Completed {
             complain_in_files(&session.model.doubts());
         }
         (self.present, self.run) = (None, Some(session));
+        self.asked = (end, steps);
         Ok(text)
     }
 
@@ -224,8 +239,8 @@ impl Loaded {
         }
         let added = self.present.as_mut().map(|s| s.add_column(expression));
         if let Some(Err(errors)) = added {
-            if errors.first().code != LATE {
-                return Err(errors.into());
+            if !errors.first().is(Cause::LateColumn) {
+                return Err(self.mistaken(expression, errors));
             }
             // it has a past, which nobody has kept: it is named before
             self.present = Some(self.at(time, vec![expression.to_owned()])?);
@@ -269,11 +284,25 @@ impl Loaded {
     /// # Errors
     /// When there is no run, or a mistake in the expression.
     pub fn plot(&mut self, expression: &str, span: Span) -> Result<Plot, Failure> {
-        let Some(session) = &mut self.run else {
+        let without = || {
             let what = "there is no run: `:run` solves the model, then its results are there";
-            return Err(Failure::usage(what));
+            Failure::usage(what)
         };
-        session.add_column(expression)?;
+        let added = self.run.as_mut().ok_or_else(without)?;
+        match added.add_column(expression) {
+            Err(errors) if !errors.first().is(Cause::LateColumn) => {
+                return Err(self.mistaken(expression, errors));
+            }
+            // commands have changed the model on the way, or it has a past: it is named before
+            Err(_) => {
+                self.columns.push(expression.to_owned());
+                let (end, steps) = self.asked;
+                let solved = self.solve(end, steps);
+                solved.inspect_err(|_| drop(self.columns.pop()))?;
+            }
+            Ok(()) => {}
+        }
+        let session = self.run.as_ref().ok_or_else(without)?;
         let name = [expression.to_owned()];
         let mut plot = Plot::of_run(&session.run, None, &name)?;
         plot.title = String::new();
@@ -292,10 +321,10 @@ impl Loaded {
         let has_time = |s: &Session| row_at(s, time).is_some();
         if self.run.as_ref().is_some_and(has_time) {
             let session = self.run.as_ref();
-            return session.map_or(Ok(()), |s| draw::draw_at(&s.model, &s.run, time, file));
+            return session.map_or(Ok(()), |s| draw::draw_at(s, time, file));
         }
         let session = self.at(time, Vec::new())?;
-        draw::draw_at(&session.model, &session.run, time, file)?;
+        draw::draw_at(&session, time, file)?;
         self.present = Some(session);
         Ok(())
     }
@@ -314,13 +343,24 @@ impl Loaded {
         session
     }
 
+    /// Returns the mistakes in an expression: those of the check, which have places, else the
+    /// others.
+    fn mistaken(&self, expression: &str, others: Error) -> Failure {
+        let found = self.reading.model.check_expression(expression);
+        match found.is_empty() {
+            true => others.into(),
+            false => Failure {
+                exit: Exit::Input,
+                diagnostics: found,
+                sources: Sources::of(expression),
+            },
+        }
+    }
+
     fn failure(&self, errors: Error) -> Failure {
         Failure::in_model(&self.reading.dataset, errors.into_diagnostics())
     }
 }
-
-/// Code of an expression that cannot be computed for the rows so far.
-const LATE: &str = "late_column";
 
 fn is_simulation(step: &Step) -> bool {
     matches!(step.command, Command::Simulate(_))

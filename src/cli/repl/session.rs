@@ -517,7 +517,8 @@ fn mistake(said: Diagnostic, expansion: &Expansion) -> Reply {
     Reply::Mistake(Box::new(expansion.as_typed(said)), expansion.typed.clone())
 }
 
-/// What a model could not do, at its place in the expression that was typed where it is about that.
+/// Returns the reply for a model that fails: its mistake at the place in the expression that was
+/// typed, where it is about that.
 fn failed(failure: Box<Failure>, expansion: &Expansion) -> Reply {
     let about_expression = |d: &Diagnostic| d.file.is_none() && d.span.is_some();
     match failure.diagnostics.as_slice() {

@@ -73,7 +73,10 @@ fn draw_redundant(
 ) -> Result<(), Failure> {
     let redundant = found.dependent.iter();
     let elements = redundant.flat_map(|d| d.fixed_by.iter().copied().chain([d.element]));
-    let assembled = moved::assembled(model, "verify");
+    let folder = dataset.source.file.as_deref().map(Path::new);
+    let folder = folder.and_then(Path::parent).map(Path::to_path_buf);
+    let folders = folder.into_iter().collect();
+    let assembled = moved::assembled(model, "verify", folders);
     let moved = assembled.map_err(|errors| Failure::in_model(dataset, errors))?;
     draw::draw_standing_out(&moved, elements.collect(), file)
 }

@@ -5,6 +5,7 @@
 //! drawing on paper all show the same. Nothing here solves anything. Lengths are in units of the
 //! model, frames against ground, times those of the run.
 
+mod belts;
 mod bodies;
 mod channels;
 mod colours;
@@ -27,6 +28,7 @@ pub use stretched::{Look, Stretched};
 pub use track::{Load, Track};
 pub use view::View;
 
+use crate::dataset::surface::Surfaces;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Element, ElementId, ElementKind, Model};
 use crate::results::Run;
@@ -150,6 +152,19 @@ pub struct Trail {
     pub place: [f64; 3],
 }
 
+/// Two solids that overlap at some rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlap {
+    /// their GRAPHICS
+    pub elements: [ElementId; 2],
+    /// where they overlap most at each row, in ground; `None`: they do not, or nobody knows
+    pub places: Vec<Option<[f64; 3]>>,
+    /// depth of the deepest overlap   (length)
+    pub depth: f64,
+    /// row of the deepest overlap
+    pub deepest: usize,
+}
+
 /// A mechanism over the rows of a run, ready to be drawn.
 #[derive(Clone, Debug)]
 pub struct Pictured {
@@ -167,6 +182,8 @@ pub struct Pictured {
     pub arrows: Vec<Arrow>,
     /// points whose paths are worth seeing: those that requests ask for
     pub trails: Vec<Trail>,
+    /// where solids overlap, if somebody has looked
+    pub overlaps: Vec<Overlap>,
     /// where it is seen from at first
     pub view: View,
     /// sizes of symbols
@@ -174,14 +191,15 @@ pub struct Pictured {
 }
 
 impl Pictured {
-    /// Makes the picture of a model and one of its runs.
+    /// Makes the picture of a model and one of its runs; `surfaces`: the shells that stand in
+    /// files.
     ///
     /// # Errors
     /// When the run does not say where the bodies of the model are.
-    pub fn new(model: &Model, run: &Run) -> Result<Self, Diagnostic> {
+    pub fn new(model: &Model, run: &Run, surfaces: &Surfaces) -> Result<Self, Diagnostic> {
         let bodies = Bodies::new(model);
         let track = Track::new(model, &bodies, run)?;
-        let (low, high) = extent(model, &bodies, &track);
+        let (low, high) = extent(model, &bodies, &track, surfaces);
         let mut view = View::new(model, &bodies, low, high);
         let whole = view.size;
         let sizes = Sizes {
@@ -189,7 +207,7 @@ impl Pictured {
             rod: ROD * whole,
             joint: JOINT * whole,
         };
-        let mut pieces = shapes::shapes(model, &bodies, whole);
+        let mut pieces = shapes::shapes(model, &bodies, surfaces, whole);
         let solid = |p: &&Piece| !matches!(p.form, Form::Line { .. });
         let shaped: BTreeSet<usize> = pieces.iter().filter(solid).map(|p| p.body).collect();
         let trails = trails(model, &bodies);
@@ -209,6 +227,7 @@ impl Pictured {
             title: model.title.clone(),
             arrows: arrows(model, &bodies, &track),
             trails,
+            overlaps: Vec::new(),
             bodies,
             track,
             pieces,
@@ -233,7 +252,7 @@ fn with((low, high): Corners, p: Vec3<f64>) -> Corners {
 
 /// Returns the corners of the box about the mechanism as the run begins: places where something is
 /// fixed to bodies, shapes of the dataset, centres of mass.
-fn extent(model: &Model, bodies: &Bodies, track: &Track) -> Corners {
+fn extent(model: &Model, bodies: &Bodies, track: &Track, surfaces: &Surfaces) -> Corners {
     let mut corners = NOTHING;
     let at = |body: usize, p: Vec3<f64>| track.frame(bodies, body, 0).point(p);
     for (id, element) in model.elements() {
@@ -245,7 +264,7 @@ fn extent(model: &Model, bodies: &Bodies, track: &Track) -> Corners {
     for (k, body) in bodies.all.iter().enumerate() {
         corners = body.cm.map_or(corners, |cm| with(corners, at(k, cm)));
     }
-    for piece in shapes::shapes(model, bodies, 0.0) {
+    for piece in shapes::shapes(model, bodies, surfaces, 0.0) {
         for p in piece.form.marks() {
             corners = with(corners, at(piece.body, Vec3(p)));
         }

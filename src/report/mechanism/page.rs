@@ -59,6 +59,7 @@ pub fn page(model: &Model, pictured: &Pictured, runs: &[Shown<'_>]) -> String {
     });
     let shown = runs.iter().map(|shown| run(pictured, shown, &mut packed));
     data["runs"] = json!(shown.collect::<Vec<_>>());
+    data["overlaps"] = json!(overlaps(pictured, &mut packed));
     let (columns, numbers) = packed.finish();
     data["columns"] = json!(columns);
     data["geometry"] = json!([numbers.len(), geometry.floats.len(), geometry.indices.len()]);
@@ -248,6 +249,22 @@ fn run(pictured: &Pictured, shown: &Shown<'_>, packed: &mut Packed) -> Value {
     })
 }
 
+/// Returns where solids overlap: their names, the deepest place, and the columns of all places.
+fn overlaps(pictured: &Pictured, packed: &mut Packed) -> Vec<Value> {
+    let quantum = POSITION_QUANTUM * pictured.sizes.whole;
+    let mut all = Vec::new();
+    for overlap in &pictured.overlaps {
+        let places = &overlap.places;
+        let column = |k: usize| places.iter().map(move |p| p.map_or(f64::NAN, |p| p[k]));
+        let columns = [0, 1, 2].map(|k| packed.push(column(k), quantum));
+        all.push(json!({
+            "elements": overlap.elements.map(|id| id.to_string()), "depth": overlap.depth,
+            "row": overlap.deepest, "place": columns,
+        }));
+    }
+    all
+}
+
 /// Returns the kinds of rows: words, each with the first of its rows.
 fn kinds(track: &Track) -> Vec<Value> {
     let word = |kind: Kind| match kind {
@@ -410,7 +427,7 @@ mod tests {
     #[test]
     fn ten_thousand_rows_of_twenty_bodies_take_less_than_a_megabyte() {
         let (model, run) = swinging(20, 10_000);
-        let pictured = Pictured::new(&model, &run).expect("positions");
+        let pictured = Pictured::new(&model, &run, &Default::default()).expect("positions");
         let track = &pictured.track;
         let text = page(&model, &pictured, &[Shown { run: &run, track }]);
         let data = text.len() - viewer().len();
@@ -421,7 +438,7 @@ mod tests {
     fn nothing_in_a_title_or_a_name_ends_the_script() {
         let (mut model, run) = swinging(1, 3);
         model.title = "</script><b>&".into();
-        let pictured = Pictured::new(&model, &run).expect("positions");
+        let pictured = Pictured::new(&model, &run, &Default::default()).expect("positions");
         let track = &pictured.track;
         let text = page(&model, &pictured, &[Shown { run: &run, track }]);
         assert_eq!(text.matches("</script").count(), 2);

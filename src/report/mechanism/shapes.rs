@@ -3,6 +3,7 @@
 use super::bodies::{Anchor, Bodies};
 use super::solid::{SIDES, Solid};
 use super::{Form, Piece, Role};
+use crate::dataset::surface::{Surface, Surfaces};
 use crate::expr::interpolation::Curve;
 use crate::model::{ElementId, ElementKind, Model, Shape};
 use crate::scene::formula::curve as curve_of;
@@ -19,14 +20,15 @@ const POINT_RADIUS: f64 = 0.008;
 
 /// Returns the pieces of all GRAPHICS that have a shape, and of curves that constraints name;
 /// `size`: of the whole mechanism.
-pub fn shapes(model: &Model, bodies: &Bodies, size: f64) -> Vec<Piece> {
+pub fn shapes(model: &Model, bodies: &Bodies, surfaces: &Surfaces, size: f64) -> Vec<Piece> {
     let mut all = Vec::new();
     let mut curves = BTreeSet::new();
     for (&number, graphics) in &model.graphics {
         if let Shape::Curve { curve, rm } = graphics.shape {
             curves.insert((curve, rm));
         }
-        let Some((marker, form)) = form(model, &graphics.shape, size) else {
+        let surface = surfaces.known.get(&number);
+        let Some((marker, form)) = form(model, &graphics.shape, surface, size) else {
             continue;
         };
         if let Some(at) = bodies.marker(marker) {
@@ -67,7 +69,7 @@ fn piece(bodies: &Bodies, element: ElementId, at: Anchor, form: Form, role: Role
 }
 
 /// Returns the shape in the frame of a marker; `None` where there is nothing to draw.
-fn form(model: &Model, shape: &Shape, size: f64) -> Option<(u32, Form)> {
+fn form(model: &Model, shape: &Shape, surface: Option<&Surface>, size: f64) -> Option<(u32, Form)> {
     let arc = |radius: f64, angle: f64| {
         let n = 2 * SIDES;
         let closed = angle.abs() >= TAU * (1.0 - 1e-12);
@@ -130,9 +132,17 @@ fn form(model: &Model, shape: &Shape, size: f64) -> Option<(u32, Form)> {
             (rm, Form::Ball { centre, radius })
         }
         Shape::Curve { curve: id, rm } => (rm, curve(model, id)?),
-        Shape::External { .. } | Shape::Shell { .. } | Shape::Other(_) | Shape::Nothing => {
-            return None;
+        Shape::External { rm, .. } | Shape::Shell { rm, .. } => {
+            let Surface { points, faces } = surface?.clone();
+            let smooth = vec![false; faces.len()];
+            let shell = Solid {
+                points,
+                faces,
+                smooth,
+            };
+            (rm, solid(shell))
         }
+        Shape::Other(_) | Shape::Nothing => return None,
     })
 }
 

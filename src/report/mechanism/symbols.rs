@@ -28,10 +28,10 @@ pub struct Symbols<'a> {
 
 /// The two ends of a tie.
 #[derive(Clone, Copy)]
-struct Ends {
+pub(super) struct Ends {
     element: ElementId,
-    i: Anchor,
-    j: Anchor,
+    pub(super) i: Anchor,
+    pub(super) j: Anchor,
 }
 
 impl Symbols<'_> {
@@ -56,11 +56,12 @@ impl Symbols<'_> {
         }
         self.motions(&mut pieces);
         self.gears(&mut pieces);
+        self.belts(&mut pieces);
         self.elastic(&mut pieces);
         pieces
     }
 
-    fn ends(&self, element: ElementId, i: u32, j: u32) -> Option<Ends> {
+    pub(super) fn ends(&self, element: ElementId, i: u32, j: u32) -> Option<Ends> {
         let (i, j) = (self.bodies.marker(i)?, self.bodies.marker(j)?);
         Some(Ends { element, i, j })
     }
@@ -320,7 +321,13 @@ impl Symbols<'_> {
     }
 
     /// Returns a toothed wheel about z of a frame; a ring has its teeth inside.
-    fn wheel(&self, element: ElementId, at: Anchor, radius: f64, is_ring: bool) -> Piece {
+    pub(super) fn wheel(
+        &self,
+        element: ElementId,
+        at: Anchor,
+        radius: f64,
+        is_ring: bool,
+    ) -> Piece {
         let s = self.sizes.joint;
         let teeth = ((radius / s * 4.0).round() as usize).clamp(10, 90);
         let inner = if is_ring {
