@@ -1,12 +1,12 @@
-//! Error against time for all problems with trusted solutions, by every method: the page `docs/work_precision.md`, and one with all curves in
-//! the folder of targets.
+//! Error against time for all problems with trusted solutions, by every method: the page `docs/work_precision.md` with its picture of curves, and
+//! one with all runs in the folder of targets.
 //!
 //! `cargo bench --bench work_precision`, or `cargo bench --bench work_precision -- andrews bounce`: only problems whose names contain a word,
 //! which writes no page. BUDGET=seconds of processor time for each problem (5).
 
 use cognate::analysis::session::Options;
 use cognate::analysis::watch::Unwatched;
-use cognate::analysis::work_precision::{Question, Reference, Study, page, survey};
+use cognate::analysis::work_precision::{Question, Reference, Study, page, sheet, survey};
 use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::numeric::METHODS;
@@ -135,6 +135,7 @@ fn tables(studies: &[Study]) -> String {
          Written by `cargo bench --bench work_precision`. Mechanisms with trusted solutions (`tests/data/references`) are run by every method at requests\n\
          from 1e-2 to 1e-12. The error is the largest difference from the trusted table over all channels and outputs, each channel over its swing;\n\
          times are processor times of solving on one core. `cognate report MODEL` makes such a study, with curves, of a model of yours.\n\n\
+         ![Processor time of solving over the error, for each problem and method](work_precision.svg)\n\n\
          ## The cheapest run for an error\n\n\
          Time, method and request, and the error that the run has. Empty: no run is known to be that good, as the trusted table has no more digits,\n\
          or none was made in time.\n\n{}\n\n\
@@ -172,8 +173,13 @@ fn main() {
         let html = page("Error against time", about, &studies, &WANTED);
         let curves = Path::new(env!("CARGO_TARGET_TMPDIR")).join("work_precision.html");
         std::fs::write(&curves, html).expect("the curves are written");
+        std::fs::write(root().join("docs/work_precision.svg"), sheet(&studies))
+            .expect("the picture is written");
         let file = root().join("docs/work_precision.md");
         std::fs::write(file, tables(&studies)).expect("the page is written");
-        println!("docs/work_precision.md, {}", curves.display());
+        println!(
+            "docs/work_precision.md, docs/work_precision.svg, {}",
+            curves.display()
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! Bars of error hold, and are not much wider than the errors: against the reference solutions, by every method.
 //!
-//! The short form of `benches/accuracy.rs`, which prints both for all references and requests.
+//! The short form of `benches/accuracy`, which prints both for all references and requests.
 
 use crate::{requests, running};
 

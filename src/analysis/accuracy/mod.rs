@@ -10,7 +10,7 @@
 //! An error swings through zero as the motion does, so that the difference at one output says
 //! little: eₖ is an envelope along time, which falls to half over H outputs. It grows where errors
 //! grow and falls where they die out. The factor s stands in the table of methods
-//! ([`METHODS`]); `benches/accuracy.rs` measures it on the reference solutions.
+//! ([`METHODS`]); `benches/accuracy` measures it on the reference solutions.
 //!
 //! *Events* have an error in time. Where the two runs have an event at t and t', the outputs within
 //! s |t − t'| of it may lie on the wrong side: their difference is at least that to the outputs
@@ -41,9 +41,12 @@ const HALVING: f64 = 0.03;
 const ROUNDING_OF_CHANNEL: f64 = 64.0;
 /// Rounding of a channel, over ε times the largest value of all channels of its unit.
 const ROUNDING_OF_UNIT: f64 = 4.0;
-/// s of kinematics and statics, whose errors are what an iteration leaves: a slider-crank needs 105
-/// for its accelerations and its torque.
-const SAFETY_AT_REST: f64 = 150.0;
+/// Factors of kinematics and statics. Their errors are rounding, which the companion samples as it
+/// comes to the same places by other steps; no rate carries the same rounding through all outputs.
+const SAFETY_OF_PLACES: Safety = Safety {
+    differences: 8.0,
+    rounding: 0.25,
+};
 /// Largest bar, over the range of values that both runs have.
 const LARGEST_BAR: f64 = 2.0;
 
@@ -80,24 +83,36 @@ pub fn companion_request(error: f64, methods: &[String], has_many_events: bool) 
     }
 }
 
-/// Returns s for the methods that worked.
-pub fn safety(methods: &[String]) -> f64 {
+/// Factors that make bars of what is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Safety {
+    /// s
+    pub differences: f64,
+    /// factor of the rounding of a channel
+    pub rounding: f64,
+}
+
+/// Returns the factors for the methods that worked.
+pub fn safety(methods: &[String]) -> Safety {
     let rows = METHODS
         .iter()
         .filter(|m| methods.iter().any(|n| n == m.name));
     let largest = rows.map(|m| m.safety).fold(0.0, f64::max);
     if largest > 0.0 {
-        largest
+        Safety {
+            differences: largest,
+            rounding: largest,
+        }
     } else {
-        SAFETY_AT_REST
+        SAFETY_OF_PLACES
     }
 }
 
 /// A run beside its companion, over the outputs of one simulation.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
-    /// s
-    pub safety: f64,
+    /// factors
+    pub safety: Safety,
     /// times of the outputs, in s
     pub times: &'a [f64],
     /// the output of the companion that belongs to each
@@ -140,7 +155,7 @@ impl Comparison<'_> {
             .zip(&unknown)
             .map(|(e, unknown)| match unknown {
                 true => f64::NAN,
-                false => (self.safety * e).min(most) + self.safety * floor,
+                false => (self.safety.differences * e).min(most) + self.safety.rounding * floor,
             })
             .collect();
         let is_lost = |bar: &f64| bar.is_nan() || *bar >= range;
@@ -170,14 +185,14 @@ impl Comparison<'_> {
     /// Raises differences at outputs that may lie on the other side of an event.
     fn blur_at_events(&self, values: &[f64], differences: &mut [f64]) {
         for event in self.shifts {
-            let reach = self.safety * event.shift;
+            let reach = self.safety.differences * event.shift;
             let from = self.times.partition_point(|&t| t < event.t - reach);
             let to = self.times.partition_point(|&t| t <= event.t + reach);
             for k in from..to {
                 let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
                 let jumps = beside.filter_map(|l| Some((values[k] - values.get(l)?).abs()));
                 let jump = jumps.fold(0.0, f64::max);
-                differences[k] = differences[k].max(jump / self.safety);
+                differences[k] = differences[k].max(jump / self.safety.differences);
             }
         }
     }
@@ -224,7 +239,10 @@ mod tests {
             .map(|k| (k < others.len()).then_some(k))
             .collect();
         let comparison = Comparison {
-            safety: 4.0,
+            safety: Safety {
+                differences: 4.0,
+                rounding: 4.0,
+            },
             times: &times,
             partners: &partners,
             shifts,

@@ -89,6 +89,7 @@ impl Session {
         let mut settings = Settings::of(&self.model.equilibrium);
         settings.error *= self.pace.rest;
         settings.imbalance *= self.pace.rest;
+        settings.pace = self.pace.steps;
         let mut all = Equilibria {
             method: "EQUILIBRIUM".into(),
             ..Equilibria::default()

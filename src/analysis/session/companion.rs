@@ -10,7 +10,7 @@ use crate::analysis::accuracy::{
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
 use crate::diagnostic::Error;
-use crate::results::{ChannelAccuracy, Run, Status};
+use crate::results::{ChannelAccuracy, Kind, Run, Status};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -32,6 +32,8 @@ pub(super) struct Pace {
     longest: f64,
     /// factor of the tolerances of equilibria
     pub rest: f64,
+    /// whether nothing but the columns is asked for: no account of energy, no drift of rows
+    pub columns_alone: bool,
 }
 
 impl Default for Pace {
@@ -40,6 +42,7 @@ impl Default for Pace {
             steps: 1.0,
             longest: f64::INFINITY,
             rest: 1.0,
+            columns_alone: false,
         }
     }
 }
@@ -62,22 +65,23 @@ pub(super) struct Integrated {
     events: Vec<f64>,
     /// whether few steps lie between two events
     has_many_events: bool,
-    /// mean step, in s, where events set the steps
-    step_between_events: Option<f64>,
+    /// mean step, in s, where events or the way of a drive set the steps, and not the request
+    unasked_step: Option<f64>,
 }
 
 impl Integrated {
     /// Takes them from a trajectory.
-    pub(super) fn of(trajectory: &Trajectory, error: f64, span: Span) -> Self {
+    pub(super) fn of(kind: Kind, trajectory: &Trajectory, error: f64, span: Span) -> Self {
         let steps = trajectory.stats.steps as f64;
         let duration = trajectory.t.last().map_or(0.0, |t| t - span.start);
         let at_events = trajectory.limited.events as f64 > SHARE_OF_EVENTS * steps;
+        let is_driven = kind == Kind::Kinematic;
         Integrated {
             methods: trajectory.methods.iter().map(|m| m.1.clone()).collect(),
             error: Some(error),
             events: trajectory.event_times.clone(),
             has_many_events: trajectory.event_times.len() as f64 > EVENTS_OVER_STEPS * steps,
-            step_between_events: (at_events && steps > 0.0).then(|| duration / steps),
+            unasked_step: ((at_events || is_driven) && steps > 0.0).then(|| duration / steps),
         }
     }
 }
@@ -89,21 +93,24 @@ pub(super) struct Begun {
 }
 
 impl Session {
+    /// Returns a companion that begins where the session is.
+    fn new_companion(&self) -> Box<Session> {
+        let mut options = self.options.clone();
+        (options.accuracy, options.repeat) = (false, 1);
+        let mut companion = Session::new(self.model.clone(), &self.run.name, options);
+        companion.hooks.clone_from(&self.hooks);
+        companion.carried.clone_from(&self.carried);
+        companion.folders.clone_from(&self.folders);
+        companion.limit = self.limit;
+        if !companion.hooks.is_empty() && companion.carried.is_none() {
+            companion.choose_columns();
+        }
+        Box::new(companion)
+    }
+
     /// Brings the companion to where the session is, before both simulate.
     pub(super) fn begin_companion(&mut self) -> Begun {
-        let mut companion = self.companion.take().unwrap_or_else(|| {
-            let mut options = self.options.clone();
-            (options.accuracy, options.repeat) = (false, 1);
-            let mut companion = Session::new(self.model.clone(), &self.run.name, options);
-            companion.hooks.clone_from(&self.hooks);
-            companion.carried.clone_from(&self.carried);
-            companion.folders.clone_from(&self.folders);
-            companion.limit = self.limit;
-            if !companion.hooks.is_empty() && companion.carried.is_none() {
-                companion.choose_columns();
-            }
-            Box::new(companion)
-        });
+        let mut companion = (self.companion.take()).unwrap_or_else(|| self.new_companion());
         companion.model.clone_from(&self.model);
         companion.changing.clone_from(&self.changing);
         let begun = Begun {
@@ -118,21 +125,30 @@ impl Session {
     pub(super) fn follow(
         &mut self,
         begun: Begun,
-        simulate: impl FnOnce(&mut Session) -> Result<Status, Error>,
+        mut simulate: impl FnMut(&mut Session) -> Result<Status, Error>,
     ) {
         let Some(mut companion) = self.companion.take() else {
             return;
         };
         let asked = self.last.error.unwrap_or_else(|| self.integration().error);
-        let request = companion_request(asked, &self.last.methods, self.last.has_many_events);
-        companion.options.error = Some(request);
-        companion.pace = Pace {
-            steps: SHORTER_STEPS,
-            longest: (self.last.step_between_events).map_or(f64::INFINITY, |h| SHORTER_STEPS * h),
-            rest: TIGHTER_REST,
-        };
-        let outcome = simulate(&mut companion);
-        let follows = outcome == Ok(self.run.record.status);
+        let mut request = companion_request(asked, &self.last.methods, self.last.has_many_events);
+        let is_first = companion.carried.is_none();
+        self.set_pace(&mut companion, request);
+        let mut follows = simulate(&mut companion) == Ok(self.run.record.status);
+        if !follows && is_first && self.last.error.is_some() {
+            // it stopped where the run came through: one at a larger request, whose difference is
+            // larger than the error
+            let mut other = self.new_companion();
+            other.carried = None;
+            other.changing.clone_from(&self.changing);
+            other.starts = std::mem::take(&mut companion.starts);
+            let larger = asked * (asked / request);
+            self.set_pace(&mut other, larger);
+            if simulate(&mut other) == Ok(self.run.record.status) {
+                (companion, request, follows) = (other, larger, true);
+            }
+        }
+        companion.starts.clear();
         if !follows {
             self.warn(RunWarning::CompanionEnded { request });
         }
@@ -153,6 +169,21 @@ impl Session {
         }
         // one that ended otherwise would begin the next simulation elsewhere
         self.companion = follows.then_some(companion);
+    }
+
+    /// Sets how a companion differs from the session.
+    fn set_pace(&self, companion: &mut Session, request: f64) {
+        companion.options.error = Some(request);
+        companion.pace = Pace {
+            steps: SHORTER_STEPS,
+            longest: (self.last.unasked_step).map_or(f64::INFINITY, |h| SHORTER_STEPS * h),
+            rest: TIGHTER_REST,
+            columns_alone: true,
+        };
+        if companion.carried.is_none() {
+            // both begin in the same configuration
+            companion.columns_program.clone_from(&self.columns_program);
+        }
     }
 
     /// Fills in the bars of the rows of a sequence.

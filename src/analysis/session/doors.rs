@@ -1,7 +1,7 @@
 //! Doors of a session for programs: simulations without hooks, rows as they come, columns that are
 //! named whenever they are wanted, and the way back to the start.
 
-use super::{Analysis, Gaps, Session};
+use super::{Analysis, Gaps, MetStiffness, Session};
 use crate::analysis::system::closures::Hook;
 use crate::analysis::watch::Unwatched;
 use crate::analysis::work_limit::WorkLimit;
@@ -122,6 +122,7 @@ impl Session {
         (self.linear, self.saved) = (Vec::new(), std::collections::BTreeMap::new());
         (self.gaps, self.states) = (Gaps::default(), Vec::new());
         (self.halted, self.used_up) = (false, None);
+        self.stiffness = MetStiffness::default();
         self.limit = self.options.limit.map(WorkLimit::begin);
     }
 

@@ -32,6 +32,7 @@ pub mod state;
 mod state_at_start;
 mod state_values;
 mod states;
+mod stiffness;
 mod stop_reason;
 
 use crate::analysis::linear::{self, Linearization};
@@ -57,6 +58,7 @@ use start::Kept;
 use states::Stretch;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use stiffness::MetStiffness;
 
 /// The kind of a simulation, as SIMULATE asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,6 +157,8 @@ pub struct Session {
     pace: Pace,
     /// the last simulation over time
     last: Integrated,
+    /// stiffness that simulations have met, where the program chooses the method
+    stiffness: MetStiffness,
     /// states of the rows so far, where they are kept
     states: Vec<Stretch>,
     /// assembled starts by their MODE, where they are kept
@@ -206,6 +210,7 @@ impl Session {
             companion: None,
             pace: Pace::default(),
             last: Integrated::default(),
+            stiffness: MetStiffness::default(),
             states: Vec::new(),
             starts: BTreeMap::new(),
         }

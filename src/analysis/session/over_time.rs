@@ -60,7 +60,10 @@ impl Session {
             Some(_) => self.account(&trajectory.energy),
             None => self.account(&seen.balance.driven.flow()),
         }
-        self.last = Integrated::of(&trajectory, settings.error, span);
+        if settings.is_auto() && kind == Kind::Dynamic {
+            self.stiffness.see(&trajectory, span.end - span.start);
+        }
+        self.last = Integrated::of(kind, &trajectory, settings.error, span);
         let last = trajectory.rows.last().cloned();
         let grown = last
             .as_ref()
@@ -92,8 +95,13 @@ impl Session {
         if let (Kind::Kinematic, Some(longest)) = (kind, self.kinematic_hmax()) {
             settings.h_max = self.pace.longest_step(longest);
         }
-        if settings.method == "AUTO" && kind == Kind::Dynamic {
-            settings.first = options::first_method(system, span.end - span.start).into();
+        if settings.is_auto() && kind == Kind::Dynamic {
+            settings.goes_on_stiff = self.stiffness.goes_on();
+            settings.first = match settings.goes_on_stiff {
+                true => "RADAU5",
+                false => options::first_method(system, span.end - span.start),
+            }
+            .into();
         }
         self.prepare_implicit(system, &mut settings);
         settings
@@ -127,7 +135,9 @@ impl Session {
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
         let phase = Phase::begin();
-        system.prepare_energy();
+        if !self.pace.columns_alone {
+            system.prepare_energy();
+        }
         phase.end(&mut self.run.record.seconds, |s| &mut s.record);
         let follows = kind == Kind::Kinematic && !is_integrated(system);
         let mut path = match follows {

@@ -197,7 +197,7 @@ impl Session {
     fn weigh(&mut self, balance: &mut Balance, system: &System, rows: &[Vec<f64>]) {
         let n_rows = system.scene.rows.len();
         let is_driven = system.scene.mode == KINEMATIC;
-        if n_rows == 0 && !is_driven {
+        if n_rows == 0 && !is_driven || self.pace.columns_alone {
             return;
         }
         if self.row_values.is_none() {

@@ -239,10 +239,10 @@ impl Session {
     /// # Errors
     /// The columns among those that the user asked for.
     pub(super) fn columns_program(&mut self, system: &System) -> Result<Program, Vec<Diagnostic>> {
+        self.columns.begin(system.configured(), &system.numbers);
         if let Some(program) = &self.columns_program {
             return Ok(program.clone());
         }
-        self.columns.begin(system.configured(), &system.numbers);
         let (program, complaints) = self.columns.program(system.configured());
         for complaint in complaints {
             let wanted = |text: &str| self.options.columns.iter().any(|column| column == text);

@@ -128,7 +128,7 @@ impl Session {
         Ok(self.compile(mode, &[])?.0)
     }
 
-    /// Compiles the model for a MODE, with VARIABLEs that are inputs, and brings it into its state.
+    /// Brings the model for a MODE, with VARIABLEs that are inputs, into its state.
     pub(super) fn prepare(
         &mut self,
         mode: u32,
@@ -137,9 +137,25 @@ impl Session {
         if let Some(again) = self.again(mode, inputs) {
             return Ok(again);
         }
-        if let Some(begun) = self.rewound(mode, inputs) {
-            return Ok(begun);
+        let (system, assembly) = match self.rewound(mode, inputs) {
+            Some(begun) => begun,
+            None => self.prepare_anew(mode, inputs)?,
+        };
+        // the companion begins where this session does, with the programs that are there
+        let begins = self.carried.is_none() && inputs.is_empty();
+        if let Some(companion) = self.companion.as_mut().filter(|_| begins) {
+            let start = Kept::new(&self.model, mode, system.clone(), assembly.clone());
+            companion.starts.insert(mode, start);
         }
+        Ok((system, assembly))
+    }
+
+    /// Compiles the model, assembles it, and records its programs.
+    fn prepare_anew(
+        &mut self,
+        mode: u32,
+        inputs: &[u32],
+    ) -> Result<(System, Assembly), Vec<Diagnostic>> {
         (self.columns_program, self.row_values) = (None, None);
         self.model.checked()?;
         self.check_closures()?;

@@ -360,7 +360,7 @@ impl Settler<'_> {
                 fastest = fastest.max(rate[v].abs() / unit);
             }
         }
-        if fastest > 0.0 { 0.01 / fastest } else { 1.0 }
+        self.settings.pace * if fastest > 0.0 { 0.01 / fastest } else { 1.0 }
     }
 
     /// Returns the length of a step that is Newton's but for the part of the mass that STABILITY

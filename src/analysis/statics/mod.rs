@@ -71,6 +71,9 @@ pub struct Settings {
     pub asked: bool,
     /// STABILITY: least part of the mass matrix that is added to the stiffness
     pub stability: f64,
+    /// factor of the first step: another one goes another way to the same place, whose last digits
+    /// are others
+    pub pace: f64,
 }
 
 impl Settings {
@@ -89,6 +92,7 @@ impl Settings {
             imbalance: number(settings.imbalance, 1e-4),
             asked: settings.error.is_some() && settings.imbalance.is_some(),
             stability: number(settings.stability, 1e-5),
+            pace: 1.0,
         }
     }
 }

@@ -29,7 +29,9 @@ const SHARE_OF_LARGEST_SPEED: f64 = 0.02;
 const MAX_PROJECTIONS: usize = 8;
 /// Change of positions, rad or units of length, at which a projection has converged.
 const PROJECTED: f64 = 1e-11;
-/// The same where rows have nearly been dependent: the last digits along them are noise.
+/// Change of positions, rad or units of length, that no velocity on the rows feels.
+const ROUNDING_OF_POSITION: f64 = 1e-15;
+/// The same as [`PROJECTED`] where rows have nearly been dependent: the last digits along them are noise.
 const PROJECTED_WEAKLY: f64 = 1e-9;
 /// Change of velocities, over the permitted local error, beyond which putting a state onto rows
 /// that have nearly been dependent is no correction but a jump: it would take energy away.
@@ -73,6 +75,7 @@ impl System {
     /// # Errors
     /// No state on the rows is near.
     pub fn put_on_rows(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        self.recorded.rows.last_change = 0.0;
         let changed = self.mover.normalize(self.scene.layout.state_mut(y).q);
         if self.recorded.rows.clean {
             self.set(t, y);
@@ -87,6 +90,19 @@ impl System {
         let outcome = self.iterate_onto_rows(&mut projection, t, y);
         self.recorded.rows.projection = Some(projection);
         outcome
+    }
+
+    /// Puts a state onto the rows as [`put_on_rows`](Self::put_on_rows) does, with velocities as
+    /// exact as positions: an iteration corrects them before its displacement.
+    ///
+    /// # Errors
+    /// No state on the rows is near.
+    pub fn put_on_rows_exactly(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        self.put_on_rows(t, y)?;
+        if self.recorded.rows.last_change > ROUNDING_OF_POSITION {
+            self.put_on_rows(t, y)?;
+        }
+        Ok(())
     }
 
     /// Lets the next projection depend on nothing that was projected before.
@@ -146,6 +162,7 @@ impl System {
             }
         }
         let rows = &mut self.recorded.rows;
+        rows.last_change = last;
         if rows.were_weak && last < PROJECTED_WEAKLY {
             outcome = Ok(true);
         }

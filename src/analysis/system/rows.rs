@@ -35,6 +35,9 @@ pub(super) struct Rows {
     pub contacts: Vec<usize>,
     /// the last state that was to be projected was on the rows
     pub clean: bool,
+    /// largest change of a position in the last iteration of a projection, made after velocities
+    /// were corrected
+    pub last_change: f64,
     /// rows have nearly been dependent since they were chosen
     pub were_weak: bool,
 }
@@ -54,6 +57,7 @@ impl Rows {
             scales: weights.iter().map(|w| w.sqrt().recip()).collect(),
             contacts: contact_states(&scene),
             clean: false,
+            last_change: 0.0,
             were_weak: false,
         })
     }

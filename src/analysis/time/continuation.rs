@@ -442,7 +442,7 @@ impl Continuation {
 fn close(system: &mut System, node: &mut Node) -> Result<(), Failure> {
     // the same bits whatever was put out before
     system.project_anew();
-    system.put_on_rows(node.t, &mut node.y)?;
+    system.put_on_rows_exactly(node.t, &mut node.y)?;
     if let Some((what, off)) = system.worst_left_out(node.t, &node.y)
         && (off.is_nan() || off > FOLLOWS_TOLERANCE)
     {

@@ -46,7 +46,7 @@ impl<'a> Course<'a> {
             name,
             why: Takeover::Begins,
             restarts: 0,
-            patience: 0,
+            patience: usize::from(options.goes_on_stiff),
             returns: 0,
         }
     }

@@ -16,6 +16,9 @@ pub struct Options {
     pub method: String,
     /// the method that AUTO begins with: see [`first_method`]
     pub first: String,
+    /// whether it begins with an implicit one because the simulation before was stiff at its end:
+    /// then the explicit one tries again when branches change
+    pub goes_on_stiff: bool,
     /// first step
     pub h_initial: Option<f64>,
     /// longest step
@@ -36,6 +39,7 @@ impl Default for Options {
             error: 1e-6,
             method: "AUTO".into(),
             first: "DOP853".into(),
+            goes_on_stiff: false,
             h_initial: None,
             h_max: f64::INFINITY,
             h_min: 0.0,
@@ -48,7 +52,7 @@ impl Default for Options {
 
 impl Options {
     /// Returns whether the program may choose the method.
-    pub(super) fn is_auto(&self) -> bool {
+    pub(in crate::analysis) fn is_auto(&self) -> bool {
         self.method.eq_ignore_ascii_case("AUTO")
     }
 

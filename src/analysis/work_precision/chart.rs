@@ -4,9 +4,9 @@ use super::page::escaped;
 use std::fmt::Write as _;
 
 /// Width and height of a chart, in px.
-const SIZE: [f64; 2] = [560.0, 380.0];
+pub(super) const SIZE: [f64; 2] = [560.0, 380.0];
 /// Space for axes on the left, at the top, on the right, at the bottom, in px.
-const MARGIN: [f64; 4] = [64.0, 14.0, 16.0, 48.0];
+pub(super) const MARGIN: [f64; 4] = [64.0, 14.0, 16.0, 48.0];
 /// Most decades that have a label each.
 const LABELLED: i32 = 9;
 

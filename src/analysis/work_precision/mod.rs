@@ -5,7 +5,7 @@
 //! survey       which runs, in which order, and which are left out
 //! attempt      one run: its results and its cost        profile   where solving spends its time
 //! distance     errors between tables of results; the reference and its trust
-//! write        terminal, CSV, JSON      page, chart   one self-contained HTML page
+//! write        terminal, CSV, JSON      page, chart   one self-contained HTML page      sheet   one picture
 //! ```
 //!
 //! The *error* of a run is the difference of its table from the reference, each channel over its
@@ -18,11 +18,13 @@ mod chart;
 mod distance;
 mod page;
 mod profile;
+mod sheet;
 mod survey;
 mod write;
 
 pub use page::page;
 pub use profile::Profile;
+pub use sheet::sheet;
 pub use survey::survey;
 
 use crate::analysis::session;

@@ -33,7 +33,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// Returns the colour of a method: the same on all pages.
-fn colour(method: &str) -> &'static str {
+pub(super) fn colour(method: &str) -> &'static str {
     let place = METHODS.iter().position(|m| m.name == method);
     COLOURS[place.map_or(0, |k| 1 + k) % COLOURS.len()]
 }
@@ -65,8 +65,7 @@ fn section(page: &mut String, study: &Study, wanted: &[f64]) {
     if study.interrupted {
         *page += "<p>The study was interrupted: not all runs were made.</p>\n";
     }
-    let mut methods: Vec<&str> = study.rows.iter().map(|r| r.method.as_str()).collect();
-    methods.dedup();
+    let methods = methods(study);
     *page += "<p class=\"legend\">";
     for method in &methods {
         let _ = write!(
@@ -93,8 +92,15 @@ fn section(page: &mut String, study: &Study, wanted: &[f64]) {
     *page += "</section>\n";
 }
 
+/// Returns the methods of a study, in the order of its runs.
+pub(super) fn methods(study: &Study) -> Vec<&str> {
+    let mut methods: Vec<&str> = study.rows.iter().map(|r| r.method.as_str()).collect();
+    methods.dedup();
+    methods
+}
+
 /// Returns the charts of a study: time over error, error over request.
-fn charts(study: &Study, methods: &[&str]) -> [Chart; 2] {
+pub(super) fn charts(study: &Study, methods: &[&str]) -> [Chart; 2] {
     let trust = study.reference.as_ref().map_or(0.0, Reference::trust);
     let curve = |method: &str, point: &dyn Fn(&Row, f64) -> (f64, f64)| {
         let rows = study.rows.iter().filter(|r| r.method == method);

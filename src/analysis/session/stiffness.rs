@@ -1,0 +1,59 @@
+//! Stiffness that the simulations of a session have met so far: a replay of many short ones begins
+//! each of them with the method that one long simulation would go on with.
+//!
+//! A short simulation may end before it is worth a change of the method. So the steps that
+//! stability held short are counted from one simulation to the next. Whether the implicit method
+//! takes so few steps that these are cheaper is seen in the first simulation that begins with it.
+
+use crate::analysis::trajectory::{Takeover, Trajectory};
+
+/// Steps that stability held short, in simulations one after the other, from which on the next one
+/// begins with an implicit method: about as many as a long simulation spends before it changes.
+const ENOUGH_STEPS: usize = 100;
+/// Steps of the explicit method that cost as much as one of the implicit one, about.
+const STEPS_OF_ONE_IMPLICIT: f64 = 5.0;
+
+/// Stiffness that simulations have met.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct MetStiffness {
+    /// steps of the explicit method that stability held short, in the last simulations
+    limited: usize,
+    /// its steps per second in the last simulation
+    explicit_rate: f64,
+    is_stiff: bool,
+    /// the implicit method has been tried, and was no cheaper
+    is_in_vain: bool,
+}
+
+impl MetStiffness {
+    /// Takes note of a simulation of some duration in which the program chose the methods.
+    pub(super) fn see(&mut self, trajectory: &Trajectory, duration: f64) {
+        let Some((_, name, why)) = trajectory.methods.last() else {
+            return;
+        };
+        let stats = trajectory.stats;
+        let rate = (stats.steps + stats.rejected) as f64 / duration;
+        match why {
+            Takeover::Stiff => self.is_stiff = true,
+            // the stiffness was that of a branch
+            Takeover::Eased | Takeover::Slides => (self.limited, self.is_stiff) = (0, false),
+            Takeover::Begins if name == "DOP853" => {
+                self.explicit_rate = rate;
+                self.limited = match 2 * stats.stability_limited > stats.steps {
+                    true => self.limited + stats.stability_limited,
+                    false => 0,
+                };
+                self.is_stiff = self.limited >= ENOUGH_STEPS;
+            }
+            Takeover::Begins if self.is_stiff && self.limited > 0 => {
+                self.is_in_vain = STEPS_OF_ONE_IMPLICIT * rate > self.explicit_rate;
+            }
+            Takeover::Begins => {}
+        }
+    }
+
+    /// Returns whether the next simulation goes on where it is stiff.
+    pub(super) fn goes_on(self) -> bool {
+        self.is_stiff && !self.is_in_vain
+    }
+}
