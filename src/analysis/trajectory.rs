@@ -177,6 +177,7 @@ impl Trajectory {
         sum.factorizations += more.factorizations;
         sum.newton_iterations += more.newton_iterations;
         sum.below_rounding += more.below_rounding;
+        sum.at_edge += more.at_edge;
         sum.stability_limited += more.stability_limited;
     }
 }

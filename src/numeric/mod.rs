@@ -338,6 +338,9 @@ pub struct Stats {
     pub below_rounding: usize,
     /// accepted steps that stability, not accuracy, held short
     pub stability_limited: usize,
+    /// accepted steps of an explicit method at the edge of its stability region or beyond it, be
+    /// they few in a row
+    pub at_edge: usize,
 }
 
 /// The contract of a method for problems of type `P`.

@@ -493,6 +493,7 @@ impl Dop853 {
         if self.h_lambda > STABILITY_EDGE {
             self.beyond_edge += 1;
             self.within_edge = 0;
+            self.stats.at_edge += 1;
         } else {
             self.within_edge += 1;
             if self.within_edge >= CALM_STEPS {

@@ -179,3 +179,47 @@ fn what_is_prescribed_is_known_to_rounding() {
         );
     }
 }
+
+/// The further run goes there by other steps: the same steps would have the same rounding.
+#[test]
+fn bars_of_kinematics_are_those_of_rounding() {
+    let all = samples("slider_crank_kin", "AUTO", 1e-3);
+    let missed: Vec<_> = all.iter().filter(|(error, bar)| error > bar).collect();
+    assert!(100 * missed.len() <= all.len(), "{missed:?}");
+    let mut widths: Vec<f64> = all.iter().map(|(e, bar)| bar / e.max(1e-16)).collect();
+    widths.sort_by(f64::total_cmp);
+    assert!(widths[widths.len() / 2] <= 30.0);
+}
+
+#[test]
+fn bars_of_an_equilibrium_hold_whatever_tolerance_is_asked_for() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/references");
+    let text = std::fs::read_to_string(file.join("static_hanging_chain.adm")).unwrap();
+    let table = csv::read(&std::fs::read(file.join("static_hanging_chain.csv")).unwrap()).unwrap();
+    let columns: Vec<String> = (1..20).map(|k| format!("DY({},1)", 22 + 2 * k)).collect();
+    let exact = &table.column("y").unwrap()[1..20];
+    for request in [1e-2, 1e-6, 1e-10] {
+        let mut model = Model::from_text(&text).unwrap();
+        (model.equilibrium.error, model.equilibrium.imbalance) = (Some(request), Some(request));
+        let options = Options {
+            columns: columns.clone(),
+            accuracy: true,
+            ..Options::default()
+        };
+        let mut s = begin(model, "chain", options);
+        go(&mut s, Analysis::Static, 0.0, 1);
+        for (column, exact) in columns.iter().zip(exact) {
+            let last = |name: &str| values(&s, name).last().copied().unwrap();
+            let (y, bar) = (last(column), last(&format!("{column}±")));
+            assert!((y - exact).abs() <= bar, "{column}: {y} ± {bar}, {exact}");
+            assert!(bar < 1e-9, "{column}: {bar}");
+        }
+    }
+}
+
+/// Where the further run stops, another one is made at a larger request.
+#[test]
+fn numbers_have_bars_where_a_smaller_request_is_too_small() {
+    let all = samples("a02_nfourbar_2", "RADAU5", 1e-7);
+    assert!(all.iter().all(|(error, bar)| error <= bar));
+}

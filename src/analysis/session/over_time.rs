@@ -99,7 +99,7 @@ impl Session {
             settings.goes_on_stiff = self.stiffness.goes_on();
             settings.first = match settings.goes_on_stiff {
                 true => "RADAU5",
-                false => options::first_method(system, span.end - span.start),
+                false => options::first_method(system, span.end - self.stiffness.since(span.start)),
             }
             .into();
         }

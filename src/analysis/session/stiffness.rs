@@ -2,20 +2,26 @@
 //! each of them with the method that one long simulation would go on with.
 //!
 //! A short simulation may end before it is worth a change of the method. So the steps that
-//! stability held short are counted from one simulation to the next. Whether the implicit method
-//! takes so few steps that these are cheaper is seen in the first simulation that begins with it.
+//! stability held short are counted from one simulation to the next, and the first method is chosen
+//! for all the time since the first simulation. Whether the implicit method takes so few steps that
+//! these are cheaper is seen in the first simulation that begins with it.
 
 use crate::analysis::trajectory::{Takeover, Trajectory};
 
 /// Steps that stability held short, in simulations one after the other, from which on the next one
 /// begins with an implicit method: about as many as a long simulation spends before it changes.
 const ENOUGH_STEPS: usize = 100;
+/// Share of the steps of a simulation that stability holds short from which on it is stiff: each
+/// begins with shorter ones, and every other one is shorter than the edge permits.
+const LEAST_SHARE: f64 = 0.25;
 /// Steps of the explicit method that cost as much as one of the implicit one, about.
 const STEPS_OF_ONE_IMPLICIT: f64 = 5.0;
 
 /// Stiffness that simulations have met.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct MetStiffness {
+    /// when the first simulation began, in s
+    began: Option<f64>,
     /// steps of the explicit method that stability held short, in the last simulations
     limited: usize,
     /// its steps per second in the last simulation
@@ -39,17 +45,24 @@ impl MetStiffness {
             Takeover::Eased | Takeover::Slides => (self.limited, self.is_stiff) = (0, false),
             Takeover::Begins if name == "DOP853" => {
                 self.explicit_rate = rate;
-                self.limited = match 2 * stats.stability_limited > stats.steps {
-                    true => self.limited + stats.stability_limited,
+                let is_held_short = stats.at_edge as f64 > LEAST_SHARE * stats.steps as f64;
+                self.limited = match is_held_short {
+                    true => self.limited + stats.at_edge,
                     false => 0,
                 };
                 self.is_stiff = self.limited >= ENOUGH_STEPS;
             }
-            Takeover::Begins if self.is_stiff && self.limited > 0 => {
-                self.is_in_vain = STEPS_OF_ONE_IMPLICIT * rate > self.explicit_rate;
+            Takeover::Begins => {
+                let explicit = self.explicit_rate;
+                self.is_in_vain |= explicit > 0.0 && STEPS_OF_ONE_IMPLICIT * rate > explicit;
             }
-            Takeover::Begins => {}
         }
+    }
+
+    /// Returns the time from which on a method is chosen for a simulation that begins at `start`.
+    pub(super) fn since(&mut self, start: f64) -> f64 {
+        let began = *self.began.get_or_insert(start);
+        if self.is_in_vain { start } else { began }
     }
 
     /// Returns whether the next simulation goes on where it is stiff.
