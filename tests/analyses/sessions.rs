@@ -258,3 +258,30 @@ fn a_session_goes_to_another_thread_and_back() {
     }
     assert_eq!(bits(&s), bits(&alone));
 }
+
+/// Each simulation is too short to be worth a change of the method: together they are not.
+#[test]
+fn a_replay_of_short_simulations_takes_the_method_of_a_long_one() {
+    let text = include_str!("../data/references/stiff_bushing.adm");
+    let run = |simulations: u32| {
+        let options = Options {
+            columns: vec!["DX(2,1)".to_string()],
+            error: Some(1e-4),
+            ..Options::default()
+        };
+        let mut s = begin(whole(text), "stiff", options);
+        for k in 1..=simulations {
+            let end = 0.4 * f64::from(k) / f64::from(simulations);
+            assert_eq!(s.run_to(Analysis::Dynamic, end, 1), Ok(Status::Completed));
+        }
+        s
+    };
+    let (short, long) = (run(200), run(1));
+    let last = |s: &Session| s.run.column("DX(2,1)").and_then(|x| x.last().copied());
+    let [a, b] = [&short, &long].map(|s| last(s).expect("a place"));
+    assert!((a - b).abs() < 1e-6, "{a} {b}");
+    assert_eq!(long.run.record.simulations[0].method, "RADAU5");
+    let simulations = &short.run.record.simulations;
+    assert_eq!(simulations[0].method, "DOP853");
+    assert_eq!(simulations[199].method, "RADAU5");
+}
