@@ -5,6 +5,7 @@ use crate::samples::Samples;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::{Analysis, Options, Session};
 use cognate::analysis::watch::Unwatched;
+use cognate::analysis::work_limit::ProcessorClock;
 use cognate::dataset::command::{Script, Step};
 use cognate::model::Model;
 use cognate::results::{Run, Status, csv};
@@ -161,12 +162,15 @@ impl Problem {
             accuracy: true,
             ..Options::default()
         };
+        let clock = ProcessorClock::start();
         let mut session = Session::new(model, &self.name, options);
         let status = match self.kind {
             Kind::Static => session.simulate(Analysis::Static, 0.0, 1, &mut Unwatched),
             _ => obey(&mut session, &self.steps, |_, _| (), &mut Unwatched),
         };
-        (status == Ok(Status::Completed)).then(|| self.compared(&session.run))
+        // a further run that had no time left says nothing
+        let is_judged = status == Ok(Status::Completed) && clock.seconds() < limit;
+        is_judged.then(|| self.compared(&session.run))
     }
 
     fn compared(&self, run: &Run) -> Samples {

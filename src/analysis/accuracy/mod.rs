@@ -12,8 +12,8 @@
 //! grow and falls where they die out. The factor s stands in the table of methods
 //! ([`METHODS`]); `benches/accuracy` measures it on the reference solutions.
 //!
-//! Times are rounded numbers, too: a bar is at least the change of its channel within the last digit
-//! of the time.
+//! Times are rounded numbers, too: a bar is at least the change of its channel within the last
+//! digit of the time.
 //!
 //! *Events* have an error in time. Where the two runs have an event at t and t', the outputs within
 //! s |t − t'| of it may lie on the wrong side: their difference is at least that to the outputs

@@ -31,7 +31,8 @@ const MAX_PROJECTIONS: usize = 8;
 const PROJECTED: f64 = 1e-11;
 /// Change of positions, rad or units of length, that no velocity on the rows feels.
 const ROUNDING_OF_POSITION: f64 = 1e-15;
-/// The same as [`PROJECTED`] where rows have nearly been dependent: the last digits along them are noise.
+/// The same as [`PROJECTED`] where rows have nearly been dependent: the last digits along them are
+/// noise.
 const PROJECTED_WEAKLY: f64 = 1e-9;
 /// Change of velocities, over the permitted local error, beyond which putting a state onto rows
 /// that have nearly been dependent is no correction but a jump: it would take energy away.

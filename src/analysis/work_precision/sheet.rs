@@ -1,5 +1,5 @@
-//! Studies as one SVG picture: a small chart of time over error for each, for pages that cannot show
-//! HTML.
+//! Studies as one SVG picture: a small chart of time over error for each, for pages that cannot
+//! show HTML.
 
 use super::page::{charts, colour, escaped, methods};
 use super::{Study, chart};
