@@ -61,16 +61,12 @@ pub fn run(args: &Args) -> Outcome {
     if out.is_empty() {
         out.push(PathBuf::from(format!("{}.html", run.name)));
     }
-    let mut pictured = pictured(&model, &run, &folders)?;
+    let pictured = pictured(&model, &run, &folders)?;
     #[cfg(feature = "geometry")]
-    if args.interference {
-        pictured.overlaps = super::interference::overlaps(&model, &run, &folders)?;
-        if pictured.overlaps.is_empty() {
-            remark("no solids overlap");
-        }
-    }
-    #[cfg(not(feature = "geometry"))]
-    let _ = &mut pictured;
+    let pictured = match args.interference {
+        true => marked(pictured, &model, &run, &folders)?,
+        false => pictured,
+    };
     for file in &out {
         if has_ending(file, "glb") {
             results::write_bytes(file, &glb::glb(&pictured))?;
@@ -87,6 +83,24 @@ pub fn run(args: &Args) -> Outcome {
         run::exit(run.record.status)
     } else {
         Exit::Done
+    })
+}
+
+/// Marks where solids overlap; says so where none do.
+#[cfg(feature = "geometry")]
+fn marked(
+    pictured: Pictured,
+    model: &Model,
+    run: &Run,
+    folders: &[PathBuf],
+) -> Result<Pictured, Failure> {
+    let overlaps = super::interference::overlaps(model, run, folders)?;
+    if overlaps.is_empty() {
+        remark("no solids overlap");
+    }
+    Ok(Pictured {
+        overlaps,
+        ..pictured
     })
 }
 

@@ -28,7 +28,7 @@ pub struct Args {
     /// Time of the configuration: the nearest output; without it the last one
     #[arg(long, value_name = "TIME")]
     at: Option<f64>,
-    /// File to write: .svg, .png or .pdf; without it NAME.svg, here
+    /// File to write: .svg, .png or .pdf; without it NAME_drawing.svg, here
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Names that are written
@@ -95,7 +95,8 @@ pub fn run(args: &Args) -> Outcome {
     }
     let pictured = pictured(&model, &run, &folders)?;
     let out = args.out.clone();
-    let out = out.unwrap_or_else(|| PathBuf::from(format!("{}.svg", run.name)));
+    // NAME.svg is the picture of the requests of a run
+    let out = out.unwrap_or_else(|| PathBuf::from(format!("{}_drawing.svg", run.name)));
     let times = &pictured.track.times;
     let last = times.len() - 1;
     let row = args.at.map_or(last, |at| nearest(times, at));
