@@ -10,6 +10,7 @@
 //! after one blank, and may touch.
 
 use super::format::TableText;
+use super::number::{exponential, push_column};
 use super::{Component, Entity, Kind, Run, Units, component_unit, malformed, number};
 use crate::diagnostic::Diagnostic;
 use std::ops::Range;
@@ -234,26 +235,12 @@ pub(super) fn code_of_units(units: &Units) -> String {
     )
 }
 
-/// Prints a number as FORTRAN's E format does: one digit before the point, a signed exponent of at
-/// least two digits.
-pub(super) fn exponential(x: f64, decimals: usize) -> String {
-    let text = format!("{x:.decimals$E}");
-    let Some((mantissa, exponent)) = text.split_once('E') else {
-        return text;
-    };
-    let (sign, digits) = match exponent.strip_prefix('-') {
-        Some(digits) => ('-', digits),
-        None => ('+', exponent),
-    };
-    format!("{mantissa}E{sign}{digits:0>2}")
-}
-
 /// Appends numbers in columns of 13 characters after one blank, as a line.
 pub(super) fn put_line(values: impl IntoIterator<Item = f64>, text: &mut Vec<u8>) {
     text.push(b' ');
     for x in values {
         let x = if x.is_finite() { x } else { 0.0 };
-        text.extend_from_slice(format!("{:>13}", exponential(x, 5)).as_bytes());
+        push_column(x, text);
     }
     text.push(b'\n');
 }
@@ -373,18 +360,6 @@ two parts and a force
         assert_eq!((&back.units, &back.title), (&run.units, &run.title));
         for (a, b) in run.columns.iter().zip(&back.columns) {
             assert_eq!((&a.name, &a.values), (&b.name, &b.values));
-        }
-    }
-
-    #[test]
-    fn exponents_have_a_sign_and_two_digits() {
-        let cases = [
-            (0.0, "0.00000E+00"),
-            (-5.0287, "-5.02870E+00"),
-            (1e-100, "1.00000E-100"),
-        ];
-        for (x, text) in cases {
-            assert_eq!(exponential(x, 5), text);
         }
     }
 

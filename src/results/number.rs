@@ -40,6 +40,131 @@ pub fn push_digits(x: f64, text: &mut Vec<u8>) {
     }
 }
 
+/// Prints a number as FORTRAN's E format does: one digit before the point, a signed exponent of at
+/// least two digits.
+pub(super) fn exponential(x: f64, decimals: usize) -> String {
+    let text = format!("{x:.decimals$E}");
+    let Some((mantissa, exponent)) = text.split_once('E') else {
+        return text;
+    };
+    let (sign, digits) = match exponent.strip_prefix('-') {
+        Some(digits) => ('-', digits),
+        None => ('+', exponent),
+    };
+    format!("{mantissa}E{sign}{digits:0>2}")
+}
+
+/// Digits behind the point of numbers in columns.
+const DECIMALS: usize = 5;
+
+/// Width of a column of numbers.
+const COLUMN: usize = 13;
+
+/// Appends a finite number as [`exponential`] prints it with five decimals, on the right of a
+/// column of 13 characters.
+///
+/// The shortest digits of the number round to the same six as the number itself, unless a single 5
+/// follows these: a tie would otherwise be a shorter number that reads back as the same. Numbers
+/// with fewer digits than that, next to zero, are rounded exactly.
+pub(super) fn push_column(x: f64, text: &mut Vec<u8>) {
+    let mut buffer = zmij::Buffer::new();
+    let rounded = match x.is_subnormal() {
+        true => None,
+        false => Decimal::rounded(buffer.format(x).as_bytes()),
+    };
+    let Some(Decimal { digits, exponent }) = rounded else {
+        let text_of_tie = format!("{:>COLUMN$}", exponential(x, DECIMALS));
+        text.extend_from_slice(text_of_tie.as_bytes());
+        return;
+    };
+    let size = exponent.unsigned_abs();
+    let width = DECIMALS + 6 + usize::from(x.is_sign_negative()) + usize::from(size > 99);
+    text.resize(text.len() + COLUMN.saturating_sub(width), b' ');
+    if x.is_sign_negative() {
+        text.push(b'-');
+    }
+    text.extend_from_slice(&[b'0' + digits[0], b'.']);
+    text.extend(digits[1..].iter().map(|d| b'0' + d));
+    text.extend_from_slice(&[b'E', if exponent < 0 { b'-' } else { b'+' }]);
+    if size > 99 {
+        text.push(b'0' + (size / 100) as u8);
+    }
+    text.extend_from_slice(&[b'0' + (size / 10 % 10) as u8, b'0' + (size % 10) as u8]);
+}
+
+/// A number as digits, the first of which stands before the point, and a power of ten.
+struct Decimal {
+    digits: [u8; DECIMALS + 1],
+    exponent: i32,
+}
+
+impl Decimal {
+    /// Rounds digits such as `-12.5` or `1e-7`; `None` where they end in the middle between two
+    /// results.
+    fn rounded(text: &[u8]) -> Option<Self> {
+        let mut digits = [0; DECIMALS + 1];
+        // digits that are met from the first that is not zero on; those before the point
+        let (mut n, mut exponent, mut has_point) = (0, -1, false);
+        let (mut next, mut n_further) = (0, 0);
+        let mut letters = text.iter();
+        for &c in letters.by_ref() {
+            match c {
+                b'.' => has_point = true,
+                b'0'..=b'9' => {
+                    n += usize::from(n > 0 || c != b'0');
+                    exponent += match (has_point, n) {
+                        (true, 0) => -1,
+                        (true, _) => 0,
+                        (false, 0) => 0,
+                        (false, _) => 1,
+                    };
+                    match n {
+                        0 => {}
+                        1..=6 => digits[n - 1] = c - b'0',
+                        7 => next = c,
+                        _ => n_further += usize::from(c != b'0'),
+                    }
+                }
+                b'e' => break,
+                _ => {}
+            }
+        }
+        if n == 0 {
+            exponent = 0;
+        }
+        let (mut power, mut is_negative) = (0, false);
+        for &c in letters {
+            match c {
+                b'-' => is_negative = true,
+                b'0'..=b'9' => power = 10 * power + i32::from(c - b'0'),
+                _ => {}
+            }
+        }
+        exponent += if is_negative { -power } else { power };
+        if next == b'5' && n_further == 0 {
+            return None;
+        }
+        let mut rounded = Self { digits, exponent };
+        if next >= b'5' {
+            rounded.round_up();
+        }
+        Some(rounded)
+    }
+
+    /// Adds one to the last digit.
+    fn round_up(&mut self) {
+        for digit in self.digits.iter_mut().rev() {
+            *digit += 1;
+            if *digit < 10 {
+                return;
+            }
+            *digit = 0;
+        }
+        self.digits[0] = 1;
+        self.exponent += 1;
+    }
+}
+
 /// Writes a number for reading: six digits, without the noise of rounding behind them.
 pub fn digits_of_six(x: f64) -> String {
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
@@ -69,6 +194,72 @@ mod tests {
     fn six_digits_have_no_noise() {
         let written = [0.95 + 1e-16, -8.106, 0.1 + 0.2, 1e-7 / 3.0, 2e6, -0.0].map(digits_of_six);
         assert_eq!(written, ["0.95", "-8.106", "0.3", "3.33333e-8", "2e6", "0"]);
+    }
+
+    #[test]
+    fn exponents_have_a_sign_and_two_digits() {
+        let cases = [
+            (0.0, "0.00000E+00"),
+            (-5.0287, "-5.02870E+00"),
+            (1e-100, "1.00000E-100"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(exponential(x, 5), text);
+        }
+    }
+
+    #[test]
+    fn columns_hold_what_exact_rounding_gives() {
+        let same = |x: f64| {
+            let mut text = Vec::new();
+            push_column(x, &mut text);
+            let exact = format!("{:>13}", exponential(x, 5));
+            assert_eq!(String::from_utf8_lossy(&text), exact, "{x:?}");
+        };
+        // ties, carries, ends of the range, zeros
+        let odd = [
+            0.0,
+            1.0,
+            10.0,
+            1234565.0,
+            1234575.0,
+            0.1234565,
+            1.234565,
+            9.999995,
+            99999.95,
+            999999.5,
+            999999.4,
+            5e-324,
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            1e-5,
+            9.9e-5,
+            1e15,
+            1e16,
+            123456789e9,
+            1e99,
+            9.999999e99,
+            1e-99,
+            9.999999e-100,
+            4.5,
+            0.5,
+        ];
+        odd.into_iter()
+            .for_each(|x| [x, -x].into_iter().for_each(same));
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        for k in 0..20_000 {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            let few = (bits % 10_000_000) as f64;
+            let usual = few * f64::powi(10.0, k % 45 - 25);
+            let tie = (10.0 * few.trunc() + 5.0) / f64::powi(2.0, k % 30);
+            let any = f64::from_bits(bits);
+            [any, usual, -usual, tie]
+                .into_iter()
+                .filter(|x| x.is_finite())
+                .for_each(same);
+        }
     }
 
     #[test]
