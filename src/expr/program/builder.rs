@@ -24,6 +24,44 @@ pub enum Folding {
     Structural,
 }
 
+/// The result of an operation of a number and a value of which nothing need be recorded.
+pub(super) enum Trivial {
+    /// a number, whatever the value is
+    Number(f64),
+    /// the value itself
+    Operand,
+}
+
+impl Folding {
+    /// Returns the result of `c op x` where that is `x` or a number, whatever `x` is.
+    #[inline]
+    pub(super) fn number_before(self, op: BinaryOp, c: f64) -> Option<Trivial> {
+        use BinaryOp::{Add, Along, Div, Mul};
+        let is_zero = c == 0.0 && self == Folding::Structural;
+        match op {
+            Add if is_zero || c == 0.0 && c.is_sign_negative() => Some(Trivial::Operand),
+            Mul if c == 1.0 => Some(Trivial::Operand),
+            Mul | Div | Along if is_zero => Some(Trivial::Number(0.0)),
+            _ => None,
+        }
+    }
+
+    /// Returns the result of `x op c` where that is `x` or a number, whatever `x` is.
+    #[inline]
+    pub(super) fn number_behind(self, op: BinaryOp, c: f64) -> Option<Trivial> {
+        use BinaryOp::{Add, Div, Kept, Mul, Sub};
+        let is_zero = c == 0.0 && self == Folding::Structural;
+        match op {
+            Add if is_zero || c == 0.0 && c.is_sign_negative() => Some(Trivial::Operand),
+            Sub if is_zero || c == 0.0 && c.is_sign_positive() => Some(Trivial::Operand),
+            Mul | Div if c == 1.0 => Some(Trivial::Operand),
+            Mul if is_zero => Some(Trivial::Number(0.0)),
+            Kept if c.is_finite() => Some(Trivial::Operand),
+            _ => None,
+        }
+    }
+}
+
 /// Records a program.
 #[derive(Debug)]
 pub struct Builder {
@@ -164,27 +202,22 @@ impl Builder {
         ca: Option<f64>,
         cb: Option<f64>,
     ) -> Option<Value> {
-        use BinaryOp::{Add, Along, Div, Kept, Mul, Pow, Sub};
+        use BinaryOp::{Div, Mul, Pow, Sub};
         let structural = self.folding == Folding::Structural;
-        let minus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_negative);
-        let plus_zero = |c: Option<f64>| c == Some(0.0) && c.is_some_and(f64::is_sign_positive);
+        let before = ca.and_then(|c| Some((b, self.folding.number_before(op, c)?)));
+        let behind = || cb.and_then(|c| Some((a, self.folding.number_behind(op, c)?)));
+        match before.or_else(behind) {
+            Some((operand, Trivial::Operand)) => return Some(operand),
+            Some((_, Trivial::Number(c))) => return Some(self.constant(c)),
+            None => {}
+        }
         match op {
-            Add if minus_zero(cb) || structural && cb == Some(0.0) => return Some(a),
-            Add if minus_zero(ca) || structural && ca == Some(0.0) => return Some(b),
-            Sub if plus_zero(cb) || structural && cb == Some(0.0) => return Some(a),
-            Sub if minus_zero(ca) || structural && ca == Some(0.0) => {
+            Sub if ca == Some(0.0) && (structural || ca.is_some_and(f64::is_sign_negative)) => {
                 return Some(self.unary(UnaryOp::Neg, b));
             }
             Sub if structural && a == b => return Some(self.constant(0.0)),
-            Mul | Div if cb == Some(1.0) => return Some(a),
             Mul | Div if cb == Some(-1.0) => return Some(self.unary(UnaryOp::Neg, a)),
-            Mul if ca == Some(1.0) => return Some(b),
             Mul if ca == Some(-1.0) => return Some(self.unary(UnaryOp::Neg, b)),
-            Mul if structural && (ca == Some(0.0) || cb == Some(0.0)) => {
-                return Some(self.constant(0.0));
-            }
-            Div | Along if structural && ca == Some(0.0) => return Some(self.constant(0.0)),
-            Kept if cb.is_some_and(f64::is_finite) => return Some(a),
             Div if structural && a == b => return Some(self.constant(1.0)),
             // a power of two divides as its reciprocal multiplies, to the bit
             Div if cb.is_some_and(is_power_of_two) => {

@@ -1,7 +1,7 @@
 //! A number that records what is done to it: any formula generic over `Scalar` becomes part of a
 //! program by running once.
 
-use super::builder::Builder;
+use super::builder::{Builder, Trivial};
 use super::input::Input;
 use super::node::Value;
 use super::operation::{BinaryOp, Comparison, UnaryOp, unary_operations};
@@ -61,15 +61,33 @@ impl<'b> Sym<'b> {
     fn binary(self, op: BinaryOp, other: Self) -> Self {
         match (self, other) {
             (Sym::Constant(a), Sym::Constant(b)) => Sym::Constant(op.apply(a, b)),
-            (Sym::Recorded(_, builder), _) | (_, Sym::Recorded(_, builder)) => {
-                let recorder = &mut *builder.borrow_mut();
-                let (a, b) = (self.value(recorder), other.value(recorder));
-                let value = recorder.binary(op, a, b);
-                match recorder.constant_of(value) {
-                    Some(c) => Sym::Constant(c),
-                    None => Sym::Recorded(value, builder),
+            // most operations of recorded physics are with zeros and ones
+            (Sym::Constant(c), Sym::Recorded(_, builder)) => {
+                let folding = builder.borrow().folding();
+                match folding.number_before(op, c) {
+                    Some(Trivial::Operand) => other,
+                    Some(Trivial::Number(c)) => Sym::Constant(c),
+                    None => self.recorded(op, other, builder),
                 }
             }
+            (Sym::Recorded(_, builder), Sym::Constant(c)) => {
+                let folding = builder.borrow().folding();
+                match folding.number_behind(op, c) {
+                    Some(Trivial::Operand) => self,
+                    Some(Trivial::Number(c)) => Sym::Constant(c),
+                    None => self.recorded(op, other, builder),
+                }
+            }
+            (Sym::Recorded(_, builder), Sym::Recorded(..)) => self.recorded(op, other, builder),
+        }
+    }
+    fn recorded(self, op: BinaryOp, other: Self, builder: &'b RefCell<Builder>) -> Self {
+        let recorder = &mut *builder.borrow_mut();
+        let (a, b) = (self.value(recorder), other.value(recorder));
+        let value = recorder.binary(op, a, b);
+        match recorder.constant_of(value) {
+            Some(c) => Sym::Constant(c),
+            None => Sym::Recorded(value, builder),
         }
     }
     fn compare(self, comparison: Comparison, other: Self) -> Condition<'b> {
