@@ -84,7 +84,7 @@ impl<S: Scalar> Equations<'_, S> {
 
     pub(super) fn solve(&self) -> Solved<S> {
         let scene = self.scene;
-        let (mut wrenches, actions) = self.loads();
+        let (wrenches, actions) = self.loads();
         let bias = sweep::inward(scene, &self.links, self.gravity(), &wrenches);
         let mut f: Vec<S> = scene
             .freedoms
@@ -113,31 +113,44 @@ impl<S: Scalar> Equations<'_, S> {
             }
         };
         let mut lambda = vec![S::zero(); scene.rows.len()];
-        for ((r, row), &l) in rows.iter().zip(&multipliers.x) {
+        for ((r, _), &l) in rows.iter().zip(&multipliers.x) {
             lambda[*r] = l;
-            for (m, action) in &row.actions {
-                let point = self.marker(*m).p_GM;
-                let link = scene.markers[*m].link;
-                sweep::apply(
-                    &mut wrenches,
-                    &self.links,
-                    link,
-                    point,
-                    action.force.times(l),
-                    action.torque.times(l),
-                );
-            }
         }
-        let links = sweep::outward(scene, &self.coordinates(&f));
-        let carried = sweep::inward(scene, &links, self.gravity(), &wrenches);
         Solved {
             vdot: f,
             lambda,
             strength: multipliers.strength,
-            links,
-            carried,
             actions,
+            rows,
+            loads: wrenches,
         }
+    }
+
+    /// Links with all accelerations   (n_links)
+    pub fn accelerated_links(&self) -> &[LinkState<S>] {
+        let vdot = &self.solved().vdot;
+        let links = || sweep::outward(self.scene, &self.coordinates(vdot));
+        self.scratch.accelerated.get_or_init(links)
+    }
+
+    /// Returns what the carrier exerts on each link, in its axes about its origin   (n_links)
+    pub(super) fn carried(&self) -> &[Wrench<S>] {
+        let carried = || {
+            let solved = self.solved();
+            let mut wrenches = solved.loads.clone();
+            for (r, row) in &solved.rows {
+                let l = solved.lambda[*r];
+                for (m, action) in &row.actions {
+                    let point = self.marker(*m).p_GM;
+                    let link = self.scene.markers[*m].link;
+                    let (force, torque) = (action.force.times(l), action.torque.times(l));
+                    sweep::apply(&mut wrenches, &self.links, link, point, force, torque);
+                }
+            }
+            let links = self.accelerated_links();
+            sweep::inward(self.scene, links, self.gravity(), &wrenches)
+        };
+        self.scratch.carried.get_or_init(carried)
     }
 
     /// The factored mass matrix; `None` in kinematics, where masses may be zero and do not matter.
@@ -415,7 +428,7 @@ impl<S: Scalar> Equations<'_, S> {
     }
 }
 
-/// Accelerations and multipliers, and what follows from them.
+/// Accelerations and multipliers, and what they were found from.
 pub struct Solved<S> {
     /// accelerations   (n_v)
     pub vdot: Vec<S>,
@@ -424,10 +437,10 @@ pub struct Solved<S> {
     /// least pivot of the rows as a part of what it usually is: small near a position where rows
     /// become dependent
     pub strength: S,
-    /// links with all accelerations
-    pub links: Vec<LinkState<S>>,
-    /// what the carrier exerts on each link, in the link's axes about its origin
-    pub carried: Vec<Wrench<S>>,
     /// actions of the force elements on their I markers
     pub actions: Vec<Action<S>>,
+    /// the rows that take part
+    rows: Vec<(usize, Rc<RowValue<S>>)>,
+    /// what force elements exert on each link   (n_links)
+    loads: Vec<Wrench<S>>,
 }

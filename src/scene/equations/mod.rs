@@ -220,7 +220,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
         sweep::marker_state(
             &marker,
             if accelerated {
-                &self.solved().links
+                self.accelerated_links()
             } else {
                 &self.links
             },
@@ -234,7 +234,7 @@ impl<'s, S: Scalar> Equations<'s, S> {
 
     /// A marker with all its accelerations.
     pub fn accelerated_marker(&self, m: usize) -> MarkerState<S> {
-        sweep::marker_state(&self.scene.markers[m], &self.solved().links)
+        sweep::marker_state(&self.scene.markers[m], self.accelerated_links())
     }
 
     /// A marker by the user's number, also a floating one of a contact; with accelerations when

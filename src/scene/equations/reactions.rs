@@ -65,7 +65,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// touches): where rows depend on each other, its part of the smallest set.
     pub fn reaction(&self, c: usize) -> Action<S> {
         let solved = self.solved();
-        let own = self.reaction_to(c, &solved.lambda, &solved.carried);
+        let own = self.reaction_to(c, &solved.lambda, self.carried());
         let shares = self.shares().iter();
         shares.fold(own, |sum, share| {
             sum.plus(&share.stress[c].times(share.factor))

@@ -4,6 +4,7 @@ use super::formulas::Opened;
 use super::{RowValue, Share, Solved, Unsupported};
 use crate::scene::Scene;
 use crate::scene::loops::Key;
+use crate::scene::sweep::{LinkState, Wrench};
 use crate::space::MarkerState;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
@@ -18,8 +19,12 @@ pub(super) struct Scratch<S> {
     pub rows: RefCell<Vec<Option<Rc<RowValue<S>>>>>,
     /// formulas being evaluated: a formula that asks for itself is a loop
     pub open: RefCell<Opened>,
-    /// accelerations, multipliers and reactions
+    /// accelerations and multipliers
     pub solved: OnceCell<Solved<S>>,
+    /// links with all accelerations   (n_links)
+    pub accelerated: OnceCell<Vec<LinkState<S>>>,
+    /// what the carrier exerts on each link   (n_links)
+    pub carried: OnceCell<Vec<Wrench<S>>>,
     /// true while loads are found, on which accelerations depend
     pub solving: Cell<bool>,
     /// states of stress that dependent rows permit
@@ -41,6 +46,8 @@ impl<S: Copy> Scratch<S> {
             rows: RefCell::new(vec![None; scene.rows.len()]),
             open: RefCell::new(Opened::none(scene.formulas.len())),
             solved: OnceCell::new(),
+            accelerated: OnceCell::new(),
+            carried: OnceCell::new(),
             solving: Cell::new(false),
             shares: OnceCell::new(),
             discovered: RefCell::default(),

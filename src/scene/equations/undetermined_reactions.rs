@@ -114,7 +114,7 @@ impl<S: Scalar> Equations<'_, S> {
         let factor = SymmetricFactor::new(gram(&rows, &w), &[]);
         let solved = self.solved();
         let base: Vec<Action<S>> = (0..scene.constraints.len())
-            .map(|c| self.reaction_to(c, &solved.lambda, &solved.carried))
+            .map(|c| self.reaction_to(c, &solved.lambda, self.carried()))
             .collect();
         let mut shares: Vec<Share<S>> = left_out
             .into_iter()
