@@ -20,6 +20,7 @@ pub mod connected;
 pub mod control;
 pub mod corrector;
 pub mod dense;
+pub mod eigenvalues;
 pub mod envelope;
 pub mod event;
 pub mod hht;

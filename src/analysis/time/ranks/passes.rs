@@ -1,7 +1,8 @@
 //! Passes: positions at which rows become dependent while the mechanism goes through.
 //!
-//! Between accepted states positions are cubic in time. A minimum of what the rows determine beyond
-//! each other is located by golden sections.
+//! Between accepted states positions are cubic in time. What the rows determine beyond each other
+//! falls and rises on both sides of a pass like the distance from it, so that a pass is located as
+//! a root is, and a minimum that is none is seen to be well above zero after a few looks.
 
 use super::{Gradients, active, gradients, margin, norm, place, weakest};
 use crate::analysis::start::assemble;
@@ -63,7 +64,7 @@ pub fn passes(scene: Configured<'_>, states: &[Option<Vec<f64>>]) -> Vec<Pass> {
             let best = [(before, k), (k, after)]
                 .into_iter()
                 .filter(|(a, b)| a != b)
-                .map(|(a, b)| search.least_between(&run[a], &run[b]))
+                .map(|(a, b)| search.least_between(&run[a], &run[b], [sizes[a], sizes[b]]))
                 .min_by(|a, b| a.1.total_cmp(&b.1));
             let Some((at, size)) = best else { continue };
             let last = found.last();
@@ -216,31 +217,37 @@ impl<'s> Search<'s> {
         all
     }
 
-    /// Finds the state between two others with the smallest margin, by golden sections.
-    fn least_between(&self, a: &[f64], b: &[f64]) -> (Vec<f64>, f64) {
+    /// Finds the state between two others with the smallest margin, as near as it takes to tell a
+    /// pass; `sizes`: the margins of the two.
+    fn least_between(&self, a: &[f64], b: &[f64], sizes: [f64; 2]) -> (Vec<f64>, f64) {
         let look = |s: f64, closed: bool| -> (Vec<f64>, f64) {
             let n = self.between(a, b, s, closed);
             let size = self.margin(&n);
             (n, size)
         };
         // first without closing, which is cheap and near enough to see whether it is worth while
-        let (low, high, rough) = golden(|s| look(s, false).1, (0.0, 1.0), 1e-3);
-        let mut best = (a.to_vec(), rough);
-        if rough > LARGEST_ROUGH_MINIMUM {
+        let ends = [(0.0, sizes[0]), (1.0, sizes[1])];
+        let rough = Valley::between(ends, |s| look(s, false).1);
+        let rough = rough.descended(1e-3, 1e-3, LARGEST_ROUGH_MINIMUM, |s| look(s, false).1);
+        let mut best = (a.to_vec(), rough.least());
+        if rough.least() > LARGEST_ROUGH_MINIMUM {
             return best;
         }
-        let wide = (high - low).max(0.02);
-        golden(
-            |s| {
-                let (n, size) = look(s, true);
-                if size < best.1 || best.1 == rough {
-                    best = (n, size);
-                }
-                size
-            },
-            ((low - wide).max(0.0), (high + wide).min(1.0)),
-            0.01 * DEPENDENT_THERE,
-        );
+        let wide = rough.reach().max(0.02);
+        let ends = [
+            (rough.place() - wide).max(0.0),
+            (rough.place() + wide).min(1.0),
+        ];
+        best.1 = f64::INFINITY;
+        let mut closed = |s: f64| {
+            let (n, size) = look(s, true);
+            if size < best.1 {
+                best = (n, size);
+            }
+            size
+        };
+        let valley = Valley::between(ends.map(|s| (s, closed(s))), &mut closed);
+        valley.descended(0.01 * DEPENDENT_THERE, 1e-12, DEPENDENT_THERE, closed);
         best
     }
 
@@ -265,28 +272,188 @@ impl<'s> Search<'s> {
     }
 }
 
-/// Returns the bracket and the value of a minimum; ends when the value or the bracket is small.
-fn golden(
-    mut f: impl FnMut(f64) -> f64,
-    (mut low, mut high): (f64, f64),
-    enough: f64,
-) -> (f64, f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    let (mut s1, mut s2) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut f1, mut f2) = (f(s1), f(s2));
-    while high - low > 1e-12 && f1.min(f2) > enough {
-        if f1 < f2 {
-            (high, s2, f2) = (s2, s1, f1);
-            s1 = high - GOLDEN * (high - low);
-            f1 = f(s1);
-        } else {
-            (low, s1, f1) = (s1, s2, f2);
-            s2 = low + GOLDEN * (high - low);
-            f2 = f(s2);
-        }
-        if enough > DEPENDENT_THERE && high - low < 1e-3 {
-            break;
+/// Looks at a margin in search of its least value, at most.
+const MOST_LOOKS: usize = 60;
+
+/// Slope of a margin between places that have been looked at, over the steepest between these, at
+/// most.
+const STEEPER: f64 = 6.0;
+
+/// Three places on a way, and the values there of a function that is nowhere negative. Once a
+/// minimum is enclosed the function is least at the middle one.
+#[derive(Clone, Copy)]
+struct Valley {
+    points: [(f64, f64); 3],
+    /// the steepest that the function has been between two places
+    steepest: f64,
+}
+
+impl Valley {
+    /// Lays a place between two others.
+    fn between([low, high]: [(f64, f64); 2], mut f: impl FnMut(f64) -> f64) -> Self {
+        let middle = 0.5 * (low.0 + high.0);
+        let mut valley = Self {
+            points: [low, (middle, f(middle)), high],
+            steepest: 0.0,
+        };
+        valley.note_slopes();
+        valley
+    }
+
+    /// Returns the place where the function is least, and its value there.
+    fn lowest(&self) -> (f64, f64) {
+        let [a, m, b] = self.points;
+        let lower = |x: (f64, f64), y: (f64, f64)| if y.1 < x.1 { y } else { x };
+        lower(lower(m, a), b)
+    }
+
+    fn place(&self) -> f64 {
+        self.lowest().0
+    }
+
+    fn least(&self) -> f64 {
+        self.lowest().1
+    }
+
+    /// Returns how far from its least place the function may vanish, about.
+    fn reach(&self) -> f64 {
+        2.0 * self.least() / self.steepest.max(f64::MIN_POSITIVE)
+    }
+
+    fn note_slopes(&mut self) {
+        for pair in self.points.windows(2) {
+            let slope = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+            self.steepest = self.steepest.max(slope.abs());
         }
     }
-    (low, high, f1.min(f2))
+
+    /// Returns the least that the function may be between the outer places, at slopes up to
+    /// [`STEEPER`] times the steepest that has been seen.
+    fn bound(&self) -> f64 {
+        let of = |pair: &[(f64, f64)]| {
+            let fall = STEEPER * self.steepest * (pair[1].0 - pair[0].0);
+            0.5 * (pair[0].1 + pair[1].1 - fall)
+        };
+        self.points.windows(2).map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Looks at further places until the function is no more than `enough`, the outer places are
+    /// `near` each other, or nothing between them can be as small as `hopeless`.
+    fn descended(
+        mut self,
+        enough: f64,
+        near: f64,
+        hopeless: f64,
+        mut f: impl FnMut(f64) -> f64,
+    ) -> Self {
+        let width = |points: &[(f64, f64); 3]| points[2].0 - points[0].0;
+        let mut by_halves = false;
+        for _ in 0..MOST_LOOKS {
+            let is_open = width(&self.points) > near && self.least() > enough;
+            if !is_open || self.bound().is_nan() || self.bound() > hopeless {
+                break;
+            }
+            let before = width(&self.points);
+            let next = self.root().filter(|_| !by_halves);
+            let next = next.unwrap_or_else(|| self.aside());
+            self.take((next, f(next)));
+            // a root that leaves most of the way on one side is followed by a place on that side
+            by_halves = !by_halves && width(&self.points) > 0.5 * before;
+        }
+        self
+    }
+
+    /// Returns where a function that changes its sign where this one vanishes would be zero: by the
+    /// inverse parabola, the sign of the middle place being the one that makes it straighter.
+    fn root(&self) -> Option<f64> {
+        let [(a, fa), (m, fm), (b, fb)] = self.points;
+        if fa < fm || fb < fm {
+            return None;
+        }
+        let slopes = |fm: f64| [(fm - fa) / (m - a), (-fb - fm) / (b - m)];
+        let bend = |fm: f64| {
+            let [left, right] = slopes(fm);
+            (left - right).abs()
+        };
+        let (g, low, high) = match bend(fm) <= bend(-fm) {
+            true => (fm, m, b),
+            false => (-fm, a, m),
+        };
+        let term = |x: f64, g: f64, [h, k]: [f64; 2]| x * (h / (g - h)) * (k / (g - k));
+        let root = term(a, fa, [g, -fb]) + term(m, g, [fa, -fb]) + term(b, -fb, [fa, g]);
+        let margin = 1e-3 * (high - low).min(self.reach());
+        (root > low + margin && root < high - margin).then_some(root)
+    }
+
+    /// Returns a place on the side of the lower end, or of a minimum on its wider side: as far from
+    /// it as makes sure that it is enclosed.
+    fn aside(&self) -> f64 {
+        const GOLDEN: f64 = 0.381_966_011_250_105;
+        let [(a, fa), (m, fm), (b, fb)] = self.points;
+        let is_enclosed = fm <= fa && fm <= fb;
+        let is_right = if is_enclosed { b - m > m - a } else { fb < fa };
+        let side = if is_right { b - m } else { a - m };
+        let part = match is_enclosed {
+            true => (2.0 * self.reach() / side.abs()).min(GOLDEN),
+            false => 1.0 - GOLDEN,
+        };
+        m + part * side
+    }
+
+    /// Takes up a place between the outer ones.
+    fn take(&mut self, new: (f64, f64)) {
+        let [a, m, b] = self.points;
+        let is_right = new.0 > m.0;
+        // an end that is lower than the middle stays
+        let has_lower_end = if is_right { b.1 < m.1 } else { a.1 < m.1 };
+        self.points = match (is_right, new.1 < m.1 || has_lower_end) {
+            (true, true) => [m, new, b],
+            (true, false) => [a, m, new],
+            (false, true) => [a, new, m],
+            (false, false) => [new, m, b],
+        };
+        self.note_slopes();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the least value found of a function between 0 and 1, and the number of looks.
+    fn least(f: impl Fn(f64) -> f64) -> (f64, usize) {
+        let mut looks = 0;
+        let mut f = |s: f64| {
+            looks += 1;
+            f(s)
+        };
+        let ends = [0.0, 1.0].map(|s| (s, f(s)));
+        let valley = Valley::between(ends, &mut f);
+        let valley = valley.descended(1e-8, 1e-12, 1e-6, &mut f);
+        (valley.least(), looks)
+    }
+
+    #[test]
+    fn a_pass_is_found_wherever_it_is_and_a_near_miss_is_told_soon() {
+        for k in 1..200 {
+            let at = f64::from(k) / 200.0 + 1e-4;
+            let bent = |s: f64| {
+                let x = s - at;
+                x.abs() * (1.0 + 0.5 * (2.0 * x).sin())
+            };
+            let (size, looks) = least(bent);
+            assert!(size <= 1e-8 && looks < 30, "{at}: {size:e} after {looks}");
+            let missed = |s: f64| bent(s).hypot(1e-3);
+            let (size, looks) = least(missed);
+            assert!(size > 9e-4 && looks < 30, "{at}: {size:e} after {looks}");
+        }
+    }
+
+    #[test]
+    fn a_function_that_is_nowhere_small_or_has_no_value_ends_the_search() {
+        assert!(least(|_| 1.0).1 < 60);
+        assert!(least(|s| s).1 < 60);
+        assert!(least(|_| f64::NAN).1 < 60);
+        assert!(least(|_| 0.0).1 < 60);
+    }
 }

@@ -15,11 +15,11 @@ use super::select;
 use crate::analysis::system::System;
 use crate::analysis::time::states::{Cubic, Node};
 use crate::expr::program::{Program, Work};
+use crate::numeric::eigenvalues::eigenvalues;
 use crate::numeric::envelope;
 use crate::scene::configuration::Configured;
 use crate::scene::mover::Mover;
 use crate::scene::programs::{record, weights};
-use nalgebra::linalg::Schur;
 use nalgebra::{DMatrix, DVectorView};
 use std::collections::BTreeMap;
 
@@ -31,8 +31,6 @@ const MAX_JUDGED: usize = 12;
 /// Imaginary part of an eigenvalue that counts as real, over its real part: a turn of the rows by
 /// 150° is not the passage of a singular position.
 const NEARLY_REAL: f64 = 0.5;
-/// Iterations for the eigenvalues of a loop.
-const MAX_SCHUR: usize = 1000;
 /// Violation of a row, relative to what counts as one, beyond which there is no state.
 const GAP: f64 = 1e-12;
 /// Failures to find a state after which there is none: one very near the position may be hard to
@@ -292,10 +290,9 @@ fn has_negative(b: DMatrix<f64>) -> bool {
             false => mean - root < 0.0,
         };
     }
-    Schur::try_new(b, f64::EPSILON, MAX_SCHUR).is_some_and(|schur| {
-        let eigenvalues = schur.complex_eigenvalues();
-        (eigenvalues.iter()).any(|z| z.re < 0.0 && z.im.abs() <= NEARLY_REAL * z.re.abs())
-    })
+    let rows = b.row_iter().map(|row| row.iter().copied().collect());
+    let is_negative = |&(re, im): &(f64, f64)| re < 0.0 && im.abs() <= NEARLY_REAL * re.abs();
+    eigenvalues(rows.collect()).is_some_and(|all| all.iter().any(is_negative))
 }
 
 /// Returns `A Bᵀ` of two matrices with many zeros.
