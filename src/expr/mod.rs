@@ -21,6 +21,7 @@
 //! | | `advice.rs` `foreign.rs` | advice on mistakes; words of other languages |
 //! | | `lint/` | warnings about what is legal but hardly meant |
 //! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | grammars, tree, and back to source |
+//! | | `translate.rs` | expression functions in the language of direct entry |
 //! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
 //! | | `evaluator.rs` | a program with its work space: values, slopes, rates, columns |
@@ -51,6 +52,7 @@ pub mod smoothness;
 pub mod spline;
 mod symbols;
 mod token;
+mod translate;
 pub mod walk;
 
 pub use check::{DEEPEST_NESTING, Limits, MOST_CHARACTERS};

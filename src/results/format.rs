@@ -5,7 +5,7 @@
 //! them.
 
 use super::part_file::{TextSink, WholeSink};
-use super::{Run, csv, gra, json, req, res};
+use super::{Run, csv, gra, json, msg_table, req, res};
 use crate::diagnostic::Diagnostic;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -23,8 +23,10 @@ pub enum Format {
     Json,
     /// positions of parts
     Gra,
-    /// components of requests, written only
+    /// components of requests
     Req,
+    /// steps of the integration in the log, read only
+    Msg,
 }
 
 /// Reads a file from its bytes.
@@ -82,8 +84,14 @@ pub const FORMATS: &[Row] = &[
     Row {
         format: Format::Req,
         name: "req",
-        read: None,
+        read: Some(req::read),
         sink: Some(|_, path| Box::new(TextSink::new(req::Components, path))),
+    },
+    Row {
+        format: Format::Msg,
+        name: "msg",
+        read: Some(msg_table::read),
+        sink: None,
     },
 ];
 

@@ -140,7 +140,7 @@ fn lone_number(line: &str) -> Option<f64> {
 }
 
 /// Reads the numbers of a line of one blank and columns 13 wide.
-fn columns(line: &str) -> Option<Vec<f64>> {
+pub(super) fn columns(line: &str) -> Option<Vec<f64>> {
     let line = line.trim_end();
     let cells = line
         .as_bytes()

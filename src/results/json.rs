@@ -3,7 +3,7 @@
 //! Numbers that are not finite become `null`, as JSON has no word for them.
 
 use super::{
-    Accuracy, ChannelAccuracy, Column, Counts, Energy, Jump, Kind, RankChange, Run, Seconds,
+    Accuracy, ChannelAccuracy, Column, Counts, Energy, Jump, Kind, Loads, RankChange, Run, Seconds,
     Sequence, Simulation, Units, malformed,
 };
 use crate::diagnostic::Diagnostic;
@@ -21,6 +21,7 @@ pub fn record(run: &Run) -> Value {
         "exit_code": r.status.exit_code(),
         "model": r.model,
         "markers": r.markers,
+        "loads": r.loads.as_ref().map(loads),
         "title": run.title,
         "method": r.method,
         "error": r.error,
@@ -108,6 +109,11 @@ fn limited(c: &Counts) -> Value {
         "by_events": share(c.event_limited),
         "by_outputs": share(c.output_limited),
     })
+}
+
+/// Writes the loads that were chosen for a run.
+pub fn loads(l: &Loads) -> Value {
+    json!({ "chosen": l.chosen, "acting": l.acting, "left_out": l.left_out })
 }
 
 fn jump(j: &Jump) -> Value {

@@ -15,6 +15,7 @@ pub mod json;
 pub mod kept;
 mod log;
 pub mod msg;
+pub mod msg_table;
 mod number;
 pub mod output_folder;
 #[cfg(feature = "parquet")]
@@ -32,8 +33,8 @@ pub use file::{read, write, write_bytes, write_text};
 pub use log::Event;
 pub use number::{digits, digits_of_six};
 pub use record::{
-    Accuracy, ChannelAccuracy, Counts, Energy, Jump, Quantity, RankChange, Record, RowChange,
-    Simulation, Status, Warning,
+    Accuracy, ChannelAccuracy, Counts, Energy, Jump, Loads, Quantity, RankChange, Record,
+    RowChange, Simulation, Status, Warning,
 };
 pub use run::{Column, Component, Entity, Kind, Requested, Run, Sequence};
 pub use seconds::Seconds;

@@ -165,6 +165,17 @@ impl Accuracy {
     }
 }
 
+/// The loads that were chosen for a run.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Loads {
+    /// names of load cases and loads, as they were chosen
+    pub chosen: Vec<String>,
+    /// the loads that act
+    pub acting: Vec<String>,
+    /// the loads of the model that do not
+    pub left_out: Vec<String>,
+}
+
 /// The facts about a run, as its JSON record holds them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
@@ -178,6 +189,8 @@ pub struct Record {
     pub model: String,
     /// a text that tells whether a model has the markers of the run
     pub markers: String,
+    /// the loads that were chosen; `None`: all loads of the model act
+    pub loads: Option<Loads>,
     /// the method that integrated, and why, when the program chose
     pub method: String,
     /// requested error

@@ -1,4 +1,4 @@
-//! Writing `.req` files: the components of requests at every output, to six digits.
+//! `.req` files: the components of requests at every output, to six digits.
 //!
 //! Card: a line of identification, the title, a line with the number of requests, the code of the
 //! units and the units of length per metre; per request a line with its number, its kind (1
@@ -8,13 +8,145 @@
 //! of real files; these had no requests, so the lines of requests follow descriptions of the format
 //! and have not been compared.
 
-use super::Run;
 use super::format::TableText;
-use super::gra::{NO_DATE, code_of_units, put_line};
+use super::gra::{NO_DATE, code_of_units, columns, put_line, units_of_code};
+use super::{Component, Entity, Kind, Requested, Run, component_unit, malformed};
+use crate::diagnostic::Diagnostic;
 use std::ops::Range;
 
 /// Places of the components that are written.
 const WRITTEN: [usize; 6] = [1, 2, 3, 5, 6, 7];
+
+/// Components of the kinds of requests: displacement, velocity, acceleration, force, expressions;
+/// those of [`WRITTEN`], then the magnitudes.
+const NAMES: [[&str; 8]; 5] = [
+    ["X", "Y", "Z", "PSI", "THETA", "PHI", "MAG", ""],
+    ["VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM"],
+    [
+        "ACCX", "ACCY", "ACCZ", "WDTX", "WDTY", "WDTZ", "ACCM", "WDTM",
+    ],
+    ["FX", "FY", "FZ", "TX", "TY", "TZ", "FM", "TM"],
+    ["F2", "F3", "F4", "F6", "F7", "F8", "", ""],
+];
+
+/// Reads the components of requests.
+///
+/// # Errors
+/// When the contents are not of this format, with the line.
+pub fn read(bytes: &[u8]) -> Result<Run, Diagnostic> {
+    let text = String::from_utf8_lossy(bytes);
+    let lines: Vec<&str> = text.lines().collect();
+    let &[identification, title, counts] = lines
+        .first_chunk::<3>()
+        .ok_or_else(|| malformed(0, "too short for a .req file"))?;
+    if !identification.trim_start().starts_with("A.R") {
+        let what = "a .req file begins with its version, such as `A.R3`";
+        return Err(malformed(1, what));
+    }
+    let mut words = counts.split_whitespace();
+    let n = words.next().and_then(|w| w.parse::<usize>().ok());
+    let n = n.filter(|&n| n < lines.len());
+    let n = n.ok_or_else(|| malformed(3, "the number of requests should stand here"))?;
+    let units = units_of_code(words.next().unwrap_or_default());
+    let mut run = Run::new("", title.trim(), units);
+    for (line, number) in lines.iter().zip(1..).skip(3).take(n) {
+        let request = request(line);
+        let request = request.ok_or_else(|| {
+            malformed(
+                number,
+                "number, kind and markers of a request should stand here",
+            )
+        })?;
+        add_request(&mut run, request);
+    }
+    run.begin(Kind::Dynamic);
+    let mut at = 3 + n;
+    while at < lines.len() {
+        if lines[at].trim().is_empty() {
+            at += 1;
+            continue;
+        }
+        let row = row(&lines, at, &run.requests)?;
+        run.push(&row);
+        at += n + 1;
+    }
+    run.end();
+    Ok(run)
+}
+
+/// Reads the line of a request: number, kind, markers.
+fn request(line: &str) -> Option<Requested> {
+    let words: Option<Vec<u32>> = line.split_whitespace().map(|w| w.parse().ok()).collect();
+    let &[id, kind, i, j, rm] = words?.as_slice() else {
+        return None;
+    };
+    (1..=5).contains(&kind).then(|| Requested {
+        id,
+        kind,
+        markers: [i, j, rm],
+        columns: [None; 8],
+    })
+}
+
+/// Adds the columns of a request; those of displacements, velocities, accelerations and forces have
+/// their magnitudes.
+fn add_request(run: &mut Run, mut request: Requested) {
+    let name = format!("REQ_{}", request.id);
+    let names = NAMES[request.kind as usize - 1];
+    let magnitudes = match request.kind {
+        1 => &[0][..],
+        5 => &[],
+        _ => &[0, 4],
+    };
+    let own = WRITTEN
+        .iter()
+        .zip(names)
+        .chain(magnitudes.iter().zip(&names[6..]).map(|(c, n)| (c, *n)));
+    let mut components = Vec::new();
+    let wanted: Vec<(usize, &str)> = own.map(|(&c, name)| (c, name)).collect();
+    for (place, component) in wanted {
+        let unit = match component {
+            "MAG" => run.units.length.clone(),
+            _ => component_unit(component, &run.units),
+        };
+        let column = run.add_column(format!("{name}.{component}"), unit);
+        request.columns[place] = Some(column);
+        components.push(Component {
+            name: component.to_owned(),
+            column,
+        });
+    }
+    run.entities.push(Entity {
+        entity: name.clone(),
+        name,
+        kind: "Request".into(),
+        id: u64::from(request.id),
+        components,
+    });
+    run.requests.push(request);
+}
+
+/// Reads the line with a time and those of its requests, from line `at` on.
+fn row(lines: &[&str], at: usize, requests: &[Requested]) -> Result<Vec<f64>, Diagnostic> {
+    let time = columns(lines[at]).filter(|n| n.len() == 1);
+    let what = "a time should stand here, alone in its line";
+    let mut row = time.ok_or_else(|| malformed(at + 1, what))?;
+    for (request, k) in requests.iter().zip(at + 1..) {
+        let line = lines.get(k);
+        let line = line.ok_or_else(|| malformed(lines.len(), "the last output is not complete"))?;
+        let numbers = columns(line).and_then(|n| <[f64; 6]>::try_from(n).ok());
+        let what = "six numbers, the components of a request, should stand here";
+        let own = numbers.ok_or_else(|| malformed(k + 1, what))?;
+        row.extend(own);
+        let magnitude = |n: &[f64]| n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        match request.kind {
+            1 => row.push(magnitude(&own[..3])),
+            5 => {}
+            _ => row.extend([magnitude(&own[..3]), magnitude(&own[3..])]),
+        }
+    }
+    Ok(row)
+}
 
 /// A `.req` file that is being written.
 #[derive(Debug, Default)]
@@ -54,6 +186,39 @@ impl TableText for Components {
 mod tests {
     use super::*;
     use crate::results::{Kind, Requested, Units};
+
+    #[test]
+    fn what_is_written_is_read_with_its_magnitudes() {
+        let mut run = Run::new("r", "a title", Units::default());
+        let places = WRITTEN.map(|k| (k, run.add_column(format!("c{k}"), "")));
+        let mut velocity = Requested {
+            id: 4,
+            kind: 2,
+            markers: [20, 10, 0],
+            ..Requested::default()
+        };
+        places
+            .iter()
+            .for_each(|&(k, column)| velocity.columns[k] = Some(column));
+        run.requests.push(velocity);
+        run.begin(Kind::Dynamic);
+        run.push(&[0.0, 3.0, 0.0, 4.0, 0.0, -2.0, 0.0]);
+        run.push(&[0.5, 1.0, 2.0, 2.0, 6.0, 2.0, 3.0]);
+        run.end();
+        let text = crate::results::format::text(&mut Components, &run);
+        let again = read(text.as_bytes()).unwrap();
+        assert_eq!(again.title, "a title");
+        assert_eq!(again.requests[0].markers, [20, 10, 0]);
+        assert_eq!(again.column("REQ_4.VM"), Some(&[5.0, 3.0][..]));
+        assert_eq!(again.column("REQ_4.WM"), Some(&[2.0, 7.0][..]));
+        assert_eq!(
+            again.columns[again.find("REQ_4.WX").unwrap()].unit,
+            "rad/sec"
+        );
+        // cut off
+        let short = text.trim_end().rsplit_once('\n').unwrap().0;
+        assert_eq!(read(short.as_bytes()).unwrap_err().code, "result_syntax");
+    }
 
     #[test]
     fn each_output_has_its_time_and_six_numbers_a_request() {

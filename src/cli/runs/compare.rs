@@ -90,7 +90,8 @@ fn files(first: &Path, second: &Path) -> Result<[PathBuf; 2], Diagnostic> {
 /// Returns the tables that an argument names: a file of results, or those of a run, by preference.
 fn tables_of(named: &Path) -> Result<Vec<(usize, PathBuf)>, Diagnostic> {
     let ending = named.extension().unwrap_or_default().to_string_lossy();
-    let is_table = Format::row(&ending.to_lowercase()).is_some_and(|row| row.read.is_some());
+    let is_both = |row: &crate::results::format::Row| row.read.is_some() && row.sink.is_some();
+    let is_table = Format::row(&ending.to_lowercase()).is_some_and(is_both);
     let run = kept::find(named);
     let is_record = |run: &KeptRun| run.record_file() == named;
     if named.exists() && (is_table || run.is_err()) && !run.as_ref().is_ok_and(is_record) {
