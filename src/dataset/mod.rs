@@ -12,6 +12,7 @@ mod check;
 mod clock;
 pub mod command;
 mod edit;
+mod extension;
 mod idle;
 pub mod lens;
 pub mod manual;
@@ -163,6 +164,7 @@ pub fn read_source(source: Source) -> Reading {
         let d = Diagnostic::warning("missing_end", "the dataset does not end with END");
         out.push(source.locate(d, Span::new(at, at)));
     }
+    extension::read(&source, &syntax, &mut reading.model, out);
     for d in reading.model.contradictions() {
         // What seems to be missing may be what was not understood.
         let excused = d.element.as_ref().is_some_and(|e| mistaken.contains(e));

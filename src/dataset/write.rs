@@ -109,6 +109,14 @@ impl Model {
                     .for_each(|m| write_named(&mut out, m));
             }
         }
+        for (&id, values) in &self.beginnings {
+            let mut line = format!("! cognate: IC {id}");
+            for (&quantity, value) in values {
+                let name = self.initial_quantity_name(id, quantity);
+                line += &format!(", {name}={value:?}");
+            }
+            out.push(&line);
+        }
         out.push("!");
         out.push("END");
         out.text("\n")

@@ -5,6 +5,7 @@
 //! and printed in any order. All fields are public; `check` and the scene compiler say what does
 //! not fit together. Nothing here knows how anything is computed.
 
+mod beginning;
 mod body;
 pub mod check;
 mod constraint;
@@ -19,6 +20,7 @@ mod system;
 mod text;
 pub mod units;
 
+pub use beginning::{Beginning, InitialQuantity};
 pub use body::*;
 pub use constraint::*;
 pub use element::{Element, ElementId, ElementKind, Family, Named};
@@ -165,6 +167,8 @@ macro_rules! model {
             pub initial_conditions: Settings,
             /// OUTPUT, RESULTS, PREFERENCES, DEBUG, LSOLVER …
             pub settings: BTreeMap<SettingsStatement, Settings>,
+            /// initial values of joints and markers that no statement has
+            pub beginnings: BTreeMap<ElementId, Beginning>,
             /// elements switched off by DEACTIVATE
             pub inactive: BTreeSet<ElementId>,
         }

@@ -8,6 +8,7 @@ mod running;
 
 mod alignment;
 mod angles;
+mod beginnings;
 mod constraints;
 mod continuation;
 mod curves;

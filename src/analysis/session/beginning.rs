@@ -145,7 +145,10 @@ fn left_out(model: &Model, at_rest: bool) -> Vec<Change> {
     let joints = joints.map(|(&id, _)| ElementKind::Joint.id(id));
     let points = points.map(|(&id, _)| ElementKind::Ptcv.id(id));
     let curves = curves.map(|(&id, _)| ElementKind::Cvcv.id(id));
-    let all = joints.chain(points).chain(curves);
+    let lines = model.beginnings.iter();
+    let lines = lines.filter(|(_, values)| values.keys().any(|q| !(at_rest && q.is_rate())));
+    let lines = lines.map(|(&id, _)| id);
+    let all = joints.chain(points).chain(curves).chain(lines);
     all.map(Change::InitialConditions).collect()
 }
 
@@ -162,6 +165,11 @@ fn begin_from_rest(model: &mut Model, dataset: &Model) {
         joint.ic_translation[1] = given.ic_translation[1];
         joint.ic_rotation[1] = given.ic_rotation[1];
     }
+    model.beginnings.clone_from(&dataset.beginnings);
+    for values in model.beginnings.values_mut() {
+        values.retain(|quantity, _| quantity.is_rate());
+    }
+    model.beginnings.retain(|_, values| !values.is_empty());
 }
 
 /// Returns the angles that have turned by more than half a turn.

@@ -107,6 +107,7 @@ pub(super) fn moved(model: &Model, carried: &Carried) -> Model {
     for joint in model.joints.values_mut() {
         (joint.ic_translation, joint.ic_rotation) = ([None; 2], [None; 2]);
     }
+    model.beginnings.clear();
     let ground = MarkerState::ground();
     for (id, state) in &carried.parts {
         let angle = |m| kinematic(m, state, &ground, &ground, &ground).unwrap_or(0.0);

@@ -93,6 +93,7 @@ impl<'a> Dataset<'a> {
         let placed = placed && placement::settle(here, self.model, t, q, x, self.joints);
         // where parts are too many to be weighed, or on curves, coordinates move as little as may
         // be
+        let placed = placed && !self.conditions.iter().any(InitialCondition::is_of_line);
         let starts = if placed && self.joints {
             Vec::new()
         } else {

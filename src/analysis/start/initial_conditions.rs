@@ -5,6 +5,7 @@
 //!
 //! ```text
 //! d.z_J = ICTRAN,  angle of x_I about z_J = ICROT      part frame: X, Y, Z, ψ, θ, φ as in the dataset
+//! comment lines of ours: variables of any joint, place of a marker in ground
 //! PTCV: I at the point of the curve next to DISP        CVCV: the curves touch next to IDISP and JDISP
 //! ```
 //!
@@ -17,7 +18,7 @@ use crate::analysis::start::assemble::{self, least_change, rows_at};
 use crate::analysis::warning::ConditionWarning;
 use crate::expr::measures::Measure;
 use crate::expr::program::{Program, Work};
-use crate::model::{ElementId, ElementKind, Model};
+use crate::model::{ElementId, ElementKind, InitialQuantity, Model};
 use crate::physics::cam::Contact;
 use crate::physics::coupler::Gauge;
 use crate::physics::kinematic::kinematic;
@@ -47,6 +48,8 @@ enum Given {
     Joint { gauge: Gauge, i: usize, j: usize },
     /// of a part's frame: 0 x, 1 y, 2 z, 3 ψ, 4 θ, 5 φ
     Part { part: usize, component: usize },
+    /// of a marker in ground: 0 x, 1 y, 2 z, 3 ψ, 4 θ, 5 φ
+    Marker { marker: usize, component: usize },
     /// small turn of a part's frame from where the dataset has it, about its axis
     Turn { part: usize, axis: usize },
 }
@@ -62,6 +65,8 @@ pub struct InitialCondition {
     angle: bool,
     /// a motion says what it is: nothing can be changed
     driven: bool,
+    /// a comment line of ours gives it
+    of_line: bool,
 }
 
 /// Returns the joints of a model that have an initial displacement or rate: number, gauge,
@@ -111,9 +116,11 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
                 value,
                 angle: gauge.is_angle(),
                 driven,
+                of_line: false,
             });
         }
     }
+    conditions.extend(of_lines(scene, model));
     for (k, part) in scene.parts.iter().enumerate() {
         let Some(exact) = model.body(part.id).map(|p| p.exact) else {
             continue;
@@ -126,6 +133,7 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
                 value,
                 angle: component > 2,
                 driven: false,
+                of_line: false,
             });
         };
         for component in 0..3 {
@@ -157,6 +165,38 @@ pub fn collect(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
     conditions
 }
 
+/// Collects the positions that comment lines of ours give joints and markers.
+fn of_lines(scene: &Scene, model: &Model) -> Vec<InitialCondition> {
+    let mut found = Vec::new();
+    let place = |m: u32| scene.marker_of.get(&m).copied();
+    for (&id, values) in &model.beginnings {
+        for (&quantity, &value) in values {
+            let given = match quantity {
+                InitialQuantity::Variable(k) => model.joints.get(&id.number).and_then(|joint| {
+                    let &(_, gauge) = joint.kind.row().variables.get(k)?;
+                    let (i, j) = (place(joint.i)?, place(joint.j)?);
+                    Some((Given::Joint { gauge, i, j }, gauge.is_angle()))
+                }),
+                InitialQuantity::Place(component) => place(id.number)
+                    .map(|marker| (Given::Marker { marker, component }, component > 2)),
+                InitialQuantity::VariableRate(_) | InitialQuantity::Rate(_) => None,
+            };
+            if let Some((given, angle)) = given.filter(|_| model.is_active(id)) {
+                found.push(InitialCondition {
+                    element: id,
+                    argument: model.initial_quantity_name(id, quantity),
+                    given,
+                    value,
+                    angle,
+                    driven: false,
+                    of_line: true,
+                });
+            }
+        }
+    }
+    found
+}
+
 fn angle<S: Scalar>(state: &MarkerState<S>, component: usize) -> S {
     let ground = MarkerState::ground();
     let measure = [Measure::Psi, Measure::Theta, Measure::Phi][component - 3];
@@ -175,6 +215,13 @@ impl InitialCondition {
                     }
                 };
                 gauge.value(&frame(i), &frame(j))
+            }
+            Given::Marker { marker, component } => {
+                let state = at.marker(marker);
+                match component {
+                    0..=2 => state.p_GM.0[component],
+                    _ => angle(&state, component),
+                }
             }
             Given::Part { part, component } => {
                 let state = at.part(part, false);
@@ -198,6 +245,11 @@ impl InitialCondition {
                 (entry(b, a) - entry(a, b)).scale(0.5)
             }
         }
+    }
+
+    /// Returns whether a comment line of ours gives it: a placement of parts does not know it.
+    pub(super) fn is_of_line(&self) -> bool {
+        self.of_line
     }
 
     /// Returns its deviation; angles the short way.

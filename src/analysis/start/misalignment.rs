@@ -123,7 +123,7 @@ pub fn orders(scene: &Scene, model: &Model) -> Vec<ConditionWarning> {
 }
 
 /// Returns what assembly has turned: parts by more than a degree, unless initial conditions of
-/// joints ask for it (`joints`), and ties and motions that hold at an opposite.
+/// joints or comment lines ask for it (`joints`), and ties and motions that hold at an opposite.
 pub fn turned(
     scene: Configured<'_>,
     model: &Model,
@@ -155,7 +155,11 @@ pub fn turned(
         }
     }
     parts.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    let turned = (!parts.is_empty()).then_some(AssemblyWarning::Turned { parts });
+    // what lines ask for and do not get is told by itself
+    let mut lines = model.beginnings.values().flat_map(|values| values.keys());
+    let is_asked = joints && lines.any(|quantity| !quantity.is_rate());
+    let is_told = !parts.is_empty() && !is_asked;
+    let turned = is_told.then_some(AssemblyWarning::Turned { parts });
     turned
         .into_iter()
         .chain(opposites(scene, model, &at))

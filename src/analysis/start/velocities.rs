@@ -8,13 +8,14 @@ use crate::analysis::direction::Direction;
 use crate::analysis::quantity::{length, short};
 use crate::analysis::warning::ConditionWarning;
 use crate::diagnostic::{Cause, Diagnostic};
-use crate::model::{self, ElementKind, Model};
+use crate::model::{self, ElementId, ElementKind, InitialQuantity, Model};
 use crate::numeric::connected::{Block, SparseRow, connected};
+use crate::scalar::Jet;
 use crate::scene::configuration::Configured;
 use crate::scene::equations::Equations;
 use crate::scene::programs::weights;
 use crate::scene::{LinkIx, Scene, Source};
-use crate::space::{Mat3, Vec3};
+use crate::space::{Frame, MarkerState, Mat3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
 /// Part of a rate by which it may be off and is met.
@@ -131,7 +132,20 @@ pub fn unmet(
             },
         )
     });
-    told.chain(unmet_of_parts(&scene, model, &at)).collect()
+    let of_lines = line_rates(&scene, model, &at).into_iter();
+    let of_lines = of_lines.filter(|r| {
+        let (found, wanted) = (r.found, r.wanted);
+        (found - wanted).abs() > MET_TOLERANCE * found.abs().max(wanted.abs())
+    });
+    let of_lines = of_lines.map(|r| ConditionWarning::Unmet {
+        element: r.element,
+        argument: r.argument,
+        found: r.found,
+        wanted: r.wanted,
+    });
+    told.chain(of_lines)
+        .chain(unmet_of_parts(&scene, model, &at))
+        .collect()
 }
 
 /// Returns warnings of the parts whose velocity at the start is not the one that they are given.
@@ -411,6 +425,17 @@ fn trees(scene: &Scene, model: &Model) -> (Vec<usize>, Vec<Vec<usize>>) {
             ties.push(join(i, j));
         }
     }
+    for (&id, values) in &model.beginnings {
+        let has_rate = values
+            .keys()
+            .any(|q| matches!(q, InitialQuantity::VariableRate(_)));
+        let joint = model.joints.get(&id.number);
+        if let Some(joint) = joint.filter(|_| has_rate && id.kind == ElementKind::Joint)
+            && let [Some(i), Some(j)] = [joint.i, joint.j].map(|m| link_of(scene, m))
+        {
+            ties.push(join(i, j));
+        }
+    }
     let mut tree_of = vec![0; n];
     let trees = connected(&ties, n);
     for (tree, links) in trees.iter().enumerate() {
@@ -485,7 +510,82 @@ fn part_velocities(
             link(joint.i).or_else(|| link(joint.j)),
         ));
     }
+    for rate in line_rates(scene, model, at) {
+        values.push(rate.found);
+        targets.push(Target::of_constraint(rate.wanted, rate.link));
+    }
     (values, targets)
+}
+
+/// Returns the link that carries a marker; `None`: ground does, or it is not there.
+fn link_of(scene: &Scene, marker: u32) -> LinkIx {
+    scene.markers[*scene.marker_of.get(&marker)?].link
+}
+
+/// A rate that a comment line of ours gives.
+struct LineRate {
+    element: ElementId,
+    argument: &'static str,
+    /// a link that it depends on
+    link: LinkIx,
+    found: f64,
+    wanted: f64,
+}
+
+/// Returns the rates that comment lines of ours give joints and markers.
+fn line_rates(scene: &Scene, model: &Model, at: &Equations<'_, f64>) -> Vec<LineRate> {
+    let mut all = Vec::new();
+    for (&id, values) in model
+        .beginnings
+        .iter()
+        .filter(|(id, _)| model.is_active(**id))
+    {
+        for (&quantity, &wanted) in values {
+            let found = match quantity {
+                InitialQuantity::VariableRate(k) => {
+                    model.joints.get(&id.number).and_then(|joint| {
+                        let &(_, gauge) = joint.kind.row().variables.get(k)?;
+                        let state = |m: u32| Some(at.marker(*scene.marker_of.get(&m)?));
+                        let (i, j) = (moving(&state(joint.i)?), moving(&state(joint.j)?));
+                        let link = link_of(scene, joint.i).or_else(|| link_of(scene, joint.j));
+                        Some((gauge.value(&i, &j).first, link))
+                    })
+                }
+                InitialQuantity::Rate(k) => scene.marker_of.get(&id.number).map(|&m| {
+                    let state = at.marker(m);
+                    let rate = match k {
+                        0..3 => state.v_GM.0[k],
+                        _ => state.w_GM.0[k - 3],
+                    };
+                    (rate, scene.markers[m].link)
+                }),
+                InitialQuantity::Variable(_) | InitialQuantity::Place(_) => None,
+            };
+            all.extend(found.map(|(found, link)| LineRate {
+                element: id,
+                argument: model.initial_quantity_name(id, quantity),
+                link,
+                found,
+                wanted,
+            }));
+        }
+    }
+    all
+}
+
+/// Returns the frame of a marker with its rates: Ṙ = ω × R, column by column.
+fn moving(m: &MarkerState<f64>) -> Frame<Jet> {
+    let jets = |value: Vec3<f64>, rate: Vec3<f64>| {
+        Vec3([0, 1, 2].map(|k| Jet::new(value.0[k], rate.0[k], 0.0)))
+    };
+    let columns = [0, 1, 2].map(|k| {
+        let axis = m.R_GM.column(k);
+        jets(axis, m.w_GM.cross(axis))
+    });
+    Frame {
+        rotation: Mat3::from_columns(columns[0], columns[1], columns[2]),
+        position: jets(m.p_GM, m.v_GM),
+    }
 }
 
 /// Returns the joints of which an initial rate is asked: number, rate, and the one that is asked.

@@ -698,4 +698,25 @@ them have none: choose an explicit method or RADAU5.
 
     cognate run model.acf --method RADAU5",
     },
+    Code {
+        name: "bad_extension",
+        summary: "a comment line of ours that means nothing",
+        explanation: "\
+Comments that begin with `cognate:` say what a dataset has no statement for; other programs skip them. The message says what is
+wrong, the advice what an element has.
+
+    ! cognate: IC JOINT/3, X=0.1, X_RATE=2, ANGLE=30D     initial values of a joint: its variables and their rates
+    ! cognate: IC MARKER/20, X=1, VZ=-3                   of a marker, in ground
+    ! cognate: RIGID arm = PART/2, PART/3                 parts that are one rigid body",
+    },
+    Code {
+        name: "rigid_body",
+        summary: "a rigid body of several parts that cannot be one",
+        explanation: "\
+A part is in one rigid body at most, and a rigid body is not part of another. No motion moves its parts against each other. As a
+note: a joint within a rigid body has nothing to hold and is switched off.
+
+    ! cognate: RIGID hand = PART/3, PART/4
+    ! cognate: RIGID arm = PART/2, hand          not so: name PART/2, PART/3, PART/4 in one line",
+    },
 ];

@@ -7,6 +7,7 @@
 
 pub(crate) mod alignment;
 mod angles;
+mod beginnings;
 mod bodies;
 mod constraints;
 mod constraints_twice;
@@ -79,6 +80,10 @@ pub const RULES: &[Rule] = &[
     (
         "initial conditions say what is first",
         constraints::initial_conditions_say_what_is_first,
+    ),
+    (
+        "beginnings have their elements",
+        beginnings::beginnings_have_their_elements,
     ),
     ("gravity is plausible", magnitudes::gravity_is_plausible),
     ("inertia fits its part", magnitudes::inertia_fits_its_part),

@@ -1,0 +1,382 @@
+//! Comment lines of ours: what datasets have no statement for, in lines that other programs skip.
+//!
+//! ```text
+//! ! cognate: IC JOINT/3, X=0.1, X_RATE=2, ANGLE=30D       initial values of the variables of a joint
+//! ! cognate: IC MARKER/20, X=1, VZ=-3                     and of the place and motion of a marker
+//! ! cognate: RIGID arm = PART/2, PART/3                   parts that are one rigid body
+//! ```
+//!
+//! Initial values become [`Model::beginnings`]. A rigid body becomes FIXED joints between its first
+//! part and the others, with markers of their own; joints within it are switched off, for they have
+//! nothing to hold. So a rigid body is part of the model for every other program, too, once it is
+//! written. A part is in one rigid body at most, and no rigid body is in another.
+
+use super::syntax::{Item, Source, Syntax, TokenKind};
+use crate::diagnostic::{Cause, Diagnostic, Severity, Span, near_names};
+use crate::expr::measures::Measure;
+use crate::model::geometry::orientation;
+use crate::model::{
+    Driven, ElementId, ElementKind, Joint, JointKind, Marker, MarkerOwner, Model, Orientation,
+    Place,
+};
+use crate::physics::kinematic::kinematic;
+use crate::space::{Frame, MarkerState, Vec3};
+use std::collections::BTreeMap;
+
+/// The word that such a comment begins with.
+const MARK: &str = "cognate:";
+
+/// A rigid body as it is written: its name, and its members with their places.
+struct RigidBody {
+    name: String,
+    span: Span,
+    members: Vec<(String, Span)>,
+}
+
+/// Reads the comment lines of a dataset whose statements have been read.
+pub(super) fn read(source: &Source, syntax: &Syntax, model: &mut Model, out: &mut Vec<Diagnostic>) {
+    let mut bodies: Vec<RigidBody> = Vec::new();
+    for span in comments(syntax) {
+        let Some(span) = after_mark(source, span) else {
+            continue;
+        };
+        let text = source.slice(span);
+        let word = text.split_whitespace().next().unwrap_or_default();
+        let rest = Span::new(span.start + word.len(), span.end);
+        match word.to_ascii_uppercase().as_str() {
+            "IC" => initial_values(source, rest, model, out),
+            "RIGID" => match rigid_body(source, rest) {
+                Ok(body) => bodies.push(body),
+                Err(d) => out.push(source.locate(d, rest)),
+            },
+            _ => {
+                let d = bad(format!("`{word}` is no line of ours")).help(USAGE);
+                out.push(source.locate(d, Span::new(span.start, rest.start.max(span.start + 1))));
+            }
+        }
+    }
+    let mut of_part: BTreeMap<ElementId, String> = BTreeMap::new();
+    for body in &bodies {
+        match parts_of(source, body, &bodies, model, &mut of_part) {
+            Ok(parts) => weld(&body.name, &parts, model, (source, body.span), out),
+            Err(found) => out.extend(found),
+        }
+    }
+}
+
+const USAGE: &str =
+    "lines are `! cognate: IC JOINT/3, ANGLE=30D` and `! cognate: RIGID arm = PART/2, PART/3`";
+
+fn bad(message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error("bad_extension", message)
+}
+
+/// Returns the places of all comments, those within statements too.
+fn comments(syntax: &Syntax) -> Vec<Span> {
+    let mut found = Vec::new();
+    for item in &syntax.items {
+        match item {
+            Item::Comment(span) => found.push(*span),
+            Item::Statement(tokens) => {
+                let comments = tokens
+                    .tokens
+                    .iter()
+                    .filter(|t| t.kind == TokenKind::Comment);
+                found.extend(comments.map(|t| t.span));
+            }
+        }
+    }
+    found
+}
+
+/// Returns what stands in a comment after our mark.
+fn after_mark(source: &Source, span: Span) -> Option<Span> {
+    let text = source.slice(span);
+    let inner = text.trim_start_matches(|c: char| c == '!' || c.is_whitespace());
+    let head = inner.get(..MARK.len())?;
+    if !head.eq_ignore_ascii_case(MARK) {
+        return None;
+    }
+    let after = &inner[MARK.len()..];
+    let rest = after.trim_start();
+    let start = span.end - rest.len();
+    Some(Span::new(start, start + rest.trim_end().len()))
+}
+
+/// Returns the pieces between commas, without blanks around them, with their places.
+fn pieces(source: &Source, span: Span) -> Vec<(String, Span)> {
+    let text = source.slice(span);
+    let mut at = span.start;
+    let mut found = Vec::new();
+    for piece in text.split(',') {
+        let inner = piece.trim();
+        let start = at + (piece.len() - piece.trim_start().len());
+        found.push((inner.to_owned(), Span::new(start, start + inner.len())));
+        at += piece.len() + 1;
+    }
+    found
+}
+
+/// Reads initial values of a joint or a marker.
+fn initial_values(source: &Source, span: Span, model: &mut Model, out: &mut Vec<Diagnostic>) {
+    let pieces = pieces(source, span);
+    let Some(((element, at), values)) = pieces.split_first() else {
+        return;
+    };
+    let id = match element.parse::<ElementId>() {
+        Ok(id) if matches!(id.kind, ElementKind::Joint | ElementKind::Marker) => id,
+        Ok(id) => {
+            let d = bad(format!("{id}: joints and markers have initial values here"));
+            let d = d.help("those of a PART are its VX, VY, VZ, WX, WY, WZ and EXACT");
+            return out.push(source.locate(d, *at));
+        }
+        Err(why) => return out.push(source.locate(bad(why).help(USAGE), *at)),
+    };
+    if !model.has(id) {
+        let d = Diagnostic::error(Cause::UnknownElement, format!("{id} does not exist"));
+        return out.push(source.locate(d, *at));
+    }
+    let known = model.initial_quantities(id);
+    if values.is_empty() || known.is_empty() {
+        let d = match known.is_empty() {
+            true => bad(format!("{id} has no variables of its own"))
+                .help("give a marker of the part that it carries initial values"),
+            false => bad(format!("{id} is given no initial values")).help(USAGE),
+        };
+        return out.push(source.locate(d, *at));
+    }
+    for (piece, at) in values {
+        let (name, value) = piece.split_once('=').unwrap_or((piece.as_str(), ""));
+        let name = name.trim();
+        let quantity = known.iter().find(|(n, _)| n.eq_ignore_ascii_case(name));
+        let Some(&(_, quantity)) = quantity else {
+            let names = known.iter().map(|(n, _)| *n);
+            let near = near_names(name, names.clone());
+            let d = bad(format!("{id} has no `{name}`"));
+            let all: Vec<&str> = names.collect();
+            let d = match near.is_empty() {
+                true => d,
+                false => d.help(format!("did you mean {}?", near.join(" or "))),
+            };
+            out.push(source.locate(d.help(format!("it has {}", all.join(", "))), *at));
+            continue;
+        };
+        let Some(value) = number(value) else {
+            let d = bad(format!(
+                "{name} = a number is expected, of radians or with D for degrees"
+            ));
+            out.push(source.locate(d, *at));
+            continue;
+        };
+        let own = model.beginnings.entry(id).or_default();
+        if own.insert(quantity, value).is_some() {
+            let d = Diagnostic::error("given_twice", format!("{name} of {id} is given twice"));
+            out.push(source.locate(d, *at));
+        }
+    }
+}
+
+/// Reads a number; with the suffix D it is an angle in degrees.
+fn number(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (digits, factor) = match text.strip_suffix(['D', 'd']) {
+        Some(digits) => (digits, std::f64::consts::PI / 180.0),
+        None => (text, 1.0),
+    };
+    let value: f64 = digits.parse().ok()?;
+    (value * factor).is_finite().then_some(value * factor)
+}
+
+/// Reads a rigid body: `name = PART/2, PART/3`.
+fn rigid_body(source: &Source, span: Span) -> Result<RigidBody, Diagnostic> {
+    let text = source.slice(span);
+    let (name, members) = text
+        .split_once('=')
+        .filter(|(name, members)| !name.trim().is_empty() && !members.trim().is_empty())
+        .ok_or_else(|| bad("a rigid body is `name = PART/2, PART/3`").help(USAGE))?;
+    let start = span.end - members.len();
+    Ok(RigidBody {
+        name: name.trim().to_owned(),
+        span,
+        members: pieces(source, Span::new(start, span.end)),
+    })
+}
+
+/// Returns the parts of a rigid body.
+///
+/// # Errors
+/// Parts that do not exist or are in another rigid body, and rigid bodies in it.
+fn parts_of(
+    source: &Source,
+    body: &RigidBody,
+    all: &[RigidBody],
+    model: &Model,
+    of_part: &mut BTreeMap<ElementId, String>,
+) -> Result<Vec<u32>, Vec<Diagnostic>> {
+    let (mut parts, mut found) = (Vec::new(), Vec::new());
+    let rigid = |message: String| Diagnostic::error("rigid_body", message);
+    if all.iter().filter(|b| b.name == body.name).count() > 1 {
+        let d = rigid(format!("two rigid bodies are called {}", body.name));
+        found.push(source.locate(d, body.span));
+    }
+    for (member, at) in &body.members {
+        let is_body = all.iter().any(|b| b.name == *member);
+        let id = member.parse::<ElementId>();
+        let wrong = match id {
+            _ if is_body => Some(
+                rigid(format!(
+                    "{} cannot be rigid: {member}, which is in it, is rigid already",
+                    body.name
+                ))
+                .help(format!("name the parts of {member} instead, in one line")),
+            ),
+            Ok(id) if id.kind != ElementKind::Part => Some(rigid(format!(
+                "{id} is no PART: a rigid body is made of parts"
+            ))),
+            Ok(id) if !model.has(id) => Some(Diagnostic::error(
+                Cause::UnknownElement,
+                format!("{id} does not exist"),
+            )),
+            Ok(id) => match of_part.insert(id, body.name.clone()) {
+                None => {
+                    parts.push(id.number);
+                    None
+                }
+                Some(other) if other == body.name => {
+                    Some(rigid(format!("{id} is named twice in {other}")))
+                }
+                Some(other) => Some(
+                    rigid(format!(
+                        "{} cannot be rigid: {id} is in the rigid body {other}",
+                        body.name
+                    ))
+                    .help("a part is in one rigid body at most"),
+                ),
+            },
+            Err(why) => Some(rigid(why).help(USAGE)),
+        };
+        found.extend(wrong.map(|d| source.locate(d, *at)));
+    }
+    if found.is_empty() && parts.len() < 2 {
+        let d = rigid(format!("{} needs at least two parts", body.name));
+        found.push(source.locate(d, body.span));
+    }
+    match found.is_empty() {
+        true => Ok(parts),
+        false => Err(found),
+    }
+}
+
+/// Fixes the parts of a rigid body to its first one (ground, if that is among them), and switches
+/// off the constraints between them.
+fn weld(
+    name: &str,
+    parts: &[u32],
+    model: &mut Model,
+    (source, span): (&Source, Span),
+    out: &mut Vec<Diagnostic>,
+) {
+    let frame = |model: &Model, n: u32| {
+        let part = model.parts.get(&n)?;
+        let rotation = orientation(&part.orientation, part.qg).ok()?;
+        let position = Vec3(part.qg);
+        Some(Frame { rotation, position })
+    };
+    held_within(name, parts, model, (source, span), out);
+    let is_ground = |n: &&u32| model.parts.get(n).is_some_and(|p| p.ground);
+    let base = parts.iter().find(is_ground).or(parts.first()).copied();
+    // an orientation that is none has been told
+    let Some((base, base_frame)) = base.and_then(|b| Some((b, frame(model, b)?))) else {
+        return;
+    };
+    for &part in parts.iter().filter(|&&p| p != base) {
+        let Some(own) = frame(model, part) else {
+            continue;
+        };
+        let turned = base_frame.rotation.transpose() * own.rotation;
+        let away = base_frame
+            .rotation
+            .apply_transposed(own.position - base_frame.position);
+        let on_base = Marker {
+            owner: MarkerOwner::Part(base),
+            qp: away.0,
+            orientation: euler(turned),
+            ..Marker::default()
+        };
+        let on_part = Marker {
+            owner: MarkerOwner::Part(part),
+            ..Marker::default()
+        };
+        let next = |last: Option<&u32>| last.map_or(1, |n| n.saturating_add(1));
+        let i = next(model.markers.keys().next_back());
+        model.markers.insert(i, on_part);
+        let j = next(model.markers.keys().next_back());
+        model.markers.insert(j, on_base);
+        let joint = Joint {
+            place: Place {
+                name: Some(format!("{name}_{part}")),
+                ..Place::default()
+            },
+            kind: JointKind::Fixed,
+            i,
+            j,
+            ..Joint::default()
+        };
+        let id = next(model.joints.keys().next_back());
+        model.joints.insert(id, joint);
+    }
+}
+
+/// Returns the 3-1-3 angles of a rotation.
+fn euler(rotation: crate::space::Mat3<f64>) -> Orientation {
+    let state = MarkerState {
+        R_GM: rotation,
+        ..MarkerState::ground()
+    };
+    let ground = MarkerState::ground();
+    let angle = |m| kinematic(m, &state, &ground, &ground, &ground).unwrap_or(0.0);
+    Orientation::Euler([Measure::Psi, Measure::Theta, Measure::Phi].map(angle))
+}
+
+/// Switches off joints and primitives between parts of a rigid body; refuses motions between them.
+fn held_within(
+    name: &str,
+    parts: &[u32],
+    model: &mut Model,
+    (source, span): (&Source, Span),
+    out: &mut Vec<Diagnostic>,
+) {
+    let is_within = |marker: u32| match model.markers.get(&marker).map(|m| m.owner) {
+        Some(MarkerOwner::Part(part)) => parts.contains(&part),
+        Some(MarkerOwner::PointMass(_) | MarkerOwner::Other(_)) | None => false,
+    };
+    let joints = model.joints.iter();
+    let joints = joints.filter(|(_, j)| is_within(j.i) && is_within(j.j));
+    let joints: Vec<ElementId> = joints.map(|(&n, _)| ElementKind::Joint.id(n)).collect();
+    let primitives = model.primitives.iter();
+    let primitives = primitives.filter(|(_, p)| is_within(p.i) && is_within(p.j));
+    let primitives = primitives.map(|(&n, _)| ElementKind::Jprim.id(n));
+    let held: Vec<ElementId> = joints.iter().copied().chain(primitives).collect();
+    for (&n, motion) in &model.motions {
+        let drives = match motion.driven {
+            Driven::Joint(j) | Driven::JointRotation(j) | Driven::JointTranslation(j) => {
+                joints.contains(&ElementKind::Joint.id(j))
+            }
+            Driven::Markers { i, j, .. } => is_within(i) && is_within(j),
+        };
+        if drives {
+            let what = format!("it moves parts of the rigid body {name} against each other");
+            let d = Diagnostic::error("rigid_body", what).element(ElementKind::Motion.id(n));
+            out.push(source.locate(d, span));
+        }
+    }
+    for id in held {
+        let what = format!("it lies within the rigid body {name} and has nothing to hold");
+        let d = Diagnostic {
+            severity: Severity::Note,
+            ..Diagnostic::error("rigid_body", what).element(id)
+        };
+        out.push(source.locate(d, span));
+        model.inactive.insert(id);
+    }
+}

@@ -1,0 +1,267 @@
+//! Comment lines of ours: initial values of joints and markers, and parts that are one rigid body.
+
+use crate::running;
+use cognate::dataset::read_text;
+use running::{Analysis, GROUND, first, go, last, model, session, values};
+
+/// The values of columns at the beginning of a dynamic simulation, and the warnings.
+fn start(text: &str, columns: &[&str]) -> (Vec<f64>, Vec<String>) {
+    let mut s = session(text, columns, 1e-9);
+    go(&mut s, Analysis::Dynamic, 0.001, 1);
+    let values = columns.iter().map(|c| first(&s, c));
+    (values.collect(), s.run.record.warned())
+}
+
+fn near(found: &[f64], expected: &[f64]) {
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() < 1e-9, "{found:?} instead of {expected:?}");
+    }
+}
+
+/// Codes of what is said about a dataset.
+fn said(text: &str) -> Vec<(&'static str, String)> {
+    let reading = read_text(&format!("{GROUND}{text}END\n"));
+    let all = reading.diagnostics.into_iter();
+    all.map(|d| (d.code, d.to_string())).collect()
+}
+
+const PLANAR: &str =
+    "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, PLANAR, I=2, J=1\n";
+
+#[test]
+fn every_variable_of_a_joint_begins_with_its_value_and_its_rate() {
+    let text = format!(
+        "{PLANAR}! cognate: IC JOINT/1, X=0.3, X_RATE=2, Y=-0.4, Y_RATE=0.5, ANGLE=30D, ANGLE_RATE=-1.5\n"
+    );
+    let columns = [
+        "DX(2,1)", "DY(2,1)", "AZ(2,1)", "VX(2,1)", "VY(2,1)", "WZ(2,1)",
+    ];
+    let (found, warnings) = start(&text, &columns);
+    near(&found, &[0.3, -0.4, 30f64.to_radians(), 2.0, 0.5, -1.5]);
+    assert!(warnings.is_empty(), "{warnings:?}");
+}
+
+#[test]
+fn a_universal_joint_begins_with_the_angles_of_its_pins() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=2, REULER=0D,90D,0D\nJOINT/1, UNIVERSAL, I=3, J=1\n\
+                ! cognate: IC JOINT/1, ANGLE_1=20D, ANGLE_2=-15D, ANGLE_1_RATE=1, ANGLE_2_RATE=0.5\n";
+    let mut s = session(text, &["TIME"], 1e-10);
+    go(&mut s, Analysis::Dynamic, 0.001, 1);
+    assert!(
+        s.run.record.warned().is_empty(),
+        "{:?}",
+        s.run.record.warned()
+    );
+    // the same asked of the joint's variables, which are results in degrees
+    let mut options = running::options(&[], 1e-10);
+    options.full = true;
+    let mut s = running::begin(model(text), "full", options);
+    go(&mut s, Analysis::Dynamic, 0.001, 1);
+    let angles = [1, 2].map(|k| first(&s, &format!("JOINT_1_VARIABLES.ANGLE_{k}")));
+    near(&angles, &[20.0, -15.0]);
+}
+
+#[test]
+fn a_marker_begins_where_and_as_fast_as_its_line_says() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,2,3\nMARKER/2, PART=2\nMARKER/3, PART=2, QP=1,0,0, REULER=0D,90D,0D\n\
+                ! cognate: IC MARKER/3, X=2, Y=1, Z=-1, PSI=0, THETA=90D, PHI=0, VX=1, VY=2, VZ=3, WX=0.1, WY=0.2, WZ=0.3\n";
+    let columns = [
+        "DX(3,1)",
+        "DY(3,1)",
+        "DZ(3,1)",
+        "THETA(3,1)",
+        "VX(3,1)",
+        "VY(3,1)",
+        "VZ(3,1)",
+        "WX(3,1)",
+        "WY(3,1)",
+        "WZ(3,1)",
+    ];
+    let (found, warnings) = start(text, &columns);
+    near(
+        &found,
+        &[
+            2.0,
+            1.0,
+            -1.0,
+            90f64.to_radians(),
+            1.0,
+            2.0,
+            3.0,
+            0.1,
+            0.2,
+            0.3,
+        ],
+    );
+    assert!(warnings.is_empty(), "{warnings:?}");
+}
+
+#[test]
+fn a_marker_moves_its_mechanism_as_a_joint_would() {
+    // a crank of length 1, drawn at 20°: the tip at 60°, moving up by 1: ω = 1/cos 60°
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1, REULER=20D,0D,0D\nMARKER/2, PART=2\nMARKER/3, PART=2, QP=1,0,0\nJOINT/1, REVOLUTE, I=2, J=1\n\
+                ! cognate: IC MARKER/3, X=0.5, VY=1\n";
+    let (found, warnings) = start(text, &["DX(3,1)", "WZ(2,1)", "DM(3,1)"]);
+    assert!(
+        (found[0] - 0.5).abs() < 1e-9
+            && (found[1].abs() - 2.0).abs() < 1e-8
+            && (found[2] - 1.0).abs() < 1e-9,
+        "{found:?}"
+    );
+    assert!(warnings.is_empty(), "{warnings:?}");
+}
+
+#[test]
+fn constraints_win_over_initial_values_with_a_warning() {
+    let text = "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nMARKER/3, PART=2, QP=1,0,0\nJOINT/1, REVOLUTE, I=2, J=1\n\
+                ! cognate: IC MARKER/3, X=3, VZ=1\n";
+    let (found, warnings) = start(text, &["DM(3,1)", "VZ(3,1)"]);
+    near(&found, &[1.0, 0.0]);
+    for of in ["MARKER/3 X cannot be met", "MARKER/3 VZ cannot be met"] {
+        assert!(warnings.iter().any(|w| w.starts_with(of)), "{warnings:?}");
+    }
+}
+
+#[test]
+fn statics_do_not_ask_for_initial_places() {
+    let text = "ACCGRAV/KGRAV=-10\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=2, J=1\n\
+                SPRINGDAMPER/1, TRANSLATIONAL, I=2, J=9, K=100, LENGTH=1\nMARKER/9, PART=1, QP=0,0,1\n\
+                ! cognate: IC JOINT/1, DISTANCE=0.4\n";
+    let mut s = session(text, &["DZ(2,1)"], 1e-9);
+    running::rest(&mut s);
+    assert!((last(&s, "DZ(2,1)") + 0.1).abs() < 1e-6);
+}
+
+#[test]
+fn a_model_writes_its_lines_and_reads_them_back() {
+    let text = format!(
+        "{PLANAR}! cognate: IC JOINT/1, X=0.3, ANGLE_RATE=-1.5\n! cognate: IC MARKER/2, VZ=1e-7\n"
+    );
+    let first = model(&text);
+    assert_eq!(first.beginnings.len(), 2);
+    let again = running::whole(&first.to_text());
+    assert_eq!(again.beginnings, first.beginnings);
+    assert_eq!(again.to_text(), first.to_text());
+}
+
+#[test]
+fn lines_that_mean_nothing_are_told_with_what_there_is() {
+    for (line, code, answer) in [
+        ("IC JOINT/1, Z=1", "bad_extension", "it has X, X_RATE, Y"),
+        (
+            "IC JOINT/7, X=1",
+            "unknown_element",
+            "JOINT/7 does not exist",
+        ),
+        ("IC JOINT/1, X=1, X=2", "given_twice", "X of JOINT/1"),
+        ("IC JOINT/1, X=a", "bad_extension", "a number is expected"),
+        ("IC PART/2, X=1", "bad_extension", "joints and markers"),
+        ("IC JOINT/1", "bad_extension", "no initial values"),
+        ("RIGGID a = PART/2", "bad_extension", "is no line of ours"),
+        ("RIGID a", "bad_extension", "a rigid body is"),
+        ("RIGID a = PART/2", "rigid_body", "at least two parts"),
+        (
+            "RIGID a = PART/2, PART/9",
+            "unknown_element",
+            "PART/9 does not exist",
+        ),
+        ("RIGID a = PART/2, MARKER/2", "rigid_body", "is no PART"),
+    ] {
+        let found = said(&format!("{PLANAR}! cognate: {line}\n"));
+        let told = found
+            .iter()
+            .any(|(c, text)| *c == code && text.contains(answer) && text.contains("7:"));
+        assert!(told, "{line}: {found:?}");
+    }
+}
+
+/// Two bars of a double pendulum, free at the pin between them.
+const BARS: &str = "\
+PART/2, MASS=2, CM=20, IP=0.1,0.1,0.1, REULER=0D,90D,0D
+MARKER/20, PART=2, QP=0,0,-0.5
+MARKER/21, PART=2, REULER=0D,-90D,0D
+MARKER/22, PART=2, QP=0,0,-1, REULER=0D,-90D,0D
+PART/3, MASS=1, CM=30, IP=0.05,0.05,0.05, QG=0,1,0, REULER=30D,90D,0D
+MARKER/30, PART=3, QP=0,0,-0.3
+MARKER/31, PART=3
+JOINT/1, REVOLUTE, I=21, J=1
+JOINT/2, SPHERICAL, I=31, J=22
+ACCGRAV/IGRAV=-9.81
+";
+
+#[test]
+fn parts_of_a_rigid_body_move_as_one_part_does() {
+    let rigid = format!("{BARS}! cognate: RIGID arm = PART/2, PART/3\n");
+    let columns = [
+        "DX(20,1)",
+        "DY(20,1)",
+        "DX(30,1)",
+        "DY(30,1)",
+        "DZ(30,20,20)",
+        "DX(30,20,20)",
+    ];
+    let moved = |text: &str| {
+        let mut s = session(text, &columns, 1e-10);
+        go(&mut s, Analysis::Dynamic, 1.0, 20);
+        s
+    };
+    let a = moved(&rigid);
+    for c in ["DZ(30,20,20)", "DX(30,20,20)"] {
+        let along = values(&a, c);
+        assert!(
+            along.iter().all(|x| (x - along[0]).abs() < 1e-12),
+            "{along:?}"
+        );
+    }
+    let energy = a.run.record.energy;
+    assert!(energy.error() < 1e-8 && last(&a, "DX(20,1)") != first(&a, "DX(20,1)"));
+    // the joint within is told, and does nothing
+    let told = said(&rigid);
+    assert!(
+        told.iter()
+            .any(|(c, text)| *c == "rigid_body" && text.contains("JOINT/2")),
+        "{told:?}"
+    );
+    assert!(
+        told.iter().all(|(_, text)| !text.contains("error[")),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn a_rigid_body_with_ground_stands_and_one_is_written_as_joints() {
+    let text = format!("{BARS}! cognate: RIGID base = PART/1, PART/2\n");
+    let mut s = session(&text, &["DX(20,1)"], 1e-9);
+    go(&mut s, Analysis::Dynamic, 0.5, 5);
+    assert_eq!(last(&s, "DX(20,1)"), first(&s, "DX(20,1)"));
+    let written = model(&text).to_text();
+    assert!(
+        written.contains("adams_view_name='base_2'") && written.contains(", FIXED"),
+        "{written}"
+    );
+}
+
+#[test]
+fn a_rigid_body_is_not_in_another_and_a_part_in_one_alone() {
+    for (lines, answer) in [
+        (
+            "! cognate: RIGID hand = PART/2, PART/3\n! cognate: RIGID arm = PART/1, hand\n",
+            "hand, which is in it, is rigid already",
+        ),
+        (
+            "! cognate: RIGID a = PART/1, PART/2\n! cognate: RIGID b = PART/2, PART/3\n",
+            "PART/2 is in the rigid body a",
+        ),
+        ("! cognate: RIGID a = PART/2, PART/2\n", "is named twice"),
+        (
+            "! cognate: RIGID a = PART/1, PART/2\nMOTION/1, JOINT=1, ROTATION, FUNCTION=TIME\n",
+            "it moves parts of the rigid body a",
+        ),
+    ] {
+        let found = said(&format!("{BARS}{lines}"));
+        let told = found
+            .iter()
+            .any(|(c, text)| *c == "rigid_body" && text.contains(answer));
+        assert!(told, "{lines}: {found:?}");
+    }
+}
