@@ -1,6 +1,7 @@
 //! `cognate check`: the mistakes in datasets and command files, without running them.
 
 use super::render::{self, Sources};
+use super::setup::{self, Asked};
 use super::{Exit, Failure, Outcome, complain, remark, say};
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::dataset::command::{Command, Script, Simulate};
@@ -49,9 +50,11 @@ pub fn run(args: &Args) -> Outcome {
             _ => match dataset::read(file) {
                 Ok(reading) => {
                     add(&mut sources, &reading);
-                    let begun = assembled(&reading, reading.model.clone(), file, None);
+                    let (model, mistaken) = set_up(&reading, file, &mut sources);
+                    let begun = assembled(&reading, model, file, None);
                     model_fails |= begun.iter().any(is_error);
                     all.extend(reading.diagnostics);
+                    all.extend(mistaken);
                     all.extend(begun);
                 }
                 Err(error) => all.extend(error),
@@ -83,6 +86,22 @@ pub fn run(args: &Args) -> Outcome {
 
 fn is_error(d: &Diagnostic) -> bool {
     d.severity == Severity::Error
+}
+
+/// Returns the model with the loads and functions of the file beside its dataset, and the mistakes
+/// in that file; with mistakes, the model is that of the dataset.
+fn set_up(reading: &Reading, dataset: &Path, sources: &mut Sources) -> (Model, Vec<Diagnostic>) {
+    let mut model = reading.model.clone();
+    match setup::prepare(dataset, &mut model, Asked::Kept) {
+        Ok(_) => (model, Vec::new()),
+        Err(failure) => {
+            let file = dataset.with_extension("toml");
+            if let Ok(text) = std::fs::read_to_string(&file) {
+                sources.add(file.display().to_string(), text);
+            }
+            (reading.model.clone(), failure.diagnostics)
+        }
+    }
 }
 
 /// Time up to which motions are looked at where no command says when the run ends.
@@ -170,7 +189,8 @@ fn check_script(
         }
     };
     add(sources, &reading);
-    let mut model = reading.model.clone();
+    let (mut model, mistaken) = set_up(&reading, &path, sources);
+    all.extend(mistaken);
     let mut begun = false;
     for step in &script.steps {
         if let Command::Simulate(simulate) = &step.command

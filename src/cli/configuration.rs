@@ -4,6 +4,7 @@ use super::convert::same_file;
 use super::moved::has_ending;
 use super::recorded::{model_file, record_of};
 use super::run::{self, KindName, Single};
+use super::setup::Asked;
 use super::{Exit, Failure, Outcome, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
@@ -12,6 +13,7 @@ use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::model::{ElementKind, Model};
 use crate::results::{self, Status, digits_of_six};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -77,17 +79,27 @@ pub fn run(args: &Args) -> Outcome {
         let what = "the output is the input, which is never overwritten";
         return Err(Failure::usage(what));
     }
-    let job = match run::has_commands(&file) {
-        true => run::script(&file, dataset)?,
-        false => run::alone(&Single {
-            model: &file,
-            dataset,
-            kind: args.kind,
-            end: Some(args.at),
-            steps: None,
-        })?,
-    };
     let recorded = record_of(&args.file).filter(|_| !is_model);
+    let acting = recorded.as_ref().and_then(loads_of_record);
+    let asked = match &acting {
+        // a run with all loads, or a model with those of the last choice
+        None if recorded.as_ref().is_some_and(|r| r.get("loads").is_some()) => Asked::All,
+        None => Asked::Kept,
+        Some(acting) => Asked::Recorded(acting),
+    };
+    let job = match run::has_commands(&file) {
+        true => run::script_with(&file, dataset, asked)?,
+        false => run::alone_with(
+            &Single {
+                model: &file,
+                dataset,
+                kind: args.kind,
+                end: Some(args.at),
+                steps: None,
+            },
+            asked,
+        )?,
+    };
     let options = Options {
         error: args
             .error
@@ -106,6 +118,13 @@ pub fn run(args: &Args) -> Outcome {
         return Err(not_reached(&session, args.at));
     };
     write(args, &session, &left)
+}
+
+/// Returns the loads that acted in a run; `None`: all.
+fn loads_of_record(record: &Value) -> Option<Vec<String>> {
+    let names = record["loads"]["acting"].as_array()?;
+    let name = |v: &Value| v.as_str().map(str::to_owned);
+    Some(names.iter().filter_map(name).collect())
 }
 
 /// Returns why a run does not reach a time.
@@ -255,7 +274,7 @@ fn write(args: &Args, session: &Session, left: &[Step]) -> Outcome {
 }
 
 /// Returns a command file for what is left of a run from a time on.
-fn commands(out: &Path, model: &Model, left: &[Step], at: f64) -> String {
+pub(super) fn commands(out: &Path, model: &Model, left: &[Step], at: f64) -> String {
     let name = run::stem(out);
     let mut text = format!("FILE/MODEL={name}, OUTPUT_PREFIX={name}\n");
     let mut off: BTreeMap<ElementKind, Vec<String>> = BTreeMap::new();
@@ -271,7 +290,7 @@ fn commands(out: &Path, model: &Model, left: &[Step], at: f64) -> String {
     for step in left {
         match &step.command {
             Command::Simulate(simulate) => text += &simulate_line(simulate, at),
-            Command::Change(record) if record.reads_time() => remark(format!(
+            Command::Change(record) if at != 0.0 && record.reads_time() => remark(format!(
                 "{} is left out: it reads TIME, which is counted from zero now",
                 step.text
             )),

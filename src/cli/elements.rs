@@ -58,7 +58,7 @@ fn naming(text: &str) -> Result<(ElementId, String), String> {
 /// When the dataset cannot be read, an element does not exist or is named by others, or a file
 /// cannot be written.
 pub fn run(args: &Args) -> Outcome {
-    let mut reading = run::read(&args.model)?;
+    let (mut reading, _) = run::read_bare(&args.model)?;
     let changes = !args.rename.is_empty() || !args.delete.is_empty();
     if changes != args.out.is_some() {
         let what = "--rename and --delete write a dataset: -o FILE.adm";

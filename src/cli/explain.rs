@@ -1,6 +1,7 @@
 //! `cognate explain`: the meaning of a code or a name, or the outline of a model.
 
-use super::verify::model_of;
+use super::setup;
+use super::verify::model_with_loads;
 use super::{Exit, Failure, Outcome, card, say, width};
 use super::{functions, statements};
 use crate::analysis::verify::idle::Idle;
@@ -8,6 +9,7 @@ use crate::analysis::verify::outline::{Outline, outline};
 use crate::dataset::manual;
 use crate::diagnostic::codes::{all, code};
 use crate::diagnostic::{Cause, Diagnostic, near_names};
+use crate::results::json as json_record;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -44,12 +46,17 @@ pub fn run(args: &Args) -> Outcome {
         None if args.markdown => say(&markdown()),
         None => say(&list()),
         Some(what) if is_model(what) => {
-            let (model, dataset) = model_of(Path::new(what))?;
+            let (model, dataset, loads) = model_with_loads(Path::new(what))?;
             let found = outline(&model).map_err(|d| Failure::in_model(&dataset, d))?;
             if args.json {
-                say(&format!("{:#}\n", as_json(&found)));
+                let mut told = as_json(&found);
+                told["loads"] = json!(loads.as_ref().map(json_record::loads));
+                say(&format!("{told:#}\n"));
             } else {
                 say(&as_text(&found));
+                if let Some(loads) = &loads {
+                    say(&format!("{}\n", setup::loads_acting(loads)));
+                }
             }
         }
         Some(what) => say(&explained(what)?),

@@ -16,14 +16,19 @@ mod elements;
 mod eval;
 mod example;
 mod explain;
+mod export;
 mod fmt;
 pub mod formula;
 mod functions;
+mod group;
+mod grouped;
 #[cfg(feature = "geometry")]
 mod interference;
 pub mod interrupt;
 mod limit;
 mod linear;
+mod loads;
+mod mdi;
 mod modes;
 mod motion;
 mod moved;
@@ -36,6 +41,7 @@ mod repl;
 mod report;
 mod run;
 mod runs;
+mod setup;
 mod statements;
 mod summary;
 mod sweep;
@@ -68,11 +74,15 @@ enum Verb {
     Elements(elements::Args),
     Eval(eval::Args),
     Explain(explain::Args),
+    Export(export::Args),
     Fmt(fmt::Args),
     Functions(functions::Args),
+    Group(group::Args),
     #[cfg(feature = "geometry")]
     Interference(interference::Args),
     Linear(linear::Args),
+    Loads(loads::Args),
+    Mdi(mdi::Args),
     Motion(motion::Args),
     Plot(plot::Args),
     Repl(repl::Args),
@@ -226,11 +236,15 @@ fn obey(cli: &Cli) -> ExitCode {
         Verb::Elements(args) => elements::run(args),
         Verb::Eval(args) => eval::run(args),
         Verb::Explain(args) => explain::run(args),
+        Verb::Export(args) => export::run(args),
         Verb::Fmt(args) => fmt::run(args),
         Verb::Functions(args) => functions::run(args),
+        Verb::Group(args) => group::run(args),
         #[cfg(feature = "geometry")]
         Verb::Interference(args) => interference::run(args),
         Verb::Linear(args) => linear::run(args),
+        Verb::Loads(args) => loads::run(args),
+        Verb::Mdi(args) => mdi::run(args),
         Verb::Motion(args) => motion::run(args),
         Verb::Plot(args) => plot::run(args),
         Verb::Repl(args) => repl::run(args),

@@ -1,6 +1,7 @@
 //! A model and a run of it, for pictures: solved now, or read from files of results.
 
 use super::run::{self, KindName, Single};
+use super::setup::Asked;
 use super::{Failure, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
@@ -72,7 +73,7 @@ impl Source {
         if !is_dataset && !run::has_commands(&self.file) {
             let run = results::read(&self.file)?;
             let dataset = self.dataset(&run)?;
-            let model = run::read(&dataset)?.model;
+            let model = run::read_with(&dataset, Asked::All)?.model;
             let folders = [dataset.parent(), self.file.parent()];
             let folders = folders.into_iter().flatten().map(Path::to_path_buf);
             return Ok(Moved {

@@ -22,7 +22,7 @@ const LONGEST_IN_MEMORY: Duration = Duration::from_secs(1);
 pub const MOST_IN_RES: usize = 10_000_000;
 
 /// The wishes of a user about files.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub struct FileArgs {
     /// Formats of the tables: csv, parquet, res, json, req, gra. Without this option it is csv, and
     /// those that the dataset asks for if they have no more than 10 million numbers: res by
@@ -40,7 +40,7 @@ pub struct FileArgs {
 }
 
 /// The wishes of a user about the look of tables.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub struct StyleArgs {
     /// No row of units below the names in .csv files
     #[arg(long)]

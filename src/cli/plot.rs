@@ -1,9 +1,12 @@
 //! `cognate plot`: columns of results as a picture, in the terminal or as a file.
 
 use super::convert::same_file;
+use super::grouped;
+use super::moved::has_ending;
 use super::recorded::add_measures;
+use super::setup::Setup;
 use super::table::Table;
-use super::{Exit, Failure, Outcome, remark, render, say, width};
+use super::{Exit, Failure, Outcome, remark, render, run, say, width};
 use crate::diagnostic::Diagnostic;
 use crate::report::channels::{Channels, Shown, Source, channels};
 use crate::report::terminal::{Style, terminal};
@@ -23,14 +26,24 @@ Examples:
   cognate plot a/run.csv --over b/run.res --y slider.X                 two runs
   cognate plot run.csv --x slider.X --y slider.VX --out phase.svg      a phase plot
   cognate plot run.csv --y slider.VX --as spectrum
+  cognate plot run.csv --group Drives                                 a group of functions (cognate group)
+  cognate plot crane.adm --y swing --end 4                            a function of the model, without a run
   cognate plot run.csv --statistics")]
 pub struct Args {
-    /// Results to read: .csv, .json, .res or .gra
+    /// Results to read: .csv, .parquet, .json, .res, .req, .gra or .msg; or a model (.adm, .acf),
+    /// whose functions are shown
     input: PathBuf,
     /// Column to show (repeatable), or a displacement, velocity or acceleration of markers, as
-    /// VX(20,10); the first few when none is given
+    /// VX(20,10), or a function of the model; the first few when none is given
     #[arg(long, value_name = "COLUMN")]
     y: Vec<String>,
+    /// Group whose functions are shown (repeatable): of the model, the run by its name, or a set of
+    /// results
+    #[arg(long = "group", value_name = "GROUP")]
+    groups: Vec<String>,
+    /// Last time for functions of a model
+    #[arg(long, value_name = "TIME")]
+    end: Option<f64>,
     /// Column to show them over; time when not given
     #[arg(long, value_name = "COLUMN")]
     x: Option<String>,
@@ -92,15 +105,32 @@ impl From<ShownName> for Shown {
 /// # Errors
 /// When the results cannot be read, have no such column, or no finite value.
 pub fn run(args: &Args) -> Outcome {
-    let mut sources = sources(args)?;
+    let setup = setup_of(args)?;
+    let mut sources = sources(args, setup.as_ref())?;
     if args.list {
         say(&list(&sources[0].run));
         return Ok(Exit::Done);
     }
-    let names = match args.y.as_slice() {
-        [] if args.statistics => all_names(&sources[0].run, args.x.as_deref()),
-        names => names.to_vec(),
+    let setup = match setup {
+        Some(setup) => setup,
+        None if is_needed(args, &sources[0].run) => {
+            grouped::setup_of(&args.input, args.model.as_deref())?
+        }
+        None => Setup::default(),
     };
+    let mut names = args.y.clone();
+    for group in &args.groups {
+        names.extend(grouped::columns_of(&setup, &sources[0].run, group)?);
+    }
+    if is_model(&args.input) && names.is_empty() {
+        names.extend(setup.functions.iter().map(|f| f.name.text.clone()));
+    }
+    for Source { run, .. } in &mut sources {
+        grouped::add_functions(run, &setup, &names)?;
+    }
+    if names.is_empty() && args.statistics {
+        names = all_names(&sources[0].run, args.x.as_deref());
+    }
     for (Source { run, .. }, file) in sources
         .iter_mut()
         .zip([&args.input].into_iter().chain(&args.over))
@@ -127,8 +157,46 @@ pub fn run(args: &Args) -> Outcome {
     }
 }
 
-/// Reads all runs; each is named by its file, with its folder where files are called alike.
-fn sources(args: &Args) -> Result<Vec<Source>, Diagnostic> {
+/// Returns whether a file is a model, whose functions are shown.
+fn is_model(file: &Path) -> bool {
+    has_ending(file, "adm") || has_ending(file, "acf")
+}
+
+/// Returns the set-up of a model that is shown; `None`: results are shown.
+fn setup_of(args: &Args) -> Result<Option<Setup>, Failure> {
+    let model = is_model(&args.input).then(|| Setup::of_model(&args.input));
+    let setup = model.transpose()?;
+    if setup.as_ref().is_some_and(|s| s.functions.is_empty()) {
+        let what = format!("{} has no functions to show", args.input.display());
+        let d = Diagnostic::error("empty_plot", what);
+        let advice = "cognate group function makes one; a model has results once it has been run";
+        return Err(d.help(advice).into());
+    }
+    Ok(setup)
+}
+
+/// Returns whether a plot of results shows what is not in them.
+fn is_needed(args: &Args, run: &Run) -> bool {
+    !args.groups.is_empty() || args.y.iter().any(|y| run.find(y).is_none())
+}
+
+/// Reads all runs, or the functions of a model; each run is named by its file, with its folder
+/// where files are called alike.
+fn sources(args: &Args, setup: Option<&Setup>) -> Result<Vec<Source>, Failure> {
+    let Some(setup) = setup else {
+        return Ok(runs(args)?);
+    };
+    let mut times = grouped::over_time(setup, &args.input, args.end);
+    if args.list {
+        let known = setup.functions.iter().map(|f| f.name.text.clone());
+        grouped::add_functions(&mut times, setup, &known.collect::<Vec<_>>())?;
+    }
+    let label = run::stem(&args.input);
+    Ok(vec![Source { label, run: times }])
+}
+
+/// Reads all runs.
+fn runs(args: &Args) -> Result<Vec<Source>, Diagnostic> {
     let files: Vec<&PathBuf> = [&args.input].into_iter().chain(&args.over).collect();
     let stem = |file: &Path| {
         let stem = file.file_stem().unwrap_or_default();

@@ -1,6 +1,7 @@
 //! The model of a record: the file that the record names, as its commands left it, unless its
 //! markers are fixed otherwise now.
 
+use super::setup::Asked;
 use super::{Failure, run};
 use crate::analysis::motion::{MarkerMeasure, Recorded, marker_digest};
 use crate::dataset::command::Command;
@@ -72,9 +73,9 @@ fn beside(results: &Path, named: &Path) -> PathBuf {
 /// Reads a dataset, or that of a command file with all changes that its commands make.
 fn as_commands_leave_it(file: &Path) -> Result<Model, Failure> {
     if !run::has_commands(file) {
-        return Ok(run::read(file)?.model);
+        return Ok(run::read_with(file, Asked::All)?.model);
     }
-    let job = run::script(file, None)?;
+    let job = run::script_with(file, None, Asked::All)?;
     let mut model = job.reading.model;
     for step in &job.steps {
         if matches!(step.command, Command::Change(_)) {

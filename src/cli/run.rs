@@ -3,6 +3,7 @@
 use super::limit::{self, Guard};
 use super::progress::Progress;
 use super::render::Sources;
+use super::setup::{self, Asked, Prepared, Setup};
 use super::{Exit, Failure, Outcome, interrupt, output, remark, say, summary};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
@@ -12,15 +13,18 @@ use crate::analysis::work_limit::process_seconds;
 use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
-use crate::model::{ElementKind, Model, SettingsStatement};
+use crate::model::{ElementKind, Family, Model, SettingsStatement};
 use crate::numeric::Stats;
 use crate::results::format::Format;
-use crate::results::{self, Event, Run, Status, json};
+use crate::results::{self, Event, Loads, Run, Status, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Solve a model: a command file (.acf) with its dataset, or a dataset (.adm) alone
-#[derive(clap::Args)]
+///
+/// What is not said here is taken from MODEL.toml beside the dataset, if there is one: which loads
+/// act, their functions, and the set-up of the run (`cognate loads`).
+#[derive(clap::Args, Clone)]
 #[command(after_help = "\
 Examples:
   cognate run pendulum.acf
@@ -28,6 +32,7 @@ Examples:
   cognate run pendulum.adm --end 2 --steps 200 --column 'DX(12,21)'
   cognate run pendulum.acf --animate --open
   cognate run pendulum.acf --name stiff --out results
+  cognate run crash.adm --loads braking,gravity --end 2
   cognate run pendulum.acf --error 1e-8 --method DOP853 --out results --json")]
 pub struct Args {
     /// Command file (.acf), log of an earlier run whose commands are obeyed again (.msg), or
@@ -53,6 +58,10 @@ pub struct Args {
     /// Kind of simulation, for a dataset without command file
     #[arg(long = "type", value_name = "KIND", value_enum)]
     kind: Option<KindName>,
+    /// Load cases and loads that act, as SFORCE/3 or gravity; `all` for all loads. The choice is
+    /// kept in MODEL.toml for the next runs
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    loads: Vec<String>,
     /// Folder that results are written to
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -96,7 +105,8 @@ pub struct Args {
     json: bool,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
+/// The kind of a simulation, on the command line and in a set-up.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub(super) enum KindName {
     Dynamic,
     Kinematic,
@@ -138,23 +148,18 @@ pub fn run(args: &Args) -> Outcome {
 
     // read
     let is_command = has_commands(&args.model);
-    let job = if is_command {
-        script(&args.model, args.dataset.as_deref())?
-    } else {
-        alone(&Single {
-            model: &args.model,
-            dataset: args.dataset.as_deref(),
-            kind: args.kind,
-            end: args.end,
-            steps: args.steps,
-        })?
-    };
+    let job = job(args, is_command)?;
+    let args = &args.completed(&job.setup);
     let doubts = remark_on_warnings(args, &job);
+    if !args.quiet {
+        remark_on_loads(&job);
+    }
     let (model, dataset, steps) = (job.reading.model, job.reading.dataset, job.steps);
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
     let mut session = open(args, model, name);
     session.run.record.seconds.begin(clock, job.read_seconds);
+    session.run.record.loads = job.loads;
     let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
     guard.iter().for_each(|g| g.follow(&session, &tables));
 
@@ -211,8 +216,71 @@ pub fn run(args: &Args) -> Outcome {
     Ok(exit(status))
 }
 
+/// Reads the model of a run and its commands, with the loads that are asked for.
+fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
+    let asked = match args.loads.is_empty() {
+        true => Asked::Kept,
+        false => Asked::New(&args.loads),
+    };
+    if is_command {
+        return script_with(&args.model, args.dataset.as_deref(), asked);
+    }
+    let single = Single {
+        model: &args.model,
+        dataset: args.dataset.as_deref(),
+        kind: args.kind,
+        end: args.end,
+        steps: args.steps,
+    };
+    alone_with(&single, asked)
+}
+
+impl Args {
+    /// Returns these arguments, with those of a set-up where they are not given.
+    fn completed(&self, setup: &Setup) -> Self {
+        let mut all = self.clone();
+        let solve = &setup.solve;
+        all.error = all.error.or(solve.error);
+        all.method = all.method.or_else(|| solve.method.clone());
+        all.body_motion |= solve.body_motion;
+        if all.columns.is_empty() {
+            all.columns.clone_from(&solve.columns);
+        }
+        if all.only.is_empty() {
+            all.only.clone_from(&solve.only);
+        }
+        if all.output.formats.is_empty() {
+            all.output.formats.clone_from(&solve.formats);
+        }
+        all
+    }
+}
+
+/// Remarks on the loads that were chosen, or that nothing acts at all.
+fn remark_on_loads(job: &Job) {
+    if let Some(loads) = &job.loads {
+        return remark(setup::loads_acting(loads));
+    }
+    let model = &job.reading.model;
+    let pushes = |kind| {
+        model
+            .numbers(kind)
+            .into_iter()
+            .any(|n| model.is_active(ElementKind::id(kind, n)))
+    };
+    let is_pushed = ElementKind::of(Family::Force).any(pushes);
+    // commands may change what acts
+    let is_final = !job
+        .steps
+        .iter()
+        .any(|s| matches!(s.command, Command::Change(_) | Command::Activate { .. }));
+    if is_final && !is_pushed && setup::loads_of(model).is_empty() {
+        remark("no load acts: no motion, no force, no gravity, no initial velocity");
+    }
+}
+
 /// Reads the name of a run: that of a file.
-fn run_name(text: &str) -> Result<String, String> {
+pub(super) fn run_name(text: &str) -> Result<String, String> {
     match results::kept::is_run_name(text) {
         true => Ok(text.to_owned()),
         false => Err("a run is named as a file is, without a folder: --out DIR".to_owned()),
@@ -360,6 +428,10 @@ pub(super) struct Job {
     pub base: String,
     /// the commands
     pub steps: Vec<Step>,
+    /// the file beside the dataset
+    pub setup: Setup,
+    /// the loads that were chosen; `None`: all loads act
+    pub loads: Option<Loads>,
     /// warnings and notes about the commands
     pub remarks: Vec<Diagnostic>,
     /// time that the bytes of the dataset took, in s
@@ -392,17 +464,33 @@ pub(super) struct Single<'a> {
     pub steps: Option<usize>,
 }
 
-/// Prepares a dataset with one simulation given by options.
+/// Prepares a dataset with one simulation given by options, else by its set-up, and the loads of
+/// the last choice.
 pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
+    alone_with(args, Asked::Kept).inspect(remark_on_choice)
+}
+
+/// Remarks on the loads that were chosen before, where a command takes them.
+fn remark_on_choice(job: &Job) {
+    if let Some(loads) = &job.loads {
+        remark(setup::loads_acting(loads));
+    }
+}
+
+/// Prepares a dataset with one simulation given by options, else by its set-up.
+pub(super) fn alone_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, Failure> {
     if args.dataset.is_some() {
         let what = "a second file is the dataset of a command file (.acf) or of a log (.msg)";
         return Err(Failure::usage(what));
     }
-    let (reading, read_seconds) = timed_read(args.model)?;
+    let (reading, read_seconds, Prepared { setup, loads }) = timed_read(args.model, asked)?;
+    let steps = single_simulation(args, &setup)?;
     Ok(Job {
         reading,
         base: stem(args.model),
-        steps: vec![alone_step(args)?],
+        steps,
+        setup,
+        loads,
         remarks: Vec::new(),
         read_seconds,
     })
@@ -410,7 +498,17 @@ pub(super) fn alone(args: &Single<'_>) -> Result<Job, Failure> {
 
 /// Returns the simulation that options describe, as a command.
 pub(super) fn alone_step(args: &Single<'_>) -> Result<Step, Failure> {
-    let kind = match args.kind.unwrap_or(KindName::Transient) {
+    let steps = single_simulation(args, &Setup::default())?;
+    let last = steps.into_iter().next_back();
+    last.ok_or_else(|| Failure::usage("there is nothing to simulate"))
+}
+
+/// Returns the simulation that options describe, else a set-up, after one at rest where it asks for
+/// that.
+fn single_simulation(args: &Single<'_>, setup: &Setup) -> Result<Vec<Step>, Failure> {
+    let kind = args.kind.or(setup.solve.kind);
+    let end = args.end.or(setup.solve.end);
+    let kind = match kind.unwrap_or(KindName::Transient) {
         KindName::Dynamic => SimulationKind::Dynamic,
         KindName::Kinematic => SimulationKind::Kinematic,
         KindName::Static => SimulationKind::Static,
@@ -421,24 +519,33 @@ pub(super) fn alone_step(args: &Single<'_>) -> Result<Step, Failure> {
         kind,
         SimulationKind::Static | SimulationKind::InitialConditions
     );
-    if over_time && args.end.is_none() {
+    if over_time && end.is_none() {
         return Err(Failure::usage(
             "a dataset without a command file needs --end TIME",
         ));
     }
-    let steps = args.steps.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+    let steps = args.steps.or(setup.solve.steps);
+    let steps = steps.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
     let simulate = Simulate {
         kind,
-        end: args.end,
+        end,
         duration: None,
         steps,
         dtout: None,
     };
-    Ok(Step {
+    let at_rest = Simulate {
+        kind: SimulationKind::Static,
+        end: None,
+        steps: None,
+        ..simulate
+    };
+    let first = (over_time && setup.solve.at_rest_first).then_some(at_rest);
+    let step = |simulate| Step {
         command: Command::Simulate(simulate),
         text: "SIMULATE".into(),
         line: 0,
-    })
+    };
+    Ok(first.into_iter().chain([simulate]).map(step).collect())
 }
 
 pub(super) fn stem(path: &Path) -> String {
@@ -446,13 +553,30 @@ pub(super) fn stem(path: &Path) -> String {
         .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
-/// Reads a dataset.
+/// Reads a dataset, with the loads of the last choice.
 pub(super) fn read(path: &Path) -> Result<Reading, Failure> {
-    timed_read(path).map(|(reading, _)| reading)
+    read_with(path, Asked::Kept)
 }
 
-/// Reads a dataset; also returns the time that its bytes took, in s.
-fn timed_read(path: &Path) -> Result<(Reading, f64), Failure> {
+/// Reads a dataset, with loads.
+pub(super) fn read_with(path: &Path, asked: Asked<'_>) -> Result<Reading, Failure> {
+    timed_read(path, asked).map(|(reading, ..)| reading)
+}
+
+/// Reads a dataset and the file beside it; also returns the time that the bytes of the dataset
+/// took, in s.
+pub(super) fn timed_read(
+    path: &Path,
+    asked: Asked<'_>,
+) -> Result<(Reading, f64, Prepared), Failure> {
+    let (mut reading, seconds) = read_bare(path)?;
+    let prepared = setup::prepare(path, &mut reading.model, asked)?;
+    Ok((reading, seconds, prepared))
+}
+
+/// Reads a dataset alone, whatever stands beside it; also returns the time that its bytes took, in
+/// s.
+pub(super) fn read_bare(path: &Path) -> Result<(Reading, f64), Failure> {
     let clock = Instant::now();
     let source = dataset::open(path).map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
     let seconds = clock.elapsed().as_secs_f64();
@@ -474,8 +598,20 @@ pub(super) fn has_commands(path: &Path) -> bool {
 }
 
 /// Reads a command file and the dataset it names, or the commands that a log echoes and the dataset
-/// beside it; `dataset`: this one instead.
+/// beside it; `dataset`: this one instead. The loads are those of the last choice.
 pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure> {
+    script_with(path, dataset, Asked::Kept).inspect(remark_on_choice)
+}
+
+/// Reads a command file and its dataset, with loads.
+///
+/// # Errors
+/// As [`script`].
+pub(super) fn script_with(
+    path: &Path,
+    dataset: Option<&Path>,
+    asked: Asked<'_>,
+) -> Result<Job, Failure> {
     let failed = |e: Error| Failure::in_files(Exit::Input, e.into());
     if path
         .extension()
@@ -485,11 +621,13 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
         let file = (dataset.map(Path::to_path_buf))
             .or_else(|| script.model_file())
             .unwrap_or_else(|| path.with_extension("adm"));
-        let (reading, read_seconds) = timed_read(&file)?;
+        let (reading, read_seconds, Prepared { setup, loads }) = timed_read(&file, asked)?;
         return Ok(Job {
             reading,
             base: format!("{}_replay", stem(path)),
             steps: script.steps,
+            setup,
+            loads,
             remarks: script.diagnostics,
             read_seconds,
         });
@@ -514,6 +652,8 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
                 reading: dataset::read_text(&saved.model().to_text()),
                 base: script.output.clone().unwrap_or_else(|| stem(path)),
                 steps: script.steps,
+                setup: Setup::default(),
+                loads: None,
                 remarks: script.diagnostics,
                 read_seconds: 0.0,
             });
@@ -525,11 +665,13 @@ pub(super) fn script(path: &Path, dataset: Option<&Path>) -> Result<Job, Failure
     if !file.exists() {
         return Err(missing(&script, path, &file));
     }
-    let (reading, read_seconds) = timed_read(&file)?;
+    let (reading, read_seconds, Prepared { setup, loads }) = timed_read(&file, asked)?;
     Ok(Job {
         reading,
         base,
         steps: script.steps,
+        setup,
+        loads,
         remarks: script.diagnostics,
         read_seconds,
     })

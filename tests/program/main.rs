@@ -13,12 +13,16 @@ mod cli;
 mod cli_eval;
 mod configuration;
 mod elements;
+mod exchange;
 mod first_hour;
 mod gallery;
+mod groups;
 #[cfg(feature = "geometry")]
 mod interference;
+mod loads;
 mod manual;
 mod motion;
+mod pages;
 mod plots;
 mod prompt;
 mod readers;

@@ -2,14 +2,15 @@
 
 pub mod text;
 
-use super::run::{has_commands, read, script};
+use super::run::{Job, has_commands, script_with, timed_read};
+use super::setup::{Asked, loads_acting};
 use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, remark, say};
 use crate::analysis::verify::{Verification, verify};
 use crate::dataset::Dataset;
 use crate::dataset::command::Command;
 use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::model::Model;
-use crate::results::json;
+use crate::results::{Loads, json};
 use std::path::{Path, PathBuf};
 
 /// Count the freedoms of a model and explain what is fixed twice and what is free
@@ -87,11 +88,32 @@ fn draw_redundant(
 /// # Errors
 /// When a file cannot be read, or has mistakes.
 pub fn model_of(path: &Path) -> Result<(Model, Dataset), Failure> {
+    let (model, dataset, loads) = model_with_loads(path)?;
+    loads.iter().for_each(|l| remark(loads_acting(l)));
+    Ok((model, dataset))
+}
+
+/// Returns the same, and the loads that were chosen.
+///
+/// # Errors
+/// When a file cannot be read, or has mistakes.
+pub fn model_with_loads(path: &Path) -> Result<(Model, Dataset, Option<Loads>), Failure> {
     if !has_commands(path) {
-        let reading = read(path)?;
-        return Ok((reading.model, reading.dataset));
+        let (reading, _, prepared) = timed_read(path, Asked::Kept)?;
+        return Ok((reading.model, reading.dataset, prepared.loads));
     }
-    let job = script(path, None)?;
+    let job = script_with(path, None, Asked::Kept)?;
+    let loads = job.loads.clone();
+    let (model, dataset) = before_simulation(job)?;
+    Ok((model, dataset, loads))
+}
+
+/// Returns the model of commands as they leave it before the first simulation, and the dataset as
+/// written.
+///
+/// # Errors
+/// When a command does not fit the model.
+pub fn before_simulation(job: Job) -> Result<(Model, Dataset), Failure> {
     let mut model = job.reading.model;
     for step in &job.steps {
         match &step.command {

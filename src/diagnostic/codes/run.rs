@@ -302,4 +302,67 @@ row of it is a point of the design. Otherwise nothing is run and the table is ke
 
 To begin anew, name another file, or remove the table and the .sweep.json beside it.",
     },
+    Code {
+        name: "bad_setup",
+        summary: "the file beside a model says something that means nothing",
+        explanation: "\
+MODEL.toml beside a dataset holds load cases, functions, groups and the set-up of runs. The message says at which line and column
+it is mistaken, and what may stand there. Nothing is run before it is mended.
+
+    [cases]
+    lift = [\"gravity\", \"MOTION/1\"]      a load case: a list of loads
+    [functions.slow]
+    expression = \"30*sin(90*t)\"         a function has one of expression, direct, file, points
+    [solve]
+    end = 2                             a number, without quotation marks
+
+`cognate loads` and `cognate group` write it, and say nothing that it would not understand.",
+    },
+    Code {
+        name: "unknown_load",
+        summary: "a name that is neither a load case nor a load of the model",
+        explanation: "\
+Loads are gravity, motions, forces, contacts and initial conditions: gravity, MOTION/1, SFORCE/3, IC:PART/2, or the name that the
+dataset gives an element. A load that is switched off, or gravity of zero, is none. The advice lists what there is.
+
+    cognate loads MODEL.adm             loads and load cases
+    cognate run MODEL.adm --loads all   all loads",
+    },
+    Code {
+        name: "no_load",
+        summary: "a choice of loads that leaves none",
+        explanation: "\
+At least one load must act, otherwise there is nothing to solve for. The load case is empty, or it holds loads that the model no
+longer has.
+
+    cognate loads create MODEL.adm lift gravity MOTION/1",
+    },
+    Code {
+        name: "unknown_function",
+        summary: "a function that the file beside the model does not have",
+        explanation: "\
+Functions of yours stand in MODEL.toml. Results of a run are functions too, but they are in the group of their run and cannot give
+a load.
+
+    cognate group MODEL.adm                                              groups and functions
+    cognate group function MODEL.adm slow --expression '30*sin(90*t)'    makes one",
+    },
+    Code {
+        name: "unknown_group",
+        summary: "a group of functions that is not there",
+        explanation: "\
+Groups stand in MODEL.toml. USER_DEFINED is always there; in plots a run is a group by its name, and so is each set of results.
+
+    cognate group create MODEL.adm Drives slow slider.X
+    cognate plot results/MODEL.csv --group Drives",
+    },
+    Code {
+        name: "circular_group",
+        summary: "a group that holds itself",
+        explanation: "\
+A group of groups may hold groups of groups, but none that leads back to itself.
+
+    [groups.All]
+    groups = [\"Drives\", \"USER_DEFINED\"]     not \"All\"",
+    },
 ];

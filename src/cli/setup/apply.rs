@@ -1,0 +1,456 @@
+//! What a set-up does to a model: functions give loads, and loads that were not chosen are taken
+//! away.
+
+use super::function::{Fitted, Ordinate, Shape, UserFunction};
+use super::load::{Load, loads_of};
+use super::{LAST_USED, Named, Setup, edit};
+use crate::cli::{Exit, Failure, remark};
+use crate::diagnostic::{Diagnostic, Span, near_names};
+use crate::expr::Expr;
+use crate::expr::ast::Dialect;
+use crate::model::{COMPONENTS, Driven, ElementId, ElementKind, Formula, Level, Model, SplineData};
+use crate::results::Loads;
+use std::path::Path;
+
+/// The loads that a command asks for.
+#[derive(Clone, Copy, Debug)]
+pub enum Asked<'a> {
+    /// all, whatever was chosen
+    All,
+    /// those of the last choice
+    Kept,
+    /// these, which are kept as the choice; `all` alone: all loads
+    New(&'a [String]),
+    /// those that acted in a run whose record names them
+    Recorded(&'a [String]),
+}
+
+/// A model's set-up, and the loads that were chosen.
+#[derive(Clone, Debug, Default)]
+pub struct Prepared {
+    /// the file beside the model
+    pub setup: Setup,
+    /// the loads that were chosen; `None`: all loads act
+    pub loads: Option<Loads>,
+}
+
+/// Prepares a model for a run: gives loads their functions, and leaves out the loads that are not
+/// chosen. A new choice is kept in the file beside the dataset.
+///
+/// # Errors
+/// All mistakes in that file, at their lines and columns, and names that are no loads.
+pub fn prepare(dataset: &Path, model: &mut Model, asked: Asked) -> Result<Prepared, Failure> {
+    let setup = Setup::beside(dataset)?;
+    let wrong = |found: Vec<Diagnostic>| Failure::in_files(Exit::Input, found);
+    drive(&setup, model).map_err(wrong)?;
+    let (names, is_kept) = match asked {
+        Asked::All => (None, false),
+        Asked::New(names) if is_all(names) => (None, false),
+        Asked::New(names) | Asked::Recorded(names) => (Some(given(names)), false),
+        Asked::Kept => (setup.solve.loads.clone(), true),
+    };
+    let loads = match &names {
+        None => None,
+        Some(names) => Some(choose(&setup, model, names, is_kept).map_err(wrong)?),
+    };
+    if let Asked::New(names) = asked {
+        keep(&setup, names, loads.as_ref());
+    }
+    Ok(Prepared { setup, loads })
+}
+
+/// Returns whether names ask for all loads.
+fn is_all(names: &[String]) -> bool {
+    matches!(names, [name] if name.eq_ignore_ascii_case("all"))
+}
+
+/// Returns names that stand in no file.
+fn given(names: &[String]) -> Vec<Named> {
+    let named = |text: &String| Named {
+        text: text.clone(),
+        span: Span::default(),
+    };
+    names.iter().map(named).collect()
+}
+
+/// Keeps a choice in the file beside the model. That it cannot be kept is no reason not to run.
+fn keep(setup: &Setup, names: &[String], loads: Option<&Loads>) {
+    let are_cases = names.iter().all(|name| setup.case(name).is_some());
+    let kept = match loads {
+        None => edit::choose(setup, &[]),
+        Some(_) if are_cases => edit::choose(setup, names),
+        Some(loads) => edit::keep_last_used(setup, &loads.acting)
+            .and_then(|new| edit::choose(&new, &[LAST_USED.to_owned()])),
+    };
+    match kept {
+        Ok(_) if loads.is_some() => remark(format!(
+            "the choice is kept in {}; --loads all takes all loads again",
+            setup.file.display()
+        )),
+        Ok(_) => {}
+        Err(d) => remark(format!("the choice of loads is not kept: {}", d.message)),
+    }
+}
+
+/// Returns the loads that names of loads and load cases mean.
+///
+/// # Errors
+/// All names that mean none.
+pub fn check_loads(setup: &Setup, model: &Model, names: &[String]) -> Result<Vec<Load>, Failure> {
+    meant(setup, model, &given(names), false)
+}
+
+/// Returns the loads of the choice that is kept; `None`: all loads.
+///
+/// # Errors
+/// All names that mean none, at their places.
+pub fn chosen_loads(setup: &Setup, model: &Model) -> Result<Option<Vec<Load>>, Failure> {
+    let names = setup.solve.loads.as_ref();
+    names
+        .map(|names| meant(setup, model, names, true))
+        .transpose()
+}
+
+fn meant(
+    setup: &Setup,
+    model: &Model,
+    names: &[Named],
+    in_file: bool,
+) -> Result<Vec<Load>, Failure> {
+    let mut found = Vec::new();
+    let loads = resolve(setup, model, names, in_file, &mut found);
+    match found.is_empty() {
+        true => Ok(loads),
+        false => Err(Failure::in_files(Exit::Input, found)),
+    }
+}
+
+/// Leaves out the loads that are not chosen.
+fn choose(
+    setup: &Setup,
+    model: &mut Model,
+    names: &[Named],
+    in_file: bool,
+) -> Result<Loads, Vec<Diagnostic>> {
+    let mut found = Vec::new();
+    let all = loads_of(model);
+    let chosen = resolve(setup, model, names, in_file, &mut found);
+    if !found.is_empty() {
+        return Err(found);
+    }
+    let (acting, left_out): (Vec<Load>, Vec<Load>) =
+        all.into_iter().partition(|load| chosen.contains(load));
+    if acting.is_empty() {
+        let what = "no load is chosen: at least one must act";
+        let d = match names.first().filter(|_| in_file) {
+            Some(first) => setup.mistake(first.span, "no_load", what),
+            None => Diagnostic::error("no_load", what),
+        };
+        let advice = format!("loads of the model: {}", listed(&left_out));
+        return Err(vec![d.help(advice)]);
+    }
+    left_out.iter().for_each(|load| load.leave_out(model));
+    let words = |loads: &[Load]| loads.iter().map(ToString::to_string).collect();
+    Ok(Loads {
+        chosen: names.iter().map(|n| n.text.clone()).collect(),
+        acting: words(&acting),
+        left_out: words(&left_out),
+    })
+}
+
+fn listed(loads: &[Load]) -> String {
+    let names: Vec<String> = loads.iter().map(ToString::to_string).collect();
+    match names.is_empty() {
+        true => "none".to_owned(),
+        false => names.join(", "),
+    }
+}
+
+/// Returns the loads that names of loads and of load cases mean; notes names that mean none.
+fn resolve(
+    setup: &Setup,
+    model: &Model,
+    names: &[Named],
+    in_file: bool,
+    found: &mut Vec<Diagnostic>,
+) -> Vec<Load> {
+    let mut chosen = Vec::new();
+    let mut seen: Vec<&str> = Vec::new();
+    let mut open: Vec<(&Named, bool)> = names.iter().rev().map(|n| (n, in_file)).collect();
+    while let Some((name, is_in_file)) = open.pop() {
+        if let Some(case) = setup.case(&name.text) {
+            // a case that holds itself adds nothing more
+            if !seen.contains(&case.name.text.as_str()) {
+                seen.push(&case.name.text);
+                open.extend(case.loads.iter().rev().map(|n| (n, true)));
+            }
+            continue;
+        }
+        match load_named(model, &name.text) {
+            Ok(load) => chosen.push(load),
+            Err(why) => {
+                let mut d = match is_in_file {
+                    true => setup.mistake(name.span, "unknown_load", why),
+                    false => Diagnostic::error("unknown_load", why),
+                };
+                let cases = setup.cases.iter().map(|c| c.name.text.clone());
+                let loads = loads_of(model).into_iter().map(|load| load.to_string());
+                let known: Vec<String> = cases.chain(loads).collect();
+                let near = near_names(&name.text, known.iter().map(String::as_str));
+                d.help.push(match near.is_empty() {
+                    true => format!("there are {}", known.join(", ")),
+                    false => format!("did you mean {}?", near.join(" or ")),
+                });
+                found.push(d);
+            }
+        }
+    }
+    chosen
+}
+
+/// Returns the load of a name: as it prints, or the name that the dataset gives it.
+fn load_named(model: &Model, name: &str) -> Result<Load, String> {
+    let all = loads_of(model);
+    if let Ok(load) = name.parse::<Load>() {
+        return match all.contains(&load) {
+            true => Ok(load),
+            false => Err(format!("the model has no load {load}")),
+        };
+    }
+    let named = all.iter().find(|load| match load {
+        Load::Element(id) => {
+            let element = model.element(*id);
+            element.is_some_and(|e| e.place().name.as_deref() == Some(name))
+        }
+        Load::Gravity | Load::Initial(_) => false,
+    });
+    match (named, name.parse::<Load>()) {
+        (Some(load), _) => Ok(*load),
+        (None, Err(why)) if name.contains('/') => Err(why),
+        (None, _) => Err(format!("`{name}` is neither a load case nor a load")),
+    }
+}
+
+/// Gives the loads of a model their functions.
+fn drive(setup: &Setup, model: &mut Model) -> Result<(), Vec<Diagnostic>> {
+    let mut found = Vec::new();
+    for (target, name) in &setup.driven {
+        let Some(function) = setup.function(&name.text) else {
+            let what = format!("there is no function `{}` in [functions]", name.text);
+            let d = setup.mistake(name.span, "unknown_function", what);
+            let known = setup.functions.iter().map(|f| f.name.text.as_str());
+            let near = near_names(&name.text, known);
+            found.push(match near.is_empty() {
+                true => d.help(format!("[functions.{}] makes one", name.text)),
+                false => d.help(format!("did you mean {}?", near.join(" or "))),
+            });
+            continue;
+        };
+        let given = target_of(model, &target.text)
+            .map_err(|why| setup.mistake(target.span, "unknown_load", why))
+            .and_then(|(id, component)| {
+                let wanted = quantity(model, id, component);
+                let told = function.ordinate;
+                if told != Ordinate::Unsaid && wanted != Ordinate::Unsaid && told != wanted {
+                    let what = format!(
+                        "{} takes a function of {}, and {} is one of {}",
+                        target.text,
+                        wanted.word(),
+                        name.text,
+                        told.word()
+                    );
+                    return Err(setup.mistake(name.span, "unfit_value", what));
+                }
+                let text = text_for(setup, model, function, is_angle(wanted))?;
+                Ok((id, component, text))
+            });
+        match given {
+            Ok((id, component, text)) => give(model, id, component, text),
+            Err(d) => found.push(d),
+        }
+    }
+    match found.is_empty() {
+        true => Ok(()),
+        false => Err(found),
+    }
+}
+
+/// Returns the element and the component of a load that a function can give: `MOTION/1`,
+/// `VFORCE/2.FX`.
+fn target_of(model: &Model, text: &str) -> Result<(ElementId, Option<usize>), String> {
+    let (element, component) = match text.split_once('.') {
+        Some((element, component)) => (element, Some(component)),
+        None => (text, None),
+    };
+    let id: ElementId = element.parse()?;
+    if !model.has(id) {
+        return Err(format!("the model has no load {id}"));
+    }
+    let allowed = match id.kind {
+        ElementKind::Motion | ElementKind::Sforce => 0..0,
+        ElementKind::Vforce => 0..3,
+        ElementKind::Vtorque => 3..6,
+        ElementKind::Gforce => 0..6,
+        kind => return Err(format!("{kind} is not given by a function of yours")),
+    };
+    let place = component.and_then(|c| {
+        let is = |name: &&str| name.eq_ignore_ascii_case(c.trim());
+        COMPONENTS.iter().position(|name| is(&name))
+    });
+    match (allowed.is_empty(), component, place) {
+        (true, None, _) => Ok((id, None)),
+        (false, Some(_), Some(k)) if allowed.contains(&k) => Ok((id, Some(k))),
+        (true, Some(_), _) => Err(format!("{id} has one function: name it {id}")),
+        (false, ..) => {
+            let names = COMPONENTS[allowed].join(", ");
+            Err(format!(
+                "{id} has components: {id}.FX and so on, of {names}"
+            ))
+        }
+    }
+}
+
+/// Returns the quantity that a load's function yields.
+fn quantity(model: &Model, id: ElementId, component: Option<usize>) -> Ordinate {
+    if id.kind == ElementKind::Motion {
+        let Some(motion) = model.motions.get(&id.number) else {
+            return Ordinate::Unsaid;
+        };
+        let turns = match motion.driven {
+            Driven::JointRotation(_) => true,
+            Driven::JointTranslation(_) => false,
+            Driven::Joint(n) => {
+                (model.joints.get(&n)).is_some_and(|j| j.kind.displacements().turns())
+            }
+            Driven::Markers { component, .. } => component > 2,
+        };
+        return match (motion.level, turns) {
+            (Level::Displacement, false) => Ordinate::Position,
+            (Level::Displacement, true) => Ordinate::Angle,
+            (Level::Velocity, false) => Ordinate::Velocity,
+            (Level::Velocity, true) => Ordinate::AngularVelocity,
+            (Level::Acceleration, false) => Ordinate::Acceleration,
+            (Level::Acceleration, true) => Ordinate::AngularAcceleration,
+        };
+    }
+    let is_torque = match component {
+        Some(k) => k > 2,
+        None => (model.sforces.get(&id.number)).is_some_and(|f| f.rotational),
+    };
+    match is_torque {
+        true => Ordinate::Torque,
+        false => Ordinate::Force,
+    }
+}
+
+fn is_angle(ordinate: Ordinate) -> bool {
+    match ordinate {
+        Ordinate::Angle | Ordinate::AngularVelocity | Ordinate::AngularAcceleration => true,
+        Ordinate::Unsaid
+        | Ordinate::Position
+        | Ordinate::Velocity
+        | Ordinate::Acceleration
+        | Ordinate::Force
+        | Ordinate::Torque => false,
+    }
+}
+
+/// Returns a function in the language of direct entry, for a load; `angle`: the load takes an
+/// angle, in radians. Points become a SPLINE of the model.
+///
+/// # Errors
+/// A mistake in the function, at its place in the file.
+fn text_for(
+    setup: &Setup,
+    model: &mut Model,
+    function: &UserFunction,
+    angle: bool,
+) -> Result<String, Diagnostic> {
+    let text = match &function.shape {
+        Shape::Direct(text) => {
+            let mut wrong = model.check_expression(&text.text);
+            return match wrong.is_empty() {
+                true => Ok(text.text.clone()),
+                false => Err(within(setup, text, wrong.swap_remove(0))),
+            };
+        }
+        Shape::Expression(text) => Expr::parse_dialect(&text.text, Dialect::Expression)
+            .map_err(|e| e.into_first())
+            .and_then(|expr| expr.ast().in_direct_entry())
+            .map_err(|d| within(setup, text, d))?
+            .to_string(),
+        Shape::Points { points, ends, span } => {
+            let fitted = Fitted::through(points, *ends)
+                .map_err(|d| setup.mistake(*span, d.code, d.message))?;
+            let last = model.splines.keys().next_back().copied().unwrap_or(0);
+            let id = last.saturating_add(1);
+            let text = fitted.text(id);
+            let spline = SplineData {
+                x: fitted.x,
+                y: vec![fitted.y],
+                ..SplineData::default()
+            };
+            model.splines.insert(id, spline);
+            text
+        }
+    };
+    Ok(match angle {
+        true => format!("({text})*DTOR"),
+        false => text,
+    })
+}
+
+/// Gives a mistake in the text of a function its place in the file.
+fn within(setup: &Setup, text: &Named, d: Diagnostic) -> Diagnostic {
+    let raw = setup.text.get(text.span.start..text.span.end);
+    // a text without escapes stands in the file as it is, after its quotation mark
+    let is_plain = raw.is_some_and(|raw| raw.get(1..raw.len() - 1) == Some(&text.text));
+    let span = match d.span.filter(|_| is_plain) {
+        Some(inner) => {
+            let at = |byte: usize| text.span.start + 1 + byte;
+            Span::new(at(inner.start), at(inner.end))
+        }
+        None => text.span,
+    };
+    Diagnostic {
+        help: d.help,
+        ..setup.mistake(span, d.code, d.message)
+    }
+}
+
+/// Puts a function into a load.
+fn give(model: &mut Model, id: ElementId, component: Option<usize>, text: String) {
+    let formula = Formula::text(text);
+    let n = id.number;
+    let vectors = match id.kind {
+        ElementKind::Vforce => &mut model.vforces,
+        ElementKind::Vtorque => &mut model.vtorques,
+        ElementKind::Gforce => &mut model.gforces,
+        _ => {
+            if let (ElementKind::Motion, Some(motion)) = (id.kind, model.motions.get_mut(&n)) {
+                motion.function = formula;
+            } else if let Some(force) = model.sforces.get_mut(&n) {
+                force.function = formula;
+            }
+            return;
+        }
+    };
+    if let (Some(force), Some(k)) = (vectors.get_mut(&n), component) {
+        match k {
+            0..3 => force.force[k] = Some(formula),
+            _ => force.torque[k - 3] = Some(formula),
+        }
+    }
+}
+
+/// Writes which loads act, for a person.
+pub fn loads_acting(loads: &Loads) -> String {
+    let mut text = format!("loads: {}", loads.chosen.join(", "));
+    if loads.chosen != loads.acting {
+        text += &format!(" ({})", loads.acting.join(", "));
+    }
+    if !loads.left_out.is_empty() {
+        text += &format!("; left out: {}", loads.left_out.join(", "));
+    }
+    text
+}
