@@ -253,14 +253,11 @@ fn function(args: &FunctionArgs) -> Outcome {
     let mut new = edit::change(&setup, |document| {
         put(document, "functions", &args.name, table);
     })?;
-    // a function that has no value is told at once
+    // a function that cannot be read is told at once
     let made = new.function(&args.name);
-    if let Some(Err(d)) = made.map(|f| f.values(&[0.0])) {
-        let reads_nothing = d.code == "domain";
-        if !reads_nothing {
-            edit::restore(&setup)?;
-            return Err(d.into());
-        }
+    if let Some(Err(d)) = made.map(|f| f.values(&[])) {
+        edit::restore(&setup)?;
+        return Err(d.into());
     }
     if let Some(group) = args.group.as_deref().filter(|g| *g != USER_DEFINED) {
         new = join(&new, group, &args.name)?;

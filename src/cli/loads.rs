@@ -16,8 +16,8 @@ use toml_edit::Item;
 /// List the loads of a model, make and choose load cases, and set up its runs
 ///
 /// Loads are gravity, motions (MOTION), forces (SFORCE, VFORCE, VTORQUE, GFORCE), contacts
-/// (CONTACT) and initial conditions (IC:PART/2). Load cases are named sets of them. They stand in MODEL.toml
-/// beside the dataset; its comments and its order stay.
+/// (CONTACT) and initial conditions (IC:PART/2). Load cases are named sets of them. They stand in
+/// MODEL.toml beside the dataset; its comments and its order stay.
 #[derive(clap::Args)]
 #[command(
     args_conflicts_with_subcommands = true,

@@ -22,8 +22,8 @@ use std::time::Instant;
 
 /// Solve a model: a command file (.acf) with its dataset, or a dataset (.adm) alone
 ///
-/// What is not said here is taken from MODEL.toml beside the dataset, if there is one: which loads
-/// act, their functions, and the set-up of the run (`cognate loads`).
+/// MODEL.toml beside the dataset, if there is one, says the rest: which loads act, their functions,
+/// and the set-up of the run (`cognate loads`).
 #[derive(clap::Args, Clone)]
 #[command(after_help = "\
 Examples:

@@ -1,4 +1,4 @@
-//! What a set-up does to a model: functions give loads, and loads that were not chosen are taken
+//! A set-up applied to a model: functions give loads, and loads that were not chosen are taken
 //! away.
 
 use super::function::{Fitted, Ordinate, Shape, UserFunction};

@@ -78,7 +78,7 @@ pub struct Solve {
     pub columns: Vec<String>,
 }
 
-/// What stands in the file beside a model.
+/// The contents of the file beside a model.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
     /// the file
