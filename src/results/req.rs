@@ -80,7 +80,7 @@ fn request(line: &str) -> Option<Requested> {
     let &[id, kind, i, j, rm] = words?.as_slice() else {
         return None;
     };
-    (1..=5).contains(&kind).then(|| Requested {
+    (1..=5).contains(&kind).then_some(Requested {
         id,
         kind,
         markers: [i, j, rm],

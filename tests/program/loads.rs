@@ -115,6 +115,7 @@ fn loads_that_are_chosen_act_alone_and_stay_chosen_until_others_are() {
         "{}",
         toml(&model)
     );
+    assert!(toml(&model).starts_with("# Load cases"));
     // the next run is not told anything
     let (run, _) = ran(&model, &[]);
     near(last(&run), [0.0, 2.0, 0.0, -5.0]);

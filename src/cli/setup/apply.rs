@@ -295,7 +295,7 @@ fn target_of(model: &Model, text: &str) -> Result<(ElementId, Option<usize>), St
     };
     let place = component.and_then(|c| {
         let is = |name: &&str| name.eq_ignore_ascii_case(c.trim());
-        COMPONENTS.iter().position(|name| is(&name))
+        COMPONENTS.iter().position(is)
     });
     match (allowed.is_empty(), component, place) {
         (true, None, _) => Ok((id, None)),

@@ -10,6 +10,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, Value};
 const HEAD: &str = "\
 # Load cases, functions, groups and set-up of the model beside this file; `cognate loads` and
 # `cognate group` change it, and so may you.
+
 ";
 
 /// Changes the file of a set-up.
@@ -17,15 +18,12 @@ const HEAD: &str = "\
 /// # Errors
 /// When the outcome would have mistakes, or cannot be written; the file is then as it was.
 pub fn change(setup: &Setup, edit: impl FnOnce(&mut DocumentMut)) -> Result<Setup, Diagnostic> {
-    let text = match setup.exists() {
-        true => setup.text.as_str(),
-        false => HEAD,
-    };
-    let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| {
+    let mut document: DocumentMut = setup.text.parse().map_err(|e: toml_edit::TomlError| {
         Diagnostic::error("bad_setup", e.message().trim().to_owned())
     })?;
     edit(&mut document);
-    let text = document.to_string();
+    let head = if setup.exists() { "" } else { HEAD };
+    let text = head.to_owned() + &document.to_string();
     let new = read::setup(setup.file.clone(), text);
     let new = new.map_err(|mut found| {
         let mut d = found.swap_remove(0);
