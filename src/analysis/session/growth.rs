@@ -24,48 +24,60 @@ const BEYOND_ALL: f64 = 1e6;
 /// States looked at, at most.
 const LOOKS: usize = 160;
 
-/// States at equal numbers of rows: those whose indices a power of two divides.
-#[derive(Debug)]
+/// States at the ends of steps, about equally far apart in time: outputs change nothing.
+#[derive(Debug, Default)]
 pub(super) struct Looks {
     rows: Vec<Vec<f64>>,
-    stride: usize,
-    /// rows so far
-    count: usize,
-}
-
-impl Default for Looks {
-    fn default() -> Self {
-        Self {
-            rows: Vec::new(),
-            stride: 1,
-            count: 0,
-        }
-    }
+    /// the state at the end of the last step, which may be among them
+    last: Vec<f64>,
+    /// time from which on the next state is kept, and the distance of such times
+    due: f64,
+    distance: f64,
 }
 
 impl Looks {
-    /// Keeps some of the next states.
-    pub fn see(&mut self, rows: &[Vec<f64>]) {
-        for row in rows {
-            if self.count.is_multiple_of(self.stride) {
-                self.rows.push(row.clone());
-            }
-            self.count += 1;
-            if self.rows.len() > LOOKS {
-                let kept = std::mem::take(&mut self.rows).into_iter().step_by(2);
-                self.rows = kept.collect();
-                self.stride *= 2;
-            }
+    /// Begins at the state of a system that nothing but forces may feed, for a run to a time;
+    /// without forces nothing is looked at.
+    pub fn begin(system: &System, end: f64) -> Self {
+        if system.scene.forces.is_empty() {
+            return Self::default();
+        }
+        let first = system.numbers.clone();
+        let (t, distance) = (
+            first[Layout::TIME],
+            (end - first[Layout::TIME]) / LOOKS as f64,
+        );
+        Self {
+            last: first.clone(),
+            rows: vec![first],
+            due: t + distance,
+            distance,
+        }
+    }
+
+    /// Returns whether nothing is looked at.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Looks at all numbers of a state.
+    pub fn see(&mut self, numbers: &[f64]) {
+        if self.is_empty() {
+            return;
+        }
+        self.last.copy_from_slice(numbers);
+        let t = numbers[Layout::TIME];
+        if t >= self.due {
+            self.rows.push(numbers.to_vec());
+            self.due = t + self.distance;
         }
     }
 
     /// Returns how the motion of a simulation grows, if it does so without bound.
-    pub fn growth(&self, system: &System, first: &[f64], last: &[f64]) -> Option<Growth> {
-        if system.scene.forces.is_empty() {
-            return None;
-        }
-        let looked = self.rows.iter().map(Vec::as_slice);
-        of(system, looked.chain([first, last]), [first, last])
+    pub fn growth(&self, system: &System) -> Option<Growth> {
+        let (first, last) = (self.rows.first()?, &self.last);
+        let looked = self.rows.iter().chain([last]).map(Vec::as_slice);
+        of(system, looked, [first, last])
     }
 }
 

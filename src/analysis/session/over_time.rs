@@ -43,7 +43,7 @@ impl Session {
         self.log_begin(kind, &settings);
         let first = system.numbers.clone();
         let chosen = system.configuration.active.clone();
-        let mut seen = self.begin_rows(kind, program, system);
+        let mut seen = self.begin_rows(kind, program, (system, span.end));
         let (mut trajectory, seconds) =
             self.timed(system, (kind, span), &settings, (&mut seen, watch))?;
         // its results
@@ -56,19 +56,13 @@ impl Session {
         self.note_sensors(system, &trajectory);
         let stopped = self.stop_reason(system, &trajectory, span.end);
         self.note_drift(system, &seen.balance);
-        match trajectory.energy.start {
-            Some(_) => self.account(&trajectory.energy),
-            None => self.account(&seen.balance.driven.flow()),
-        }
+        self.account(&trajectory.energy);
         if settings.is_auto() && kind == Kind::Dynamic {
             self.stiffness.see(&trajectory, span.end - span.start);
         }
         self.last = Integrated::of(kind, &trajectory, settings.error, span);
         let last = trajectory.rows.last().cloned();
-        let grown = last
-            .as_ref()
-            .map(|last| seen.looks.growth(system, &first, last));
-        self.warn_of_growth(grown.flatten());
+        self.warn_of_growth(seen.looks.growth(system));
         self.warn_of_splines(seen.readings);
         // what the next simulation begins with
         let last = last.unwrap_or(first);

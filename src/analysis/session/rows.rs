@@ -9,15 +9,12 @@ use super::growth::Looks;
 use super::spline_range::Readings;
 use super::{Session, columns};
 use crate::analysis::system::System;
-use crate::analysis::time::energy::DrivenFlow;
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::expr::program::{Program, Work};
 use crate::numeric::Stats;
 use crate::results::{Kind, Run};
-use crate::scene::equations::KINEMATIC;
-use crate::scene::layout::Layout;
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
@@ -51,8 +48,6 @@ pub(super) struct Seen {
 pub(super) struct Balance {
     /// largest residual of a constraint row
     worst: f64,
-    /// energies and works of a mechanism that motions alone move
-    pub driven: DrivenFlow,
 }
 
 /// Columns that lack values in some rows.
@@ -136,8 +131,13 @@ impl Session {
         }
     }
 
-    /// Begins the rows of a simulation over time.
-    pub(super) fn begin_rows(&mut self, kind: Kind, program: &Program, system: &System) -> Seen {
+    /// Begins the rows of a simulation over time, to an `end`.
+    pub(super) fn begin_rows(
+        &mut self,
+        kind: Kind,
+        program: &Program,
+        (system, end): (&System, f64),
+    ) -> Seen {
         self.run.begin(kind);
         let mut seen = Seen {
             program: program.clone(),
@@ -145,7 +145,7 @@ impl Session {
             selections: 0,
             rows: 0,
             balance: Balance::default(),
-            looks: Looks::default(),
+            looks: Looks::begin(system, end),
             readings: self.readings(system),
             seconds: 0.0,
         };
@@ -185,7 +185,6 @@ impl Session {
             let active = chosen.unwrap_or(&seen.active);
             self.remember((system, active), rows, means);
             self.weigh(&mut seen.balance, system, rows);
-            seen.looks.see(rows);
             rows.iter().for_each(|row| seen.readings.see(row));
             seen.rows = end;
             self.hand_over(rows.len());
@@ -193,22 +192,15 @@ impl Session {
         trajectory.release(until);
     }
 
-    /// Watches constraint rows over states, and energies where motions alone move the mechanism.
+    /// Watches constraint rows over states.
     fn weigh(&mut self, balance: &mut Balance, system: &System, rows: &[Vec<f64>]) {
         let n_rows = system.scene.rows.len();
-        let is_driven = system.scene.mode == KINEMATIC;
-        if n_rows == 0 && !is_driven || self.pace.columns_alone {
+        if n_rows == 0 || self.pace.columns_alone {
             return;
         }
         if self.row_values.is_none() {
             let program = crate::scene::programs::record(system.configured(), |at| {
-                let mut out: Vec<_> = (0..n_rows).map(|r| at.row(r).value).collect();
-                if is_driven {
-                    let p = at.powers();
-                    out.extend(at.energy());
-                    out.extend([p.stored, p.dissipated, p.functions]);
-                }
-                out
+                (0..n_rows).map(|r| at.row(r).value).collect()
             });
             self.row_values = program.ok();
         }
@@ -219,12 +211,7 @@ impl Session {
         let mut out = vec![0.0; program.n_outputs()];
         for row in rows {
             program.run(row, &mut work, &mut out);
-            let (values, energies) = out.split_at(n_rows);
-            balance.worst = values.iter().fold(balance.worst, |m, g| m.max(g.abs()));
-            if let &[kinetic, potential, stored, dissipated, functions] = energies {
-                let powers = [stored, dissipated, functions];
-                (balance.driven).see(row[Layout::TIME], [kinetic, potential], powers);
-            }
+            balance.worst = out.iter().fold(balance.worst, |m, g| m.max(g.abs()));
         }
     }
 
@@ -278,10 +265,12 @@ impl Watch for Follower<'_> {
         self.watch.progress(t, h, stats);
     }
     fn visit(&mut self, system: &System, t: f64, y: &[f64]) {
-        if self.is_kept && !self.seen.readings.is_empty() {
+        let read = !(self.seen.readings.is_empty() && self.seen.looks.is_empty());
+        if self.is_kept && read {
             self.visited.clone_from(&system.numbers);
             (system.scene.layout).set_state(&mut self.visited, t, y);
             self.seen.readings.see(&self.visited);
+            self.seen.looks.see(&self.visited);
         }
     }
     fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {

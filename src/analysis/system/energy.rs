@@ -98,6 +98,14 @@ impl System {
         powers
     }
 
+    /// Returns the powers of forces at a state: given back by what stores energy, of damping and
+    /// friction, of functions; `None`: they are not watched.
+    pub(in crate::analysis) fn powers_of_forces(&mut self, t: f64, y: &[f64]) -> Option<[f64; 3]> {
+        let values = self.run_energy(t, y, &[])?;
+        let powers = values.get(2..5)?;
+        Some([powers[0], powers[1], powers[2]])
+    }
+
     /// Runs the program at a state; the system stays where it is.
     fn run_energy(&mut self, t: f64, y: &[f64], vdot: &[f64]) -> Option<&[f64]> {
         let mut energy = self.energy.take()?;

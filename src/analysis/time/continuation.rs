@@ -184,6 +184,11 @@ impl Continuation {
         self.h
     }
 
+    /// Proposes the length of the next step.
+    pub fn propose(&mut self, h: f64) {
+        self.h = h.max(self.bounds[0]);
+    }
+
     /// Takes note that other rows take part from the present state on.
     pub fn see_rows(&mut self, system: &System) {
         self.sides = Sides::new(system.configured()).map(|sides| (sides, Side::default()));
@@ -422,6 +427,17 @@ impl Continuation {
         }
         cubic.at(&self.mover, t, &mut y);
         Ok(y)
+    }
+
+    /// Returns the states of the last step, by their times.
+    pub fn states(&self) -> impl FnMut(&mut System, f64, &mut [f64]) -> bool + '_ {
+        |system, t, state| match self.within(system, t) {
+            Ok(y) => {
+                state.copy_from_slice(&y);
+                true
+            }
+            Err(_) => false,
+        }
     }
 
     /// Goes back to the beginning of the last step, to go on from there to a time within it;

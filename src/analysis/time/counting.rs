@@ -13,7 +13,7 @@ const SHORTEST_INTERVAL: f64 = 1e-9;
 pub(super) type StateAt<'a> = dyn FnMut(&mut System, f64, &mut [f64]) -> bool + 'a;
 
 /// The angles that are counted from look to look within a step.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Counting {
     /// the last look whose angles were taken over
     from: Look,

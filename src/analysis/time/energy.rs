@@ -6,16 +6,29 @@
 //!
 //! The integrals are taken step by step at the nodes of the method
 //! ([`Method::quadrature`]), so that the balance is as good as
-//! the solution: what it lacks is an error of the solution. Nothing is integrated where gravity
-//! alone acts.
+//! the solution: what it lacks is an error of the solution. Where motions say where a mechanism is,
+//! they are taken along the steps of its path, and the balance is what motions do. Nothing is
+//! integrated where gravity alone acts.
 
 use crate::analysis::system::System;
-use crate::analysis::trajectory::{Energy, EnergyFlow};
+use crate::analysis::time::continuation::Continuation;
+use crate::analysis::time::counting::Counting;
+use crate::analysis::trajectory::EnergyFlow;
+use crate::numeric::quadrature::GAUSS_3;
 use crate::numeric::{Method, Step};
 use std::time::Instant;
 
 /// Looks at the balance during a simulation, at most about.
 const LOOKS: f64 = 200.0;
+/// Turn of a driven mechanism, rad, and part of the duration, in which works are integrated at
+/// once.
+const PIECE: [f64; 2] = [1.0, 1.0 / 64.0];
+/// Pieces of a step, at most.
+const MAX_PIECES: f64 = 1e5;
+/// Change of a work by halving an interval, as a part of the work, that is the error permitted.
+const WORK_TOLERANCE: f64 = 1e-9;
+/// Halvings of an interval, at most: a force may jump within it.
+const MAX_HALVED: usize = 12;
 
 /// Begins the account at a state, unless it has begun.
 pub(super) fn begin(flow: &mut EnergyFlow, system: &mut System, t: f64, y: &[f64]) {
@@ -25,60 +38,139 @@ pub(super) fn begin(flow: &mut EnergyFlow, system: &mut System, t: f64, y: &[f64
     }
 }
 
-/// The account of a mechanism whose motions say where it is: works of forces by the trapezoidal
-/// rule over its states, those of motions from the balance. The error is that of the rule: what
-/// changes when every second state is left out.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct DrivenFlow {
+/// The account of a mechanism whose motions say where it is: works of forces along the steps of its
+/// path, those of motions from the balance. Outputs change nothing; the error is that of the
+/// quadrature.
+#[derive(Debug, Default)]
+pub(super) struct DrivenAccount {
+    /// up to where works have been taken, and how fast the mechanism moves there, rad per time
+    t: f64,
+    pace: f64,
+    /// largest piece in which works are integrated at once
+    longest: f64,
     flow: EnergyFlow,
-    /// states seen
-    n: usize,
-    /// the last state, and the last one that the coarse rule has: time and powers of forces
-    ends: [(f64, [f64; 3]); 2],
-    /// works of forces by the fine rule and by the coarse one
-    works: [[f64; 3]; 2],
+    /// the angles that are counted, at the beginning of the last step
+    counting: Counting,
+    turns: Vec<f64>,
 }
 
-impl DrivenFlow {
-    /// Adds a state: its time, energy, and the powers of forces.
-    pub fn see(&mut self, t: f64, energy: Energy, powers: [f64; 3]) {
-        if self.n == 0 {
-            self.flow.start = Some(energy);
-        }
-        self.flow.end = energy;
-        let rules = if self.n.is_multiple_of(2) { 0..2 } else { 0..1 };
-        for rule in rules {
-            let (before, last) = self.ends[rule];
-            if self.n > 0 {
-                let trapezoid = |k: usize| 0.5 * (t - before) * (last[k] + powers[k]);
-                let works = self.works[rule].iter_mut().enumerate();
-                works.for_each(|(k, work)| *work += trapezoid(k));
-            }
-            self.ends[rule] = (t, powers);
-        }
-        if self.n.is_multiple_of(2) {
-            let [fine, coarse] = self.works;
-            let off: f64 = fine.iter().zip(coarse).map(|(f, c)| (f - c).abs()).sum();
-            self.flow.imbalance = self.flow.imbalance.max(off);
-        }
-        self.n += 1;
+impl DrivenAccount {
+    /// Begins at the present state of a path, of which all ends at `end`.
+    pub fn begin(&mut self, system: &mut System, path: &Continuation, end: f64) {
+        let now = path.now();
+        (self.t, self.pace) = (now.t, system.pace(now.t, &now.y));
+        self.longest = PIECE[1] * (end - now.t);
+        begin(&mut self.flow, system, now.t, &now.y);
     }
 
-    /// Returns the account so far.
-    pub fn flow(&self) -> EnergyFlow {
-        let mut flow = self.flow;
-        let Some(start) = flow.start else {
-            return flow;
+    /// Takes note of the angles that are counted, where a step of the path begins.
+    pub fn begin_step(&mut self, system: &System, counting: &Counting) {
+        if system.counts_turns() && !system.scene.forces.is_empty() {
+            self.counting.clone_from(counting);
+            self.turns.clear();
+            (self.turns).extend_from_slice(&system.numbers[system.scene.layout.turns()]);
+        }
+    }
+
+    /// Takes the works up to a time within the last step of a path.
+    pub fn follow(&mut self, system: &mut System, path: &Continuation, to: f64) {
+        let from = self.t;
+        self.t = to.max(from);
+        if to <= from || self.flow.start.is_none() || system.scene.forces.is_empty() {
+            return;
+        }
+        let clock = Instant::now();
+        let kept = system.numbers.clone();
+        let counts = system.counts_turns();
+        if counts {
+            let turns = system.scene.layout.turns();
+            system.numbers[turns].copy_from_slice(&self.turns);
+        }
+        let pace = system.pace(to, &path.now().y);
+        let fastest = pace.max(std::mem::replace(&mut self.pace, pace));
+        let pieces = ((to - from) * (fastest / PIECE[0]).max(1.0 / self.longest)).ceil();
+        let n = pieces.clamp(1.0, MAX_PIECES) as u32;
+        for k in 0..n {
+            let ends = [k, k + 1].map(|k| from + (to - from) * f64::from(k) / f64::from(n));
+            if counts {
+                (self.counting).count(system, ends[0], &mut path.states());
+            }
+            let mut power = |t: f64| {
+                let state = path.within(system, t).ok();
+                let powers = state.and_then(|y| system.powers_of_forces(t, &y));
+                powers.unwrap_or([f64::NAN; 3])
+            };
+            let known: f64 = self.flow.works.iter().map(|w| w.abs()).sum();
+            let piece = adaptive(&mut power, ends, known);
+            for (work, more) in self.flow.works.iter_mut().zip(piece.works) {
+                *work += more;
+            }
+            self.flow.imbalance += piece.error;
+        }
+        system.numbers.copy_from_slice(&kept);
+        self.flow.spent += clock.elapsed();
+    }
+
+    /// Ends the account at a time within the last step of a path.
+    pub fn end(&mut self, system: &mut System, path: &Continuation, at: f64) -> EnergyFlow {
+        self.follow(system, path, at);
+        let there = path.within(system, self.t).ok();
+        let energy = there.and_then(|y| system.energy(self.t, &y));
+        let flow = &mut self.flow;
+        let (Some(start), Some(energy)) = (flow.start, energy) else {
+            return *flow;
         };
-        let fine = self.works[0];
-        let change: f64 = (0..2).map(|k| flow.end[k] - start[k]).sum();
-        let by_motions = change - fine.iter().sum::<f64>();
-        flow.works = [fine[0], fine[1], fine[2], by_motions];
-        let sizes = [start[0], flow.end[0], flow.end[1] - start[1]];
+        flow.end = energy;
+        let change: f64 = (0..2).map(|k| energy[k] - start[k]).sum();
+        flow.works[3] = change - flow.works[..3].iter().sum::<f64>();
+        let sizes = [start[0], energy[0], energy[1] - start[1]];
         let sizes = sizes.iter().chain(&flow.works);
         flow.scale = sizes.fold(0.0, |m, x| m.max(x.abs()));
-        flow
+        *flow
     }
+}
+
+/// Works of forces over an interval, and how far they may be off.
+struct Piece {
+    works: [f64; 3],
+    error: f64,
+}
+
+/// Integrates powers by Gauss' rule over ever shorter intervals, until halving one changes little
+/// beside its own work and what is `known` of all before.
+fn adaptive(power: &mut impl FnMut(f64) -> [f64; 3], ends: [f64; 2], known: f64) -> Piece {
+    let mut sum = Piece {
+        works: [0.0; 3],
+        error: 0.0,
+    };
+    // intervals that are left, each with its works by the rule and how often it was halved
+    let mut left = vec![(ends, gauss(power, ends), 0)];
+    while let Some(([a, b], whole, halved)) = left.pop() {
+        let middle = 0.5 * (a + b);
+        let halves = [[a, middle], [middle, b]].map(|ends| (ends, gauss(power, ends)));
+        let fine: [f64; 3] = std::array::from_fn(|k| halves[0].1[k] + halves[1].1[k]);
+        let off: f64 = fine.iter().zip(whole).map(|(f, w)| (f - w).abs()).sum();
+        let size: f64 = fine.iter().map(|f| f.abs()).sum();
+        if off > WORK_TOLERANCE * (size + known) && halved < MAX_HALVED {
+            left.extend(halves.map(|(ends, works)| (ends, works, halved + 1)));
+            continue;
+        }
+        sum.works.iter_mut().zip(fine).for_each(|(s, f)| *s += f);
+        sum.error += off;
+    }
+    sum
+}
+
+/// Integrates powers over an interval by Gauss' rule of three nodes.
+fn gauss(power: &mut impl FnMut(f64) -> [f64; 3], [a, b]: [f64; 2]) -> [f64; 3] {
+    let mut works = [0.0; 3];
+    for (place, weight) in GAUSS_3 {
+        let powers = power(a + place * (b - a));
+        for (work, power) in works.iter_mut().zip(powers) {
+            *work += weight * (b - a) * power;
+        }
+    }
+    works
 }
 
 /// The account of a leg: scratch, and when the balance is looked at next.

@@ -16,7 +16,7 @@ const MAX_LOOKS: f64 = 1e6;
 /// The path of a mechanism, with what is followed along it.
 #[derive(Debug, Default)]
 pub(super) struct Followed {
-    counting: Counting,
+    pub counting: Counting,
     /// up to where sensors have been looked at
     t: f64,
     /// by how much they were beyond their values there, and where they are looked at next
@@ -29,6 +29,8 @@ pub(super) struct Followed {
     distance: f64,
     /// the time from which a sensor asks for other outputs, and their distance
     pub every: Option<(f64, f64)>,
+    /// the length of the next step that a sensor asks for
+    pub stepsize: Option<f64>,
 }
 
 impl Followed {
@@ -51,7 +53,7 @@ impl Followed {
         let (h, n) = (now.t - t0, now.y.len());
         if system.counts_turns() {
             let ends = (t0, now.t);
-            let mut state_at = states(path);
+            let mut state_at = path.states();
             let turn = (self.counting).turn_within(system, ends, (n, 0.0), &mut state_at);
             self.counting.divide(turn);
         }
@@ -100,14 +102,15 @@ impl Followed {
         near: bool,
         out: &mut Trajectory,
     ) -> Result<(), Ended> {
-        let dt = trigger(system, at, near, out)?;
-        self.every = dt.map(|dt| (at.0, dt)).or(self.every);
+        let asked = trigger(system, at, near, out)?;
+        self.every = asked.dt.map(|dt| (at.0, dt)).or(self.every);
+        self.stepsize = asked.stepsize.or(self.stepsize);
         Ok(())
     }
 
     fn count(&mut self, system: &mut System, path: &Continuation, to: f64) {
         if system.counts_turns() {
-            (self.counting).count(system, to, &mut states(path));
+            (self.counting).count(system, to, &mut path.states());
         }
     }
 
@@ -153,8 +156,17 @@ impl Followed {
     }
 }
 
-/// Does what the sensors ask for that are triggered at a state; returns the distance of outputs
-/// that one of them asks for. `near`: a value within ERROR counts.
+/// Distances that triggered sensors ask for.
+#[derive(Default)]
+struct Asked {
+    /// of outputs from now on
+    dt: Option<f64>,
+    /// of the end of the next step
+    stepsize: Option<f64>,
+}
+
+/// Does what the sensors ask for that are triggered at a state; returns the distances that they ask
+/// for. `near`: a value within ERROR counts.
 ///
 /// # Errors
 /// One of them ends the simulation.
@@ -163,12 +175,14 @@ fn trigger(
     (t, y): (f64, &[f64]),
     near: bool,
     out: &mut Trajectory,
-) -> Result<Option<f64>, Ended> {
-    let mut distance = None;
+) -> Result<Asked, Ended> {
+    let mut asked = Asked::default();
     for k in system.sense(t, y, near) {
         let sensor = &system.scene.sensors[k];
         let ends = sensor.halt || sensor.end_simulation;
-        distance = sensor.dt.or(distance);
+        asked.dt = sensor.dt.or(asked.dt);
+        let both = asked.stepsize.into_iter().chain(sensor.stepsize);
+        asked.stepsize = both.reduce(f64::min);
         if (ends || sensor.print) && out.ends_before(t) {
             let row = system.row_of(t, y);
             out.push(t, row);
@@ -178,16 +192,5 @@ fn trigger(
             return Err(Ended::Sensor(k));
         }
     }
-    Ok(distance)
-}
-
-/// Returns the states of the last step of a path.
-fn states(path: &Continuation) -> impl FnMut(&mut System, f64, &mut [f64]) -> bool + '_ {
-    |system, t, state| match path.within(system, t) {
-        Ok(y) => {
-            state.copy_from_slice(&y);
-            true
-        }
-        Err(_) => false,
-    }
+    Ok(asked)
 }

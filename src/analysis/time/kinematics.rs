@@ -8,6 +8,7 @@
 
 use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
+use crate::analysis::time::energy::DrivenAccount;
 use crate::analysis::time::kinematic_sensors::Followed;
 use crate::analysis::time::options::Options;
 use crate::analysis::time::output::Output;
@@ -39,9 +40,12 @@ pub fn trace(
     path.begin(system, options.h_max, end);
     let mut followed = Followed::default();
     followed.begin(system, path);
+    let mut account = DrivenAccount::default();
+    account.begin(system, path, end);
     let mut tracer = Tracer {
         started: t,
         followed,
+        account,
         max_steps: options.max_steps,
         path,
         system,
@@ -49,6 +53,8 @@ pub fn trace(
     };
     let mut ahead = outputs.iter().rev().copied().collect();
     tracer.out.ended = tracer.go(&mut ahead, end, watch).err();
+    let reached = tracer.out.t.last().copied().unwrap_or(t);
+    tracer.out.energy = (tracer.account).end(tracer.system, tracer.path, reached);
     tracer.out
 }
 
@@ -58,6 +64,8 @@ struct Tracer<'a> {
     started: f64,
     /// turns and sensors
     followed: Followed,
+    /// energy and works
+    account: DrivenAccount,
     max_steps: usize,
     path: &'a mut Continuation,
     out: Trajectory,
@@ -130,12 +138,17 @@ impl Tracer<'_> {
         if self.followed.every.is_some() {
             return Ok(());
         }
+        if let Some(h) = self.followed.stepsize.take() {
+            self.path.propose(h);
+        }
+        self.account.follow(self.system, self.path, t);
         self.choose_rows();
         if let Err((failure, h)) = (self.path).advance(self.system, landing, &mut self.out.stats) {
             return Err(self.locked(failure, h));
         }
         let now = self.path.now();
         (self.followed).begin_step(self.system, self.path, t);
+        (self.account).begin_step(self.system, &self.followed.counting);
         if let Some(beyond) = self.system.worst_loose(now.t, &now.y) {
             self.out.note_beyond(now.t, beyond);
         }
