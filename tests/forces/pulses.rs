@@ -217,3 +217,32 @@ proptest! {
         prop_assert!(off < 100.0 * error, "{} {x} {method} {error:e} {outputs} outputs: {off:e}", pulse(kind, x, middle, width));
     }
 }
+
+#[test]
+fn a_bump_of_a_curve_over_a_way_is_felt_however_short_it_is() {
+    // a sledge at 1 m/s over a bump of a few millimetres and one of micrometres
+    for width in [1e-3, 1e-6] {
+        let knots: Vec<String> = (0..5)
+            .map(|k| format!("{:?}", 0.4 + f64::from(k) * width))
+            .collect();
+        for read in ["AKISPL(DX(2,1),0,1)", "INTERP(DX(2,1),1,1)"] {
+            let text = format!(
+                "PART/2, MASS=1, CM=2, IP=1,1,1, VX=1\nMARKER/2, PART=2\nMARKER/3, PART=2, REULER=90D,90D,0\n\
+                 MARKER/4, PART=1, REULER=90D,90D,0\nJOINT/1, TRANSLATIONAL, I=3, J=4\n\
+                 SPLINE/1, X=-9,-8,-7,{},8,9, Y=0,0,0,0,0,1,0,0,0,0, LINEAR_EXTRAPOLATE\n\
+                 SFORCE/1, TRANSLATION, ACTIONONLY, I=3, J=4, FUNCTION=0.2/{width:e}*{read}\n",
+                knots.join(",")
+            );
+            for method in ["AUTO", "RADAU5", "BDF"] {
+                let mut s = session_by(&text, &["VX(2,1)"], method, 1e-6);
+                go(&mut s, Analysis::Dynamic, 1.0, 2);
+                // the area of its triangle
+                let work = 0.5 * (last(&s, "VX(2,1)").powi(2) - 1.0);
+                assert!(
+                    (work - 0.2).abs() < 1e-4,
+                    "{read} {width:e} {method}: {work}"
+                );
+            }
+        }
+    }
+}

@@ -8,6 +8,9 @@
 //!                                      products            the sum of those of the factors
 //! ```
 //!
+//! A curve through data is narrow where these change within a way much shorter than the next change
+//! is away: beside each such bump its distance in widths stands for the logarithm.
+//!
 //! TANH and ATAN are steep there: the difference of two of them is a pulse. While the logarithm
 //! changes by one the factor changes by a factor of e, so the logarithm is a scale for steps,
 //! however narrow the peak is in time or on the way.
@@ -15,12 +18,21 @@
 use super::builder::Builder;
 use super::node::{Node, Value};
 use super::operation::{BinaryOp, UnaryOp};
+use crate::expr::spline::Piecewise;
+use crate::scalar::Table;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Nodes of a product that are looked at, at most.
 const MOST_FACTORS: usize = 64;
 /// Exponent from which on a power counts as narrow.
 const NARROW_POWER: f64 = 8.0;
+/// Change of a curve by a bend at a knot, over the range of its values, that is none.
+const STRAIGHT: f64 = 1e-6;
+/// Distance of bends, in widths of both, up to which they are one bump: a step sees it.
+const JOINED: f64 = 12.0;
+/// Bumps of one curve that are looked for, at most.
+const MOST_BUMPS: usize = 200;
 
 /// Values whose course in time shows the narrow peaks of a program.
 #[derive(Debug, Default)]
@@ -41,7 +53,8 @@ impl Builder {
             let node = self.nodes[k];
             let own = self.logarithm(node);
             let all = [own, self.log_of_product(node)];
-            for log in all.into_iter().flatten() {
+            let bumps = self.bumps_of(node);
+            for log in all.into_iter().flatten().chain(bumps) {
                 if !self.inputs_of(&[log]).is_empty() {
                     logarithms.insert(log);
                 }
@@ -58,6 +71,15 @@ impl Builder {
             logarithms,
             angles: angles.into_iter().collect(),
         }
+    }
+
+    /// Returns the distances from the bumps of a curve, each in widths of its bump and negative.
+    fn bumps_of(&mut self, node: Node) -> Vec<Value> {
+        let Node::Lookup { table, order, x } = node else {
+            return Vec::new();
+        };
+        let bumps = bumps(&*self.tables[table as usize], order);
+        bumps.iter().map(|b| self.lookup(b, 0, x)).collect()
     }
 
     /// Returns the logarithm of the size of a narrow factor, up to what does not matter.
@@ -144,10 +166,64 @@ impl Builder {
     }
 }
 
+/// Returns the bumps of a curve: for each a curve that is zero over it and falls by one with each
+/// width beside it. None where the curve bends all the way, or hardly.
+fn bumps(table: &dyn Table, order: u32) -> Vec<Arc<dyn Table>> {
+    let knots = table.knots();
+    let y: Vec<f64> = knots.iter().map(|&x| table.at(x, order)).collect();
+    let range = y.iter().fold(f64::NEG_INFINITY, |m, &y| m.max(y))
+        - y.iter().fold(f64::INFINITY, |m, &y| m.min(y));
+    // bends: where, and the width of the shorter piece beside
+    let bend = |k: usize| {
+        let [before, after] = [k - 1, k].map(|k| knots[k + 1] - knots[k]);
+        let width = before.min(after);
+        let change = (y[k + 1] - y[k]) / after - (y[k] - y[k - 1]) / before;
+        (change.abs() * width > STRAIGHT * range).then_some((knots[k], width))
+    };
+    let bends: Vec<(f64, f64)> = (1..knots.len().saturating_sub(1))
+        .filter_map(bend)
+        .collect();
+    let joined = |a: &(f64, f64), b: &(f64, f64)| b.0 - a.0 <= JOINED * (a.1 + b.1);
+    let groups: Vec<&[(f64, f64)]> = bends.chunk_by(joined).collect();
+    let is_flat = |k: usize| (y[k + 1] - y[k]).abs() <= STRAIGHT * range;
+    let ends_flat = knots.len() > 2 && is_flat(0) && is_flat(knots.len() - 2);
+    // a curve that goes on bending to its ends has nothing narrow
+    if groups.len() < 2 && !ends_flat {
+        return Vec::new();
+    }
+    let tent = |group: &&[(f64, f64)]| {
+        let [(first, w0), .., (last, w1)] = group else {
+            return None;
+        };
+        let x = [first - w0, *first, *last, last + w1];
+        let tent = Piecewise::linear(&x, &[-1.0, 0.0, 0.0, -1.0]).ok()?;
+        Some(Arc::new(tent) as Arc<dyn Table>)
+    };
+    groups.iter().take(MOST_BUMPS).filter_map(tent).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::expr::program::{Folding, Input, Program, Work};
+
+    #[test]
+    fn a_curve_has_a_bump_where_it_bends_within_a_short_way_and_none_where_it_bends_all_the_way() {
+        let of = |x: &[f64], y: &[f64]| {
+            let curve = Piecewise::linear(x, y).expect("a curve");
+            bumps(&curve, 0)
+        };
+        let way = [0.0, 4.0, 4.001, 4.002, 4.003, 10.0];
+        let bump = of(&way, &[0.0, 0.0, 5.0, 5.0, 0.0, 0.0]);
+        assert_eq!(bump.len(), 1);
+        let there = [4.0, 4.0015, 4.003, 4.013, 3.99].map(|x| bump[0].at(x, 0).round());
+        assert_eq!(there, [0.0, 0.0, 0.0, -10.0, -10.0]);
+        let fine: Vec<f64> = (0..50).map(f64::from).collect();
+        let waves: Vec<f64> = fine.iter().map(|x| (2.0 * x).sin()).collect();
+        assert!(of(&fine, &waves).is_empty());
+        let straight: Vec<f64> = fine.iter().map(|x| 3.0 * x).collect();
+        assert!(of(&fine, &straight).is_empty());
+    }
 
     /// The logarithms of what `f` records over one input, as a program.
     fn logs(f: impl FnOnce(&mut Builder, Value) -> Value) -> Program {
