@@ -143,3 +143,64 @@ fn a_shorter_rod_turns_its_crank_back_wherever_steps_fall() {
         }
     }
 }
+
+/// Cranks of length one at some angles, rad, each with a rod and a slider along x: on one shaft, or on shafts that couplers hold together; and a
+/// column that vanishes while each slider is on its branch.
+fn sliders_at(angles: &[f64], longer: f64, coupled: bool) -> (String, String) {
+    let rod = 1.0 + longer;
+    let near = 2.0 * longer + longer * longer;
+    let mut text = "MARKER/11, PART=1, REULER=90D,90D,0\n".to_string();
+    let mut column = "0".to_string();
+    for (k, angle) in angles.iter().enumerate() {
+        let (x, y) = (angle.cos(), angle.sin());
+        let down = (y / rod).asin();
+        let slider = x + rod * down.cos();
+        let id = 100 * (k + 1);
+        let part = if coupled { id } else { 100 };
+        if part == id {
+            text += &format!(
+                "PART/{id}, MASS=1, CM={id}, IP=1,1,1, WZ=3\nMARKER/{id}, PART={id}\nJOINT/{id}, REVOLUTE, I={id}, J=1\n"
+            );
+        }
+        if coupled && k > 0 {
+            text += &format!(
+                "COUPLER/{k}, JOINTS={},{id}, TYPE=R:R, SCALES=1,-1\n",
+                id - 100
+            );
+        }
+        let [pin, p3, p4] = [1, 30, 40].map(|more| id + more);
+        text += &format!(
+            "MARKER/{pin}, PART={part}, QP={x:?},{y:?},0\nPART/{p3}, MASS=1, CM={p3}, IP=1,1,1, QG={x:?},{y:?},0, REULER={:?},0,0\n\
+             MARKER/{p3}, PART={p3}\nMARKER/{}, PART={p3}, QP={rod:?},0,0\nPART/{p4}, MASS=1, CM={p4}, IP=1,1,1, QG={slider:?},0,0\n\
+             MARKER/{p4}, PART={p4}\nMARKER/{}, PART={p4}, REULER=90D,90D,0\nJOINT/{p3}, REVOLUTE, I={p3}, J={pin}\n\
+             JOINT/{p4}, REVOLUTE, I={}, J={p4}\nJOINT/{}, TRANSLATIONAL, I={}, J=11\n",
+            -down,
+            p3 + 1,
+            p4 + 1,
+            p3 + 1,
+            p4 + 1,
+            p4 + 1,
+        );
+        let turn = format!("(AZ({part},1)+{angle:?})");
+        column += &format!("+ABS(DX({p4},1)-COS{turn}-SQRT({near:e}+COS{turn}**2))");
+    }
+    (text, column)
+}
+
+#[test]
+fn loops_that_share_a_shaft_stay_on_their_branches_however_many_they_are() {
+    // each passes near its other branch at a time of its own, two of them at the same
+    let angles = [0.3, 0.3 + std::f64::consts::PI, 1.0, 1.7, 2.0, -0.9, -1.4];
+    for longer in [1e-3, 1e-6] {
+        let (text, column) = sliders_at(&angles, longer, false);
+        right_or_told_until(1.2, &text, &column, &[1e-2]);
+    }
+}
+
+#[test]
+fn loops_in_a_chain_of_couplers_stay_on_their_branches_however_many_they_are() {
+    for longer in [1e-3, 1e-6] {
+        let (text, column) = sliders_at(&[0.3, 1.0, 1.7, 2.0, -0.9], longer, true);
+        right_or_told_until(1.2, &text, &column, &[1e-2]);
+    }
+}

@@ -71,15 +71,25 @@ impl Leg<'_> {
             self.sides = Some(sides);
             return false;
         }
-        let mut nodes = self.pieces(method, step, turn);
-        let mut looks = Vec::with_capacity(nodes.len());
-        for node in &nodes {
+        let (mut nodes, mut looks) = (Vec::new(), Vec::new());
+        let (pieces, t1) = (self.pieces(method, step, turn), step.t1);
+        for (k, mut node) in pieces.into_iter().enumerate() {
             // the last look, if that was where this step begins
-            let last = self.last_look.take().filter(|(there, _)| there == node);
-            looks.push(match last {
+            let last = self.last_look.take().filter(|(there, _)| *there == node);
+            let mut side = match last {
                 Some((_, side)) => side,
                 None => sides.look(&self.system.numbers_at(node.t, &node.y)),
-            });
+            };
+            // off the rows it may be beside both branches
+            if k > 0 && node.t < t1 && sides.are_near(&side) {
+                self.system.project_anew();
+                if self.system.put_on_rows(node.t, &mut node.y).is_err() {
+                    continue;
+                }
+                side = sides.look(&self.system.numbers_at(node.t, &node.y));
+            }
+            nodes.push(node);
+            looks.push(side);
         }
         let patience = STANDING_TIME * (self.limits.end - self.limits.start);
         let leaves = nodes.windows(2).zip(looks.windows(2)).any(|(ends, looks)| {
@@ -89,7 +99,6 @@ impl Leg<'_> {
             let turned = Sides::turned(from, to);
             match turned.is_empty() {
                 true => sides.stands([from, to], [a.t, b.t], patience),
-                false if !sides.can_judge(&turned) => false,
                 false => !sides.meet(self.system, (&turned, from), [a, b]),
             }
         });

@@ -23,11 +23,12 @@ use crate::scene::programs::{record, weights};
 use nalgebra::{DMatrix, DVectorView};
 use std::collections::BTreeMap;
 
-/// Rows of the largest loop whose eigenvalues are found; of a larger one the sign of the
-/// determinant must do.
+/// Rows of the largest loop whose eigenvalues are found; of a larger one signs of determinants must
+/// do.
 const MAX_EIGENVALUES: usize = 60;
-/// Rows of the largest loop in free motion of which a near miss of branches is judged.
-const MAX_JUDGED: usize = 12;
+/// Parts s of the way from G₀ A G₀ᵀ to G₁ A G₀ᵀ at which the signs of determinants are found: an
+/// eigenvalue μ < 0 of B changes the sign at 1/(1 − μ), so that two are told apart.
+const PARTS_OF_WAY: [f64; 8] = [0.35, 0.5, 0.65, 0.75, 0.84, 0.91, 0.96, 1.0];
 /// Imaginary part of an eigenvalue that counts as real, over its real part: a turn of the rows by
 /// 150° is not the passage of a singular position.
 const NEARLY_REAL: f64 = 0.5;
@@ -36,8 +37,19 @@ const GAP: f64 = 1e-12;
 /// Failures to find a state after which there is none: one very near the position may be hard to
 /// find, but within a gap between branches all are.
 const MAX_FAILURES: u32 = 3;
+/// Least of what rows determine beyond each other, over their usual length, below which a state
+/// between the ends of a step is put onto the rows: errors of interpolants are smaller.
+const NEAR_BOTH: f64 = 0.1;
 /// States looked at in search of the position at which branches meet, at most.
 const MAX_LOOKS: usize = 60;
+/// Looks after which one is in the middle, however near one end dependence seems: another position
+/// may be there.
+const LOOKS_TO_MIDDLE: usize = 3;
+/// Positions in a row at which branches meet between two states, at most: as many loops as turn
+/// there.
+const MAX_MEETINGS: usize = 100;
+/// Part of the way behind a position at which branches meet, from which the next is looked for.
+const BEHIND: f64 = 0.01;
 /// Width of the interval that is left of the search, over the one in which branches that meet
 /// would be as far from dependence as its ends, below which they pass each other.
 const PASSED_BY: f64 = 0.05;
@@ -136,6 +148,12 @@ impl Sides {
         (0..from.0.len()).filter(turned).collect()
     }
 
+    /// Returns whether rows are so near dependence that a state off the rows may be beside either
+    /// branch.
+    pub fn are_near(&self, side: &Side) -> bool {
+        (0..self.loops.len()).any(|k| self.margin(&[k], side) < NEAR_BOTH)
+    }
+
     /// Returns whether a motion through two states comes to stand at a position where rows are
     /// dependent: where it goes from there is up to rounding. `moments`: when it is at the two;
     /// `patience`: a time that is short.
@@ -166,63 +184,113 @@ impl Sides {
         loops.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns true if a near miss of branches can be told from their meeting: large loops come
-    /// through several dependent positions at once.
-    pub fn can_judge(&self, loops: &[usize]) -> bool {
-        let rows = |&k: &usize| self.loops[k].rows.len();
-        loops.iter().map(rows).all(|n| n <= MAX_JUDGED)
-    }
-
     /// Finds out whether two states between which loops have turned are on branches that meet:
-    /// whether there is a state between them at which rows are dependent. `from`: the rows at the
-    /// first.
+    /// whether rows are dependent wherever a combination of them turns between the two. `from`: the
+    /// rows at the first.
     pub fn meet(
         &mut self,
         system: &mut System,
         (loops, from): (&[usize], &Side),
         [a, b]: [&Node; 2],
     ) -> bool {
-        let (l, mover) = (system.scene.layout, Mover::new(&system.scene));
-        let (mut a, mut b) = (a.clone(), b.clone());
-        let after = self.look(&system.numbers_at(b.t, &b.y));
-        let mut margins = [from, &after].map(|side| self.margin(loops, side));
-        // σ falls and rises in proportion to time
-        let slope = (margins[0] + margins[1]) / (b.t - a.t);
-        let mut failed = 0;
-        for _ in 0..MAX_LOOKS {
-            if margins[0].min(margins[1]) < DEPENDENT_THERE {
+        let (mut a, mut from) = (a.clone(), from.clone());
+        let to = self.look(&system.numbers_at(b.t, &b.y));
+        for _ in 0..MAX_MEETINGS {
+            let ends = [(&a, &from), (b, &to)];
+            let Some(meeting) = self.first_meeting(system, loops, ends) else {
+                return false;
+            };
+            // another one behind it?
+            let t = meeting.t + BEHIND * (b.t - meeting.t);
+            let Some((node, side)) = self.state_between(system, [&meeting, b], t) else {
                 return true;
+            };
+            let turned = |&k: &usize| has_turned(&side.0[k], &to.0[k]);
+            if t <= a.t || !loops.iter().any(turned) {
+                return true;
+            }
+            (a, from) = (node, side);
+        }
+        true
+    }
+
+    /// Finds a state on the rows, and the rows there, at a time between two others; `None`: there
+    /// is none near the cubic through the two.
+    fn state_between(
+        &mut self,
+        system: &mut System,
+        ends: [&Node; 2],
+        t: f64,
+    ) -> Option<(Node, Side)> {
+        let (l, mover) = (system.scene.layout, Mover::new(&system.scene));
+        let mut y = ends[0].y.clone();
+        Cubic::new(&mover, l, ends).at(&mover, t, &mut y);
+        system.project_anew();
+        let found = system.put_on_rows(t, &mut y).is_ok();
+        let numbers = system.numbers_at(t, &y);
+        // where rows are dependent the least change may be none, within a gap too
+        (found && system.worst_gap(&numbers) <= GAP).then(|| (Node { t, y }, self.look(&numbers)))
+    }
+
+    /// Finds the first position between two states at which rows of loops are dependent and behind
+    /// which a combination of them has turned: the state behind it. `None`: they turn without, on
+    /// branches that only come near each other.
+    fn first_meeting(
+        &mut self,
+        system: &mut System,
+        loops: &[usize],
+        [(a, from), (b, to)]: [(&Node, &Side); 2],
+    ) -> Option<Node> {
+        let (mut a, mut b) = (a.clone(), b.clone());
+        let mut margins = [from, to].map(|side| self.margin(loops, side));
+        // σ falls and rises in proportion to time, no faster than the rows change
+        let seen = margins[0] + margins[1];
+        let mut slope = seen.max(self.change(loops, [from, to])) / (b.t - a.t);
+        let mut last = from.clone();
+        let mut failed = 0;
+        for look in 1..=MAX_LOOKS {
+            if margins[0].min(margins[1]) < DEPENDENT_THERE {
+                return Some(b);
             }
             let width = b.t - a.t;
             if slope * width < PASSED_BY * (margins[0] + margins[1]) {
-                return false;
+                return None;
             }
+            let part = match look.is_multiple_of(LOOKS_TO_MIDDLE) {
+                true => 0.5,
+                false => margins[0] / (margins[0] + margins[1]),
+            };
             // aside of where there was no state
             let aside = 0.1 * f64::from(failed);
-            let part = margins[0] / (margins[0] + margins[1]) * (1.0 - aside);
-            let t = a.t + part.clamp(0.02, 0.98) * width;
-            let mut y = a.y.clone();
-            Cubic::new(&mover, l, [&a, &b]).at(&mover, t, &mut y);
-            system.project_anew();
-            let found = system.put_on_rows(t, &mut y).is_ok();
-            let numbers = system.numbers_at(t, &y);
-            // where rows are dependent the least change may be none, within a gap too
-            if !found || system.worst_gap(&numbers) > GAP {
+            let t = a.t + (part * (1.0 - aside)).clamp(0.02, 0.98) * width;
+            let Some((node, side)) = self.state_between(system, [&a, &b], t) else {
                 failed += 1;
                 if failed > MAX_FAILURES {
-                    return false;
+                    return None;
                 }
                 continue;
-            }
-            let side = self.look(&numbers);
+            };
             let margin = self.margin(loops, &side);
             if loops.iter().any(|&k| has_turned(&from.0[k], &side.0[k])) {
-                (b, margins[1]) = (Node { t, y }, margin);
+                (b, margins[1]) = (node, margin);
             } else {
-                (a, margins[0]) = (Node { t, y }, margin);
+                slope = slope.max(self.change(loops, [&last, &side]) / (node.t - a.t));
+                (a, margins[0], last) = (node, margin, side);
             }
         }
-        false
+        None
+    }
+
+    /// Returns how far the rows of some loops are from one state to another, each row over its
+    /// usual length.
+    fn change(&self, loops: &[usize], [from, to]: [&Side; 2]) -> f64 {
+        let of = |&k: &usize| {
+            let rows = (from.0[k].row_iter().zip(to.0[k].row_iter())).zip(&self.usual[k]);
+            let squares =
+                rows.map(|((a, b), usual)| ((b - a).norm() / usual.max(f64::MIN_POSITIVE)).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        loops.iter().map(of).fold(0.0, f64::max)
     }
 }
 
@@ -259,40 +327,49 @@ pub(super) fn loops(rows: &[usize], entries: &[(usize, usize)], n_v: usize) -> V
 /// Returns whether a combination of rows has gone through zero from one state to another.
 fn has_turned(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
     if from.nrows() > MAX_EIGENVALUES {
-        // the determinant of B has the sign of that of G₁ A G₀ᵀ
-        let square = products(from, from);
+        let (square, mixed) = (products(from, from), products(from, to));
         return envelope::is_positive(&square)
-            && envelope::has_negative_determinant(&products(from, to));
+            && !envelope::is_positive(&(&mixed + mixed.transpose()))
+            && changes_sign(&square, &mixed);
     }
     let (square, mixed) = (from * from.transpose(), from * to.transpose());
     // B is similar to L⁻¹ G₁ A G₀ᵀ L⁻ᵀ, whose eigenvalues lie in its field of values
     if (&mixed + mixed.transpose()).cholesky().is_some() {
         return false;
     }
-    let Some(factor) = square.cholesky() else {
+    let Some(factor) = square.clone().cholesky() else {
         return false;
     };
     let b = factor.solve(&mixed);
     if b.iter().any(|x| !x.is_finite()) {
         return false;
     }
-    has_negative(b)
+    has_negative(b).unwrap_or_else(|| changes_sign(&square, &mixed))
 }
 
-/// Returns whether a matrix has an eigenvalue that is negative and nearly real.
-fn has_negative(b: DMatrix<f64>) -> bool {
+/// Returns whether the determinant is negative somewhere on the way from a matrix whose own is
+/// positive to another.
+fn changes_sign(from: &DMatrix<f64>, to: &DMatrix<f64>) -> bool {
+    let there = |s: &f64| from.scale(1.0 - s) + to.scale(*s);
+    let mut parts = PARTS_OF_WAY.iter();
+    parts.any(|s| envelope::has_negative_determinant(&there(s)))
+}
+
+/// Returns whether a matrix has an eigenvalue that is negative and nearly real; `None`: they could
+/// not be found.
+fn has_negative(b: DMatrix<f64>) -> Option<bool> {
     if b.nrows() == 2 {
         let mean = 0.5 * b.trace();
         let spread = mean * mean - b.determinant();
         let root = spread.abs().sqrt();
-        return match spread < 0.0 {
+        return Some(match spread < 0.0 {
             true => mean < 0.0 && root <= NEARLY_REAL * mean.abs(),
             false => mean - root < 0.0,
-        };
+        });
     }
     let rows = b.row_iter().map(|row| row.iter().copied().collect());
     let is_negative = |&(re, im): &(f64, f64)| re < 0.0 && im.abs() <= NEARLY_REAL * re.abs();
-    eigenvalues(rows.collect()).is_some_and(|all| all.iter().any(is_negative))
+    eigenvalues(rows.collect()).map(|all| all.iter().any(is_negative))
 }
 
 /// Returns `A Bᵀ` of two matrices with many zeros.
@@ -325,9 +402,17 @@ mod tests {
             DMatrix::from_row_slice(2, 2, &[cosine, -sine, sine, cosine])
         };
         let turns = [0.0, 60.0, 100.0, 149.0, 160.0, 180.0].map(|d| has_negative(turn(d)));
-        assert_eq!(turns, [false, false, false, false, true, true]);
+        assert_eq!(turns, [false, false, false, false, true, true].map(Some));
         let scaled = |x: f64| DMatrix::from_row_slice(2, 2, &[1.0, 5.0, 0.0, x]);
-        assert!(has_negative(scaled(-0.1)) && !has_negative(scaled(0.1)));
+        assert_eq!(
+            [-0.1, 0.1].map(|x| has_negative(scaled(x))),
+            [Some(true), Some(false)]
+        );
+        let one = DMatrix::identity(2, 2);
+        assert_eq!(
+            [-0.1, 0.1].map(|x| changes_sign(&one, &scaled(x))),
+            [true, false]
+        );
         // the same beside a third row
         let beside = |b: DMatrix<f64>| b.insert_row(2, 0.0).insert_column(2, 0.0);
         for degrees in [60.0, 100.0, 160.0] {
