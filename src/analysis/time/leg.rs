@@ -17,7 +17,7 @@ use crate::analysis::time::leg_peaks::Peak;
 use crate::analysis::time::output::Output;
 use crate::analysis::time::ranks::{Side, Sides};
 use crate::analysis::time::states::Node;
-use crate::analysis::time::switches::{Switches, Verdict};
+use crate::analysis::time::switches::{self, Switches, Verdict};
 use crate::analysis::trajectory::{Ended, Trajectory};
 use crate::analysis::watch::Watch;
 use crate::numeric::{Method, Reason, Step, Stop};
@@ -471,8 +471,10 @@ impl<'a> Leg<'a> {
         self.out.events += 1;
         self.out.event_times.push(step.t1);
         let mut state = method.y().to_vec();
+        let without_end = switches::never_end(&self.out.event_times, self.limits.end)
+            .then(|| self.switches.changes_most(self.system, anew, &state));
         self.switches.change(self.system, anew, &mut state);
-        if let Some(worst) = self.switches.endless() {
+        if let Some(worst) = without_end.flatten().or(self.switches.endless()) {
             let (reason, t, h) = (Reason::Endless(worst), step.t1, step.h);
             return Err(Stop { reason, t, h }.into());
         }

@@ -22,7 +22,8 @@
 //! Some switch for ever all the same (a relay that reads a position). After a burst of forty
 //! switches the branches are let go for twenty steps, and error control finds its way. The same is
 //! done where no step is possible while they are held. Where that leads nowhere, the run ends:
-//! [`Switches::endless`].
+//! [`Switches::endless`]. So it does where switches come ever faster and never would end:
+//! [`never_end`].
 
 use crate::analysis::system::System;
 use crate::numeric::event::{Locator, sign};
@@ -56,6 +57,33 @@ const MAX_REDONE: usize = 30;
 const MAX_HALVED: usize = 4;
 /// Rounds in which the branches are made to fit each other, at most.
 const MAX_SETTLING: usize = 10;
+
+/// Events from which on it is looked whether they come ever faster.
+const MANY_EVENTS: usize = 1024;
+/// Time in which the number of events doubles, over that in which it doubled before, below which
+/// it grows exponentially: with the fifth power of the time the quotient is 1.15.
+const DOUBLES_AS_FAST: f64 = 1.15;
+/// Events of a run that are not waited for.
+const TOO_MANY_EVENTS: f64 = 1e8;
+
+/// Returns whether events come ever faster, so that a run to its `end` would never get there: a
+/// damped motion about a displacement at which a force changes its sign swings ever more quickly.
+///
+/// ```text
+/// n events at t, half of them at t½, a quarter at t¼
+/// t − t½ < 1.15 (t½ − t¼)         their number grows exponentially, and
+/// n 2^((end − t)/(t − t½)) > 10⁸
+/// ```
+pub fn never_end(events: &[f64], end: f64) -> bool {
+    let n = events.len();
+    if n < MANY_EVENTS || !n.is_power_of_two() {
+        return false;
+    }
+    let [quarter, half, now] = [n / 4, n / 2, n].map(|k| events[k - 1]);
+    let doubling = now - half;
+    let expected = n as f64 * ((end - now) / doubling).exp2();
+    doubling < DOUBLES_AS_FAST * (half - quarter) && expected > TOO_MANY_EVENTS
+}
 
 /// The verdict on a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,6 +184,12 @@ impl Switches {
         (self.bursts > MAX_BURSTS).then_some(self.worst)
     }
 
+    /// Returns the unknown that changes most by the switch at the state; `None`: there is none.
+    pub fn changes_most(&self, system: &mut System, t: f64, y: &[f64]) -> Option<usize> {
+        let k = self.next.iter().position(|&side| side != 0)?;
+        Some(system.changed_most_by(t, y, k))
+    }
+
     /// Takes over the branches from a switch on, before the method begins anew there. Where the
     /// motion stays, the state is put there.
     pub fn change(&mut self, system: &mut System, t: f64, y: &mut [f64]) {
@@ -174,9 +208,7 @@ impl Switches {
             self.burst = 0;
             self.rest = REST_STEPS;
             self.slides.fill(false);
-            if let Some(k) = self.next.iter().position(|&side| side != 0) {
-                self.worst = system.changed_most_by(t, y, k);
-            }
+            self.worst = self.changes_most(system, t, y).unwrap_or(self.worst);
             system.branches_mut().release();
             return;
         }
@@ -432,5 +464,27 @@ impl Switches {
         self.locator.skip(&self.g1);
         std::mem::swap(&mut self.g0, &mut self.g1);
         std::mem::swap(&mut self.slope0, &mut self.slope1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns whether a run has no end in which event n is at `time(n)`.
+    fn without_end(time: impl Fn(f64) -> f64, n: u32, end: f64) -> bool {
+        let events: Vec<f64> = (1..=n).map(|k| time(f64::from(k))).collect();
+        never_end(&events, end)
+    }
+
+    #[test]
+    fn events_that_come_exponentially_faster_have_no_end_and_others_do() {
+        assert!(without_end(|n| 0.1 * n.ln(), 1024, 5.0));
+        // 785 in 20 s
+        assert!(!without_end(|n| 3.0 * n.ln(), 1024, 20.0));
+        assert!(!without_end(|n| 1e-3 * n, 1024, 1e9));
+        // ever faster, as the square of the time
+        assert!(!without_end(|n| n.sqrt(), 4096, 1e9));
+        assert!(!without_end(|n| 0.1 * n.ln(), 1023, 5.0));
     }
 }
