@@ -94,9 +94,7 @@ impl Session {
             };
             Diagnostic::error(Cause::Domain, what).element(&lost.function)
         }));
-        let mut readings = self.readings(&system);
-        readings.see(&system.numbers);
-        self.warn_of_splines(readings);
+        self.warn_of_splines(self.readings_ahead(&system, end));
         found.extend(driving(&system.scene, &self.model));
         Ok(found)
     }

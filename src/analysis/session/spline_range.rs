@@ -13,6 +13,8 @@ use crate::scene::programs::record_with_complaints;
 
 /// Distance outside the data, relative to their range, that rounding makes.
 const ROUNDING: f64 = 1e-9;
+/// Times at which arguments that time alone decides are looked at before a run.
+const LOOKS_AHEAD: usize = 256;
 
 /// A call that reads a spline of the dataset.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,30 +114,66 @@ impl Readings {
         program.run(numbers, &mut self.work, &mut self.values);
         let calls = self.calls.iter().zip(&self.values);
         for ((call, &value), seen) in calls.zip(&mut self.outside) {
-            let beyond = |x: f64| (call.range[0] - x).max(x - call.range[1]);
-            if beyond(value) > ROUNDING * (call.range[1] - call.range[0]) {
-                let (since, worst) = seen.unwrap_or((numbers[Layout::TIME], value));
-                let since = since.min(numbers[Layout::TIME]);
-                let worst = if beyond(value) > beyond(worst) {
-                    value
-                } else {
-                    worst
-                };
-                *seen = Some((since, worst));
+            note(seen, call, numbers[Layout::TIME], value);
+        }
+    }
+
+    /// Looks at the arguments that time alone decides, as markers that motions move do, until
+    /// `end`.
+    pub fn see_driven(&mut self, system: &System, formulas: &[usize], end: f64) {
+        let mut numbers = system.numbers.clone();
+        let start = numbers[Layout::TIME];
+        let calls = self.calls.iter().zip(formulas).zip(&mut self.outside);
+        for ((call, &formula), seen) in calls {
+            let (program, _) =
+                record_with_complaints(system.configured(), |at| vec![at.formula(formula)]);
+            let decides = |&place: &usize| place != Layout::TIME && program.reads(place);
+            if (0..numbers.len()).any(|place| decides(&place)) {
+                continue;
+            }
+            for k in 1..=LOOKS_AHEAD {
+                let t = start + (end - start) * k as f64 / LOOKS_AHEAD as f64;
+                numbers[Layout::TIME] = t;
+                note(seen, call, t, program.value(&numbers, &mut self.work));
             }
         }
     }
 }
 
+/// Takes note of the value of an argument outside the data of its spline.
+fn note(seen: &mut Option<(f64, f64)>, call: &SplineCall, t: f64, value: f64) {
+    let beyond = |x: f64| (call.range[0] - x).max(x - call.range[1]);
+    if beyond(value) > ROUNDING * (call.range[1] - call.range[0]) {
+        let (since, worst) = seen.unwrap_or((t, value));
+        let farther = beyond(value) > beyond(worst);
+        *seen = Some((since.min(t), if farther { value } else { worst }));
+    }
+}
+
 impl Session {
-    /// Prepares to watch the arguments of splines.
-    pub(super) fn readings(&self, system: &System) -> Readings {
+    /// Returns the calls of splines, and the formulas of their arguments in a scene.
+    fn calls_in<'s>(&self, system: &'s System) -> (Vec<SplineCall>, &'s [usize]) {
         let calls = spline_calls(&self.model);
         let first = self.columns.extra.len();
         let formulas = system.scene.extra.get(first..first + calls.len());
-        let Some(formulas) = formulas.filter(|f| !f.is_empty()) else {
+        (calls, formulas.unwrap_or_default())
+    }
+
+    /// Looks at the arguments of splines at the start, and until `end` where time alone decides
+    /// them.
+    pub(super) fn readings_ahead(&self, system: &System, end: f64) -> Readings {
+        let mut readings = self.readings(system);
+        readings.see(&system.numbers);
+        readings.see_driven(system, self.calls_in(system).1, end);
+        readings
+    }
+
+    /// Prepares to watch the arguments of splines.
+    pub(super) fn readings(&self, system: &System) -> Readings {
+        let (calls, formulas) = self.calls_in(system);
+        if formulas.is_empty() {
             return Readings::default();
-        };
+        }
         let (program, _) = record_with_complaints(system.configured(), |at| {
             formulas.iter().map(|&f| at.formula(f)).collect()
         });
