@@ -489,7 +489,7 @@ methods! {
         "RADAU5", false, 5, 10.0, "Radau IIA of three stages for stiff problems, projected onto invariants" => Radau::new;
     }
     dae {
-        "BDF", false, 5, 6.0, "backward differentiation of order 1 to 5, variable step, fixed leading coefficient" => Bdf::new;
+        "BDF", false, 5, 10.0, "backward differentiation of order 1 to 5, variable step, fixed leading coefficient" => Bdf::new;
         "HHT", false, 2, 5.0, "generalized-α with damping of high frequencies (α = −0.3)" => Hht::new;
         "NEWMARK", false, 2, 5.0, "generalized-α without damping (average acceleration)" => Hht::newmark;
     }
