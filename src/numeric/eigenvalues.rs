@@ -28,10 +28,13 @@ struct Window<'a> {
 pub fn eigenvalues(mut a: Vec<Vec<f64>>) -> Option<Vec<(f64, f64)>> {
     let n = a.len();
     to_hessenberg(&mut a);
+    // entries below are rounding, as equal eigenvalues let them grow no smaller than that
+    let largest = a.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let rounding = n as f64 * f64::EPSILON * largest;
     let mut found = Vec::with_capacity(n);
     let (mut high, mut sweeps) = (n, 0);
     while high > 0 {
-        let low = window_of(&a, high);
+        let low = window_of(&a, high, rounding);
         match high - low {
             1 => found.push((a[low][low], 0.0)),
             2 => found.extend(pair(&a, low)),
@@ -80,12 +83,11 @@ fn to_hessenberg(a: &mut [Vec<f64>]) {
 }
 
 /// Returns the first row of the window that ends before the row `high`: the entry beside it on the
-/// subdiagonal is rounding.
-fn window_of(h: &[Vec<f64>], high: usize) -> usize {
+/// subdiagonal is no more than `rounding`.
+fn window_of(h: &[Vec<f64>], high: usize, rounding: f64) -> usize {
     let mut low = high - 1;
     while low > 0 {
-        let beside = h[low - 1][low - 1].abs() + h[low][low].abs();
-        if h[low][low - 1].abs() <= f64::EPSILON * beside {
+        if h[low][low - 1].abs() <= rounding {
             break;
         }
         low -= 1;
@@ -197,6 +199,30 @@ mod tests {
             eigenvalues(vec![vec![0.0; 4]; 4]),
             Some(vec![(0.0, 0.0); 4])
         );
+    }
+
+    #[test]
+    fn eigenvalues_that_are_equal_but_for_rounding_are_all_found() {
+        // a chain of parallelograms between two states: the same two eigenvalues for each
+        for n in [2, 6, 10, 20, 40] {
+            let mut bits = 1_u64;
+            let mut noise = || {
+                bits = bits.wrapping_mul(6364136223846793005).wrapping_add(1);
+                1e-15 * ((bits >> 33) as f64 / f64::from(1 << 30) - 1.0)
+            };
+            let mut a: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| noise()).collect()).collect();
+            for k in (0..n).step_by(2) {
+                a[k][k] -= 0.25;
+                a[k][k + 1] += 2.75;
+                a[k + 1][k + 1] += 1.0;
+            }
+            let found = eigenvalues(a).unwrap();
+            for (expected, sign) in [(-0.25, -1.0), (1.0, 1.0)] {
+                let all = found.iter().filter(|z| z.0 * sign > 0.0);
+                assert_eq!(all.clone().count(), n / 2);
+                assert!(all.clone().all(|z| (z.0 - expected).hypot(z.1) < 1e-6));
+            }
+        }
     }
 
     proptest! {
