@@ -437,6 +437,10 @@ char *cognate_session_linearize(CognateSession *session, CognateError **error);
 // .res, .json, .msg.
 bool cognate_session_write(const CognateSession *session, const char *path, CognateError **error);
 
+// Writes a page (.html) that shows the run in motion in any browser, and needs nothing else. The
+// session wants cognate_options_frames. Shells whose files cannot be read are left out.
+bool cognate_session_page(const CognateSession *session, const char *path, CognateError **error);
+
 // Returns the state of a session as a text, from which another one goes on, also elsewhere. To be
 // given back by cognate_string_free.
 char *cognate_session_state(const CognateSession *session, CognateError **error);

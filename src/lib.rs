@@ -182,6 +182,8 @@
 //! | `solver` | models, their simulation, results |
 //! | `geometry` | contacts of convex solids, by parry |
 //! | `parquet` | results as Parquet |
+//! | `pages` | runs as pages that move, as `.glb` files and as drawings |
+//! | `serde` | expressions and models as texts, mistakes and rows of sweeps as data |
 //! | `cli` | the command line and the prompt |
 //!
 //! Without `native` there is no unsafe Rust here.
@@ -192,13 +194,13 @@
 //! the table of joints; results stand beside the scene because they know nothing of it:
 //!
 //! ```text
-//! 6  build  cli                 models made by programs; the command line
+//! 6  build  cli  serialization  models made by programs; the command line; serde
 //! 5  analysis   report          simulations of a scene; plots of results
 //! 4  dataset  scene  results    files of models; equations; records and files of results
 //! 3  model                      the elements as the user wrote them
 //! 2  physics                    laws of single elements, and of measures
 //! 1  expr  space  numeric       the language; frames; methods and linear algebra
-//! 0  scalar  diagnostic         numbers; messages and places
+//! 0  clock  scalar  diagnostic  time that passes; numbers; messages and places
 //! ```
 
 #![warn(missing_docs)]
@@ -215,6 +217,7 @@
 struct Readme;
 
 // floor 0
+pub mod clock;
 pub mod diagnostic;
 pub mod scalar;
 
@@ -241,13 +244,15 @@ pub mod scene;
 // floor 5
 #[cfg(feature = "solver")]
 pub mod analysis;
-#[cfg(feature = "cli")]
+#[cfg(feature = "pages")]
 pub mod report;
 // floor 6
 #[cfg(feature = "solver")]
 pub mod build;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "serde")]
+mod serialization;
 
 #[cfg(feature = "solver")]
 pub use analysis::session::{Analysis, Options, Session};

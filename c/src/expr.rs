@@ -3,20 +3,13 @@
 use crate::door::{changed, door, places, quiet, row, seen, text, usage, words};
 use crate::error::CognateError;
 use engine::Error;
-use engine::diagnostic::Diagnostic;
-use engine::expr::Expr;
+use engine::expr::SharedEvaluator;
 use engine::expr::ast::Dialect;
-use engine::expr::interpolation::Bindings;
-use engine::expr::program::{Batch, Input, Program, Work};
 use std::ffi::{CString, c_char};
-use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// An expression of the function language, checked and compiled.
 pub struct CognateExpr {
-    expr: Expr,
-    value: Compiled,
-    slopes: OnceLock<Compiled>,
-    inputs: Vec<Input>,
+    shared: SharedEvaluator,
     names: Vec<CString>,
 }
 
@@ -30,48 +23,6 @@ pub enum CognateDialect {
     Expression,
 }
 
-/// A program with the scratch that runs of it need, taken and given back, so that threads do not
-/// wait for each other.
-struct Compiled {
-    program: Program,
-    single: Mutex<Vec<Work>>,
-    batches: Mutex<Vec<Batch>>,
-}
-
-impl Compiled {
-    fn new(program: Program) -> Self {
-        let (single, batches) = Default::default();
-        Self {
-            program,
-            single,
-            batches,
-        }
-    }
-
-    fn run(&self, inputs: &[f64], out: &mut [f64]) {
-        let mut work = take(&self.single).unwrap_or_default();
-        self.program.run(inputs, &mut work, out);
-        give(&self.single, work);
-    }
-
-    fn batch(&self, inputs: &[&[f64]], out: &mut [&mut [f64]]) -> Result<(), Error> {
-        let mut batch = take(&self.batches).unwrap_or_else(|| self.program.batch());
-        let outcome = batch.run(inputs, out);
-        give(&self.batches, batch);
-        outcome
-    }
-}
-
-fn take<T>(pool: &Mutex<Vec<T>>) -> Option<T> {
-    pool.lock().unwrap_or_else(PoisonError::into_inner).pop()
-}
-
-fn give<T>(pool: &Mutex<Vec<T>>, scratch: T) {
-    pool.lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .push(scratch);
-}
-
 impl CognateExpr {
     fn parse(source: &str, dialect: u32) -> Result<Self, Error> {
         let dialect = match dialect {
@@ -79,59 +30,24 @@ impl CognateExpr {
             d if d == CognateDialect::Expression as u32 => Dialect::Expression,
             _ => return Err(usage("dialect is none of them", "see CognateDialect")),
         };
-        let expr = Expr::parse_dialect(source, dialect)?;
-        let program = expr.compile(&Bindings::default())?;
-        let inputs = program.inputs().to_vec();
-        if inputs.iter().any(|i| matches!(i, Input::Delayed(_))) {
-            let what = "DELAY depends on the past, which an expression alone has not";
-            let d = Diagnostic::error("needs_history", what);
-            return Err(d
-                .help("put it into a model, or ask for it as a column of a session")
-                .into());
-        }
+        let shared = SharedEvaluator::parse(source, dialect)?;
         Ok(Self {
-            names: inputs.iter().map(|i| words(i.to_string())).collect(),
-            inputs,
-            value: Compiled::new(program),
-            slopes: OnceLock::new(),
-            expr,
+            names: shared.names().iter().map(|n| words(n.clone())).collect(),
+            shared,
         })
     }
 
-    fn slopes(&self) -> &Compiled {
-        self.slopes
-            .get_or_init(|| Compiled::new(self.value.program.with_gradient(&self.inputs)))
-    }
-
-    /// Complains of numbers in place of a value: the walker names the operation.
+    /// Complains of numbers in place of a value; `point`: the one of many.
     fn complaint(&self, given: &[f64], point: Option<usize>) -> Error {
-        let infinite = self.names.iter().zip(given).find(|(_, x)| !x.is_finite());
-        let host = |input: Input| {
-            let place = self.inputs.iter().position(|i| *i == input);
-            place.map(|place| given[place])
-        };
-        let mut d = match (infinite, self.expr.eval_with(&host)) {
-            (Some((name, x)), _) => {
-                let name = name.to_string_lossy();
-                Diagnostic::error(
-                    "domain",
-                    format!("{name} is {x}, which is not a finite number"),
-                )
-            }
-            (None, Err(e)) => e.into_first(),
-            (None, Ok(value)) => {
-                let what = format!("a derivative is not finite where the value is {value}");
-                Diagnostic::error("domain", what)
-            }
-        };
+        let mut said = self.shared.complaint(given);
         if let Some(point) = point {
-            d.message += &format!(" (point {point})");
+            said.message += &format!(" (point {point})");
         }
-        d.into()
+        said.into()
     }
 
     fn counted(&self, n: usize) -> Result<(), Error> {
-        let wanted = self.inputs.len();
+        let wanted = self.names.len();
         if n == wanted {
             return Ok(());
         }
@@ -162,7 +78,7 @@ pub unsafe extern "C" fn cognate_expr_parse(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_expr_inputs(expr: *const CognateExpr) -> usize {
     // SAFETY: NULL or a handle
-    unsafe { expr.as_ref() }.map_or(0, |expr| expr.inputs.len())
+    unsafe { expr.as_ref() }.map_or(0, |expr| expr.names.len())
 }
 
 /// Returns the name of an input, counted from 0: "TIME", "DX(1, 2)"; NULL: there is none.
@@ -193,7 +109,7 @@ pub unsafe extern "C" fn cognate_expr_eval(
         // SAFETY: as before
         let inputs = unsafe { row(inputs, n_inputs, "inputs") }?;
         expr.counted(inputs.len())?;
-        expr.value.run(inputs, std::slice::from_mut(value));
+        expr.shared.run(inputs, std::slice::from_mut(value));
         if value.is_finite() && inputs.iter().all(|x| x.is_finite()) {
             return Ok(true);
         }
@@ -223,7 +139,7 @@ pub unsafe extern "C" fn cognate_expr_gradient(
         // SAFETY: as before
         let gradient = unsafe { places(gradient, n_inputs, "gradient") }?;
         let mut all = vec![0.0; 1 + inputs.len()];
-        expr.slopes().run(inputs, &mut all);
+        expr.shared.run_slopes(inputs, &mut all);
         gradient.copy_from_slice(&all[1..]);
         // SAFETY: NULL or a place
         if let Some(value) = unsafe { value.as_mut() } {
@@ -272,39 +188,14 @@ pub unsafe extern "C" fn cognate_expr_batch(
                 out.push(unsafe { places(*column, n, "a column of gradients") }?);
             }
         }
-        let compiled = if out.len() > 1 {
-            expr.slopes()
-        } else {
-            &expr.value
-        };
-        compiled.batch(&columns, &mut out)?;
-        let first = without_value(&columns, &mut out);
+        expr.shared.batch(&columns, &mut out)?;
+        let first = SharedEvaluator::mark(&columns, &mut out);
         let Some(first) = first else { return Ok(true) };
         let given: Vec<f64> = columns.iter().map(|c| c[first]).collect();
         Err(expr.complaint(&given, Some(first)))
     };
     // SAFETY: a place of the caller
     unsafe { door(error, false, work) }
-}
-
-/// Makes NaN of what is no finite number; returns the first such point.
-fn without_value(columns: &[&[f64]], out: &mut [&mut [f64]]) -> Option<usize> {
-    let finite = |numbers: &[f64]| numbers.iter().fold(true, |all, x| all & x.is_finite());
-    let inputs_are = columns.iter().fold(true, |all, c| all & finite(c));
-    if inputs_are && out.iter().all(|c| finite(c)) {
-        return None;
-    }
-    let mut first = None;
-    for k in 0..out.first().map_or(0, |c| c.len()) {
-        let given = columns.iter().all(|c| c[k].is_finite());
-        for column in out.iter_mut() {
-            if !given || !column[k].is_finite() {
-                column[k] = f64::NAN;
-                first.get_or_insert(k);
-            }
-        }
-    }
-    first
 }
 
 /// Gives an expression back.

@@ -2,6 +2,7 @@
 
 use crate::door::{changed, door, quiet, text, usage};
 use crate::error::CognateError;
+use engine::Error;
 use engine::analysis::session::Options;
 use engine::model::ElementKind;
 use std::ffi::c_char;
@@ -28,6 +29,30 @@ impl Default for CognateOptions {
     }
 }
 
+/// Gives options a choice that is a text.
+unsafe fn choose(
+    options: *mut CognateOptions,
+    (given, name): (*const c_char, &str),
+    error: *mut *mut CognateError,
+    put: impl FnOnce(&mut CognateOptions, &str) -> Result<(), Error>,
+) -> bool {
+    let work = || {
+        // SAFETY: a handle and a text of the caller
+        let (options, text) = unsafe { (changed(options, "options")?, text(given, name)?) };
+        put(options, text).map(|()| true)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, false, work) }
+}
+
+/// Gives options a choice that cannot be wrong; NULL: nothing happens.
+unsafe fn set(options: *mut CognateOptions, put: impl FnOnce(&mut CognateOptions)) {
+    // SAFETY: NULL or a handle
+    if let Some(options) = unsafe { options.as_mut() } {
+        quiet((), || put(options));
+    }
+}
+
 /// Returns options of which none is chosen.
 #[unsafe(no_mangle)]
 pub extern "C" fn cognate_options_new() -> *mut CognateOptions {
@@ -41,28 +66,25 @@ pub unsafe extern "C" fn cognate_options_column(
     expression: *const c_char,
     error: *mut *mut CognateError,
 ) -> bool {
-    let work = || {
-        // SAFETY: a handle and a text of the caller
-        let (options, text) = unsafe {
-            (
-                changed(options, "options")?,
-                text(expression, "expression")?,
-            )
-        };
-        options.options.columns.push(text.to_owned());
-        Ok(true)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, false, work) }
+    // SAFETY: a handle, a text and a place of the caller
+    unsafe {
+        choose(
+            options,
+            (expression, "expression"),
+            error,
+            |options, text| {
+                options.options.columns.push(text.to_owned());
+                Ok(())
+            },
+        )
+    }
 }
 
 /// Chooses the permitted local error of the integration.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_error(options: *mut CognateOptions, permitted: f64) {
     // SAFETY: NULL or a handle
-    if let Some(options) = unsafe { options.as_mut() } {
-        options.options.error = Some(permitted);
-    }
+    unsafe { set(options, |o| o.options.error = Some(permitted)) }
 }
 
 /// Chooses the method of integration by its name; "AUTO" chooses by itself.
@@ -72,14 +94,13 @@ pub unsafe extern "C" fn cognate_options_method(
     name: *const c_char,
     error: *mut *mut CognateError,
 ) -> bool {
-    let work = || {
-        // SAFETY: a handle and a text of the caller
-        let (options, name) = unsafe { (changed(options, "options")?, text(name, "name")?) };
-        options.options.method = Some(name.to_owned());
-        Ok(true)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, false, work) }
+    // SAFETY: a handle, a text and a place of the caller
+    unsafe {
+        choose(options, (name, "name"), error, |options, text| {
+            options.options.method = Some(text.to_owned());
+            Ok(())
+        })
+    }
 }
 
 /// Chooses the base name of results.
@@ -89,14 +110,13 @@ pub unsafe extern "C" fn cognate_options_name(
     name: *const c_char,
     error: *mut *mut CognateError,
 ) -> bool {
-    let work = || {
-        // SAFETY: a handle and a text of the caller
-        let (options, name) = unsafe { (changed(options, "options")?, text(name, "name")?) };
-        name.clone_into(&mut options.name);
-        Ok(true)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, false, work) }
+    // SAFETY: a handle, a text and a place of the caller
+    unsafe {
+        choose(options, (name, "name"), error, |options, text| {
+            text.clone_into(&mut options.name);
+            Ok(())
+        })
+    }
 }
 
 /// Leaves out elements of a statement ("CONTACT") where they are not solved.
@@ -106,18 +126,16 @@ pub unsafe extern "C" fn cognate_options_skip(
     keyword: *const c_char,
     error: *mut *mut CognateError,
 ) -> bool {
-    let work = || {
-        // SAFETY: a handle and a text of the caller
-        let (options, keyword) =
-            unsafe { (changed(options, "options")?, text(keyword, "keyword")?) };
-        let kind = keyword.to_uppercase().parse::<ElementKind>();
-        let what = format!("{keyword} is no statement");
-        let kind = kind.map_err(|_| usage(what, "give a keyword of datasets: CONTACT"))?;
-        options.options.skip.insert(kind);
-        Ok(true)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, false, work) }
+    // SAFETY: a handle, a text and a place of the caller
+    unsafe {
+        choose(options, (keyword, "keyword"), error, |options, text| {
+            let kind = text.to_uppercase().parse::<ElementKind>();
+            let what = format!("{text} is no statement");
+            let kind = kind.map_err(|_| usage(what, "give a keyword of datasets: CONTACT"))?;
+            options.options.skip.insert(kind);
+            Ok(())
+        })
+    }
 }
 
 /// Gives every column bars of error (a column "name±" each), from a further run at a smaller
@@ -125,45 +143,35 @@ pub unsafe extern "C" fn cognate_options_skip(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_accuracy(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle
-    if let Some(options) = unsafe { options.as_mut() } {
-        options.options.accuracy = wanted;
-    }
+    unsafe { set(options, |o| o.options.accuracy = wanted) }
 }
 
 /// Asks for sets of results of all elements, or for none of them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_full(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle
-    if let Some(options) = unsafe { options.as_mut() } {
-        options.full = Some(wanted);
-    }
+    unsafe { set(options, |o| o.full = Some(wanted)) }
 }
 
 /// Asks for positions and angles of all parts, whatever else is recorded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_frames(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle
-    if let Some(options) = unsafe { options.as_mut() } {
-        options.options.frames = wanted;
-    }
+    unsafe { set(options, |o| o.options.frames = wanted) }
 }
 
 /// Takes what USER would compute as zero where no routine is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_zero_user(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle
-    if let Some(options) = unsafe { options.as_mut() } {
-        options.options.zero_user = wanted;
-    }
+    unsafe { set(options, |o| o.options.zero_user = wanted) }
 }
 
 /// Runs motions whose displacement or velocity jumps, piece by piece.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_options_piecewise(options: *mut CognateOptions, wanted: bool) {
     // SAFETY: NULL or a handle
-    if let Some(options) = unsafe { options.as_mut() } {
-        options.options.piecewise = wanted;
-    }
+    unsafe { set(options, |o| o.options.piecewise = wanted) }
 }
 
 /// Limits the processor time of a session [s] and the steps that an integration may try; 0: no
@@ -175,9 +183,11 @@ pub unsafe extern "C" fn cognate_options_limit(
     steps: usize,
 ) {
     // SAFETY: NULL or a handle
-    if let Some(options) = unsafe { options.as_mut() } {
-        options.options.limit = (seconds > 0.0).then_some(seconds);
-        options.options.max_steps = (steps > 0).then_some(steps);
+    unsafe {
+        set(options, |o| {
+            o.options.limit = (seconds > 0.0).then_some(seconds);
+            o.options.max_steps = (steps > 0).then_some(steps);
+        });
     }
 }
 

@@ -16,6 +16,7 @@ use crate::utilities::{Asked, within};
 use engine::Error;
 use engine::analysis::system::closures::Call;
 use engine::diagnostic::Diagnostic;
+use engine::model::ElementKind as K;
 use engine::model::{ElementId, ElementKind, Formula, Model};
 use std::ffi::{c_char, c_int, c_void};
 use std::sync::Arc;
@@ -114,6 +115,8 @@ pub enum Routine {
         ),
     ),
 }
+
+use Routine::{Force, Motion, Output};
 
 /// Numbers that any routine fills, at most.
 const MOST_RESULTS: usize = 8;
@@ -257,15 +260,7 @@ pub unsafe extern "C" fn cognate_session_sfosub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Sforce,
-            id,
-            routine.map(Routine::Force),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Sforce, id, routine.map(Force), error) }
 }
 
 /// Computes VARIABLE/id, or with id 0 all VARIABLEs that have a USER, by VARSUB.
@@ -277,15 +272,7 @@ pub unsafe extern "C" fn cognate_session_varsub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Variable,
-            id,
-            routine.map(Routine::Force),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Variable, id, routine.map(Force), error) }
 }
 
 /// Computes DIFF/id, or with id 0 all DIFFs that have a USER, by DIFSUB.
@@ -297,15 +284,7 @@ pub unsafe extern "C" fn cognate_session_difsub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Diff,
-            id,
-            routine.map(Routine::Force),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Diff, id, routine.map(Force), error) }
 }
 
 /// Computes GFORCE/id, or with id 0 all GFORCEs that have a USER, by GFOSUB.
@@ -317,15 +296,7 @@ pub unsafe extern "C" fn cognate_session_gfosub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Gforce,
-            id,
-            routine.map(Routine::Force),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Gforce, id, routine.map(Force), error) }
 }
 
 /// Computes VFORCE/id, or with id 0 all VFORCEs that have a USER, by VFOSUB.
@@ -337,15 +308,7 @@ pub unsafe extern "C" fn cognate_session_vfosub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Vforce,
-            id,
-            routine.map(Routine::Force),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Vforce, id, routine.map(Force), error) }
 }
 
 /// Computes VTORQUE/id, or with id 0 all VTORQUEs that have a USER, by VTOSUB.
@@ -357,15 +320,7 @@ pub unsafe extern "C" fn cognate_session_vtosub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Vtorque,
-            id,
-            routine.map(Routine::Force),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Vtorque, id, routine.map(Force), error) }
 }
 
 /// Computes REQUEST/id, or with id 0 all REQUESTs that have a USER, by REQSUB.
@@ -377,15 +332,7 @@ pub unsafe extern "C" fn cognate_session_reqsub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Request,
-            id,
-            routine.map(Routine::Output),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Request, id, routine.map(Output), error) }
 }
 
 /// Computes SENSOR/id, or with id 0 all SENSORs that have a USER, by SENSUB.
@@ -397,15 +344,7 @@ pub unsafe extern "C" fn cognate_session_sensub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Sensor,
-            id,
-            routine.map(Routine::Output),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Sensor, id, routine.map(Output), error) }
 }
 
 /// Computes MOTION/id, or with id 0 all MOTIONs that have a USER, by MOTSUB.
@@ -417,15 +356,7 @@ pub unsafe extern "C" fn cognate_session_motsub(
     error: *mut *mut CognateError,
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
-    unsafe {
-        register_for(
-            session,
-            ElementKind::Motion,
-            id,
-            routine.map(Routine::Motion),
-            error,
-        )
-    }
+    unsafe { register_for(session, K::Motion, id, routine.map(Motion), error) }
 }
 
 /// The caller's data, as a routine is given them.

@@ -12,9 +12,11 @@ use engine::analysis::session::{Options, Session};
 use engine::analysis::watch::Watch;
 use engine::dataset::Dataset;
 use engine::dataset::command::{Simulate, SimulationKind};
+use engine::dataset::surface::Surfaces;
 use engine::diagnostic::Diagnostic;
 use engine::model::SettingsStatement;
 use engine::numeric::Stats;
+use engine::report::mechanism::page::page_of_run;
 use engine::results::format::Style;
 use engine::results::{self, Event, Status, json};
 use std::ffi::{CString, c_char, c_void};
@@ -206,6 +208,52 @@ impl Inner {
     }
 }
 
+/// Does something with a session; where it fails tells why and returns `failed`.
+unsafe fn with<T>(
+    session: *const CognateSession,
+    error: *mut *mut CognateError,
+    failed: T,
+    go: impl FnOnce(&mut Inner) -> Result<T, Error>,
+) -> T {
+    let work = || {
+        // SAFETY: a handle of the caller
+        let mut inner = unsafe { CognateSession::of(session) }?;
+        go(&mut inner)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, failed, work) }
+}
+
+/// Looks at a session; where there is none, or it is at work, returns `none`.
+unsafe fn look<T>(
+    session: *const CognateSession,
+    none: T,
+    go: impl FnOnce(&mut Inner) -> Option<T>,
+) -> T {
+    let found = quiet(None, || {
+        // SAFETY: a handle of the caller
+        let inner = unsafe { CognateSession::of(session) };
+        inner.ok().and_then(|mut inner| go(&mut inner))
+    });
+    found.unwrap_or(none)
+}
+
+/// Simulates, and tells by `status`, which may be NULL, how that ended.
+unsafe fn simulated(
+    session: *mut CognateSession,
+    status: *mut CognateStatus,
+    go: impl FnOnce(&mut Session, &mut Watcher<'_>) -> Result<Status, Error>,
+) -> Result<bool, Error> {
+    // SAFETY: a handle of the caller
+    let (mut inner, handle) = unsafe { (CognateSession::of(session)?, seen(session, "session")?) };
+    let ended = inner.work(&handle.interrupted, go)?;
+    // SAFETY: NULL or a place
+    if let Some(status) = unsafe { status.as_mut() } {
+        *status = ended.into();
+    }
+    Ok(true)
+}
+
 /// Begins a session of a model, at time 0; NULL: an option is wrong. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_session_new(
@@ -270,14 +318,13 @@ pub unsafe extern "C" fn cognate_session_progress(
     data: *mut c_void,
     error: *mut *mut CognateError,
 ) -> bool {
-    let work = || {
-        // SAFETY: a handle of the caller
-        let mut inner = unsafe { CognateSession::of(session) }?;
-        inner.progress = callback.map(|callback| Progress { callback, data });
-        Ok(true)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, false, work) }
+    // SAFETY: a handle and a place of the caller
+    unsafe {
+        with(session, error, false, |inner| {
+            inner.progress = callback.map(|callback| Progress { callback, data });
+            Ok(true)
+        })
+    }
 }
 
 /// Ends the simulation that is going on in another thread, with the results so far.
@@ -318,18 +365,12 @@ pub unsafe extern "C" fn cognate_session_simulate(
             steps: Some(steps),
             dtout: None,
         };
-        // SAFETY: a handle of the caller
-        let (mut inner, handle) =
-            unsafe { (CognateSession::of(session)?, seen(session, "session")?) };
-        let ended = inner.work(&handle.interrupted, |session, watch| {
+        let go = |session: &mut Session, watch: &mut Watcher<'_>| {
             let (analysis, end, output) = simulate.resolved(session.time())?;
             session.simulate_with(analysis, end, output, watch)
-        })?;
-        // SAFETY: NULL or a place
-        if let Some(status) = unsafe { status.as_mut() } {
-            *status = ended.into();
-        }
-        Ok(true)
+        };
+        // SAFETY: a handle and a place of the caller
+        unsafe { simulated(session, status, go) }
     };
     // SAFETY: a place of the caller
     unsafe { door(error, false, work) }
@@ -347,17 +388,11 @@ pub unsafe extern "C" fn cognate_session_obey(
     let work = || {
         // SAFETY: a text of the caller
         let script = commands(unsafe { text(script, "script") }?)?;
-        // SAFETY: a handle of the caller
-        let (mut inner, handle) =
-            unsafe { (CognateSession::of(session)?, seen(session, "session")?) };
-        let ended = inner.work(&handle.interrupted, |session, watch| {
+        let go = |session: &mut Session, watch: &mut Watcher<'_>| {
             obey(session, &script.steps, |_, _| (), watch)
-        })?;
-        // SAFETY: NULL or a place
-        if let Some(status) = unsafe { status.as_mut() } {
-            *status = ended.into();
-        }
-        Ok(true)
+        };
+        // SAFETY: a handle and a place of the caller
+        unsafe { simulated(session, status, go) }
     };
     // SAFETY: a place of the caller
     unsafe { door(error, false, work) }
@@ -367,18 +402,14 @@ pub unsafe extern "C" fn cognate_session_obey(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_session_time(session: *const CognateSession) -> f64 {
     // SAFETY: a handle of the caller
-    quiet(f64::NAN, || {
-        unsafe { CognateSession::of(session) }.map_or(f64::NAN, |inner| inner.session.time())
-    })
+    unsafe { look(session, f64::NAN, |inner| Some(inner.session.time())) }
 }
 
 /// Returns the number of columns of the results so far; the first is time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_session_columns(session: *const CognateSession) -> usize {
     // SAFETY: a handle of the caller
-    quiet(0, || {
-        unsafe { CognateSession::of(session) }.map_or(0, |inner| inner.session.run.columns.len())
-    })
+    unsafe { look(session, 0, |inner| Some(inner.session.run.columns.len())) }
 }
 
 /// Returns the name of a column, until the next simulation; NULL: there is none.
@@ -387,14 +418,9 @@ pub unsafe extern "C" fn cognate_session_name(
     session: *const CognateSession,
     column: usize,
 ) -> *const c_char {
-    quiet(std::ptr::null(), || {
-        // SAFETY: a handle of the caller
-        let inner = unsafe { CognateSession::of(session) };
-        let found = inner
-            .ok()
-            .and_then(|mut i| Some(i.columns().get(column)?.0.as_ptr()));
-        found.unwrap_or(std::ptr::null())
-    })
+    let told = |inner: &mut Inner| Some(inner.columns().get(column)?.0.as_ptr());
+    // SAFETY: a handle of the caller
+    unsafe { look(session, std::ptr::null(), told) }
 }
 
 /// Returns the unit of a column as result files spell it, until the next simulation; "": a pure
@@ -404,14 +430,9 @@ pub unsafe extern "C" fn cognate_session_unit(
     session: *const CognateSession,
     column: usize,
 ) -> *const c_char {
-    quiet(std::ptr::null(), || {
-        // SAFETY: a handle of the caller
-        let inner = unsafe { CognateSession::of(session) };
-        let found = inner
-            .ok()
-            .and_then(|mut i| Some(i.columns().get(column)?.1.as_ptr()));
-        found.unwrap_or(std::ptr::null())
-    })
+    let told = |inner: &mut Inner| Some(inner.columns().get(column)?.1.as_ptr());
+    // SAFETY: a handle of the caller
+    unsafe { look(session, std::ptr::null(), told) }
 }
 
 /// Finds a column by its name, without regard to blanks and case; SIZE_MAX: there is none.
@@ -420,14 +441,12 @@ pub unsafe extern "C" fn cognate_session_find(
     session: *const CognateSession,
     name: *const c_char,
 ) -> usize {
-    quiet(usize::MAX, || {
-        // SAFETY: a handle and a text of the caller
-        let found = unsafe { (CognateSession::of(session), text(name, "name")) };
-        match found {
-            (Ok(inner), Ok(name)) => inner.session.run.find(name).unwrap_or(usize::MAX),
-            _ => usize::MAX,
-        }
-    })
+    // SAFETY: a handle and a text of the caller
+    unsafe {
+        look(session, usize::MAX, |inner| {
+            inner.session.run.find(text(name, "name").ok()?)
+        })
+    }
 }
 
 /// Returns the numbers of a column, until the next simulation, and puts how many there are into
@@ -438,18 +457,20 @@ pub unsafe extern "C" fn cognate_session_column(
     column: usize,
     n: *mut usize,
 ) -> *const f64 {
-    quiet(std::ptr::null(), || {
-        // SAFETY: a handle of the caller, and NULL or a place
-        let (inner, n) = unsafe { (CognateSession::of(session), n.as_mut()) };
-        let Ok(inner) = inner else {
-            return std::ptr::null();
-        };
-        let column = inner.session.run.columns.get(column);
+    // SAFETY: NULL or a place
+    let mut n = unsafe { n.as_mut() };
+    if let Some(n) = n.as_deref_mut() {
+        *n = 0;
+    }
+    let values = |inner: &mut Inner| {
+        let column = inner.session.run.columns.get(column)?;
         if let Some(n) = n {
-            *n = column.map_or(0, |c| c.values.len());
+            *n = column.values.len();
         }
-        column.map_or(std::ptr::null(), |c| c.values.as_ptr())
-    })
+        Some(column.values.as_ptr())
+    };
+    // SAFETY: a handle of the caller
+    unsafe { look(session, std::ptr::null(), values) }
 }
 
 /// Returns the run record as JSON: status, reason, counts, timings, energy, warnings. To be given
@@ -459,13 +480,9 @@ pub unsafe extern "C" fn cognate_session_record(
     session: *const CognateSession,
     error: *mut *mut CognateError,
 ) -> *mut c_char {
-    let work = || {
-        // SAFETY: a handle of the caller
-        let inner = unsafe { CognateSession::of(session) }?;
-        Ok(given(json::text(&json::record(&inner.session.run))))
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, std::ptr::null_mut(), work) }
+    let record = |inner: &mut Inner| Ok(given(json::text(&json::record(&inner.session.run))));
+    // SAFETY: a handle and a place of the caller
+    unsafe { with(session, error, std::ptr::null_mut(), record) }
 }
 
 /// Linearizes about the present state, between all plant inputs and outputs: matrices A, B, C, D,
@@ -475,15 +492,14 @@ pub unsafe extern "C" fn cognate_session_linearize(
     session: *mut CognateSession,
     error: *mut *mut CognateError,
 ) -> *mut c_char {
-    let work = || {
-        // SAFETY: a handle of the caller
-        let mut inner = unsafe { CognateSession::of(session) }?;
-        let found = inner.session.linearize(&Wanted::default());
-        let found = found.map_err(|wrong| located(&inner.dataset, wrong))?;
-        Ok(given(json::text(&found.json())))
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, std::ptr::null_mut(), work) }
+    // SAFETY: a handle and a place of the caller
+    unsafe {
+        with(session, error, std::ptr::null_mut(), |inner| {
+            let found = inner.session.linearize(&Wanted::default());
+            let found = found.map_err(|wrong| located(&inner.dataset, wrong))?;
+            Ok(given(json::text(&found.json())))
+        })
+    }
 }
 
 /// Writes the results so far to a file; the ending of its name tells the format: .csv, .parquet,
@@ -494,14 +510,35 @@ pub unsafe extern "C" fn cognate_session_write(
     path: *const c_char,
     error: *mut *mut CognateError,
 ) -> bool {
-    let work = || {
-        // SAFETY: a handle and a text of the caller
-        let (inner, path) = unsafe { (CognateSession::of(session)?, text(path, "path")?) };
-        let written = results::write(&inner.session.run, Path::new(path), Style::default());
-        Ok(written.map(|()| true)?)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, false, work) }
+    // SAFETY: a handle, a text and a place of the caller
+    unsafe {
+        with(session, error, false, |inner| {
+            let path = Path::new(text(path, "path")?);
+            results::write(&inner.session.run, path, Style::default())?;
+            Ok(true)
+        })
+    }
+}
+
+/// Writes a page (.html) that shows the run in motion in any browser, and needs nothing else. The
+/// session wants cognate_options_frames. Shells whose files cannot be read are left out.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_session_page(
+    session: *const CognateSession,
+    path: *const c_char,
+    error: *mut *mut CognateError,
+) -> bool {
+    // SAFETY: a handle, a text and a place of the caller
+    unsafe {
+        with(session, error, false, |inner| {
+            let path = Path::new(text(path, "path")?);
+            let session = &inner.session;
+            let surfaces = Surfaces::read(&session.model, &session.folders);
+            let page = page_of_run(&session.model, &session.run, &surfaces)?;
+            results::write_text(path, &page)?;
+            Ok(true)
+        })
+    }
 }
 
 /// Returns the state of a session as a text, from which another one goes on, also elsewhere. To be
@@ -511,14 +548,12 @@ pub unsafe extern "C" fn cognate_session_state(
     session: *const CognateSession,
     error: *mut *mut CognateError,
 ) -> *mut c_char {
-    // SAFETY: a handle of the caller
-    let work = || {
-        Ok(given(
-            unsafe { CognateSession::of(session) }?.session.save(),
-        ))
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, std::ptr::null_mut(), work) }
+    // SAFETY: a handle and a place of the caller
+    unsafe {
+        with(session, error, std::ptr::null_mut(), |inner| {
+            Ok(given(inner.session.save()))
+        })
+    }
 }
 
 /// Goes on from a state.
@@ -528,17 +563,15 @@ pub unsafe extern "C" fn cognate_session_reload(
     state: *const c_char,
     error: *mut *mut CognateError,
 ) -> bool {
-    let work = || {
-        // SAFETY: a text of the caller
-        let saved = Saved::read(unsafe { text(state, "state") }?.as_bytes())?;
-        // SAFETY: a handle of the caller
-        let mut inner = unsafe { CognateSession::of(session) }?;
-        inner.columns.clear();
-        inner.session.reload(saved)?;
-        Ok(true)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, false, work) }
+    // SAFETY: a handle, a text and a place of the caller
+    unsafe {
+        with(session, error, false, |inner| {
+            let saved = Saved::read(text(state, "state")?.as_bytes())?;
+            inner.columns.clear();
+            inner.session.reload(saved)?;
+            Ok(true)
+        })
+    }
 }
 
 /// Gives a session back.

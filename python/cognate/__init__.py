@@ -7,6 +7,7 @@ Examples
 1.03515625
 """
 
+from ._builder import Body, Element, Marker, ModelBuilder
 from ._core import Expr, __version__
 from ._errors import (
     ColumnError,
@@ -20,24 +21,31 @@ from ._errors import (
 from ._expr import expr
 from ._linear import LinearSystem, Mode
 from ._model import Model, Options, Session, run
-from ._run import Run, get_results, read_res, read_results
+from ._run import Animation, Run, get_results, read_res, read_results
+from ._sweep import SweepTable, sweep
 from ._verify import Verification
 
 __all__ = [
+    "Animation",
+    "Body",
     "ColumnError",
     "Diagnostic",
+    "Element",
     "Error",
     "Expr",
     "ExprError",
     "IncompleteRun",
     "LinearSystem",
+    "Marker",
     "Mode",
     "Model",
+    "ModelBuilder",
     "ModelError",
     "Options",
     "ResultsError",
     "Run",
     "Session",
+    "SweepTable",
     "Verification",
     "__version__",
     "expr",
@@ -45,4 +53,5 @@ __all__ = [
     "read_res",
     "read_results",
     "run",
+    "sweep",
 ]

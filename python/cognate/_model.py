@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
@@ -20,6 +20,8 @@ from ._verify import Verification
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+    from ._sweep import SweepTable
 
 __all__ = ["Model", "Options", "Session", "run"]
 
@@ -75,7 +77,7 @@ class Options(TypedDict, total=False):
     name: str
 
 
-def _choices(model: Model, options: Options) -> dict[str, Any]:
+def choices_of(model: Model, options: Options) -> dict[str, Any]:
     """Return all keywords, those that were not given with their defaults."""
     defaults: dict[str, Any] = {
         "columns": [],
@@ -104,6 +106,13 @@ def _choices(model: Model, options: Options) -> dict[str, Any]:
         for name, (inputs, law) in model._user.items()
     ]
     return choices
+
+
+def simulation_of(
+    kind: Kind, end: float | None, duration: float | None, steps: int | None, dtout: float | None
+) -> dict[str, Any]:
+    """Return a simulation as the compiled half takes it."""
+    return {"kind": kind, "end": end, "duration": duration, "steps": steps, "dtout": dtout}
 
 
 class Model:
@@ -369,6 +378,29 @@ class Model:
         """
         return Session(self, **options)
 
+    def sweep(
+        self, parameters: Mapping[str, Any], measures: str | Sequence[str], *args: Any, **options: Any
+    ) -> SweepTable:
+        """Run the model again and again with other numbers; see `cognate.sweep`.
+
+        Parameters
+        ----------
+        parameters : mapping of str to str or sequence of float
+            Numbers of the model by their names, and their values.
+        measures : str or sequence of str
+            Numbers of each run: ``"max(abs(FX(41,11)))"``.
+        *args, **options
+            As for `cognate.sweep`.
+
+        Returns
+        -------
+        SweepTable
+            A row a run.
+        """
+        from ._sweep import sweep
+
+        return sweep(self, parameters, measures, *args, **options)
+
     def verify(self) -> Verification:
         """Count the freedoms, and tell what is fixed twice and what is free.
 
@@ -476,7 +508,7 @@ class Session:
     """
 
     def __init__(self, model: Model, **options: Unpack[Options]) -> None:
-        self._core = _core.Session(model._core, _choices(model, options))
+        self._core = _core.Session(model._core, choices_of(model, options))
         self._model = model._core
 
     @property
@@ -602,19 +634,22 @@ class Session:
         progress: bool | Progress | None,
     ) -> str:
         until = end if duration is None else self.time + duration
-        report, close = reporter(progress, self.time, until)
-        try:
-            return self._core.simulate(kind, end, duration, steps, dtout, report)
-        except KeyboardInterrupt as stopped:
-            stopped.run = self.run  # type: ignore[attr-defined]
-            raise
-        finally:
-            close()
+        simulation = simulation_of(kind, end, duration, steps, dtout)
+        return self._attended(progress, until, lambda report: self._core.simulate(simulation, report))
 
     def _obey(self, script: _core.Commands, progress: bool | Progress | None) -> str:
-        report, close = reporter(progress, self.time, None)
+        return self._attended(progress, None, lambda report: self._core.obey(script, report))
+
+    def _attended(
+        self,
+        progress: bool | Progress | None,
+        until: float | None,
+        work: Callable[[Progress | None], str],
+    ) -> str:
+        """Do something long with progress; Ctrl-C keeps the results so far."""
+        report, close = reporter(progress, self.time, until)
         try:
-            return self._core.obey(script, report)
+            return work(report)
         except KeyboardInterrupt as stopped:
             stopped.run = self.run  # type: ignore[attr-defined]
             raise

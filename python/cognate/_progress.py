@@ -19,8 +19,8 @@ _QUIET_FOR = 0.5
 class _Bar:
     """A bar in the output of a notebook cell, which goes when the simulation has ended."""
 
-    def __init__(self, start: float, end: float | None) -> None:
-        self._start, self._end = start, end
+    def __init__(self, start: float, end: float | None, what: str) -> None:
+        self._start, self._end, self._what = start, end, what
         self._begun = time.monotonic()
         self._handle: Any = None
 
@@ -32,7 +32,7 @@ class _Bar:
         share = ""
         if self._end is not None and self._end > self._start:
             share = f' value="{(now - self._start) / (self._end - self._start):.4f}"'
-        bar = HTML(f"<progress{share}></progress> time {now:.6g}")
+        bar = HTML(f"<progress{share}></progress> {self._what} {now:.6g}")
         if self._handle is None:
             self._handle = display(bar, display_id=True)
         else:
@@ -53,7 +53,7 @@ def _in_notebook() -> bool:
 
 
 def reporter(
-    progress: bool | Progress | None, start: float, end: float | None
+    progress: bool | Progress | None, start: float, end: float | None, what: str = "time"
 ) -> tuple[Progress | None, Callable[[], None]]:
     """Choose what is called while a simulation goes on, and what when it has ended.
 
@@ -62,7 +62,9 @@ def reporter(
     progress : bool, callable or None
         None: a bar in notebooks, else nothing. True: a bar, which needs a notebook.
     start, end : float
-        Times between which the simulation goes, as far as they are known.
+        Numbers between which the work goes, as far as they are known.
+    what : str
+        The word for these numbers.
 
     Returns
     -------
@@ -75,5 +77,5 @@ def reporter(
         raise ValueError("progress=True needs a notebook; elsewhere give a callable, progress=print")
     if progress is False or not _in_notebook():
         return None, lambda: None
-    bar = _Bar(start, end)
+    bar = _Bar(start, end, what)
     return bar, bar.close

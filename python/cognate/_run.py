@@ -5,7 +5,9 @@ from __future__ import annotations
 import html
 import json
 import os
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._errors import ColumnError, Diagnostic
+from ._errors import ColumnError, Diagnostic, ResultsError
 
 if TYPE_CHECKING:
     import pandas
@@ -21,7 +23,46 @@ if TYPE_CHECKING:
 
     from ._model import Model
 
-__all__ = ["Run", "get_results", "read_res", "read_results"]
+__all__ = ["Animation", "Run", "get_results", "read_res", "read_results"]
+
+
+class Animation:
+    """A page that shows a run in motion; notebooks show it in place.
+
+    Attributes
+    ----------
+    html : str
+        The page: it needs no server, no network and nothing beside it.
+    title : str
+        Its title.
+    """
+
+    #: Height in a notebook, in pixels.
+    height = 560
+
+    def __init__(self, page: str, title: str) -> None:
+        self.html = page
+        self.title = title
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the page.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, whose name ends in ``.html``.
+        """
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.html)
+
+    def _repr_html_(self) -> str:
+        # a frame keeps the scripts and styles of the page and of the notebook apart
+        page = html.escape(self.html, quote=True)
+        style = f"width: 100%; height: {self.height}px; border: 0"
+        return f'<iframe srcdoc="{page}" style="{style}"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<Animation {self.title!r}: {len(self.html) // 1024} kB>"
 
 
 class Run(Mapping[str, NDArray[np.float64]]):
@@ -157,10 +198,7 @@ class Run(Mapping[str, NDArray[np.float64]]):
         ModelError
             The motion of a part is not recorded: run with ``full=True``.
         """
-        of = self._model if model is None else model._core
-        if of is None:
-            raise TypeError("results of a file do not know their model: give it")
-        return self._core.measure(of, expression)
+        return self._core.measure(self._of(model), expression)
 
     # --- the record --------------------------------------------------------------------------
 
@@ -352,19 +390,43 @@ class Run(Mapping[str, NDArray[np.float64]]):
         axes[-1].set_xlabel(f"time [{self._columns[0][1]}]")
         return axes[0] if ax is not None or len(axes) == 1 else np.array(axes)
 
-    def animate(self) -> str:
-        """Make a page that shows the moving mechanism; the command line has it, this package not.
+    def animate(self, model: Model | None = None) -> Animation:
+        """Make a page that shows the mechanism in motion, with its columns beside it.
+
+        Parameters
+        ----------
+        model : Model, optional
+            The model of the run; results that were read from a file do not know it.
+
+        Returns
+        -------
+        Animation
+            Shown by notebooks; `Animation.save` writes it as a file that needs nothing else.
 
         Raises
         ------
-        NotImplementedError
-            Always: the message says how the command line shows a run.
+        ResultsError
+            The run does not say where its parts are: run with ``frames=True``.
         """
-        raise NotImplementedError(
-            "this package does not draw mechanisms: write a run with frames=True by "
-            'run.to_res("run.res"), then `cognate animate run.res --model MODEL.adm` shows it; '
-            "run.plot() shows columns over time"
-        )
+        of = self._of(model)
+        try:
+            page, unread = self._core.page(of)
+        except ResultsError as wrong:
+            advice = "a run says where its parts are with frames=True: model.run(…, frames=True)"
+            said = [
+                replace(d, advice=(advice,), text=f"{d.text.splitlines()[0]}\n  help: {advice}")
+                for d in wrong.errors
+            ]
+            raise ResultsError(said) from None
+        for shell in unread:
+            warnings.warn(shell, stacklevel=2)
+        return Animation(page, self.title or self.name)
+
+    def _of(self, model: Model | None) -> _core.Model:
+        of = self._model if model is None else model._core
+        if of is None:
+            raise TypeError("results of a file do not know their model: give it")
+        return of
 
     def _repr_html_(self) -> str:
         record = self.record

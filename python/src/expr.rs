@@ -4,16 +4,14 @@ use crate::arrays::{self, Values};
 use crate::errors::{self, Kind};
 use cognate::Error;
 use cognate::diagnostic::{Cause, Diagnostic};
-use cognate::expr;
 use cognate::expr::ast::Dialect;
-use cognate::expr::interpolation::Bindings;
-use cognate::expr::program::{Batch, Input, Program, Work};
+use cognate::expr::program::Input;
+use cognate::expr::{SharedEvaluator, input_named};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyTuple};
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Points between two looks for Ctrl-C.
 const POINTS_AT_ONCE: usize = 1 << 20;
@@ -49,56 +47,10 @@ const POINTS_TO_DETACH: usize = 512;
 /// 1.0
 #[pyclass(module = "cognate", frozen)]
 pub struct Expr {
-    expr: expr::Expr,
+    shared: SharedEvaluator,
     dialect: Dialect,
-    value: Compiled,
-    gradient: OnceLock<Compiled>,
-    /// inputs of the program, by their places in it
-    inputs: Vec<Input>,
-    /// their names
-    names: Vec<String>,
-    /// place of TIME among them
+    /// place of TIME among the inputs
     time: Option<usize>,
-}
-
-/// A program with the scratch that runs of it need: a run takes some and gives it back, so that
-/// threads do not wait for each other.
-struct Compiled {
-    program: Program,
-    scalars: Mutex<Vec<Work>>,
-    batches: Mutex<Vec<Batch>>,
-}
-
-impl Compiled {
-    fn new(program: Program) -> Self {
-        Self {
-            program,
-            scalars: Mutex::default(),
-            batches: Mutex::default(),
-        }
-    }
-
-    fn run(&self, inputs: &[f64], out: &mut [f64]) {
-        let mut work = take(&self.scalars).unwrap_or_default();
-        self.program.run(inputs, &mut work, out);
-        give(&self.scalars, work);
-    }
-
-    fn batch(&self, inputs: &[&[f64]], out: &mut [&mut [f64]]) -> Result<(), Error> {
-        let mut batch = take(&self.batches).unwrap_or_else(|| self.program.batch());
-        let outcome = batch.run(inputs, out);
-        give(&self.batches, batch);
-        outcome
-    }
-}
-
-fn take<T>(pool: &Mutex<Vec<T>>) -> Option<T> {
-    pool.lock().unwrap_or_else(PoisonError::into_inner).pop()
-}
-
-fn give<T>(pool: &Mutex<Vec<T>>, scratch: T) {
-    let mut pool = pool.lock().unwrap_or_else(PoisonError::into_inner);
-    pool.push(scratch);
 }
 
 /// What to do at points without a value.
@@ -137,33 +89,18 @@ impl Expr {
             }
         };
         let raised = |e: Error| errors::exception(py, Kind::Expr, e, Some(text));
-        let expr = expr::Expr::parse_dialect(text, dialect).map_err(raised)?;
-        let program = expr.compile(&Bindings::default()).map_err(raised)?;
-        if let Some(past) = program.inputs().iter().find(|i| is_of_the_past(i)) {
-            let message = format!(
-                "{} depends on the past, which an expression alone has not",
-                past
-            );
-            let d = Diagnostic::error("needs_history", message);
-            let advice = "put it into a model, or ask for it as a column of a run";
-            return Err(raised(d.help(advice).into()));
-        }
-        let inputs = program.inputs().to_vec();
+        let shared = SharedEvaluator::parse(text, dialect).map_err(raised)?;
         Ok(Self {
-            names: inputs.iter().map(ToString::to_string).collect(),
-            time: inputs.iter().position(|i| *i == Input::Time),
-            inputs,
-            value: Compiled::new(program),
-            gradient: OnceLock::new(),
+            time: shared.inputs().iter().position(|i| *i == Input::Time),
+            shared,
             dialect,
-            expr,
         })
     }
 
     /// The text that it was read from.
     #[getter]
     fn text(&self) -> &str {
-        self.expr.text()
+        self.shared.expr().text()
     }
 
     /// The language: "function" (radians, TIME) or "expression" (degrees, t).
@@ -176,15 +113,15 @@ impl Expr {
     }
 
     /// The names of its inputs, in the order of the text.
-    #[getter]
-    fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, &self.names)
+    #[getter(inputs)]
+    fn input_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.names())
     }
 
     /// Doubts about what is legal but hardly meant, as a list of Diagnostic.
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(errors::diagnostics(py, &self.expr.warnings())?.into_any())
+        Ok(errors::diagnostics(py, &self.shared.expr().warnings())?.into_any())
     }
 
     /// Evaluate.
@@ -220,12 +157,12 @@ impl Expr {
         let invalid = Invalid::of(invalid)?;
         // a number in, a number out, by the shortest way
         if let (Some(time), None, None, None) = (time, inputs, named, &out)
-            && self.inputs.len() <= 1
-            && self.time.is_some() != self.inputs.is_empty()
+            && self.inputs().len() <= 1
+            && self.time.is_some() != self.inputs().is_empty()
             && let Ok(time) = time.cast_exact::<PyFloat>()
         {
             let (given, mut result) = ([time.value()], [0.0]);
-            self.value.run(&given[..self.inputs.len()], &mut result);
+            self.shared.run(&given[..self.inputs().len()], &mut result);
             if given[0].is_finite() && result[0].is_finite() {
                 return Ok(PyFloat::new(py, result[0]).into_any());
             }
@@ -237,7 +174,7 @@ impl Expr {
             }
             let given = scalars(&values);
             let mut result = [0.0];
-            self.value.run(&given, &mut result);
+            self.shared.run(&given, &mut result);
             self.see_scalar(py, &given, &mut result, invalid)?;
             return Ok(PyFloat::new(py, result[0]).into_any());
         };
@@ -251,13 +188,7 @@ impl Expr {
             let message = format!("out= has shape {:?}, the result {shape:?}", out.shape());
             return Err(PyValueError::new_err(message));
         }
-        self.over(
-            py,
-            &self.value,
-            &values,
-            std::slice::from_ref(&out),
-            invalid,
-        )?;
+        self.over(py, &values, std::slice::from_ref(&out), invalid)?;
         Ok(out.into_any())
     }
 
@@ -289,24 +220,22 @@ impl Expr {
         let invalid = Invalid::of(invalid)?;
         let (mut values, extra) = self.gather(py, time, inputs, named)?;
         let shape = self.shape(py, &mut values, extra)?;
-        let slopes = (self.gradient)
-            .get_or_init(|| Compiled::new(self.value.program.with_gradient(&self.inputs)));
         let all = PyDict::new(py);
         let Some(shape) = shape else {
             let given = scalars(&values);
-            let mut result = vec![0.0; 1 + self.inputs.len()];
-            slopes.run(&given, &mut result);
+            let mut result = vec![0.0; 1 + self.inputs().len()];
+            self.shared.run_slopes(&given, &mut result);
             self.see_scalar(py, &given, &mut result, invalid)?;
-            for (name, slope) in self.names.iter().zip(&result[1..]) {
+            for (name, slope) in self.names().iter().zip(&result[1..]) {
                 all.set_item(name, slope)?;
             }
             return Ok(all);
         };
-        let outs: Vec<_> = (0..=self.inputs.len())
+        let outs: Vec<_> = (0..=self.inputs().len())
             .map(|_| PyArrayDyn::zeros(py, &shape[..], false))
             .collect();
-        self.over(py, slopes, &values, &outs, invalid)?;
-        for (name, slope) in self.names.iter().zip(&outs[1..]) {
+        self.over(py, &values, &outs, invalid)?;
+        for (name, slope) in self.names().iter().zip(&outs[1..]) {
             all.set_item(name, slope)?;
         }
         Ok(all)
@@ -314,22 +243,25 @@ impl Expr {
 
     fn __repr__(&self) -> String {
         match self.dialect {
-            Dialect::Function => format!("Expr({:?})", self.expr.text()),
-            Dialect::Expression => format!("Expr({:?}, dialect=\"expression\")", self.expr.text()),
+            Dialect::Function => format!("Expr({:?})", self.shared.expr().text()),
+            Dialect::Expression => format!(
+                "Expr({:?}, dialect=\"expression\")",
+                self.shared.expr().text()
+            ),
         }
     }
 
     fn __str__(&self) -> String {
-        self.expr.to_string()
+        self.shared.expr().to_string()
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        self.dialect == other.dialect && self.expr.text() == other.expr.text()
+        self.dialect == other.dialect && self.shared.expr().text() == other.shared.expr().text()
     }
 
     fn __hash__(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
-        (self.expr.text(), self.dialect()).hash(&mut hasher);
+        (self.shared.expr().text(), self.dialect()).hash(&mut hasher);
         hasher.finish()
     }
 
@@ -339,7 +271,10 @@ impl Expr {
     ) -> PyResult<(Bound<'py, PyAny>, (String, &'static str))> {
         let maker = py.import("cognate._expr")?.getattr("_restored")?;
         let this = slf.get();
-        Ok((maker, (this.expr.text().to_owned(), this.dialect())))
+        Ok((
+            maker,
+            (this.shared.expr().text().to_owned(), this.dialect()),
+        ))
     }
 }
 
@@ -355,7 +290,7 @@ impl Expr {
         inputs: Option<&Bound<'py, PyAny>>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Gathered<'py>> {
-        let mut found: Vec<Option<Values<'py>>> = self.inputs.iter().map(|_| None).collect();
+        let mut found: Vec<Option<Values<'py>>> = self.inputs().iter().map(|_| None).collect();
         let mut extra = None;
         let mut time = time.cloned();
         // f({"DX(1, 2)": 3.0}): inputs alone
@@ -376,7 +311,7 @@ impl Expr {
             match self.place(py, name)? {
                 Some(place) if found[place].is_some() => Err(PyTypeError::new_err(format!(
                     "{} has been given twice",
-                    self.names[place]
+                    self.names()[place]
                 ))),
                 Some(place) => {
                     found[place] = Some(Values::of(value)?);
@@ -395,13 +330,18 @@ impl Expr {
             }
         }
         let missing = |k: usize| {
-            let name = &self.names[k];
+            let name = &self.names()[k];
             let d = Diagnostic::error(Cause::MissingValue, format!("{name} has not been given"));
-            let help = match self.inputs[k] {
+            let help = match self.inputs()[k] {
                 Input::Time => "time comes first: f(0.5)".to_owned(),
                 _ => format!("inputs of a model are given by name: f(t, {{\"{name}\": 0.5}})"),
             };
-            errors::exception(py, Kind::Expr, d.help(help), Some(self.expr.text()))
+            errors::exception(
+                py,
+                Kind::Expr,
+                d.help(help),
+                Some(self.shared.expr().text()),
+            )
         };
         let values = found.into_iter().enumerate();
         let values = values.map(|(k, value)| value.ok_or_else(|| missing(k)));
@@ -410,12 +350,12 @@ impl Expr {
 
     /// Returns the place of an input among those of the program; `None`: it is not read.
     fn place(&self, py: Python<'_>, name: &str) -> PyResult<Option<usize>> {
-        if let Some(place) = self.names.iter().position(|n| n == name) {
+        if let Some(place) = self.names().iter().position(|n| n == name) {
             return Ok(Some(place));
         }
-        let input = expr::input_named(name, self.dialect)
+        let input = input_named(name, self.dialect)
             .map_err(|e| errors::exception(py, Kind::Expr, e, Some(name)))?;
-        Ok(self.inputs.iter().position(|i| *i == input))
+        Ok(self.inputs().iter().position(|i| *i == input))
     }
 
     /// Gives all values one shape; `None`: they are scalars.
@@ -437,7 +377,6 @@ impl Expr {
     fn over<'py>(
         &self,
         py: Python<'py>,
-        compiled: &Compiled,
         values: &[Values<'py>],
         outs: &[Bound<'py, PyArrayDyn<f64>>],
         invalid: Invalid,
@@ -476,19 +415,20 @@ impl Expr {
                 .collect();
             let mut out: Vec<&mut [f64]> = results.iter_mut().map(|r| &mut r[from..to]).collect();
             let mut go = || {
-                compiled.batch(&inputs, &mut out)?;
-                let all = inputs.iter().copied().chain(out.iter().map(|r| &**r));
-                Ok(all.fold(true, |so_far, numbers| so_far & are_finite(numbers)))
+                self.shared.batch(&inputs, &mut out)?;
+                Ok(SharedEvaluator::mark(&inputs, &mut out))
             };
-            let finite = if n < POINTS_TO_DETACH {
+            let first = if n < POINTS_TO_DETACH {
                 go()
             } else {
                 py.detach(&mut go)
             };
-            let finite = finite
-                .map_err(|e: Error| errors::exception(py, Kind::Expr, e, Some(self.expr.text())))?;
-            if !finite {
-                self.see(py, &inputs, &mut out, Some(from), invalid)?;
+            let text = self.shared.expr().text();
+            let first =
+                first.map_err(|e: Error| errors::exception(py, Kind::Expr, e, Some(text)))?;
+            if let (Some(first), Invalid::Raise) = (first, invalid) {
+                let given: Vec<f64> = inputs.iter().map(|c| c[first]).collect();
+                return Err(self.complaint(py, &given, Some(from + first)));
             }
             if n > POINTS_AT_ONCE {
                 py.check_signals()?;
@@ -497,36 +437,7 @@ impl Expr {
         Ok(())
     }
 
-    /// Looks at points without a value: complains of the first, or makes all NaN. `from`: index of
-    /// the first point; `None`: there is one, which needs no number.
-    fn see(
-        &self,
-        py: Python<'_>,
-        inputs: &[&[f64]],
-        out: &mut [&mut [f64]],
-        from: Option<usize>,
-        invalid: Invalid,
-    ) -> PyResult<()> {
-        let n = out.first().map_or(0, |out| out.len());
-        for k in 0..n {
-            let finite = inputs.iter().all(|c| c[k].is_finite());
-            if finite && out.iter().all(|c| c[k].is_finite()) {
-                continue;
-            }
-            if invalid == Invalid::Raise {
-                let given: Vec<f64> = inputs.iter().map(|c| c[k]).collect();
-                return Err(self.complaint(py, &given, from.map(|from| from + k)));
-            }
-            for column in out.iter_mut() {
-                if !finite || !column[k].is_finite() {
-                    column[k] = f64::NAN;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// The same for one point.
+    /// Looks whether the one point has a value: makes it NaN, or complains.
     fn see_scalar(
         &self,
         py: Python<'_>,
@@ -534,39 +445,31 @@ impl Expr {
         out: &mut [f64],
         invalid: Invalid,
     ) -> PyResult<()> {
-        let given: Vec<&[f64]> = given.iter().map(std::slice::from_ref).collect();
+        let columns: Vec<&[f64]> = given.iter().map(std::slice::from_ref).collect();
         let mut out: Vec<&mut [f64]> = out.iter_mut().map(std::slice::from_mut).collect();
-        let finite = given.iter().all(|c| are_finite(c)) && out.iter().all(|c| are_finite(c));
-        if finite {
-            return Ok(());
+        match (SharedEvaluator::mark(&columns, &mut out), invalid) {
+            (Some(_), Invalid::Raise) => Err(self.complaint(py, given, None)),
+            _ => Ok(()),
         }
-        self.see(py, &given, &mut out, None, invalid)
     }
 
-    /// Returns the exception for a point without a value: the walker names the operation.
+    /// Returns the exception for a point without a value.
     fn complaint(&self, py: Python<'_>, given: &[f64], point: Option<usize>) -> PyErr {
-        let infinite = self.names.iter().zip(given).find(|(_, x)| !x.is_finite());
-        let host = |input: Input| {
-            let place = self.inputs.iter().position(|i| *i == input);
-            place.map(|place| given[place])
-        };
-        let mut d = match (infinite, self.expr.eval_with(&host)) {
-            (Some((name, x)), _) => Diagnostic::error(
-                "domain",
-                format!("{name} is {x}, which is not a finite number"),
-            ),
-            (None, Err(e)) => e.into_first(),
-            (None, Ok(value)) => {
-                let what = format!("a derivative is not finite where the value is {value}");
-                Diagnostic::error("domain", what)
-            }
-        };
+        let mut said = self.shared.complaint(given);
         if let Some(point) = point {
-            d.message += &format!(" (point {point})");
-            d.help
-                .push("invalid=\"nan\" gives NaN at such points".into());
+            said.message += &format!(" (point {point})");
+            let advice = "invalid=\"nan\" gives NaN at such points";
+            said.help.push(advice.into());
         }
-        errors::exception(py, Kind::Expr, d, Some(self.expr.text()))
+        errors::exception(py, Kind::Expr, said, Some(self.shared.expr().text()))
+    }
+
+    fn inputs(&self) -> &[Input] {
+        self.shared.inputs()
+    }
+
+    fn names(&self) -> &[String] {
+        self.shared.names()
     }
 }
 
@@ -578,10 +481,6 @@ fn scalars(values: &[Values<'_>]) -> Vec<f64> {
     values.iter().filter_map(number).collect()
 }
 
-fn is_of_the_past(input: &Input) -> bool {
-    matches!(input, Input::Delayed(_))
-}
-
 fn is_mapping(py: Python<'_>, object: &Bound<'_, PyAny>) -> PyResult<bool> {
     if object.is_instance_of::<PyDict>() {
         return Ok(true);
@@ -591,17 +490,4 @@ fn is_mapping(py: Python<'_>, object: &Bound<'_, PyAny>) -> PyResult<bool> {
     }
     let class = py.import("collections.abc")?.getattr("Mapping")?;
     object.is_instance(&class)
-}
-
-/// Returns true if all numbers are finite.
-fn are_finite(numbers: &[f64]) -> bool {
-    // x·0 is NaN where x is not finite; eight sums side by side become vector instructions
-    let (eights, rest) = numbers.as_chunks::<8>();
-    let mut sums = [0.0; 8];
-    for eight in eights {
-        for (sum, x) in sums.iter_mut().zip(eight) {
-            *sum += x * 0.0;
-        }
-    }
-    sums.iter().all(|sum| *sum == 0.0) && rest.iter().all(|x| x.is_finite())
 }

@@ -14,14 +14,18 @@
 //! watch.rs     Ctrl-C and progress while they go on
 //! user.rs      USER(…) as Python callables
 //! results.rs   tables of results, and files
+//! builder.rs   models that a program makes
+//! sweep.rs     many runs of one model
 //! ```
 
 mod arrays;
+mod builder;
 mod errors;
 mod expr;
 mod model;
 mod results;
 mod session;
+mod sweep;
 mod user;
 mod watch;
 
@@ -31,6 +35,8 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::builder::{Builder, Statement};
+    #[pymodule_export]
     use super::expr::Expr;
     #[pymodule_export]
     use super::model::Model;
@@ -38,6 +44,8 @@ mod _core {
     use super::results::Results;
     #[pymodule_export]
     use super::session::{Commands, Session};
+    #[pymodule_export]
+    use super::sweep::{Sweep, Table, design_points};
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]

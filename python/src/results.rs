@@ -3,7 +3,10 @@
 use crate::errors::{self, Kind};
 use crate::model::Model;
 use cognate::analysis::motion::{MarkerMeasure, Recorded};
+use cognate::dataset::surface::Surfaces;
 use cognate::diagnostic::Diagnostic;
+use cognate::model::ElementId;
+use cognate::report::mechanism::page::page_of_run;
 use cognate::results::format::Style;
 use cognate::results::{
     self, Column, Component, Entity, Requested, Run, Sequence, Units, json, msg,
@@ -84,6 +87,19 @@ impl Results {
         let run = py.detach(|| results::read(&path));
         let raised = |d| errors::exception(py, Kind::Results, d, None);
         run.map(Self::new).map_err(raised)
+    }
+
+    /// Return the page that shows the run in motion, and the shells that cannot be read.
+    fn page(&self, py: Python<'_>, model: &Model) -> PyResult<(String, Vec<String>)> {
+        let folders: Vec<PathBuf> = model.folder().into_iter().collect();
+        let (page, unread) = py.detach(|| {
+            let surfaces = Surfaces::read(&model.model, &folders);
+            let page = page_of_run(&model.model, &self.run, &surfaces);
+            (page, surfaces.unread)
+        });
+        let page = page.map_err(|d| errors::exception(py, Kind::Results, d, None))?;
+        let told = |(id, why): (ElementId, String)| format!("{id} is not drawn: {why}");
+        Ok((page, unread.into_iter().map(told).collect()))
     }
 
     /// Make the results again that were pickled.
@@ -267,8 +283,8 @@ impl Results {
     #[getter]
     fn warnings(&self) -> Vec<(&'static str, Option<String>, String)> {
         let all = self.run.record.warnings.iter();
-        all.map(|w| (w.code, w.element.clone(), w.named()))
-            .collect()
+        let element = |w: &results::Warning| w.subject.as_ref().map(|s| s.element.clone());
+        all.map(|w| (w.code, element(w), w.sentence())).collect()
     }
 
     /// The log of the run as the `.msg` file tells it.

@@ -10,7 +10,7 @@ use cognate::analysis::linear::Wanted;
 use cognate::analysis::session::script::obey;
 use cognate::analysis::session::state::Saved;
 use cognate::analysis::session::{self, Options};
-use cognate::dataset::command::{Script, Simulate, SimulationKind};
+use cognate::dataset::command::{Script, Simulate, SimulationKind, Step};
 use cognate::model::{ElementKind, SettingsStatement};
 use cognate::results::{Event, Status, json};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -23,7 +23,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 /// The choices of a user, as keywords of `run`.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Choices {
+pub struct Choices {
     name: String,
     columns: Vec<String>,
     error: Option<f64>,
@@ -37,6 +37,79 @@ struct Choices {
     zero_user: bool,
     piecewise: bool,
     user: Vec<Routine>,
+}
+
+impl Choices {
+    /// Returns the options of the library, and the routines for USER.
+    ///
+    /// # Errors
+    /// A keyword of `skip` that is no statement.
+    pub fn options(self, of: &Model) -> PyResult<(Options, Vec<Routine>)> {
+        let skip = self.skip.iter().map(|keyword| {
+            let unknown = |_| PyValueError::new_err(format!("skip: {keyword} is no statement"));
+            keyword
+                .to_uppercase()
+                .parse::<ElementKind>()
+                .map_err(unknown)
+        });
+        let options = Options {
+            skip: skip.collect::<PyResult<BTreeSet<_>>>()?,
+            error: self.error,
+            method: self.method,
+            repeat: 1,
+            columns: self.columns,
+            full: (self.full)
+                .unwrap_or_else(|| of.model.settings.contains_key(&SettingsStatement::Results)),
+            frames: self.frames,
+            piecewise: self.piecewise,
+            zero_user: self.zero_user,
+            max_steps: self.max_steps,
+            limit: self.limit,
+            accuracy: self.accuracy,
+            ..Options::default()
+        };
+        Ok((options, self.user))
+    }
+}
+
+/// A simulation as Python asks for it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Simulation {
+    kind: String,
+    end: Option<f64>,
+    duration: Option<f64>,
+    steps: Option<u32>,
+    dtout: Option<f64>,
+}
+
+impl Simulation {
+    /// Returns the command.
+    ///
+    /// # Errors
+    /// A word that is no kind of simulation.
+    pub fn simulate(&self) -> PyResult<Simulate> {
+        let kind = match self.kind.as_str() {
+            "transient" => SimulationKind::Transient,
+            "dynamic" => SimulationKind::Dynamic,
+            "kinematic" => SimulationKind::Kinematic,
+            "static" => SimulationKind::Static,
+            "initial_conditions" => SimulationKind::InitialConditions,
+            kind => {
+                return Err(PyValueError::new_err(format!(
+                    "kind={kind:?}: it is \"transient\", \"dynamic\", \"kinematic\", \
+                     \"static\" or \"initial_conditions\""
+                )));
+            }
+        };
+        Ok(Simulate {
+            kind,
+            end: self.end,
+            duration: self.duration,
+            steps: self.steps,
+            dtout: self.dtout,
+        })
+    }
 }
 
 /// A model and its clock.
@@ -85,36 +158,15 @@ impl Session {
     #[new]
     fn new(py: Python<'_>, model: Py<Model>, choices: Choices) -> PyResult<Self> {
         let of = model.get();
-        let skip = choices.skip.iter().map(|keyword| {
-            let unknown = |_| PyValueError::new_err(format!("skip: {keyword} is no statement"));
-            keyword
-                .to_uppercase()
-                .parse::<ElementKind>()
-                .map_err(unknown)
-        });
-        let options = Options {
-            error: choices.error,
-            method: choices.method,
-            repeat: 1,
-            columns: choices.columns,
-            full: (choices.full)
-                .unwrap_or_else(|| of.model.settings.contains_key(&SettingsStatement::Results)),
-            frames: choices.frames,
-            piecewise: choices.piecewise,
-            skip: skip.collect::<PyResult<BTreeSet<_>>>()?,
-            zero_user: choices.zero_user,
-            max_steps: choices.max_steps,
-            limit: choices.limit,
-            accuracy: choices.accuracy,
-            ..Options::default()
-        };
+        let name = choices.name.clone();
+        let (options, user) = choices.options(of)?;
         check_columns(py, of, &options.columns)?;
         let raised = Raised::default();
-        let mut session = session::Session::new(of.model.clone(), &choices.name, options);
+        let mut session = session::Session::new(of.model.clone(), &name, options);
         session.folders = of.folder().into_iter().collect();
         let title = Event::Title(session.run.title.clone());
         session.run.log.push(title);
-        for routine in choices.user {
+        for routine in user {
             routine.register(&mut session, &raised);
         }
         Ok(Self {
@@ -125,37 +177,14 @@ impl Session {
     }
 
     /// Simulate once. Returns the word of its status.
-    #[pyo3(signature = (kind, end, duration, steps, dtout, progress))]
-    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (simulation, progress))]
     fn simulate(
         &self,
         py: Python<'_>,
-        kind: &str,
-        end: Option<f64>,
-        duration: Option<f64>,
-        steps: Option<u32>,
-        dtout: Option<f64>,
+        simulation: Simulation,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<&'static str> {
-        let kind = match kind {
-            "transient" => SimulationKind::Transient,
-            "dynamic" => SimulationKind::Dynamic,
-            "kinematic" => SimulationKind::Kinematic,
-            "static" => SimulationKind::Static,
-            "initial_conditions" => SimulationKind::InitialConditions,
-            _ => {
-                return Err(PyValueError::new_err(format!(
-                    "kind={kind:?}: it is \"transient\", \"dynamic\", \"kinematic\", \"static\" or \"initial_conditions\""
-                )));
-            }
-        };
-        let simulate = Simulate {
-            kind,
-            end,
-            duration,
-            steps,
-            dtout,
-        };
+        let simulate = simulation.simulate()?;
         let status = self.work(py, progress, |session, watch| {
             let (analysis, end, output) = simulate.resolved(session.time())?;
             session.simulate_with(analysis, end, output, watch)
@@ -228,7 +257,7 @@ impl Session {
 }
 
 /// Complains of columns that cannot be had, all at once.
-fn check_columns(py: Python<'_>, model: &Model, columns: &[String]) -> PyResult<()> {
+pub fn check_columns(py: Python<'_>, model: &Model, columns: &[String]) -> PyResult<()> {
     let mut wrong = Vec::new();
     for (k, text) in columns.iter().enumerate() {
         for mut d in model.model.check_expression(text) {
@@ -248,6 +277,13 @@ fn check_columns(py: Python<'_>, model: &Model, columns: &[String]) -> PyResult<
 #[pyclass(module = "cognate._core", frozen)]
 pub struct Commands {
     script: Script,
+}
+
+impl Commands {
+    /// The commands.
+    pub fn steps(&self) -> &[Step] {
+        &self.script.steps
+    }
 }
 
 #[pymethods]

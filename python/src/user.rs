@@ -23,10 +23,19 @@ pub struct Routine {
 impl Routine {
     /// Registers the callable with a session. What it raises ends the simulation.
     pub fn register(self, session: &mut Session, raised: &Raised) {
-        let Routine { name, inputs, law } = self;
+        let (name, inputs, law) = self.law(raised);
         let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+        session.register(&name, &inputs, law);
+    }
+
+    /// Returns its name, its inputs and its law, which keeps what the callable raises.
+    pub fn law(
+        self,
+        raised: &Raised,
+    ) -> (String, Vec<String>, impl Fn(&Call<'_>, &mut [f64]) + use<>) {
+        let Routine { name, inputs, law } = self;
         let raised = raised.clone();
-        session.register(&name, &inputs, move |call, results| {
+        let law = move |call: &Call<'_>, results: &mut [f64]| {
             // after an exception the simulation ends at its next step
             if raised.is_set() {
                 return;
@@ -35,7 +44,8 @@ impl Routine {
             if let Err(e) = called {
                 raised.keep(e);
             }
-        });
+        };
+        (name, inputs, law)
     }
 }
 

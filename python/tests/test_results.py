@@ -88,9 +88,15 @@ def test_plots_have_a_panel_for_each_unit(run):
     matplotlib.pyplot.close("all")
 
 
-def test_animation_says_that_it_is_not_there(run):
-    with pytest.raises(NotImplementedError, match="plot"):
-        run.animate()
+def test_a_run_is_a_page_that_moves(slider_crank, falling, tmp_path):
+    with pytest.raises(cg.ResultsError, match="frames=True"):
+        falling.run(end=1.0, steps=2).animate()
+    moved = slider_crank.run(end=0.1, steps=5, frames=True).animate()
+    moved.save(tmp_path / "run.html")
+    page = (tmp_path / "run.html").read_text(encoding="utf-8")
+    assert page == moved.html and page.startswith("<!DOCTYPE html>") and "http-equiv" not in page
+    shown = moved._repr_html_()
+    assert shown.startswith("<iframe srcdoc=") and shown.count('"') == 4
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet", "res"])

@@ -3,10 +3,11 @@
 use super::system::System;
 use super::trajectory::Trajectory;
 use super::watch::Watch;
+use crate::clock::Moment;
 use crate::numeric::Stats;
 use crate::results::Run;
 use std::thread::ThreadId;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Shortest time between two looks at the clock of the processor, whose reading takes microseconds.
 const SHORTEST_LOOK: Duration = Duration::from_millis(1);
@@ -38,7 +39,7 @@ pub struct ProcessorClock {
     thread: ThreadId,
     /// processor time of the thread at the beginning, in s; `None`: not known here
     start: Option<f64>,
-    begin: Instant,
+    begin: Moment,
 }
 
 impl ProcessorClock {
@@ -47,7 +48,7 @@ impl ProcessorClock {
         Self {
             thread: std::thread::current().id(),
             start: thread_seconds(None),
-            begin: Instant::now(),
+            begin: Moment::now(),
         }
     }
 
@@ -94,13 +95,13 @@ pub(in crate::analysis) struct Limited<'a> {
     caller: &'a mut dyn Watch,
     limit: WorkLimit,
     /// when the limit can be reached at the earliest
-    look: Instant,
+    look: Moment,
 }
 
 impl<'a> Limited<'a> {
     /// Adds a limit to the hooks of a caller.
     pub(in crate::analysis) fn new(caller: &'a mut dyn Watch, limit: WorkLimit) -> Self {
-        let look = Instant::now();
+        let look = Moment::now();
         Self {
             caller,
             limit,
@@ -111,7 +112,7 @@ impl<'a> Limited<'a> {
     /// Looks at the clock, no earlier than the limit can have been reached: a thread uses no more
     /// processor time than passes.
     fn is_reached(&mut self) -> bool {
-        let now = Instant::now();
+        let now = Moment::now();
         if now < self.look {
             return false;
         }
@@ -120,8 +121,7 @@ impl<'a> Limited<'a> {
             return true;
         }
         let left = Duration::try_from_secs_f64(left).unwrap_or(Duration::MAX);
-        let next = now.checked_add(left.max(SHORTEST_LOOK));
-        self.look = next.unwrap_or(now + Duration::from_secs(3600));
+        self.look = now + left.max(SHORTEST_LOOK);
         false
     }
 }
@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(limit.left() > 0.0, told);
         let mut caller = Unwatched;
         let mut limited = Limited::new(&mut caller, limit);
-        let clock = Instant::now();
+        let clock = Moment::now();
         while !limited.interrupted() {
             assert!(clock.elapsed().as_secs_f64() < 60.0, "a limit ends work");
         }

@@ -25,6 +25,36 @@ pub struct Element<'m, Kind = Other> {
     kind: PhantomData<Kind>,
 }
 
+/// A statement of a builder, as handles of other languages keep it: without the lifetime of the
+/// builder, and checked where it is used ([`ModelBuilder::statement`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    /// number of the builder
+    model: u64,
+    /// place among its drafts
+    draft: usize,
+}
+
+impl ModelBuilder {
+    /// Returns the statement of a key; `None`: the key is of another builder.
+    pub fn statement(&self, key: Key) -> Option<Element<'_>> {
+        (key.model == self.id).then(|| Element::new(self, key.draft))
+    }
+
+    /// Returns the body of a key; `None`: it is another statement.
+    pub fn body(&self, key: Key) -> Option<Element<'_, Body>> {
+        let kind = self.statement(key)?.kind()?;
+        let is_body = matches!(kind, ElementKind::Part | ElementKind::PointMass);
+        is_body.then(|| Element::new(self, key.draft))
+    }
+
+    /// Returns the marker of a key; `None`: it is another statement.
+    pub fn frame(&self, key: Key) -> Option<Element<'_, Frame>> {
+        let is_marker = self.statement(key)?.kind()? == ElementKind::Marker;
+        is_marker.then(|| Element::new(self, key.draft))
+    }
+}
+
 impl<Kind> Clone for Element<'_, Kind> {
     fn clone(&self) -> Self {
         *self
@@ -67,6 +97,12 @@ impl<'m, Kind> Element<'m, Kind> {
     /// Returns the number that stands for it in expressions and datasets; 0 of settings.
     pub fn number(&self) -> u32 {
         self.model.inner.borrow().drafts[self.draft].id.unwrap_or(0)
+    }
+
+    /// Returns what stands for it in handles of other languages.
+    pub fn key(&self) -> Key {
+        let (model, draft) = (self.model.id, self.draft);
+        Key { model, draft }
     }
 
     /// Returns its name; empty: it has none.

@@ -25,7 +25,7 @@ mod pose;
 mod setting;
 mod statements;
 
-pub use element::{Body, Element, Frame, Other};
+pub use element::{Body, Element, Frame, Key, Other};
 pub use law::Results;
 pub use pose::End;
 pub use setting::Setting;
@@ -37,6 +37,7 @@ use crate::model::{ElementKind, Model};
 use draft::Draft;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A model that a program makes, a statement after the other in any order.
 ///
@@ -74,6 +75,8 @@ use std::collections::BTreeMap;
 /// ```
 pub struct ModelBuilder {
     inner: RefCell<Inner>,
+    /// tells whose statement a [`Key`] stands for
+    id: u64,
 }
 
 /// Contents of a builder.
@@ -95,7 +98,9 @@ impl ModelBuilder {
             title: title.to_string(),
             ..Inner::default()
         });
-        let this = Self { inner };
+        static LAST: AtomicU64 = AtomicU64::new(0);
+        let id = LAST.fetch_add(1, Ordering::Relaxed);
+        let this = Self { inner, id };
         this.element(ElementKind::Part, "ground").flag("GROUND");
         this
     }

@@ -110,16 +110,10 @@ fn moving(m: &MarkerState<f64>) -> MarkerState<Jet> {
     let jets = |value: Vec3<f64>, rate: Vec3<f64>, second: Vec3<f64>| {
         Vec3([0, 1, 2].map(|k| Jet::new(value.0[k], rate.0[k], second.0[k])))
     };
-    let zero = Vec3::zero();
-    // Ṙ = ω × R, R̈ = α × R + ω × Ṙ, column by column
-    let columns = [0, 1, 2].map(|k| {
-        let axis = m.R_GM.column(k);
-        let rate = m.w_GM.cross(axis);
-        jets(axis, rate, m.alpha_GM.cross(axis) + m.w_GM.cross(rate))
-    });
+    let (zero, pose) = (Vec3::zero(), m.in_time());
     MarkerState {
-        R_GM: Mat3::from_columns(columns[0], columns[1], columns[2]),
-        p_GM: jets(m.p_GM, m.v_GM, m.a_GM),
+        R_GM: pose.rotation,
+        p_GM: pose.position,
         w_GM: jets(m.w_GM, m.alpha_GM, zero),
         v_GM: jets(m.v_GM, m.a_GM, zero),
         alpha_GM: jets(m.alpha_GM, zero, zero),

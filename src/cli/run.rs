@@ -158,7 +158,8 @@ pub fn run(args: &Args) -> Outcome {
     check_columns(args, &model, &steps)?;
     let name = args.name.as_ref().unwrap_or(&job.base);
     let mut session = open(args, model, name);
-    session.run.record.seconds.begin(clock, job.read_seconds);
+    let seconds = &mut session.run.record.seconds;
+    seconds.begin(clock.elapsed(), job.read_seconds);
     session.run.record.loads = job.loads;
     let tables = output::Tables::open(&args.output, args.out.as_deref(), &mut session)?;
     guard.iter().for_each(|g| g.follow(&session, &tables));

@@ -8,6 +8,7 @@ use super::Diagnostic;
 
 /// A kind of mistake on which the program acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Cause {
     /// something stands for a model that is not quite the one written
     Approximate,

@@ -24,7 +24,7 @@
 //! | | `translate.rs` | expression functions in the language of direct entry |
 //! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
-//! | | `evaluator.rs` | a program with its work space: values, slopes, rates, columns |
+//! | | `evaluator.rs` `shared.rs` | a program with its work space; one that threads share |
 //! | | `finite.rs` | operands without a finite value that an operation could lose |
 //! | | `smoothness.rs` | places where it is not smooth, and the derivative that jumps there |
 //!
@@ -47,6 +47,7 @@ pub mod measures;
 mod parse;
 mod print;
 pub mod program;
+mod shared;
 pub mod signature;
 pub mod smoothness;
 pub mod spline;
@@ -60,4 +61,5 @@ pub use evaluator::Evaluator;
 pub use expression::{Expr, input_named};
 pub use lint::lint;
 pub use parse::{parse, parse_with_limits};
+pub use shared::{SharedEvaluator, are_finite};
 pub use symbols::{Profile, Symbol, names, symbol};

@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 
 /// The program whose habits are followed beyond the common language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Profile {
     /// no limits but those that keep the reader safe
     #[default]
@@ -22,6 +23,7 @@ pub enum Profile {
 
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Symbol {
     /// a named number, never followed by parentheses
     Constant(Constant),

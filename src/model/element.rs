@@ -322,6 +322,7 @@ macro_rules! kinds {
     ) => {
         /// The kinds of elements: one for every statement with a number.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
         pub enum ElementKind {
             $(#[doc = $keyword] $kind,)*
             $(#[doc = concat!($kept_keyword, ", which is kept as text")] $kept,)*

@@ -69,6 +69,7 @@ macro_rules! settings_statements {
     ($($(#[$doc:meta])* $statement:ident $keyword:literal;)*) => {
         /// Statements without a number whose arguments are kept by their keywords.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[non_exhaustive]
         pub enum SettingsStatement {
             $($(#[$doc])* $statement,)*
         }

@@ -174,6 +174,7 @@ macro_rules! joints {
     )*) => {
         /// JOINT types.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[non_exhaustive]
         pub enum JointKind {
             $($(#[$meta])* $kind,)*
         }
@@ -325,6 +326,7 @@ macro_rules! primitives {
     )*) => {
         /// JPRIM types.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[non_exhaustive]
         pub enum PrimitiveKind {
             $($(#[$meta])* $kind,)*
         }

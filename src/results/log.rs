@@ -4,6 +4,7 @@ use super::Kind;
 
 /// An event of a run, as the log tells it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Event {
     /// a command was obeyed; its text
     Command(String),

@@ -22,6 +22,16 @@ pub enum Status {
 }
 
 impl Status {
+    /// Every status.
+    pub const ALL: [Self; 6] = [
+        Status::Completed,
+        Status::Model,
+        Status::NoEquilibrium,
+        Status::Stopped,
+        Status::Limit,
+        Status::Interrupted,
+    ];
+
     /// Returns its word in the run record.
     pub fn word(self) -> &'static str {
         match self {

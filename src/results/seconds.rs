@@ -8,7 +8,7 @@
 //! Programs are translated when they have run often enough, while something else goes on: that is
 //! taken out of the phase in which it happens, so that no second is counted twice.
 
-use std::time::Instant;
+use std::time::Duration;
 
 /// Wall clock of the phases of a run, and of the whole, in s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,10 +41,10 @@ pub struct Seconds {
 }
 
 impl Seconds {
-    /// Notes the time of reading, in s, and that of parsing: the rest since `clock`.
-    pub fn begin(&mut self, clock: Instant, read: f64) {
+    /// Notes the time of reading, in s, and that of parsing: the rest of the time that has passed.
+    pub fn begin(&mut self, passed: Duration, read: f64) {
         self.read = read;
-        self.parse = clock.elapsed().as_secs_f64() - read;
+        self.parse = passed.as_secs_f64() - read;
     }
 
     /// Returns the time from the model's text to the first step.

@@ -9,7 +9,7 @@ mod vector;
 
 pub use vector::{Frame, Mat3, Vec3};
 
-use crate::scalar::Scalar;
+use crate::scalar::{Jet, Scalar};
 
 /// The state of a marker: pose, velocity and acceleration, all in ground and in ground axes.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +30,27 @@ pub struct MarkerState<S> {
 }
 
 impl<S: Scalar> MarkerState<S> {
+    /// Returns the pose with its first two rates in time.
+    ///
+    /// ```text
+    /// Ṙ = ω × R        R̈ = α × R + ω × Ṙ        column by column
+    /// ```
+    pub fn in_time(&self) -> Frame<Jet<S>> {
+        let mut rotation = Mat3::<Jet<S>>::zero();
+        for column in 0..3 {
+            let axis = self.R_GM.column(column);
+            let first = self.w_GM.cross(axis);
+            let second = self.alpha_GM.cross(axis) + self.w_GM.cross(first);
+            for row in 0..3 {
+                rotation.0[row][column] = Jet::new(axis.0[row], first.0[row], second.0[row]);
+            }
+        }
+        let position = Vec3(std::array::from_fn(|k| {
+            Jet::new(self.p_GM.0[k], self.v_GM.0[k], self.a_GM.0[k])
+        }));
+        Frame { rotation, position }
+    }
+
     /// Returns the state of ground itself: at the origin, aligned, at rest.
     pub fn ground() -> Self {
         Self {

@@ -12,6 +12,7 @@ mod capabilities;
 mod cli;
 mod cli_eval;
 mod configuration;
+mod doors;
 mod elements;
 mod exchange;
 mod first_hour;

@@ -46,6 +46,7 @@ use crate::expr::program::Program;
 use crate::model::{ElementKind, Model};
 use crate::results::{Event, Run, Status};
 use crate::scene::contacts::Shell;
+use crate::scene::equations::Unsupported;
 use carried::Carried;
 use companion::{Integrated, Pace};
 pub use limit::Activity;
@@ -131,6 +132,9 @@ pub struct Session {
     kept: Option<Box<Kept>>,
     /// programs of the present scene: of the columns; of the values of rows
     columns_program: Option<Program>,
+    /// the program of the columns that belongs to the kept start which the session has gone back
+    /// to, and the numbers that it lacks
+    columns_at_start: Option<(Program, Vec<Unsupported>)>,
     row_values: Option<Program>,
     hooks: Vec<closures::Hook>,
     /// linear systems that commands asked for: name of their file where one was given, and whether
@@ -195,6 +199,7 @@ impl Session {
             changing: BTreeSet::new(),
             kept: None,
             columns_program: None,
+            columns_at_start: None,
             row_values: None,
             hooks: Vec::new(),
             linear: Vec::new(),

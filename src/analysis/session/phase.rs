@@ -1,13 +1,14 @@
 //! Phases of a simulation, each with its time.
 
+use crate::clock::Moment;
 use crate::expr::program::translation_time;
 use crate::results::Seconds;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A phase that has begun; translation of programs within it is told apart.
 #[must_use]
 pub(super) struct Phase {
-    clock: Instant,
+    clock: Moment,
     translation: Duration,
 }
 
@@ -15,7 +16,7 @@ impl Phase {
     /// Begins a phase.
     pub(super) fn begin() -> Self {
         Phase {
-            clock: Instant::now(),
+            clock: Moment::now(),
             translation: translation_time(),
         }
     }

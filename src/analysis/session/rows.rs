@@ -12,11 +12,12 @@ use crate::analysis::system::System;
 use crate::analysis::trajectory::Trajectory;
 use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
+use crate::clock::Moment;
 use crate::expr::program::{Program, Work};
 use crate::numeric::Stats;
 use crate::results::{Kind, Run};
 use std::collections::BTreeSet;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// States that are held, at least, before they become rows of results.
 const ROWS_AT_ONCE: usize = 1024;
@@ -235,7 +236,7 @@ pub(super) struct Follower<'a> {
     is_kept: bool,
     /// all numbers at the end of the last step, where somebody reads them
     visited: Vec<f64>,
-    last: Instant,
+    last: Moment,
 }
 
 impl<'a> Follower<'a> {
@@ -252,7 +253,7 @@ impl<'a> Follower<'a> {
             watch,
             is_kept,
             visited: Vec::new(),
-            last: Instant::now(),
+            last: Moment::now(),
         }
     }
 }
@@ -284,12 +285,12 @@ impl Watch for Follower<'_> {
         // the last state may still change
         let until = trajectory.t.len() - 1;
         if self.is_kept {
-            let clock = Instant::now();
+            let clock = Moment::now();
             self.session.see(self.seen, system, trajectory, until);
             self.seen.seconds += clock.elapsed().as_secs_f64();
         } else {
             trajectory.release(until);
         }
-        self.last = Instant::now();
+        self.last = Moment::now();
     }
 }

@@ -82,6 +82,23 @@ const CURVES: Contents = Groups(&[
 ]);
 const SYSTEM: Contents = Groups(&[(Group::Arrays, O::SystemElements)]);
 const ENTRIES: Contents = Groups(&[(Group::Entries, O::SystemElements)]);
+const DRIVE: Contents = Groups(&[
+    (Group::Action, O::ReactionForces),
+    (Group::Prescribed, O::Displacements),
+]);
+const COUPLING: Contents = Groups(&[(Group::Transmitted, O::ReactionForces)]);
+const GENERAL: Contents = Groups(&[
+    (Group::Action, O::ReactionForces),
+    (Group::Multiplier, O::ReactionForces),
+]);
+const NODES: Contents = Groups(&[(Group::Nodes, O::AppliedForces)]);
+const VALUE: Contents = Groups(&[(Group::Value, O::SystemElements)]);
+const STATE: Contents = Groups(&[(Group::State, O::SystemElements)]);
+const SLIDING: Contents = Groups(&[
+    (Group::Action, O::AppliedForces),
+    (Group::Slip, O::AppliedForces),
+]);
+const TOUCHING: Contents = Groups(&[(Group::Action, O::Contacts), (Group::Touch, O::Contacts)]);
 const DATA: Contents = No("others read it");
 const OWN_COLUMNS: Contents = No("its components are columns of its own");
 
@@ -99,28 +116,10 @@ pub(super) const SETS: &[Set] = &[
     set(E::PointMass, "Part", Body),
     set(E::Joint, "Joint", REACTION),
     set(E::Jprim, "Primitive_Joint", REACTION),
-    set(
-        E::Motion,
-        "Motion",
-        Groups(&[
-            (Group::Action, O::ReactionForces),
-            (Group::Prescribed, O::Displacements),
-        ]),
-    ),
-    set(
-        E::Coupler,
-        "Coupler",
-        Groups(&[(Group::Transmitted, O::ReactionForces)]),
-    ),
+    set(E::Motion, "Motion", DRIVE),
+    set(E::Coupler, "Coupler", COUPLING),
     set(E::Gear, "Gear", REACTION),
-    set(
-        E::Gcon,
-        "General_Constraint",
-        Groups(&[
-            (Group::Action, O::ReactionForces),
-            (Group::Multiplier, O::ReactionForces),
-        ]),
-    ),
+    set(E::Gcon, "General_Constraint", GENERAL),
     set(E::Ptcv, "Point_Curve", CURVES),
     set(E::Cvcv, "Curve_Curve", CURVES),
     set(E::Sforce, "Single_Component_Force", FORCE),
@@ -131,39 +130,16 @@ pub(super) const SETS: &[Set] = &[
     set(E::Bushing, "Bushing", FORCE),
     set(E::Field, "Field", FORCE),
     set(E::Beam, "Beam", FORCE),
-    set(
-        E::Nforce,
-        "Nforce",
-        Groups(&[(Group::Nodes, O::AppliedForces)]),
-    ),
-    set(
-        E::Variable,
-        "ADAMS_Variable",
-        Groups(&[(Group::Value, O::SystemElements)]),
-    ),
-    set(
-        E::Diff,
-        "Differential_Equation",
-        Groups(&[(Group::State, O::SystemElements)]),
-    ),
+    set(E::Nforce, "Nforce", NODES),
+    set(E::Variable, "ADAMS_Variable", VALUE),
+    set(E::Diff, "Differential_Equation", STATE),
     set(E::Lse, "Linear_State_Equation", SYSTEM),
     set(E::Tfsiso, "Transfer_Function", SYSTEM),
     set(E::Gse, "General_State_Equation", SYSTEM),
     set(E::Pinput, "Plant_Input", ENTRIES),
     set(E::Poutput, "Plant_Output", ENTRIES),
-    set(
-        E::Friction,
-        "Friction",
-        Groups(&[
-            (Group::Action, O::AppliedForces),
-            (Group::Slip, O::AppliedForces),
-        ]),
-    ),
-    set(
-        E::Contact,
-        "Contact",
-        Groups(&[(Group::Action, O::Contacts), (Group::Touch, O::Contacts)]),
-    ),
+    set(E::Friction, "Friction", SLIDING),
+    set(E::Contact, "Contact", TOUCHING),
     set(
         E::Marker,
         "Marker",

@@ -243,7 +243,14 @@ impl Session {
         if let Some(program) = &self.columns_program {
             return Ok(program.clone());
         }
-        let (program, complaints) = self.columns.program(system.configured());
+        let (program, complaints) = match self.columns_at_start.take() {
+            Some(kept) => kept,
+            None => self.columns.program(system.configured()),
+        };
+        let start = self.starts.get_mut(&(system.scene.mode as u32));
+        if let Some(start) = start.filter(|_| self.carried.is_none()) {
+            start.keep_columns(&program, &complaints);
+        }
         for complaint in complaints {
             let wanted = |text: &str| self.options.columns.iter().any(|column| column == text);
             if matches!(&complaint.asked_by, Asker::Column(text) if wanted(text)) {

@@ -18,11 +18,13 @@ use crate::analysis::system::{closures, samples};
 use crate::analysis::verify::culprit::blamed;
 use crate::analysis::warning::Warning;
 use crate::diagnostic::{Diagnostic, Error};
+use crate::expr::program::Program;
 use crate::model::{Formula, Model, Place};
 use crate::scene::Scene;
 use crate::scene::build;
 use crate::scene::configuration::Configured;
 use crate::scene::contacts::Shell;
+use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::layout::Layout;
 use std::collections::BTreeMap;
@@ -35,6 +37,8 @@ pub(super) struct Kept {
     mode: u32,
     system: System,
     assembly: Assembly,
+    /// the program of the columns at the start, and the numbers that it lacks
+    columns: Option<(Program, Vec<Unsupported>)>,
 }
 
 impl Kept {
@@ -45,7 +49,13 @@ impl Kept {
             mode,
             system,
             assembly,
+            columns: None,
         }
+    }
+
+    /// Keeps the program of the columns, which belongs to the configuration at the start.
+    pub(super) fn keep_columns(&mut self, program: &Program, complaints: &[Unsupported]) {
+        self.columns = Some((program.clone(), complaints.to_vec()));
     }
 
     /// Returns the system, to be looked at.
@@ -137,8 +147,13 @@ impl Session {
         if let Some(again) = self.again(mode, inputs) {
             return Ok(again);
         }
+        self.columns_at_start = None;
         let (system, assembly) = match self.rewound(mode, inputs) {
-            Some(begun) => begun,
+            Some(begun) => {
+                let kept = self.starts.get(&mode);
+                self.columns_at_start = kept.and_then(|kept| kept.columns.clone());
+                begun
+            }
             None => self.prepare_anew(mode, inputs)?,
         };
         // the companion begins where this session does, with the programs that are there
@@ -186,10 +201,15 @@ impl Session {
         phase.end(&mut self.run.record.seconds, |s| &mut s.assemble);
         self.within_limit(SetUp::Velocities)?;
         let phase = Phase::begin();
-        let system = self.system(start, v)?;
+        let mut system = self.system(start, v)?;
+        let is_kept = first && self.options.keep_start && inputs.is_empty();
+        if is_kept && mode == DYNAMIC {
+            // every run watches it
+            system.prepare_energy();
+        }
         phase.end(&mut self.run.record.seconds, |s| &mut s.record);
         self.within_limit(SetUp::Recording)?;
-        if first && self.options.keep_start && inputs.is_empty() {
+        if is_kept {
             let start = Kept::new(&self.model, mode, system.clone(), assembly.clone());
             self.starts.insert(mode, start);
         }

@@ -23,12 +23,14 @@ pub use table::Table;
 
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
+use crate::analysis::system::closures::{Call, Hook};
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Diagnostic, Error};
 use crate::model::{ElementKind, Model};
 use crate::results::Status;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
 
@@ -64,6 +66,8 @@ pub struct Sweep {
     pub options: Options,
     /// folders in which commands look for files
     pub folders: Vec<PathBuf>,
+    /// closures that compute what `USER(…)` stands for
+    hooks: Vec<Hook>,
 }
 
 /// One run of a sweep.
@@ -105,6 +109,7 @@ impl Sweep {
             measures: Vec::new(),
             options: Options::default(),
             folders: Vec::new(),
+            hooks: Vec::new(),
         }
     }
 
@@ -177,6 +182,21 @@ impl Sweep {
         measure.take_unit(&self.session(column.into_iter().collect()));
         self.measures.push(measure);
         Ok(())
+    }
+
+    /// Computes what `USER(…)` stands for by a closure, which the threads share; see
+    /// [`Session::register`].
+    pub fn register(
+        &mut self,
+        name: &str,
+        inputs: &[&str],
+        law: impl Fn(&Call<'_>, &mut [f64]) + Send + Sync + 'static,
+    ) {
+        self.hooks.push(Hook {
+            name: name.to_string(),
+            inputs: inputs.iter().map(ToString::to_string).collect(),
+            law: Arc::new(law),
+        });
     }
 
     /// The parameters, in the order of the values of a point.
@@ -285,6 +305,9 @@ impl Sweep {
         };
         let mut session = Session::new(self.model.clone(), "sweep", options);
         session.folders.clone_from(&self.folders);
+        for hook in &self.hooks {
+            session.register_hook(hook.clone());
+        }
         let variables = self.parameters.iter().map(Parameter::element);
         let variables = variables.filter_map(|(kind, id)| match kind {
             Some(ElementKind::Variable) => id,

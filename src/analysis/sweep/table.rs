@@ -20,15 +20,6 @@ use std::path::{Path, PathBuf};
 /// Columns behind parameters and measures.
 const ENDING: [&str; 3] = ["status", "warnings", "reason"];
 
-const STATUSES: [Status; 6] = [
-    Status::Completed,
-    Status::Model,
-    Status::NoEquilibrium,
-    Status::Stopped,
-    Status::Limit,
-    Status::Interrupted,
-];
-
 /// The growing table of a sweep.
 pub struct Table {
     path: PathBuf,
@@ -150,6 +141,14 @@ impl Table {
     }
 }
 
+impl Sweep {
+    /// Returns rows as the text of a table: names, units, then a line each.
+    pub fn table(&self, rows: &[Row]) -> String {
+        let (names, units) = heads(self);
+        written(&names, &units, rows)
+    }
+}
+
 /// Returns the names and units of the columns.
 fn heads(sweep: &Sweep) -> (Vec<String>, Vec<String>) {
     let parameters = sweep.parameters.iter().map(Parameter::name);
@@ -251,14 +250,13 @@ fn parsed(line: &::csv::StringRecord, n_cells: usize, n_values: usize) -> Option
         return None;
     };
     let (values, measures) = of_point.split_at_checked(n_values)?;
-    let status = STATUSES
-        .iter()
-        .find(|s| f64::from(s.exit_code()) == *status)?;
+    let mut known = Status::ALL.into_iter();
+    let status = known.find(|s| f64::from(s.exit_code()) == *status)?;
     Some(Row {
         run: *run as usize,
         values: values.to_vec(),
         measures: measures.to_vec(),
-        status: *status,
+        status,
         warnings: *warnings as usize,
         reason: line.get(n_cells - 1)?.to_owned(),
     })

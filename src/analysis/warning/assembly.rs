@@ -12,6 +12,7 @@ const MAX_NAMED: usize = 3;
 
 /// Something that assembly made of the configuration of the dataset.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum AssemblyWarning {
     /// the markers of a joint do not fit as the dataset places the parts
     Misaligned {

@@ -7,6 +7,7 @@ use crate::model::{ElementId, ElementKind};
 
 /// Something about an initial condition.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ConditionWarning {
     /// its two numbers fit the parts better when they are exchanged
     Exchanged {

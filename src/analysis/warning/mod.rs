@@ -27,6 +27,7 @@ use std::fmt;
 
 /// Something that the user should know although the analysis goes on.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Warning {
     /// of the compiler of the scene
     Scene(Diagnostic),

@@ -9,6 +9,7 @@ use crate::scene::equations::Unsupported;
 
 /// Something that a simulation met.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum RunWarning {
     /// a dynamic simulation of a mechanism that motions move alone
     NoFreedom,

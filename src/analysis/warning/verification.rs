@@ -7,6 +7,7 @@ use crate::scene::left_out::Hidden;
 
 /// Something that a verification takes for granted, or that a simulation would need.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum VerificationWarning {
     /// a direction has no mass, which only dynamics asks for
     Massless(Diagnostic),

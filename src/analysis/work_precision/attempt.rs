@@ -7,9 +7,9 @@ use crate::analysis::session::script::obey;
 use crate::analysis::session::{Options, Session};
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::ProcessorClock;
+use crate::clock::Moment;
 use crate::diagnostic::Error;
 use crate::results::{Counts, Kind, Record, Run, Status, csv};
-use std::time::Instant;
 
 /// Solving is repeated until it has taken about this long, in s: the clock of the processor has a
 /// resolution of some milliseconds.
@@ -90,7 +90,7 @@ pub(super) fn attempt(
 /// Returns the time of making the text of a table, the shorter of two, in s.
 fn writing(run: &Run) -> f64 {
     let seconds = [(); 2].map(|()| {
-        let clock = Instant::now();
+        let clock = Moment::now();
         std::hint::black_box(csv::write(run, true));
         clock.elapsed().as_secs_f64()
     });
@@ -125,7 +125,7 @@ fn once(
     options: Options,
     watch: &mut dyn Watch,
 ) -> Result<(Session, Seconds), Error> {
-    let (clock, passing) = (ProcessorClock::start(), Instant::now());
+    let (clock, passing) = (ProcessorClock::start(), Moment::now());
     let mut session = Session::new(question.model.clone(), &question.name, options);
     session.folders.clone_from(&question.folders);
     obey(&mut session, question.steps, |_, _| (), watch)?;

@@ -14,6 +14,7 @@
 //! ```
 
 use crate::analysis::system::System;
+use crate::clock::Moment;
 use crate::model::ElementKind;
 use crate::numeric::Ode;
 use crate::results::Counts;
@@ -21,7 +22,6 @@ use crate::scalar::Scalar;
 use crate::scene::equations::Equations;
 use crate::scene::layout::Layout;
 use crate::scene::programs::record;
-use std::time::Instant;
 
 /// Evaluations of a batch, and batches, of which the fastest counts.
 const BATCH: [usize; 2] = [20, 8];
@@ -150,10 +150,10 @@ fn state(system: &System) -> (f64, Vec<f64>) {
 
 /// Returns the time of one call, from the fastest of several batches, in s.
 fn timed(mut call: impl FnMut()) -> f64 {
-    let (begun, mut least) = (Instant::now(), f64::INFINITY);
+    let (begun, mut least) = (Moment::now(), f64::INFINITY);
     let [calls, batches] = BATCH;
     for _ in 0..batches {
-        let clock = Instant::now();
+        let clock = Moment::now();
         let mut done = 0;
         while done < calls && (done == 0 || begun.elapsed().as_secs_f64() < MOST_MEASURING) {
             call();

@@ -8,6 +8,8 @@ use super::bodies::name_of;
 use super::channels::Channels;
 use super::pack::{Packed, base64};
 use super::{Form, Look, Pictured, Role, Track};
+use crate::dataset::surface::Surfaces;
+use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, Family, Model};
 use crate::results::{Kind, Run, msg};
 use crate::space::rotation;
@@ -33,6 +35,17 @@ pub struct Shown<'a> {
     pub run: &'a Run,
     /// its track over the bodies of the first run
     pub track: &'a Track,
+}
+
+/// Returns the page of one run; `surfaces`: the shells that stand in files.
+///
+/// # Errors
+/// A run that does not say where its parts are: it wants
+/// [`Options::frames`](crate::Options::frames).
+pub fn page_of_run(model: &Model, run: &Run, surfaces: &Surfaces) -> Result<String, Diagnostic> {
+    let pictured = Pictured::new(model, run, surfaces)?;
+    let track = &pictured.track;
+    Ok(page(model, &pictured, &[Shown { run, track }]))
 }
 
 /// Returns the text of a page.

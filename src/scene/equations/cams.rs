@@ -1,6 +1,6 @@
 //! Rows of contacts of curves, and the rates of their parameters.
 
-use super::rows::{moving, seed, twist};
+use super::rows::{seed, twist};
 use super::{Equations, RowValue};
 use crate::physics::cam::Path;
 use crate::scalar::{Dual, Jet, Scalar};
@@ -41,7 +41,7 @@ impl<S: Scalar> Equations<'_, S> {
     /// Parameters with their rates; v̇ = 0.
     pub(in crate::scene) fn cam_jets(&self, c: usize) -> [Jet<S>; 2] {
         let cam = &self.scene.cams[c];
-        let (i, j) = (moving(&self.marker(cam.i)), moving(&self.marker(cam.j)));
+        let (i, j) = (self.marker(cam.i).in_time(), self.marker(cam.j).in_time());
         let still = |x: S| Jet::new(x, S::zero(), S::zero());
         // each step of Newton's iteration makes one more derivative right
         let s = self.cam_parameters(c).map(still);
@@ -63,7 +63,7 @@ impl<S: Scalar> Equations<'_, S> {
                 self.marker(m)
             }
         };
-        let (i, j) = (moving(&state(cam.i)), moving(&state(cam.j)));
+        let (i, j) = (state(cam.i).in_time(), state(cam.j).in_time());
         let still = |x: S| Jet::new(x, S::zero(), S::zero());
         let s = cam
             .contact
@@ -157,7 +157,9 @@ impl<S: Scalar> Equations<'_, S> {
             .contact
             .refined(&i, &j, self.cam_parameters(c).map(fixed), 1);
         let seeded = cam.contact.gaps(&i, &j, s)[component];
-        let rates = cam.contact.gaps(&moving(&I), &moving(&J), self.cam_jets(c))[component];
+        let rates = cam
+            .contact
+            .gaps(&I.in_time(), &J.in_time(), self.cam_jets(c))[component];
         self.row_of((cam.i, cam.j), &seeded, rates)
     }
 }

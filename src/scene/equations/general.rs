@@ -7,7 +7,7 @@
 //! The partial derivatives come from the gradient of the function's program, the wrenches from each
 //! measure over duals along the twists of the markers it reads, the rates from both over jets.
 
-use super::rows::{moving, seed, twist};
+use super::rows::{seed, twist};
 use super::{Equations, RowValue, formulas};
 use crate::expr::measures::Measure;
 use crate::expr::program::{Input, Work};
@@ -120,7 +120,7 @@ impl<S: Scalar> Equations<'_, S> {
     pub(super) fn place_in_time(&self, measure: Measure, ids: [u32; 4]) -> Option<Jet<S>> {
         let index = |id: u32| self.scene.marker_of.get(&id).copied();
         let mut jet = kinematic::kinematic_of(measure, ids, |id| {
-            Some(MarkerState::at_rest(moving(&self.marker(index(id)?))))
+            Some(MarkerState::at_rest(self.marker(index(id)?).in_time()))
         })?;
         if measure.counts_turns() {
             jet.value = self.turned(AngleId::Measure(measure, ids), jet.value);

@@ -65,7 +65,7 @@ impl<S: Scalar> Equations<'_, S> {
                 })
             }),
         );
-        let rates = law.value(&moving(&I), &moving(&J), drive);
+        let rates = law.value(&I.in_time(), &J.in_time(), drive);
         self.row_of((i, j), &seeded, rates)
     }
 
@@ -210,7 +210,7 @@ impl<S: Scalar> Equations<'_, S> {
                 actions,
             };
         }
-        let rates = d.gauge.value(&moving(&I), &moving(&J));
+        let rates = d.gauge.value(&I.in_time(), &J.in_time());
         let gradient = self.gradient_between((d.i, d.j), &actions);
         let value = if d.gauge.is_angle() {
             self.turned(self.scene.angle_id(d), seeded.re)
@@ -340,23 +340,6 @@ pub(super) fn seed<const N: usize, S: Scalar>(
         frame.position.0[k].eps[first + 3 + k] = S::one();
     }
     frame
-}
-
-/// A marker's frame as it moves in time.
-pub(super) fn moving<S: Scalar>(m: &MarkerState<S>) -> Frame<Jet<S>> {
-    let mut rotation = Mat3::<Jet<S>>::zero();
-    for column in 0..3 {
-        let axis = m.R_GM.column(column);
-        let first = m.w_GM.cross(axis);
-        let second = m.alpha_GM.cross(axis) + m.w_GM.cross(first);
-        for row in 0..3 {
-            rotation.0[row][column] = Jet::new(axis.0[row], first.0[row], second.0[row]);
-        }
-    }
-    let position = Vec3(std::array::from_fn(|k| {
-        Jet::new(m.p_GM.0[k], m.v_GM.0[k], m.a_GM.0[k])
-    }));
-    Frame { rotation, position }
 }
 
 impl From<&Row> for Subject {

@@ -1,7 +1,6 @@
 //! Angles with their turns.
 
 use super::Equations;
-use super::rows::moving;
 use crate::expr::measures::Measure;
 use crate::expr::program::Input;
 use crate::scalar::{Jet, Scalar};
@@ -97,7 +96,7 @@ impl<S: Scalar> Equations<'_, S> {
             AngleId::Gauge { gauge, markers } => {
                 let marker = |id: u32| self.scene.marker_of.get(&id).map(|&m| self.marker(m));
                 let [i, j] = markers.map(marker);
-                let mut jet = gauge.value(&moving(&i?), &moving(&j?));
+                let mut jet = gauge.value(&i?.in_time(), &j?.in_time());
                 jet.value = self.turned(angle, jet.value);
                 Some(jet)
             }

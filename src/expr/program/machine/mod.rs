@@ -31,11 +31,12 @@ mod prepared;
 mod steps;
 
 use super::code::Core;
+use crate::clock::Moment;
 use native::Native;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use steps::{Extra, Steps};
 
 /// Interpreted runs that take as long as the translation of a long program.
@@ -55,7 +56,7 @@ pub fn translation_time() -> Duration {
 }
 
 /// Adds the time since `clock` to [`translation_time`].
-fn translated_since(clock: Instant) {
+fn translated_since(clock: Moment) {
     TRANSLATION.set(TRANSLATION.get() + clock.elapsed());
 }
 
@@ -135,7 +136,7 @@ impl Machine {
 
     fn steps(&self) -> &Steps {
         self.steps.get_or_init(|| {
-            let clock = Instant::now();
+            let clock = Moment::now();
             let steps = lower::lower(&self.core);
             translated_since(clock);
             debug_assert!(steps.are_sound(&self.core), "{steps:?}");
@@ -148,7 +149,7 @@ impl Machine {
         if self.is_decided.swap(true, Ordering::Relaxed) {
             return;
         }
-        let (steps, clock) = (self.steps(), Instant::now());
+        let (steps, clock) = (self.steps(), Moment::now());
         if let Some(native) = Native::of(steps, &self.core) {
             // nobody else gets so far
             let _ = self.native.set(native);

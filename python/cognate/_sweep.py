@@ -1,0 +1,399 @@
+"""Many runs of one model: on the threads of this machine, or on the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import uuid
+from collections import OrderedDict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._model import Kind, Model, Options, choices_of, simulation_of
+from ._progress import Progress, reporter
+
+if TYPE_CHECKING:
+    import pandas
+    from typing_extensions import Unpack
+
+__all__ = ["SweepTable", "sweep"]
+
+#: Index of the point, parameters, measures, status, number of warnings, reason.
+Row = tuple[int, list[float], list[float], str, int, str]
+
+#: Sweeps that a worker keeps between chunks.
+_KEPT_SWEEPS = 4
+#: Chunks for each thread of a cluster, where the caller does not choose: late ones fill gaps.
+_CHUNKS_A_THREAD = 8
+
+
+class SweepTable(Mapping[str, NDArray[np.float64]]):
+    """Runs of a sweep: a mapping from parameters and measures to columns, a row a run.
+
+    Attributes
+    ----------
+    parameters, measures : tuple of str
+        Names of the columns.
+    units : dict of str to str
+        Units of the measures.
+    status : tuple of str
+        How each run ended: ``"completed"``, ``"stopped"`` …
+    warnings : ndarray of int
+        Number of warnings of each run.
+    reasons : tuple of str
+        Why it ended early; empty: it did not.
+
+    Examples
+    --------
+    >>> table["max(abs(FX(41,11)))"]  # doctest: +SKIP
+    array([12.3, …])
+    """
+
+    def __init__(
+        self,
+        parameters: Sequence[str],
+        measures: Sequence[tuple[str, str]],
+        rows: Sequence[Row],
+        text: str,
+    ) -> None:
+        self.parameters = tuple(parameters)
+        self.measures = tuple(name for name, _ in measures)
+        self.units = dict(measures)
+        n, n_values, n_measures = len(rows), len(self.parameters), len(self.measures)
+        values = np.array([row[1] for row in rows], dtype=np.float64).reshape(n, n_values)
+        measured = np.array([row[2] for row in rows], dtype=np.float64).reshape(n, n_measures)
+        self._columns = {name: values[:, k].copy() for k, name in enumerate(self.parameters)}
+        self._columns.update({m: measured[:, k].copy() for k, m in enumerate(self.measures)})
+        self.run = np.array([row[0] for row in rows], dtype=np.int64)
+        self.status = tuple(row[3] for row in rows)
+        self.warnings = np.array([row[4] for row in rows], dtype=np.int64)
+        self.reasons = tuple(row[5] for row in rows)
+        self._text = text
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """True for each run that was completed."""
+        return np.array([status == "completed" for status in self.status], dtype=np.bool_)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Make a table of pandas, a row a run.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Parameters, measures, ``status``, ``warnings``, ``reason``; the index is the run.
+        """
+        import pandas
+
+        columns: dict[str, Any] = dict(self._columns)
+        columns.update(status=self.status, warnings=self.warnings, reason=self.reasons)
+        frame = pandas.DataFrame(columns, index=pandas.Index(self.run, name="run"))
+        frame.attrs["units"] = dict(self.units)
+        return frame
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the table as ``cognate sweep`` does: names, units, then a line a run.
+
+        Parameters
+        ----------
+        path : path-like
+            The file.
+        """
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            file.write(self._text)
+
+    def plot(self, x: str | None = None, y: str | None = None, *, ax: Any = None) -> Any:
+        """Plot a measure over a parameter with matplotlib.
+
+        Parameters
+        ----------
+        x : str, optional
+            The parameter; the first where left out.
+        y : str, optional
+            The measure; the first where left out.
+        ax : matplotlib.axes.Axes, optional
+            Where to plot; a new figure where left out.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from matplotlib import pyplot
+
+        x, y = x or self.parameters[0], y or self.measures[0]
+        if ax is None:
+            _, ax = pyplot.subplots()
+        order = np.argsort(self[x], kind="stable")
+        style = "o-" if len(self.parameters) == 1 else "o"
+        ax.plot(self[x][order], self[y][order], style)
+        unit = self.units.get(y, "")
+        ax.set_xlabel(x)
+        ax.set_ylabel(f"{y} [{unit}]" if unit else y)
+        return ax
+
+    def __repr__(self) -> str:
+        done = int(self.ok.sum())
+        return f"<SweepTable: {len(self.run)} runs, {done} completed, {len(self)} columns>"
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    def __hash__(self) -> int:
+        return id(self)
+
+
+class _Job:
+    """Everything that a worker needs to run points: picklable, and made into a sweep once."""
+
+    def __init__(
+        self,
+        model: Model,
+        options: dict[str, Any],
+        simulation: dict[str, Any],
+        commands: str | None,
+        names: Sequence[str],
+        measures: Sequence[str],
+    ) -> None:
+        self.key = uuid.uuid4().hex
+        self.model, self.options, self.simulation = model, options, simulation
+        self.commands, self.names, self.measures = commands, list(names), list(measures)
+
+    def sweep(self) -> _core.Sweep:
+        """Make the sweep."""
+        commands = None if self.commands is None else _core.Commands.from_text(self.commands)
+        return _core.Sweep(
+            self.model._core, self.options, self.simulation, commands, self.names, self.measures
+        )
+
+
+def sweep(
+    model: Model,
+    parameters: Mapping[str, Any],
+    measures: str | Sequence[str],
+    end: float | None = None,
+    steps: int | None = None,
+    *,
+    kind: Kind = "transient",
+    dtout: float | None = None,
+    commands: str | None = None,
+    design: Literal["grid", "latin"] | Any = "grid",
+    runs: int | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+    out: str | os.PathLike[str] | None = None,
+    client: Any = None,
+    chunk: int | None = None,
+    progress: bool | Progress | None = None,
+    **options: Unpack[Options],
+) -> SweepTable:
+    """Run a model again and again with other numbers; make one table with a row a run.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    parameters : mapping of str to str or sequence of float
+        Numbers of the model by their names, and their values: ``{"PART/2.MASS": [1, 2, 5]}``, or a
+        range as a text, ``{"VARIABLE/3": "0.1:0.5:9"}``.
+    measures : str or sequence of str
+        ``"max(abs(FX(41,11)))"``: max, min, mean, rms, first, last, time_of_max or time_of_min of
+        an expression.
+    end, steps, kind, dtout
+        The simulation that each run does, as for `Model.run`.
+    commands : str, optional
+        Commands that each run obeys in place of a simulation, one a line.
+    design : {"grid", "latin"} or array_like
+        All combinations; a latin hypercube of `runs` points; or the points themselves, a row a run.
+    runs, seed : int
+        Points of a latin hypercube. The same seed gives the same points.
+    threads : int, optional
+        Threads; all processors where left out. No bit of a row depends on it.
+    out : path-like, optional
+        File of the table, which grows as runs are done. A sweep that was ended goes on with it.
+    client : dask.distributed.Client, optional
+        The cluster whose workers do the runs, in place of threads here.
+    chunk : int, optional
+        Runs that a worker is given at a time.
+    progress : bool or callable, optional
+        Called with the number of runs that are done. None: a bar in notebooks.
+    **options
+        See `Options`.
+
+    Returns
+    -------
+    SweepTable
+        The rows, in the order of the points. A run that fails is a row without measures, with its
+        reason.
+
+    Raises
+    ------
+    ModelError
+        Mistakes in names, measures and commands, all at once, before anything runs.
+    KeyboardInterrupt
+        Ctrl-C; its attribute ``table`` holds the rows so far.
+
+    Examples
+    --------
+    >>> table = cg.sweep(  # doctest: +SKIP
+    ...     model, {"PART/4.MASS": "0.5:2:7"}, "max(abs(slider.ACCX))", end=1.0, steps=200
+    ... )
+    """
+    if isinstance(measures, str):
+        measures = [measures]
+    simulation = simulation_of(kind, end, None, steps, dtout)
+    job = _Job(model, choices_of(model, options), simulation, commands, list(parameters), measures)
+    core = job.sweep()
+    points = _points(design, parameters, runs, seed)
+    table = None if out is None else _core.Table(os.fspath(out), core, points)
+    rows: dict[int, Row] = {} if table is None else {row[0]: row for row in table.rows}
+    wanted = [run for run in range(len(points)) if run not in rows]
+    report, close = reporter(progress, 0.0, float(len(points)), "runs")
+
+    def take(row: Row) -> None:
+        if row[0] in rows:
+            return
+        rows[row[0]] = row
+        if table is not None:
+            table.push(row)
+        if report is not None:
+            report(float(len(rows)))
+
+    def finished() -> SweepTable:
+        all_rows = [rows[run] for run in sorted(rows)]
+        return SweepTable(core.parameters, core.measures, all_rows, core.table(all_rows))
+
+    try:
+        if client is None:
+            core.run(points, wanted, threads or os.cpu_count() or 1, take)
+        else:
+            _on_cluster(client, job, points, wanted, chunk, take)
+    except KeyboardInterrupt as stopped:
+        stopped.table = finished()  # type: ignore[attr-defined]
+        raise
+    finally:
+        close()
+    if table is not None:
+        table.complete()
+    return finished()
+
+
+def _points(
+    design: Any, parameters: Mapping[str, Any], runs: int | None, seed: int
+) -> list[list[float]]:
+    """Return the points of a design, a list of values each."""
+    if isinstance(design, str):
+        values = [
+            given if isinstance(given, str) else [float(x) for x in given]
+            for given in parameters.values()
+        ]
+        return _core.design_points(design, values, runs, seed)
+    points = np.asarray(design, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != len(parameters):
+        raise ValueError(f"design has shape {points.shape}; it has a column for each parameter")
+    return [list(point) for point in points.tolist()]
+
+
+# --- on a cluster ----------------------------------------------------------------------------
+
+#: Sweeps of this worker by the keys of their jobs, the last used at the end.
+_sweeps: OrderedDict[str, _core.Sweep] = OrderedDict()
+
+
+def _loaded(pickled: bytes) -> _Job:
+    """Return the job; a task of its own, so that a worker that takes over finds it again."""
+    job: _Job = pickle.loads(pickled)
+    return job
+
+
+def _chunk(job: _Job, indices: list[int], points: list[list[float]]) -> list[Row]:
+    """Run some points on a worker, in one thread."""
+    core = _sweeps.pop(job.key, None) or job.sweep()
+    _sweeps[job.key] = core
+    while len(_sweeps) > _KEPT_SWEEPS:
+        _sweeps.popitem(last=False)
+    rows: list[Row] = []
+    core.run(points, list(range(len(points))), 1, rows.append)
+    return [(indices[row[0]], *row[1:]) for row in rows]
+
+
+def _on_cluster(
+    client: Any,
+    job: _Job,
+    points: list[list[float]],
+    wanted: list[int],
+    chunk: int | None,
+    take: Callable[[Row], None],
+) -> None:
+    """Run points on the workers of a Dask cluster; hand rows over as they come.
+
+    A chunk whose worker is lost is given to another. One that is there when workers die over and
+    over again is cut in two. A run that is left is suspected, and done at the end with nothing
+    beside it; where that ends its workers, too, it becomes a row with its reason.
+    """
+    # lambdas and functions of a notebook are pickled, too; Dask brings it
+    import cloudpickle
+    from distributed import as_completed
+    from distributed.scheduler import KilledWorker
+
+    threads = sum(client.nthreads().values()) or 1
+    size = chunk or max(1, -(-len(wanted) // (_CHUNKS_A_THREAD * threads)))
+    pickled = cloudpickle.dumps(job)
+    # a worker that dies takes the job with it, and the job is blamed, too: then it is sent anew
+    loaded = [client.submit(_loaded, pickled, pure=False)]
+
+    def submit(indices: list[int]) -> Any:
+        given = [points[run] for run in indices]
+        future = client.submit(_chunk, loaded[-1], indices, given, pure=False)
+        chunks[future.key] = indices
+        return future
+
+    def taken(future: Any) -> KilledWorker | None:
+        wrong = future.exception()
+        if wrong is None:
+            for row in future.result():
+                take(row)
+        elif not isinstance(wrong, KilledWorker):
+            raise wrong
+        else:
+            loaded.append(client.submit(_loaded, pickled, pure=False))
+        future.release()
+        return wrong
+
+    chunks: dict[str, list[int]] = {}
+    suspects: list[int] = []
+    cuts = [wanted[k : k + size] for k in range(0, len(wanted), size)]
+    queue = as_completed([submit(indices) for indices in cuts])
+    try:
+        for future in queue:
+            indices = chunks.pop(future.key)
+            if taken(future) is None:
+                continue
+            half = len(indices) // 2
+            if half == 0:
+                suspects += indices
+                continue
+            queue.add(submit(indices[:half]))
+            queue.add(submit(indices[half:]))
+        for run in suspects:
+            wrong = taken(submit([run]))
+            if wrong is not None:
+                measures = [float("nan")] * len(job.measures)
+                reason = f"its workers died: {wrong}".replace("\n", " ")
+                take((run, points[run], measures, "stopped", 0, reason))
+    finally:
+        client.cancel(list(queue.futures))
+        client.cancel(loaded)

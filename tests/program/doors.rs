@@ -1,0 +1,33 @@
+//! Scenes of the gallery through the library and through the command line: the same bytes. The
+//! doors to Python and C compare theirs with the same command line, over the same list of scenes.
+
+use super::command::{cognate, path, scratch};
+use cognate::analysis::session::script::obey;
+use cognate::analysis::watch::Unwatched;
+use cognate::dataset::command::Script;
+use cognate::results::{Status, csv};
+use cognate::{Model, Options, Session};
+use std::path::Path;
+
+#[test]
+fn the_library_and_the_command_line_write_the_same_bytes() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let scenes = std::fs::read_to_string(root.join("tests/data/doors.txt")).unwrap();
+    assert_eq!(scenes.lines().count(), 10);
+    let folder = scratch("doors", "folder", "");
+    let out = folder.parent().unwrap();
+    for scene in scenes.lines() {
+        let commands = root.join(format!("examples/gallery/{scene}.acf"));
+        let asked = ["run", path(&commands), "--out", path(out), "--name", scene];
+        let done = cognate(&[&asked[..], &["--format", "csv", "--quiet"]].concat());
+        assert_eq!(done.code, 0, "{scene}: {}", done.err);
+        let written = std::fs::read_to_string(out.join(format!("{scene}.csv"))).unwrap();
+
+        let script = Script::read(&commands).unwrap();
+        let model = Model::read(&script.model_file().unwrap()).unwrap();
+        let mut session = Session::new(model, scene, Options::default());
+        let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched);
+        assert_eq!(status, Ok(Status::Completed), "{scene}");
+        assert_eq!(csv::write(&session.run, true), written, "{scene}");
+    }
+}
