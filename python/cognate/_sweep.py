@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import pickle
 import uuid
-from collections import OrderedDict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -25,10 +23,6 @@ __all__ = ["SweepTable", "sweep"]
 #: Index of the point, parameters, measures, status, number of warnings, reason.
 Row = tuple[int, list[float], list[float], str, int, str]
 
-#: Sweeps that a worker keeps between chunks.
-_KEPT_SWEEPS = 4
-#: Chunks for each thread of a cluster, where the caller does not choose: late ones fill gaps.
-_CHUNKS_A_THREAD = 8
 
 
 class SweepTable(Mapping[str, NDArray[np.float64]]):
@@ -156,7 +150,7 @@ class SweepTable(Mapping[str, NDArray[np.float64]]):
         return id(self)
 
 
-class _Job:
+class Job:
     """Everything that a worker needs to run points: picklable, and made into a sweep once."""
 
     def __init__(
@@ -255,7 +249,7 @@ def sweep(
     if isinstance(measures, str):
         measures = [measures]
     simulation = simulation_of(kind, end, None, steps, dtout)
-    job = _Job(model, choices_of(model, options), simulation, commands, list(parameters), measures)
+    job = Job(model, choices_of(model, options), simulation, commands, list(parameters), measures)
     core = job.sweep()
     points = _points(design, parameters, runs, seed)
     table = None if out is None else _core.Table(os.fspath(out), core, points)
@@ -280,7 +274,9 @@ def sweep(
         if client is None:
             core.run(points, wanted, threads or os.cpu_count() or 1, take)
         else:
-            _on_cluster(client, job, points, wanted, chunk, take)
+            from ._cluster import run_on_cluster
+
+            run_on_cluster(client, job, points, wanted, chunk, take)
     except KeyboardInterrupt as stopped:
         stopped.table = finished()  # type: ignore[attr-defined]
         raise
@@ -305,95 +301,3 @@ def _points(
     if points.ndim != 2 or points.shape[1] != len(parameters):
         raise ValueError(f"design has shape {points.shape}; it has a column for each parameter")
     return [list(point) for point in points.tolist()]
-
-
-# --- on a cluster ----------------------------------------------------------------------------
-
-#: Sweeps of this worker by the keys of their jobs, the last used at the end.
-_sweeps: OrderedDict[str, _core.Sweep] = OrderedDict()
-
-
-def _loaded(pickled: bytes) -> _Job:
-    """Return the job; a task of its own, so that a worker that takes over finds it again."""
-    job: _Job = pickle.loads(pickled)
-    return job
-
-
-def _chunk(job: _Job, indices: list[int], points: list[list[float]]) -> list[Row]:
-    """Run some points on a worker, in one thread."""
-    core = _sweeps.pop(job.key, None) or job.sweep()
-    _sweeps[job.key] = core
-    while len(_sweeps) > _KEPT_SWEEPS:
-        _sweeps.popitem(last=False)
-    rows: list[Row] = []
-    core.run(points, list(range(len(points))), 1, rows.append)
-    return [(indices[row[0]], *row[1:]) for row in rows]
-
-
-def _on_cluster(
-    client: Any,
-    job: _Job,
-    points: list[list[float]],
-    wanted: list[int],
-    chunk: int | None,
-    take: Callable[[Row], None],
-) -> None:
-    """Run points on the workers of a Dask cluster; hand rows over as they come.
-
-    A chunk whose worker is lost is given to another. One that is there when workers die over and
-    over again is cut in two. A run that is left is suspected, and done at the end with nothing
-    beside it; where that ends its workers, too, it becomes a row with its reason.
-    """
-    # lambdas and functions of a notebook are pickled, too; Dask brings it
-    import cloudpickle
-    from distributed import as_completed
-    from distributed.scheduler import KilledWorker
-
-    threads = sum(client.nthreads().values()) or 1
-    size = chunk or max(1, -(-len(wanted) // (_CHUNKS_A_THREAD * threads)))
-    pickled = cloudpickle.dumps(job)
-    # a worker that dies takes the job with it, and the job is blamed, too: then it is sent anew
-    loaded = [client.submit(_loaded, pickled, pure=False)]
-
-    def submit(indices: list[int]) -> Any:
-        given = [points[run] for run in indices]
-        future = client.submit(_chunk, loaded[-1], indices, given, pure=False)
-        chunks[future.key] = indices
-        return future
-
-    def taken(future: Any) -> KilledWorker | None:
-        wrong = future.exception()
-        if wrong is None:
-            for row in future.result():
-                take(row)
-        elif not isinstance(wrong, KilledWorker):
-            raise wrong
-        else:
-            loaded.append(client.submit(_loaded, pickled, pure=False))
-        future.release()
-        return wrong
-
-    chunks: dict[str, list[int]] = {}
-    suspects: list[int] = []
-    cuts = [wanted[k : k + size] for k in range(0, len(wanted), size)]
-    queue = as_completed([submit(indices) for indices in cuts])
-    try:
-        for future in queue:
-            indices = chunks.pop(future.key)
-            if taken(future) is None:
-                continue
-            half = len(indices) // 2
-            if half == 0:
-                suspects += indices
-                continue
-            queue.add(submit(indices[:half]))
-            queue.add(submit(indices[half:]))
-        for run in suspects:
-            wrong = taken(submit([run]))
-            if wrong is not None:
-                measures = [float("nan")] * len(job.measures)
-                reason = f"its workers died: {wrong}".replace("\n", " ")
-                take((run, points[run], measures, "stopped", 0, reason))
-    finally:
-        client.cancel(list(queue.futures))
-        client.cancel(loaded)
