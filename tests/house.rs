@@ -326,6 +326,18 @@ fn nothing_outside_tests_panics_by_choice() {
     none("places that could panic", wrong);
 }
 
+#[test]
+fn the_clock_is_read_in_one_place() {
+    // the command line may ask what time it is
+    let wrong = files("src").into_iter().filter(|file| {
+        let is_free = file.path == "src/clock.rs" || file.path.starts_with("src/cli/");
+        let code = file.code();
+        !is_free && (code.contains("Instant::now") || code.contains("SystemTime"))
+    });
+    let wrong: Vec<String> = wrong.map(|file| file.path).collect();
+    none("files that read a clock of their own", wrong);
+}
+
 /// Returns whether a line assigns to a field of something named `scene`.
 fn assigns_to_scene(line: &str) -> bool {
     line.match_indices("scene.").any(|(at, found)| {

@@ -14,9 +14,9 @@ use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
 use crate::analysis::time::counting::Counting;
 use crate::analysis::trajectory::EnergyFlow;
+use crate::clock::Moment;
 use crate::numeric::quadrature::GAUSS_3;
 use crate::numeric::{Method, Step};
-use std::time::Instant;
 
 /// Looks at the balance during a simulation, at most about.
 const LOOKS: f64 = 200.0;
@@ -79,7 +79,7 @@ impl DrivenAccount {
         if to <= from || self.flow.start.is_none() || system.scene.forces.is_empty() {
             return;
         }
-        let clock = Instant::now();
+        let clock = Moment::now();
         let kept = system.numbers.clone();
         let counts = system.counts_turns();
         if counts {
@@ -194,7 +194,7 @@ impl Accountant {
             return;
         }
         if system.does_work() {
-            let clock = Instant::now();
+            let clock = Moment::now();
             let ends = [step.t0, step.t1];
             let works = &mut flow.works;
             let visited = method.quadrature(system, ends, &mut self.work, &mut |system, node| {
