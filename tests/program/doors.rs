@@ -24,7 +24,7 @@ fn the_library_and_the_command_line_write_the_same_bytes() {
         let written = std::fs::read_to_string(out.join(format!("{scene}.csv"))).unwrap();
 
         let script = Script::read(&commands).unwrap();
-        let model = Model::read(&script.model_file().unwrap()).unwrap();
+        let model = Model::read(script.model_file().unwrap()).unwrap();
         let mut session = Session::new(model, scene, Options::default());
         let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched);
         assert_eq!(status, Ok(Status::Completed), "{scene}");
