@@ -1,8 +1,8 @@
 //! Serialization by serde: expressions and models as the texts that they are read from, mistakes
 //! and rows of sweeps as data. Behind the feature `serde`.
 //!
-//! What is read back passes the same checks as any text of a user: a text with a mistake is an
-//! error of the format, with the message of the first.
+//! Reading back checks a text as any text of a user is checked: a mistake is an error of the
+//! format, with the message of the first.
 
 use crate::analysis::sweep::Row;
 use crate::diagnostic::{Diagnostic, Error, Severity};
