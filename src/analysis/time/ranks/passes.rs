@@ -282,26 +282,31 @@ const STEEPER: f64 = 6.0;
 /// Three places on a way, and the values there of a function that is nowhere negative. Once a
 /// minimum is enclosed the function is least at the middle one.
 #[derive(Clone, Copy)]
-struct Valley {
+pub(super) struct Valley {
     points: [(f64, f64); 3],
     /// the steepest that the function has been between two places
     steepest: f64,
 }
 
 impl Valley {
-    /// Lays a place between two others.
-    fn between([low, high]: [(f64, f64); 2], mut f: impl FnMut(f64) -> f64) -> Self {
-        let middle = 0.5 * (low.0 + high.0);
+    /// Holds three places with their values, in order.
+    pub fn of(points: [(f64, f64); 3]) -> Self {
         let mut valley = Self {
-            points: [low, (middle, f(middle)), high],
+            points,
             steepest: 0.0,
         };
         valley.note_slopes();
         valley
     }
 
+    /// Lays a place between two others.
+    fn between([low, high]: [(f64, f64); 2], mut f: impl FnMut(f64) -> f64) -> Self {
+        let middle = 0.5 * (low.0 + high.0);
+        Self::of([low, (middle, f(middle)), high])
+    }
+
     /// Returns the place where the function is least, and its value there.
-    fn lowest(&self) -> (f64, f64) {
+    pub fn lowest(&self) -> (f64, f64) {
         let [a, m, b] = self.points;
         let lower = |x: (f64, f64), y: (f64, f64)| if y.1 < x.1 { y } else { x };
         lower(lower(m, a), b)
@@ -339,7 +344,7 @@ impl Valley {
 
     /// Looks at further places until the function is no more than `enough`, the outer places are
     /// `near` each other, or nothing between them can be as small as `hopeless`.
-    fn descended(
+    pub fn descended(
         mut self,
         enough: f64,
         near: f64,

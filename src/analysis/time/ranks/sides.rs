@@ -10,7 +10,7 @@
 //! that only come near each other are told from two on one branch, however long the step was. Each
 //! loop (rows that share coordinates) has a B of its own.
 
-use super::passes::DEPENDENT_THERE;
+use super::passes::{DEPENDENT_THERE, Valley};
 use super::select;
 use crate::analysis::system::System;
 use crate::analysis::time::states::{Cubic, Node};
@@ -50,6 +50,8 @@ const LOOKS_TO_MIDDLE: usize = 3;
 const MAX_MEETINGS: usize = 100;
 /// Part of the way behind a position at which branches meet, from which the next is looked for.
 const BEHIND: f64 = 0.01;
+/// Width of the interval in which a hidden meeting is left, over that in which it is looked for.
+const NEXT_TO_EACH_OTHER: f64 = 1e-12;
 /// Width of the interval that is left of the search, over the one in which branches that meet
 /// would be as far from dependence as its ends, below which they pass each other.
 const PASSED_BY: f64 = 0.05;
@@ -248,13 +250,15 @@ impl Sides {
         let mut slope = seen.max(self.change(loops, [from, to])) / (b.t - a.t);
         let mut last = from.clone();
         let mut failed = 0;
+        let ends = [a.clone(), b.clone()];
+        let mut before = vec![(a.t, margins[0])];
         for look in 1..=MAX_LOOKS {
             if margins[0].min(margins[1]) < DEPENDENT_THERE {
                 return Some(b);
             }
             let width = b.t - a.t;
             if slope * width < PASSED_BY * (margins[0] + margins[1]) {
-                return None;
+                return self.hidden_meeting(system, loops, [&ends[0], &ends[1]], &before);
             }
             let part = match look.is_multiple_of(LOOKS_TO_MIDDLE) {
                 true => 0.5,
@@ -275,10 +279,35 @@ impl Sides {
                 (b, margins[1]) = (node, margin);
             } else {
                 slope = slope.max(self.change(loops, [&last, &side]) / (node.t - a.t));
+                before.push((node.t, margin));
                 (a, margins[0], last) = (node, margin, side);
             }
         }
         None
+    }
+
+    /// Finds a position at which rows are dependent before the one where they are seen to turn: when
+    /// equal loops turn at once their eigenvalues are known by a root of rounding only, and signs
+    /// of small ones are not. `before`: times and margins of states before it, in order.
+    fn hidden_meeting(
+        &mut self,
+        system: &mut System,
+        loops: &[usize],
+        ends: [&Node; 2],
+        before: &[(f64, f64)],
+    ) -> Option<Node> {
+        let of = |w: &[(f64, f64)]| <[(f64, f64); 3]>::try_from(w).ok();
+        let falls_and_rises = |[a, m, b]: &[(f64, f64); 3]| m.1 < a.1.min(b.1);
+        let points = before.windows(3).filter_map(of).find(falls_and_rises)?;
+        let valley = Valley::of(points);
+        let near = NEXT_TO_EACH_OTHER * (points[2].0 - points[0].0);
+        let valley = valley.descended(DEPENDENT_THERE, near, NEAR_BOTH, |t| {
+            let found = self.state_between(system, ends, t);
+            found.map_or(1.0, |(_, side)| self.margin(loops, &side))
+        });
+        let (t, least) = valley.lowest();
+        let (node, _) = self.state_between(system, ends, t)?;
+        (least <= DEPENDENT_THERE).then_some(node)
     }
 
     /// Returns how far the rows of some loops are from one state to another, each row over its
