@@ -231,7 +231,11 @@ mod tests {
                 assert!(off <= 4.0 * f64::EPSILON * expected.abs(), "{text}: {new}");
             }
         }
-        assert!(compared > 4 * all.len(), "{compared} values of {}", all.len());
+        assert!(
+            compared > 4 * all.len(),
+            "{compared} values of {}",
+            all.len()
+        );
     }
 
     #[test]
