@@ -286,9 +286,9 @@ impl Sides {
         None
     }
 
-    /// Finds a position at which rows are dependent before the one where they are seen to turn: when
-    /// equal loops turn at once their eigenvalues are known by a root of rounding only, and signs
-    /// of small ones are not. `before`: times and margins of states before it, in order.
+    /// Finds a position at which rows are dependent before the one where they are seen to turn:
+    /// when equal loops turn at once their eigenvalues are known by a root of rounding only, and
+    /// signs of small ones are not. `before`: times and margins of states before it, in order.
     fn hidden_meeting(
         &mut self,
         system: &mut System,
