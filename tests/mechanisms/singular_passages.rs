@@ -204,3 +204,17 @@ fn loops_in_a_chain_of_couplers_stay_on_their_branches_however_many_they_are() {
         right_or_told_until(1.2, &text, &column, &[1e-2]);
     }
 }
+
+#[test]
+fn two_loops_that_begin_beside_a_fold_notice_the_later_ones() {
+    // where the sines of a crank's angle and its pin's are nearly the same, rows are nearly dependent at the start
+    let quarter = std::f64::consts::FRAC_PI_2;
+    for first in [quarter + 0.01, -quarter - 0.003, quarter - 0.001, 1.2] {
+        for second in [0.3, 1.0, -1.4] {
+            for coupled in [false, true] {
+                let (text, column) = sliders_at(&[first, second], 1e-6, coupled);
+                right_or_told_until(1.2, &text, &column, &[1e-2]);
+            }
+        }
+    }
+}

@@ -22,13 +22,13 @@ use super::tunnelling::ThicknessBounds;
 use super::turns::Turns;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
-use crate::scene::Scene;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured, Way};
 use crate::scene::elimination;
 use crate::scene::equations::{Equations, KINEMATIC, STATIC};
 use crate::scene::programs::{self, record};
 use crate::scene::solve;
+use crate::scene::{Scene, Source};
 
 /// Depth of the deepest forest whose rate is also recorded from the entries of the mass matrix: the
 /// number of its operations grows with the square of the depth.
@@ -201,13 +201,39 @@ fn choose_elimination(scene: &Scene, configuration: &mut Configuration, q: &[f64
     configuration.elimination = elimination;
 }
 
-/// Returns the diagonal of `G M⁻¹ Gᵀ` at a row of numbers, against which pivots are measured
-/// (n_active).
+/// Places nearby at which usual pivots are measured.
+const PLACES_NEARBY: u32 = 3;
+/// Turn of an angle to such a place, at most, rad.
+const LARGEST_TURN: f64 = 1.2;
+/// Factor of the turns of angles from one to the next: they spread evenly.
+const GOLDEN_RATIO: f64 = 0.618_033_988_749_895;
+/// Diagonal at such a place over that at the present one, from which on the present one is small.
+const MUCH_LARGER: f64 = 10.0;
+
+/// Returns the diagonal of `G M⁻¹ Gᵀ` at a row of numbers, against which pivots are measured; where
+/// it is much larger nearby, the value there, as a mechanism may begin beside a position where rows
+/// are dependent   (n_active).
 fn usual_pivots(scene: Configured<'_>, numbers: &[f64]) -> Vec<f64> {
     if scene.rows.is_empty() {
         return Vec::new();
     }
-    let diagonal = Equations::new(scene, numbers).pivots();
+    let mut diagonal = Equations::new(scene, numbers).pivots();
+    let mut elsewhere = vec![0.0_f64; diagonal.len()];
+    // contacts on curves are where they have been sought only
+    let n_places = if scene.configuration.contacts.is_empty() {
+        PLACES_NEARBY
+    } else {
+        0
+    };
+    for place in 1..=n_places {
+        let there = Equations::new(scene, &turned(&scene, numbers, place)).pivots();
+        for (most, d) in elsewhere.iter_mut().zip(there) {
+            *most = if d.is_finite() { most.max(d) } else { *most };
+        }
+    }
+    for (d, most) in diagonal.iter_mut().zip(elsewhere) {
+        *d = if most > MUCH_LARGER * *d { most } else { *d };
+    }
     let largest = diagonal
         .iter()
         .fold(0.0, |m: f64, &d| if d.is_finite() { m.max(d) } else { m });
@@ -221,4 +247,20 @@ fn usual_pivots(scene: Configured<'_>, numbers: &[f64]) -> Vec<f64> {
             }
         })
         .collect()
+}
+
+/// Returns numbers with all angles turned, each by an amount of its own that the number of the
+/// `place` decides.
+fn turned(scene: &Scene, numbers: &[f64], place: u32) -> Vec<f64> {
+    let mut numbers = numbers.to_vec();
+    let q = &mut numbers[scene.layout.q()];
+    let coordinates = scene.coordinates.iter().zip(&scene.freedoms);
+    let angles = coordinates.filter(|(c, f)| c.angular && !f.in_ball);
+    for (k, (c, _)) in angles.enumerate() {
+        if let Source::Free { q: at, .. } = c.source {
+            let part = (GOLDEN_RATIO * f64::from(place) * (k + 1) as f64).fract();
+            q[at] += (2.0 * part - 1.0) * LARGEST_TURN;
+        }
+    }
+    numbers
 }
