@@ -144,8 +144,13 @@ mod tests {
         let text =
             "a part\nPART/1, GROUND\nPART/2, MASS=2, CM=2, IP=1,1,1\nMARKER/2, PART=2\nEND\n";
         let model = Model::from_text(text).unwrap();
-        let written = serde_json::to_string(&model).unwrap();
-        assert_eq!(serde_json::from_str::<Model>(&written).unwrap(), model);
+        let again = |model: &Model| -> Model {
+            serde_json::from_str(&serde_json::to_string(model).unwrap()).unwrap()
+        };
+        // lines are those of the text that was written
+        let once = again(&model);
+        assert_eq!(once.to_text(), model.to_text());
+        assert_eq!(again(&once), once);
     }
 
     #[test]
