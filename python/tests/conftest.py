@@ -1,5 +1,6 @@
 """Models that tests share."""
 
+import signal
 from pathlib import Path
 
 import cognate as cg
@@ -45,3 +46,11 @@ def falling():
 @pytest.fixture
 def pushed():
     return cg.Model.from_text(PUSHED)
+
+
+@pytest.fixture(autouse=True)
+def ctrl_c_interrupts():
+    """Let Ctrl-C interrupt, also where a shell runs the tests in the background and has it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
