@@ -371,7 +371,7 @@ fn held_within(
         }
     }
     for id in held {
-        let what = format!("it lies within the rigid body {name} and has nothing to hold");
+        let what = format!("it lies within the rigid body {name} and is left out");
         let d = Diagnostic {
             severity: Severity::Note,
             ..Diagnostic::error("rigid_body", what).element(id)
