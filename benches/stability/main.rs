@@ -47,6 +47,7 @@ fn letter(found: Option<&Found>) -> char {
     match found.map(|f| f.outcome) {
         Some(Outcome::Right) => '=',
         Some(Outcome::Stopped) => 's',
+        Some(Outcome::Told) => 'p',
         Some(Outcome::Limited) => 't',
         Some(Outcome::Wrong) => 'X',
         None => '.',
@@ -117,7 +118,7 @@ impl Surveyed {
 
 /// The table of how often what came out, by method.
 fn counts(all: &[Surveyed]) -> String {
-    let mut text = "| method | right | stopped with a reason | at its limit | not run | wrong |\n|---|---:|---:|---:|---:|---:|\n".to_string();
+    let mut text = "| method | right | stopped with a reason | not sure, and told | at its limit | not run | wrong |\n|---|---:|---:|---:|---:|---:|---:|\n".to_string();
     for method in METHODS {
         let mut counts: BTreeMap<char, usize> = BTreeMap::new();
         for cell in all.iter().flat_map(|s| s.of(method)) {
@@ -126,9 +127,10 @@ fn counts(all: &[Surveyed]) -> String {
         let of = |letter| counts.get(&letter).copied().unwrap_or(0);
         let _ = writeln!(
             text,
-            "| {method} | {} | {} | {} | {} | {} |",
+            "| {method} | {} | {} | {} | {} | {} | {} |",
             of('='),
             of('s'),
+            of('p'),
             of('t'),
             of('.'),
             of('X')
@@ -239,7 +241,9 @@ fn page(all: &[Surveyed], long: &str) -> String {
         "# Stability\n\n\
          Written by `cargo bench --bench stability`. Scenes of known answer (`tests/stability/families`), each run at every request from 1e-{} to 1e-{} by\n\
          every method, with a limit of {LIMIT} s of processor time and 100 000 steps. A run is\n\n\
-         - `=` right: as the scene claims; the permitted error of a claim grows in proportion to the request, up to the whole swing of the motion,\n\
+         - `=` right: as the scene claims; the permitted error of a claim grows in proportion to the request, at least to the request itself, up to the whole\n\
+         \x20 swing of the motion,\n\
+         - `p` off by more, and warned of: the phase of the swings is not sure, or the energy,\n\
          - `s` stopped or refused with a reason, `t` ended at its limit (finer requests are then not run: `.`),\n\
          - `X` wrong: off by more than that without a word. Each of these is a finding.\n\n\
          The letters of a cell are the requests in falling order. The cost is that of AUTO at 1e-{TOLD}.\n\n{}\n\

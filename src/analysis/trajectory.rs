@@ -51,6 +51,8 @@ pub struct EnergyFlow {
     pub end: Energy,
     /// works: given back by what stores energy, of damping and friction, of functions, of motions
     pub works: Powers,
+    /// largest kinetic energy at a look
+    pub kinetic: f64,
     /// largest kinetic energy, change of potential energy, or work
     pub scale: f64,
     /// largest error of the balance
@@ -66,6 +68,7 @@ impl EnergyFlow {
             return;
         };
         self.end = energy;
+        self.kinetic = self.kinetic.max(start[0]).max(energy[0]);
         let put_in: f64 = self.works.iter().sum();
         let change = energy[0] - start[0] + energy[1] - start[1];
         let sizes = [energy[0], start[0], energy[1] - start[1]];

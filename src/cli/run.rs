@@ -329,7 +329,9 @@ fn remark_on_warnings(args: &Args, job: &Job) -> Vec<Diagnostic> {
 fn remark_on_notes<'a>(found: impl Iterator<Item = &'a Diagnostic>) {
     for note in found.filter(|d| d.severity == Severity::Note) {
         let file = (note.file.as_deref()).map_or(String::new(), |file| format!("{file}: "));
-        let element = note.named().map_or(String::new(), |name| format!("{name}: "));
+        let element = note
+            .named()
+            .map_or(String::new(), |name| format!("{name}: "));
         remark(format!("{file}{element}{}", note.message));
     }
 }

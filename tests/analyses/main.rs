@@ -29,4 +29,5 @@ mod saved;
 mod sessions;
 mod statics;
 mod sweeps;
+mod swings;
 mod systems;

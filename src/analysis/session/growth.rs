@@ -36,12 +36,8 @@ pub(super) struct Looks {
 }
 
 impl Looks {
-    /// Begins at the state of a system that nothing but forces may feed, for a run to a time;
-    /// without forces nothing is looked at.
+    /// Begins at the state of a system, for a run to a time.
     pub fn begin(system: &System, end: f64) -> Self {
-        if system.scene.forces.is_empty() {
-            return Self::default();
-        }
         let first = system.numbers.clone();
         let (t, distance) = (
             first[Layout::TIME],
@@ -55,16 +51,13 @@ impl Looks {
         }
     }
 
-    /// Returns whether nothing is looked at.
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+    /// Returns the states so far.
+    pub fn rows(&self) -> &[Vec<f64>] {
+        &self.rows
     }
 
     /// Looks at all numbers of a state.
     pub fn see(&mut self, numbers: &[f64]) {
-        if self.is_empty() {
-            return;
-        }
         self.last.copy_from_slice(numbers);
         let t = numbers[Layout::TIME];
         if t >= self.due {
@@ -73,8 +66,12 @@ impl Looks {
         }
     }
 
-    /// Returns how the motion of a simulation grows, if it does so without bound.
+    /// Returns how the motion of a simulation grows, if it does so without bound; without forces it
+    /// does not.
     pub fn growth(&self, system: &System) -> Option<Growth> {
+        if system.scene.forces.is_empty() {
+            return None;
+        }
         let (first, last) = (self.rows.first()?, &self.last);
         let looked = self.rows.iter().chain([last]).map(Vec::as_slice);
         of(system, looked, [first, last])

@@ -34,6 +34,7 @@ mod state_values;
 mod states;
 mod stiffness;
 mod stop_reason;
+mod swings;
 
 use crate::analysis::linear::{self, Linearization};
 use crate::analysis::session::columns::Columns;

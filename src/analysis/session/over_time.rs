@@ -63,6 +63,9 @@ impl Session {
         self.last = Integrated::of(kind, &trajectory, settings.error, span);
         let last = trajectory.rows.last().cloned();
         self.warn_of_growth(seen.looks.growth(system));
+        if seen.swings.exceed(settings.error) {
+            self.warn_of_energy(system, &seen, &trajectory);
+        }
         self.warn_of_splines(seen.readings);
         // what the next simulation begins with
         let last = last.unwrap_or(first);
@@ -203,6 +206,24 @@ impl Session {
         }
     }
 
+    /// Warns where the energy of the motion, or the phase of long swings, is not sure any more.
+    fn warn_of_energy(&mut self, system: &mut System, seen: &Seen, trajectory: &Trajectory) {
+        let flow = &trajectory.energy;
+        if flow.imbalance > TOLD_ENERGY * flow.scale {
+            let share = flow.imbalance / flow.scale;
+            self.warn(RunWarning::EnergyUnsure { share });
+        }
+        let method = trajectory.methods.last().map_or("", |m| &m.1);
+        let worked = (method, trajectory.stats.steps);
+        let states = (system, seen.looks.rows());
+        if let Some(unsure) = seen.swings.unsure(flow, worked, states) {
+            self.warn(RunWarning::PhaseUnsure {
+                swings: unsure.swings,
+                off: unsure.off,
+            });
+        }
+    }
+
     /// Warns where stability, not the error asked for, set the steps of an explicit method.
     fn warn_of_stability(&mut self, trajectory: &Trajectory) {
         let (limited, steps) = (trajectory.stats.stability_limited, trajectory.stats.steps);
@@ -212,6 +233,8 @@ impl Session {
     }
 }
 
+/// Error of the balance of energy, over all energy, from which on it is told.
+const TOLD_ENERGY: f64 = 0.2;
 /// Part of the steps, from which on those that stability held short are told.
 const TOLD_SHARE: f64 = 0.25;
 /// The least number of them that is told.

@@ -7,6 +7,7 @@
 
 use super::growth::Looks;
 use super::spline_range::Readings;
+use super::swings::Swings;
 use super::{Session, columns};
 use crate::analysis::system::System;
 use crate::analysis::trajectory::Trajectory;
@@ -39,6 +40,7 @@ pub(super) struct Seen {
     rows: usize,
     pub balance: Balance,
     pub looks: Looks,
+    pub swings: Swings,
     pub readings: Readings,
     /// time that seeing took, in s
     pub seconds: f64,
@@ -147,6 +149,10 @@ impl Session {
             rows: 0,
             balance: Balance::default(),
             looks: Looks::begin(system, end),
+            swings: match kind {
+                Kind::Dynamic => Swings::begin(&system.scene.layout, &system.numbers),
+                _ => Swings::default(),
+            },
             readings: self.readings(system),
             seconds: 0.0,
         };
@@ -266,12 +272,12 @@ impl Watch for Follower<'_> {
         self.watch.progress(t, h, stats);
     }
     fn visit(&mut self, system: &System, t: f64, y: &[f64]) {
-        let read = !(self.seen.readings.is_empty() && self.seen.looks.is_empty());
-        if self.is_kept && read {
+        if self.is_kept {
             self.visited.clone_from(&system.numbers);
             (system.scene.layout).set_state(&mut self.visited, t, y);
             self.seen.readings.see(&self.visited);
             self.seen.looks.see(&self.visited);
+            self.seen.swings.see(&self.visited);
         }
     }
     fn collect(&mut self, system: &System, trajectory: &mut Trajectory) {

@@ -100,11 +100,6 @@ pub(super) struct Readings {
 }
 
 impl Readings {
-    /// Returns whether nothing reads a spline.
-    pub fn is_empty(&self) -> bool {
-        self.program.is_none()
-    }
-
     /// Evaluates the arguments at all numbers of a state.
     pub fn see(&mut self, numbers: &[f64]) {
         let Some(program) = &self.program else {

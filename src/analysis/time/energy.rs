@@ -206,6 +206,8 @@ impl Accountant {
             if visited.is_err() {
                 works.fill(f64::NAN);
             }
+            // what forces hold between two looks is part of all energy, too
+            flow.scale = flow.works.iter().fold(flow.scale, |m, w| m.max(w.abs()));
             flow.spent += clock.elapsed();
         }
         if step.t1 >= self.due || step.t1 >= end {

@@ -6,6 +6,7 @@ use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::{ElementId, ElementKind};
 use crate::results::{Quantity, RankChange, RowChange};
 use crate::scene::equations::Unsupported;
+use std::f64::consts::PI;
 
 /// Something that a simulation met.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +96,18 @@ pub enum RunWarning {
         /// the force with the largest power
         fed_by: Option<ElementId>,
     },
+    /// the balance of energy does not close
+    EnergyUnsure {
+        /// what it lacks, over all energy
+        share: f64,
+    },
+    /// errors of many swings have added up to a part of a swing
+    PhaseUnsure {
+        /// number of swings
+        swings: f64,
+        /// error of the phase that may have added up, rad
+        off: f64,
+    },
     /// stability, not accuracy, sets the steps of an explicit method
     StabilityLimited {
         /// number of such steps
@@ -127,6 +140,8 @@ impl RunWarning {
             RunWarning::BelowRounding { .. } => "below_rounding",
             RunWarning::StabilityLimited { .. } => "stiff",
             RunWarning::EnergyGrows { .. } => "energy_grows",
+            RunWarning::EnergyUnsure { .. } => "energy_unsure",
+            RunWarning::PhaseUnsure { .. } => "phase_unsure",
             RunWarning::CompanionEnded { .. } => "accuracy_unknown",
         }
     }
@@ -148,6 +163,8 @@ impl RunWarning {
             | RunWarning::Rank(_)
             | RunWarning::Unstable { .. }
             | RunWarning::BelowRounding { .. }
+            | RunWarning::EnergyUnsure { .. }
+            | RunWarning::PhaseUnsure { .. }
             | RunWarning::StabilityLimited { .. }
             | RunWarning::CompanionEnded { .. } => None,
         }
@@ -218,6 +235,19 @@ impl RunWarning {
                  far as both go"
             ),
             RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, fed_by.is_some()),
+            RunWarning::EnergyUnsure { share } => format!(
+                "the balance of energy lacks {:.0} % of all there was: the method itself took it from the \
+                 motion, or gave it; a smaller ERROR keeps it",
+                100.0 * share
+            ),
+            RunWarning::PhaseUnsure { swings, off } => {
+                let known = if *off < PI { "not sure" } else { "lost" };
+                format!(
+                    "the phase of about {swings:.0} swings is {known}: errors may have added up to \
+                     {off:.1} rad in the end; a smaller ERROR keeps it, and --accuracy says from when on \
+                     it is lost"
+                )
+            }
             RunWarning::StabilityLimited { limited, steps } => format!(
                 "the model is stiff: in {limited} of {steps} steps stability, not the error asked \
                  for, kept an explicit method short; RADAU5 or AUTO takes longer ones"

@@ -201,6 +201,26 @@ most work in the end: a damper or a controller whose force has the direction of 
     FUNCTION=0.5*VZ(20,11,11)            a damper pulls back: -0.5*VZ(20,11,11)",
     },
     Code {
+        name: "energy_unsure",
+        summary: "the balance of energy does not close",
+        explanation: "\
+Kinetic and potential energy and all that forces, motions and damping took or gave should balance. What is missing was taken or given by
+the steps of the method: large ones damp what swings, or drive it. The numbers are no better than that. Ask for a smaller ERROR.
+
+    cognate run model.acf --error 1e-4  instead of 1e-1",
+    },
+    Code {
+        name: "phase_unsure",
+        summary: "errors of many swings may have added up to a part of a swing",
+        explanation: "\
+Nothing slows the motion down, so the error of each swing stays and adds to those before. How far and how often it swings is as good as
+ever; where it stands in the end is lost. The number of swings and the error of the energy account tell this; where the time of a swing
+does not depend on its width, as in a linear oscillator, the phase may be better than that. Bars of error (--accuracy) say how far off
+it is, and from when on the phase is lost.
+
+    cognate run model.acf --error 1e-10  instead of 1e-6",
+    },
+    Code {
         name: "stiff",
         summary: "stability, not accuracy, sets the steps of an explicit method",
         explanation: "\

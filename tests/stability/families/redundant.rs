@@ -197,7 +197,7 @@ fn misaligned() -> Vec<Scene> {
                 format!("a plate on three legs, an axis tilted by {tilt:e}"),
                 legs(tilt),
             )
-            .follows("WZ(21,12,12)**2-2*SIN(AZ(21,12))", |_| 0.0, 1e-4),
+            .balances("WZ(21,12,12)**2-2*SIN(AZ(21,12))", 2.0, 1e-4),
         );
     }
     for tilt in [1e-3, 1e-2] {

@@ -1,0 +1,269 @@
+//! Swings of a motion that nothing slows down, and whether their phase is still known in the end.
+//!
+//! Each swing is a little longer or shorter than the true one: by the energy that the solution has
+//! lost or won, and by the method's own steps. What it is short of adds up.
+//!
+//! ```text
+//! Δφ = 2π n ( ½ s ΔE/E + (2π n/N)² / 12 )    n swings in N steps, rad
+//! s² = Σ Var aⱼ / Σ ⟨aⱼ²⟩                     aⱼ: slopes ∂v̇/∂qⱼ and ω ∂v̇/∂vⱼ along the motion
+//! ```
+//!
+//! Where the slopes stay the same, the time of a swing does not depend on its width, nor on its
+//! energy. The second part is that of methods of second order; of the others the energy tells. Damping
+//! forgets such errors: nothing is said where more energy was lost to it than there ever was at
+//! once, nor where the acceleration falls with the velocity for so long that a push dies away,
+//! ∫ ∂v̇/∂v dt < −2, whoever wrote the damping into a function.
+
+use crate::analysis::system::System;
+use crate::analysis::trajectory::EnergyFlow;
+use crate::numeric;
+use crate::scene::layout::Layout;
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// Way back of a velocity, over all of its range so far, that is a reversal.
+const REVERSAL: f64 = 0.3;
+/// Range of a velocity over the largest range of any below which it is rounding.
+const NOISE: f64 = 1e-6;
+/// Logarithm of a push over what is left of it that counts as forgotten.
+const FORGOTTEN: f64 = 2.0;
+/// Standard errors by which a mean slope differs from zero for sure.
+const SURE: f64 = 3.0;
+/// States at which slopes are evaluated, at most.
+const SAMPLES: usize = 64;
+/// Error of the phase from which on it is told, rad.
+const TOLD: f64 = 0.5;
+
+/// A velocity: its extremes, the present extreme, and how often it has turned back.
+#[derive(Clone, Copy, Debug)]
+struct Velocity {
+    low: f64,
+    high: f64,
+    extreme: f64,
+    rises: bool,
+    reversals: usize,
+}
+
+impl Velocity {
+    fn begin(v: f64) -> Self {
+        Self {
+            low: v,
+            high: v,
+            extreme: v,
+            rises: true,
+            reversals: 0,
+        }
+    }
+
+    fn range(&self) -> f64 {
+        self.high - self.low
+    }
+
+    fn see(&mut self, v: f64) {
+        (self.low, self.high) = (self.low.min(v), self.high.max(v));
+        let onward = if self.rises {
+            v - self.extreme
+        } else {
+            self.extreme - v
+        };
+        if onward > 0.0 {
+            self.extreme = v;
+        } else if -onward > REVERSAL * self.range() {
+            (self.extreme, self.rises) = (v, !self.rises);
+            self.reversals += 1;
+        }
+    }
+}
+
+/// The velocities of a simulation, seen at the ends of steps: outputs change nothing.
+#[derive(Debug, Default)]
+pub(super) struct Swings {
+    place: Range<usize>,
+    velocities: Vec<Velocity>,
+}
+
+impl Swings {
+    /// Begins at a state.
+    pub fn begin(layout: &Layout, numbers: &[f64]) -> Self {
+        let place = layout.v();
+        let first = numbers.get(place.clone()).unwrap_or_default();
+        let velocities = first.iter().map(|&v| Velocity::begin(v)).collect();
+        Self { place, velocities }
+    }
+
+    /// Looks at all numbers of a state.
+    pub fn see(&mut self, numbers: &[f64]) {
+        let now = numbers.get(self.place.clone()).unwrap_or_default();
+        for (velocity, &v) in self.velocities.iter_mut().zip(now) {
+            velocity.see(v);
+        }
+    }
+
+    /// Returns which velocity turns back most often, and its number of swings.
+    fn most(&self) -> Option<(usize, f64)> {
+        let widest = self.velocities.iter().map(Velocity::range);
+        let least = NOISE * widest.fold(0.0, f64::max);
+        let all = self.velocities.iter().enumerate();
+        let moving = all.filter(|(_, v)| v.range() > least);
+        let most = moving.max_by_key(|(k, v)| (v.reversals, std::cmp::Reverse(*k)));
+        most.map(|(k, v)| (k, v.reversals as f64 / 2.0))
+    }
+
+    /// Returns whether anything moves by more than some error: below it nothing can be told.
+    pub fn exceed(&self, error: f64) -> bool {
+        self.velocities.iter().any(|v| v.range() > error)
+    }
+
+    /// Returns the swings whose phase is not sure after so many steps of a method, and by how much,
+    /// rad; `looked` are states of the simulation.
+    pub fn unsure(
+        &self,
+        flow: &EnergyFlow,
+        (method, steps): (&str, usize),
+        (system, looked): (&mut System, &[Vec<f64>]),
+    ) -> Option<Unsure> {
+        let level = flow.kinetic;
+        let of_damping = flow.works[1];
+        if flow.start.is_none() || -of_damping > level {
+            return None;
+        }
+        let (k, swings) = self.most()?;
+        let row = numeric::METHODS.iter().find(|m| m.name == method);
+        let per_step = match row {
+            Some(row) if row.order == 2 => (TAU * swings / steps.max(1) as f64).powi(2) / 12.0,
+            _ => 0.0,
+        };
+        let by_energy = 0.5 * flow.imbalance / flow.scale;
+        if TAU * swings * (by_energy + per_step) <= TOLD {
+            return None;
+        }
+        let force = Force::along(system, (k, swings), looked);
+        let off = TAU * swings * (force.bend * by_energy + per_step);
+        (off > TOLD && !force.is_damped).then_some(Unsure { swings, off })
+    }
+}
+
+/// Swings whose phase is not sure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Unsure {
+    /// their number
+    pub swings: f64,
+    /// error of the phase that may have added up, rad
+    pub off: f64,
+}
+
+/// The acceleration of a velocity along a motion.
+struct Force {
+    /// part of its slopes over the positions that changes along the motion, 0 … 1
+    bend: f64,
+    /// whether a push dies away within the time of the motion
+    is_damped: bool,
+}
+
+impl Force {
+    /// Evaluates the acceleration of velocity `k`, which swings so often, at some states.
+    fn along(system: &mut System, (k, swings): (usize, f64), looked: &[Vec<f64>]) -> Self {
+        let layout = system.scene.layout;
+        let (n, place) = (layout.n_y(), layout.n_q + k);
+        let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
+        let kept = system.numbers.clone();
+        let mut slopes = vec![Sample::default(); layout.n_q + layout.n_v];
+        for row in looked.iter().step_by(looked.len().div_ceil(SAMPLES).max(1)) {
+            system.numbers.copy_from_slice(row);
+            if system.jacobian_once(&mut jacobian, &mut dfdt).is_ok() {
+                let of_row = jacobian.iter().skip(place).step_by(n);
+                slopes.iter_mut().zip(of_row).for_each(|(s, &a)| s.add(a));
+            }
+        }
+        system.numbers.copy_from_slice(&kept);
+        let time = |row: Option<&Vec<f64>>| row.map_or(0.0, |row| row[Layout::TIME]);
+        let duration = time(looked.last()) - time(looked.first());
+        // a slope over velocities counts as that over positions does at the pace of the swings
+        let pace = if duration > 0.0 {
+            TAU * swings / duration
+        } else {
+            0.0
+        };
+        let weights = [(layout.n_q, 1.0), (layout.n_v, pace)];
+        let weights = weights
+            .into_iter()
+            .flat_map(|(n, w)| std::iter::repeat_n(w * w, n));
+        let (mut all, mut varies) = (0.0, 0.0);
+        for (slope, weight) in slopes.iter().zip(weights) {
+            all += weight * slope.mean_square();
+            varies += weight * slope.variance();
+        }
+        let damping = slopes.get(place).copied().unwrap_or_default();
+        Self {
+            bend: if all > 0.0 {
+                (varies / all).sqrt()
+            } else {
+                0.0
+            },
+            is_damped: damping.mean() * duration < -FORGOTTEN
+                && damping.mean() < -SURE * damping.standard_error(),
+        }
+    }
+}
+
+/// Sums over a sample of numbers.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sample {
+    n: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Sample {
+    fn add(&mut self, x: f64) {
+        (self.n, self.sum, self.squares) = (self.n + 1.0, self.sum + x, self.squares + x * x);
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.n.max(1.0)
+    }
+
+    fn mean_square(&self) -> f64 {
+        self.squares / self.n.max(1.0)
+    }
+
+    fn variance(&self) -> f64 {
+        (self.mean_square() - self.mean().powi(2)).max(0.0)
+    }
+
+    fn standard_error(&self) -> f64 {
+        (self.variance() / (self.n - 1.0).max(1.0)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn swung(v: impl Fn(f64) -> f64, end: f64) -> Swings {
+        let layout = Layout {
+            n_v: 1,
+            ..Layout::default()
+        };
+        let row = |t: f64| [t, v(t)];
+        let mut swings = Swings::begin(&layout, &row(0.0));
+        (1..=(end / 0.1) as usize).for_each(|k| swings.see(&row(0.1 * k as f64)));
+        swings
+    }
+
+    #[test]
+    fn as_many_swings_are_counted_as_there_are() {
+        for n in [1.0, 10.0, 100.0] {
+            assert!((swung(f64::sin, n * TAU).most().unwrap().1 - n).abs() <= 1.0);
+            // of a body that goes round and round, too
+            assert!((swung(|t| 5.0 + t.sin(), n * TAU).most().unwrap().1 - n).abs() <= 1.0);
+        }
+    }
+
+    #[test]
+    fn swings_that_died_away_are_not_counted() {
+        let n = swung(|t| (-0.1 * t).exp() * t.sin(), 1e4).most().unwrap().1;
+        assert!(n < 5.0, "{n}");
+        assert_eq!(swung(|t| t, 1e4).most().unwrap().1, 0.0);
+    }
+}

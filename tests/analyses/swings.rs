@@ -1,0 +1,92 @@
+//! Where errors of many swings have added up to a part of a swing, a run says so; and nowhere else.
+
+use crate::running;
+
+use cognate::results::Status;
+use running::{Analysis, go, off, session_by, try_to};
+use std::f64::consts::TAU;
+
+const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+
+/// A mass of 2 at x = 0.5 along x with ω = 5, and what acts besides.
+fn oscillator(force: &str) -> String {
+    format!(
+        "PART/2, MASS=2, CM=2, IP=1,1,1, QG=0.5,0,0\nMARKER/2, PART=2\nJOINT/1, TRANSLATIONAL, I=3, J=4\n\
+         MARKER/3, PART=2, REULER=90D,90D,0\nMARKER/4, PART=1, REULER=90D,90D,0\n\
+         SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=3, J=4, FUNCTION=-50*DX(2,1){force}\n"
+    )
+}
+
+fn is_told(s: &running::Session) -> bool {
+    let said = s.run.record.warned();
+    let words = ["the phase of about", "the balance of energy"];
+    said.iter().any(|s| words.iter().any(|w| s.contains(w)))
+}
+
+#[test]
+fn swings_that_are_no_longer_in_phase_say_so_by_every_method() {
+    let mut found = [0, 0];
+    for method in METHODS {
+        for exponent in 1..=4 {
+            for swings in [30.0, 1000.0] {
+                let error = 10f64.powi(-exponent);
+                let mut s = session_by(&oscillator(""), &["DX(2,1)"], method, error);
+                let end = swings * TAU / 5.0;
+                if try_to(&mut s, Analysis::Dynamic, end, 64) == Status::Limit {
+                    continue;
+                }
+                // over the amplitude: an error of the phase of as many rad
+                let lost = off(&s, "DX(2,1)", |t| 0.5 * (5.0 * t).cos()) / 0.5;
+                let told = is_told(&s);
+                println!("{method} {error:e} {swings}: {lost:.1e} {told}");
+                assert!(told || lost < 0.8, "{method} {error:e}: {lost}");
+                assert!(!told || lost > 0.05, "{method} {error:e}: {lost}");
+                found[usize::from(told)] += 1;
+            }
+        }
+    }
+    assert!(found[0] > 10 && found[1] > 2, "{found:?}");
+}
+
+#[test]
+fn wide_swings_lose_their_phase_by_their_energy() {
+    // from the level: the time of a swing depends on its width
+    let text = "PART/2, MASS=1, CM=2\nMARKER/2, PART=2, QP=1,0,0\nMARKER/3, PART=2\n\
+                JOINT/1, REVOLUTE, I=3, J=1\nACCGRAV/JGRAV=-9.81\n";
+    let end = 1000.0;
+    for method in ["AUTO", "RADAU5"] {
+        for exponent in [2, 4, 6] {
+            let place = |method: &str, error: f64| {
+                let mut s = session_by(text, &["AZ(3,1)"], method, error);
+                go(&mut s, Analysis::Dynamic, end, 3);
+                (running::last(&s, "AZ(3,1)"), is_told(&s))
+            };
+            let error = 10f64.powi(-exponent);
+            let ((at, told), (exact, _)) = (place(method, error), place("AUTO", 1e-11));
+            let lost = (at - exact).abs();
+            println!("{method} {error:e}: {lost:.1e} {told}");
+            assert!(told || lost < 1.0, "{method} {error:e}: {lost}");
+            assert!(!told || lost > 0.05, "{method} {error:e}: {lost}");
+        }
+    }
+}
+
+#[test]
+fn what_is_damped_or_driven_against_damping_loses_no_phase() {
+    for force in ["-2*VX(2,1)", "-2*VX(2,1)+10*SIN(3*TIME)"] {
+        for method in METHODS {
+            let mut s = session_by(&oscillator(force), &[], method, 1e-3);
+            go(&mut s, Analysis::Dynamic, 1000.0, 10);
+            assert!(!is_told(&s), "{force} {method}");
+        }
+    }
+}
+
+#[test]
+fn outputs_change_nothing_about_it() {
+    for steps in [1, 50, 700] {
+        let mut s = session_by(&oscillator(""), &[], "HHT", 1e-2);
+        go(&mut s, Analysis::Dynamic, 1000.0, steps);
+        assert!(is_told(&s), "{steps}");
+    }
+}
