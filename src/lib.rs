@@ -18,6 +18,7 @@
 //! |---|---|
 //! | read an expression, find its mistakes | [`expr::Expr`] |
 //! | evaluate it often, with derivatives | [`expr::Evaluator`] |
+//! | give it variables and functions of one's own | [`expr::Names`] |
 //! | write a formula once, for values, derivatives, rates, batches | [`scalar::Scalar`] |
 //! | read a model | `Model::read` |
 //! | make a model | `ModelBuilder` |
@@ -61,6 +62,16 @@
 //! assert_eq!(f.gradient(&[2.0])?, [12.0]);
 //! assert_eq!(f.rates(&[[2.0, 1.0, 0.0]])?, [8.0, 12.0, 12.0]); // TIME runs with rate 1
 //! assert_eq!(f.batch(&[&[1.0, 2.0, 3.0]])?, [1.0, 8.0, 27.0]);
+//! # Ok::<(), cognate::Error>(())
+//! ```
+//!
+//! **Names of one's own**: variables, constants, functions in the language or in Rust.
+//!
+//! ```
+//! use cognate::expr::{Evaluator, Expr, Names};
+//! let names = Names::new().variables(["x"]).define("hertz(x, k)", "k*MAX(x, 0)**1.5");
+//! let mut f = Evaluator::new(Expr::parse_with("hertz(x, 100)", &names)?, &Default::default())?;
+//! assert_eq!((f.eval(&[4.0])?, f.gradient(&[4.0])?), (800.0, vec![300.0]));
 //! # Ok::<(), cognate::Error>(())
 //! ```
 //!

@@ -175,6 +175,10 @@ fn node(ast: &Ast, ix: NodeIx) -> (String, Vec<(NodeIx, String)>) {
             ],
         ),
         Node::Call { .. } if ast.input(ix).is_some() => (ast.written(ix), Vec::new()),
+        Node::Named { entry, args } => (
+            ast.names.entry(*entry).name.as_str().into(),
+            args.iter().map(|&a| plain(a)).collect(),
+        ),
         Node::Call { callee, args } => (
             callee.name().into(),
             args.iter()

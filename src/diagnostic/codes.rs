@@ -102,6 +102,29 @@ languages keep their names apart: time is TIME in direct-entry functions and t i
     omega*TIME     write VARVAL(7)*TIME, with VARIABLE/7, FUNCTION=12.5",
     },
     Code {
+        name: "bad_registration",
+        summary: "a name of one's own that cannot be registered",
+        explanation: "\
+A program registers variables, constants and functions for its expressions. A name is a letter, then letters, digits and
+underscores; it is registered once, in upper or lower case, and hides none of the language. A constant is finite. A function
+takes 1 to 64 arguments; the head of a formula is written f(x, y).
+
+    Names::new().variables([\"TIME\"])          hides TIME of the language: take another name
+    Names::new().define(\"hertz\", \"k*x\")      write \"hertz(x, k)\"",
+    },
+    Code {
+        name: "no_derivative",
+        summary: "a function of one's own is known by its values only",
+        explanation: "\
+A derivative was asked for along what a registered closure depends on. Of a closure only values are known, or values and first
+derivatives; formulas and laws have all.
+
+    Names::new().function(\"f\", |[x]| x * x)                           has no gradient
+    Names::new().function_with_slopes(\"f\", |[x]| (x * x, [2.0 * x]))  has one, but no rates
+    Names::new().law(\"f\", |[x]| x * x)                                has both
+    Names::new().define(\"f(x)\", \"x**2\")                              the same, in the language",
+    },
+    Code {
         name: "not_callable",
         summary: "a constant is followed by a parenthesis",
         explanation: "\

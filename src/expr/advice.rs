@@ -6,16 +6,18 @@
 
 use super::ast::{Callee, Dialect};
 use super::foreign::{ASSIGNED, CHARACTERS, DEGREES, EXPRESSION_NAMES, NAMES, RADIANS, UNITS};
+use super::names::Names;
 use super::signature::Kind;
 use super::symbols::{self, Symbol};
 use super::token::{self, About, Fault, FaultKind, Lexer, Open};
 use crate::diagnostic::{Diagnostic, Span, near_names};
 
 /// Returns the diagnostic for the first mistake of a text.
-pub(crate) fn explain(text: &str, dialect: Dialect, fault: &Fault) -> Diagnostic {
+pub(crate) fn explain(text: &str, dialect: Dialect, names: &Names, fault: &Fault) -> Diagnostic {
     let place = Place {
         text,
         dialect,
+        names,
         span: fault.span,
     };
     let (message, help) = match (fault.kind, fault.about) {
@@ -41,7 +43,14 @@ pub(crate) fn explain(text: &str, dialect: Dialect, fault: &Fault) -> Diagnostic
                 inside,
             },
         ) => place.unexpected_token(after_operand, inside),
-        (_, About::Count(callee, count)) => arity(callee, count),
+        (_, About::Count(callee, count)) => {
+            arity(callee.name(), callee.arity(), callee.signature(), count)
+        }
+        (_, About::NamedCount(entry, count)) => {
+            let entry = names.entry(entry);
+            let n = entry.arguments.len();
+            arity(&entry.name, (n, n), entry.signature(), count)
+        }
         (kind, About::Argument(callee, k)) => place.argument(kind, callee, k),
         (kind, About::Limit(limit)) => beyond(kind, limit),
         (kind, About::Place) => (kind.code().replace('_', " "), vec![]),
@@ -75,6 +84,7 @@ type Said = (String, Vec<String>);
 struct Place<'a> {
     text: &'a str,
     dialect: Dialect,
+    names: &'a Names,
     span: Span,
 }
 
@@ -224,17 +234,21 @@ impl Place<'_> {
         } else if let Some(name) = self.view_name() {
             help.push(of_view(&name));
         } else {
+            let own = self.names.entries().iter();
+            let known = symbols::names(self.dialect).iter();
             let near = near_names(
                 word,
-                (symbols::names(self.dialect).iter())
+                known
                     // a single letter is near to all names of two
                     .filter(|entry| called || word.len() > 2 || is_constant(entry.1))
-                    .map(|entry| entry.0),
+                    .map(|entry| entry.0)
+                    .chain(own.map(|entry| entry.name.as_str())),
             );
             if !near.is_empty() {
                 help.push(format!("did you mean {}?", near.join(" or ")));
             }
-            if self.dialect == Dialect::Function && !called && near.is_empty() {
+            let is_alone = self.names.entries().is_empty();
+            if self.dialect == Dialect::Function && !called && near.is_empty() && is_alone {
                 help.push(NO_VARIABLES.to_string());
             }
         }
@@ -265,7 +279,7 @@ impl Place<'_> {
         let name = self
             .before()
             .trim_end()
-            .rsplit(|c: char| !c.is_ascii_alphanumeric())
+            .rsplit(|c: char| !c.is_ascii_alphanumeric() && c != '_')
             .next()
             .unwrap_or_default();
         let help = vec![format!(
@@ -295,6 +309,11 @@ impl Place<'_> {
                 callee.name(),
                 vec![format!("it is written {}", callee.signature())],
             ),
+            Open::Named(entry) => {
+                let entry = self.names.entry(entry);
+                let form = format!("it is written {}", entry.signature());
+                (entry.name.as_str(), vec![form])
+            }
         };
         (format!("the text ends inside {what}"), help)
     }
@@ -336,6 +355,7 @@ impl Place<'_> {
         let word = self.word().to_ascii_uppercase();
         let form = match inside {
             Some((Open::Call(callee), _)) => callee.signature(),
+            Some((Open::Named(entry), _)) => self.names.entry(entry).signature(),
             _ => "IF(e1: e2, e3, e4)".to_string(),
         };
         (
@@ -377,7 +397,14 @@ impl Place<'_> {
                 self.unit_behind().unwrap_or_default()
             }
             _ if after_operand && starts_operand => match inside {
-                Some((Open::Call(callee), name)) => self.star_or_comma(callee, name),
+                Some((Open::Call(callee), name)) => {
+                    self.star_or_comma(callee.arity(), callee.signature(), name)
+                }
+                Some((Open::Named(entry), name)) => {
+                    let entry = self.names.entry(entry);
+                    let n = entry.arguments.len();
+                    self.star_or_comma((n, n), entry.signature(), name)
+                }
                 _ => STAR.to_string(),
             },
             _ if !after_operand => "a number, a name or a parenthesis is needed here".to_string(),
@@ -398,16 +425,20 @@ impl Place<'_> {
 
     /// Advises on two operands side by side in a call: the number of arguments tells which sign is
     /// missing.
-    fn star_or_comma(&self, callee: Callee, name: Span) -> String {
+    fn star_or_comma(
+        &self,
+        (least, most): (usize, usize),
+        signature: String,
+        name: Span,
+    ) -> String {
         let comma = format!("a comma is missing before `{}`", self.word());
-        let (least, most) = callee.arity();
         let Some(written) = self.arguments_written(name) else {
             return STAR.to_string();
         };
         let fits = |count: usize| (least..=most).contains(&count);
         match (fits(written), fits(written + 1)) {
             (true, false) => STAR.to_string(),
-            (false, true) => format!("{comma}: it is written {}", callee.signature()),
+            (false, true) => format!("{comma}: it is written {signature}"),
             _ => format!("{comma}, or a star for a multiplication"),
         }
     }
@@ -493,8 +524,7 @@ fn is_constant(meaning: Symbol) -> bool {
 }
 
 /// Words a wrong number of arguments.
-fn arity(callee: Callee, count: usize) -> Said {
-    let (least, most) = callee.arity();
+fn arity(name: &str, (least, most): (usize, usize), signature: String, count: usize) -> Said {
     let takes = match (least, most) {
         (1, 1) => "one argument".to_string(),
         (a, b) if a == b => format!("{a} arguments"),
@@ -507,8 +537,8 @@ fn arity(callee: Callee, count: usize) -> Said {
         count.to_string()
     };
     (
-        format!("{} takes {takes}, not {got}", callee.name()),
-        vec![format!("it is written {}", callee.signature())],
+        format!("{name} takes {takes}, not {got}"),
+        vec![format!("it is written {signature}")],
     )
 }
 

@@ -7,6 +7,7 @@
 use super::functions::Function;
 use super::interpolation::Interpolation;
 use super::measures::Measure;
+use super::names::Names;
 use crate::diagnostic::Span;
 
 /// Index of a node in its [`Ast`].
@@ -100,6 +101,13 @@ pub enum Node {
         /// the arguments that were written
         args: Vec<NodeIx>,
     },
+    /// a variable, a constant or a function of the caller's own
+    Named {
+        /// index in the names of the tree
+        entry: u32,
+        /// the arguments of a function
+        args: Vec<NodeIx>,
+    },
 }
 
 /// The syntax tree of an expression.
@@ -113,6 +121,8 @@ pub struct Ast {
     pub spans: Vec<Span>,
     /// node of the whole expression
     pub root: NodeIx,
+    /// names of the caller's own
+    pub names: Names,
 }
 
 impl Ast {

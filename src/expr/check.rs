@@ -10,6 +10,7 @@
 //! deeper than recursion can go.
 
 use super::ast::{Callee, Constant, Dialect};
+use super::names::Names;
 use super::signature::{Choice, Element, Kind as ArgumentKind, LARGEST_IDENTIFIER};
 use super::symbols::{Profile, Symbol, symbol};
 use super::token::{About, Fault, FaultKind, Kind, Lexer, Open, Token};
@@ -70,9 +71,14 @@ impl Profile {
 /// The meaning of a number or a name, collected in the order of the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Atom {
-    Number { literal: f64, degrees: bool },
+    Number {
+        literal: f64,
+        degrees: bool,
+    },
     Constant(Constant),
     Callee(Callee),
+    /// an entry of the caller's own names
+    Named(u32),
 }
 
 /// An open parenthesis and the argument that is being read inside it.
@@ -103,6 +109,7 @@ struct Check<'a> {
     lexer: Lexer<'a>,
     dialect: Dialect,
     profile: Profile,
+    names: &'a Names,
     limits: Limits,
     /// meanings collected so far
     atoms: Vec<Atom>,
@@ -134,6 +141,7 @@ pub(crate) fn check(
     dialect: Dialect,
     profile: Profile,
     limits: Limits,
+    names: &Names,
 ) -> Result<Vec<Atom>, Fault> {
     if let Some(span) = character_after(text, MOST_CHARACTERS) {
         return Err(Fault::new(FaultKind::Characters, span).about(About::Limit(MOST_CHARACTERS)));
@@ -143,6 +151,7 @@ pub(crate) fn check(
         lexer: Lexer::new(text, dialect == Dialect::Function),
         dialect,
         profile,
+        names,
         limits,
         atoms: Vec::new(),
         frames: Vec::new(),
@@ -203,17 +212,20 @@ impl Check<'_> {
     /// next operand begins with.
     fn name(&mut self, name: Token) -> Result<Option<Token>, Fault> {
         let text = &self.text[name.span.start..name.span.end];
+        if let Some(entry) = self.names.find(text) {
+            self.atoms.push(Atom::Named(entry));
+            return match self.names.entry(entry).arguments.len() {
+                0 => self.after_constant(),
+                _ => self.call(Open::Named(entry), name),
+            };
+        }
         let Some(meaning) = symbol(text, self.dialect, self.profile) else {
             return Err(Fault::new(FaultKind::UnknownName, name.span));
         };
         let open = match meaning {
             Symbol::Constant(c) => {
                 self.atoms.push(Atom::Constant(c));
-                let after = self.next()?;
-                return match after.kind {
-                    Kind::Open => Err(Fault::new(FaultKind::NotCallable, after.span)),
-                    _ => self.after_operand(after),
-                };
+                return self.after_constant();
             }
             Symbol::If => Open::If(0),
             Symbol::Callee(callee) => {
@@ -221,6 +233,20 @@ impl Check<'_> {
                 Open::Call(callee)
             }
         };
+        self.call(open, name)
+    }
+
+    /// Reads what follows a named number.
+    fn after_constant(&mut self) -> Result<Option<Token>, Fault> {
+        let after = self.next()?;
+        match after.kind {
+            Kind::Open => Err(Fault::new(FaultKind::NotCallable, after.span)),
+            _ => self.after_operand(after),
+        }
+    }
+
+    /// Reads the beginning of a call; returns the token that its first argument begins with.
+    fn call(&mut self, open: Open, name: Token) -> Result<Option<Token>, Fault> {
         self.open(open, name.span)?;
         let inside = Some((open, name.span));
         let missing = Fault::new(FaultKind::MissingArguments, name.span).about(About::Token {
@@ -235,6 +261,9 @@ impl Check<'_> {
         match (first.kind, open) {
             (Kind::Close, Open::Call(callee)) => {
                 Err(Fault::new(FaultKind::Arity, name.span).about(About::Count(callee, 0)))
+            }
+            (Kind::Close, Open::Named(entry)) => {
+                Err(Fault::new(FaultKind::Arity, name.span).about(About::NamedCount(entry, 0)))
             }
             _ => Ok(Some(first)),
         }
@@ -253,7 +282,7 @@ impl Check<'_> {
                 Kind::Power => return self.deeper(token).map(Some),
                 Kind::Comma | Kind::Colon => {
                     match (self.frames.last_mut().map(|f| &mut f.open), token.kind) {
-                        (Some(Open::Call(_)), Kind::Comma) => {}
+                        (Some(Open::Call(_) | Open::Named(_)), Kind::Comma) => {}
                         (Some(Open::If(part @ 0)), Kind::Colon) => *part = 1,
                         (Some(Open::If(part @ (1 | 2))), Kind::Comma) => *part += 1,
                         _ => return unexpected,
@@ -268,6 +297,7 @@ impl Check<'_> {
                     match frame.open {
                         Open::If(part) if part < 3 => return unexpected,
                         Open::Call(callee) => self.close_call(callee, &frame)?,
+                        Open::Named(entry) => self.close_named(entry, &frame)?,
                         Open::If(_) | Open::Group => {}
                     }
                     self.arguments.truncate(frame.first);
@@ -296,6 +326,18 @@ impl Check<'_> {
                 })?;
         }
         Ok(())
+    }
+
+    /// Checks the number of arguments of a function of the caller's own.
+    fn close_named(&self, entry: u32, frame: &Frame) -> Result<(), Fault> {
+        let count = self.arguments.len() - frame.first;
+        match self.names.entry(entry).arguments.len() == count {
+            true => Ok(()),
+            false => {
+                let about = About::NamedCount(entry, count);
+                Err(Fault::new(FaultKind::Arity, frame.name).about(about))
+            }
+        }
     }
 
     /// Checks that an argument is an integer literal of its kind and range.
@@ -391,7 +433,7 @@ impl Check<'_> {
         let in_call = matches!(
             self.frames.last(),
             Some(Frame {
-                open: Open::Call(_) | Open::If(_),
+                open: Open::Call(_) | Open::Named(_) | Open::If(_),
                 ..
             })
         );
@@ -472,7 +514,13 @@ mod tests {
     use super::*;
 
     fn fault(text: &str, limits: Limits) -> (&'static str, usize) {
-        let found = check(text, Dialect::Function, Profile::Adams, limits);
+        let found = check(
+            text,
+            Dialect::Function,
+            Profile::Adams,
+            limits,
+            &Names::new(),
+        );
         let fault = found.expect_err(text);
         (fault.kind.code(), fault.span.start + 1)
     }
@@ -533,8 +581,16 @@ mod tests {
             change(&mut limits);
             limits
         };
-        let accepted =
-            |text, limits| check(text, Dialect::Function, Profile::Adams, limits).is_ok();
+        let accepted = |text, limits| {
+            check(
+                text,
+                Dialect::Function,
+                Profile::Adams,
+                limits,
+                &Names::new(),
+            )
+            .is_ok()
+        };
         let nesting = limits(|l| l.nesting = 2);
         assert!(accepted("ABS(IF(1:2,3,4))", nesting));
         assert_eq!(fault("ABS(IF(1:2,3,(4)))", nesting), ("limit_nesting", 14));

@@ -10,6 +10,7 @@ use super::ast::{Ast, BinaryOp as Written, Callee, Constant, Node, NodeIx};
 use super::finite;
 use super::functions::{Family, Function};
 use super::interpolation::Bindings;
+use super::names::{Meaning, Numeric};
 use super::program::{BinaryOp, Builder, Folding, Input, Program, Sym, UnaryOp, Value};
 use crate::diagnostic::{Cause, Diagnostic, Span};
 use std::cell::RefCell;
@@ -45,6 +46,20 @@ pub struct Compiler<'a> {
     /// operations recorded so far
     builder: RefCell<Builder>,
     delays: Vec<Delay>,
+    calls: Vec<NamedCall>,
+    /// slots of the variables; those of the calls follow
+    n_variables: usize,
+}
+
+/// A call of a function of the caller's own that is known by its numbers only. A program reads its
+/// value as the slot behind the variables and the calls before it.
+#[derive(Clone, Debug)]
+pub(super) struct NamedCall {
+    pub name: String,
+    pub function: Numeric,
+    pub args: Vec<Value>,
+    /// the input that stands for its value
+    pub input: Input,
 }
 
 /// Compiles some expressions into a program with one output each.
@@ -87,6 +102,8 @@ impl<'a> Compiler<'a> {
             bindings,
             builder: RefCell::new(Builder::new(Folding::Strict)),
             delays: Vec::new(),
+            calls: Vec::new(),
+            n_variables: 0,
         }
     }
 
@@ -98,9 +115,19 @@ impl<'a> Compiler<'a> {
     pub fn delays(&self) -> &[Delay] {
         &self.delays
     }
-    /// Returns the program of these values.
+    /// Returns the calls of functions that are known by their numbers only, each behind those that
+    /// its arguments read.
+    pub(super) fn calls(&self) -> &[NamedCall] {
+        &self.calls
+    }
+    /// Returns the program of these values. Variables of the caller's own are inputs of it, also
+    /// where it does not read them.
     pub fn finish(&self, outputs: &[Value]) -> Program {
-        self.builder.borrow().finish(outputs)
+        let builder = self.builder.borrow();
+        match self.n_variables + self.calls.len() {
+            0 => builder.finish(outputs),
+            _ => builder.finish_with_inputs(outputs, builder.inputs()),
+        }
     }
 
     /// Records an expression, sharing equal parts with earlier ones.
@@ -110,7 +137,22 @@ impl<'a> Compiler<'a> {
     /// `unknown_element` for a spline or curve that is not bound, `domain` where a part outside
     /// every IF has no value for any inputs. The span is that of the operator or function name.
     pub fn add(&mut self, ast: &Ast) -> Result<Value, Diagnostic> {
-        let conditional = conditional(ast);
+        // variables come first among the inputs, in the order of the caller
+        self.n_variables = ast.names.variable_names().count();
+        let variables: Vec<Value> = (0..self.n_variables as u32)
+            .map(|k| self.builder.get_mut().input(Input::Slot(k)))
+            .collect();
+        self.record(ast, &variables, Reach::Always)
+    }
+
+    /// Records an expression for these values of its variables, under this condition.
+    fn record(
+        &mut self,
+        ast: &Ast,
+        variables: &[Value],
+        reach: Reach,
+    ) -> Result<Value, Diagnostic> {
+        let conditional = conditional(ast, reach);
         let risks = finite::risks(ast);
         let mut values: Vec<Option<Value>> = Vec::with_capacity(ast.nodes.len());
         for (k, node) in ast.nodes.iter().enumerate() {
@@ -119,9 +161,13 @@ impl<'a> Compiler<'a> {
                 Reach::Never => None,
                 reach => {
                     let always = reach == Reach::Always;
-                    let mut value = self
-                        .node(node, &values, always)
-                        .map_err(|d| place(d, span))?;
+                    let recorded = match *node {
+                        Node::Named { entry, ref args } => {
+                            self.named(ast, entry, args, variables, &values, reach)
+                        }
+                        _ => self.node(node, &values, always),
+                    };
+                    let mut value = recorded.map_err(|d| place(d, span))?;
                     let is_same = |a: NodeIx, b: NodeIx| values[a as usize] == values[b as usize];
                     finite::watched(ast, node, &risks, is_same, |operand| {
                         if let Some(&Some(x)) = values.get(operand as usize) {
@@ -154,12 +200,7 @@ impl<'a> Compiler<'a> {
         values: &[Option<Value>],
         always: bool,
     ) -> Result<Value, Diagnostic> {
-        let of = |ix: NodeIx| {
-            let value = values.get(ix as usize).copied().flatten();
-            value.ok_or_else(|| {
-                Diagnostic::error("unexpected_token", "an operand stands after its operator")
-            })
-        };
+        let of = |ix: NodeIx| operand(values, ix);
         Ok(match *node {
             Node::Number { literal, degrees } => self
                 .builder
@@ -207,7 +248,61 @@ impl<'a> Compiler<'a> {
                 let args = args.iter().map(|&a| of(a)).collect::<Result<Vec<_>, _>>()?;
                 self.call(callee, &args, always)?
             }
+            Node::Named { .. } => unreachable!("names of a caller are recorded with their tree"),
         })
+    }
+
+    /// Records a variable, a constant or a call of the caller's own.
+    fn named(
+        &mut self,
+        ast: &Ast,
+        entry: u32,
+        args: &[NodeIx],
+        variables: &[Value],
+        values: &[Option<Value>],
+        reach: Reach,
+    ) -> Result<Value, Diagnostic> {
+        let args = args.iter().map(|&a| operand(values, a));
+        let args = args.collect::<Result<Vec<_>, _>>()?;
+        let of = ast.names.entry(entry);
+        match &of.meaning {
+            Meaning::Constant(c) => Ok(self.builder.get_mut().constant(*c)),
+            Meaning::Variable(k) => Ok(variables[*k as usize]),
+            Meaning::Law(law) => Ok(self.expand(&args, |args| law(args))),
+            Meaning::Formula(formula) => {
+                self.record(&formula.body, &args, reach).map_err(|said| {
+                    let message = format!("in {}: {}", of.name, said.message);
+                    // the place is that of the call
+                    let span = None;
+                    Diagnostic {
+                        message,
+                        span,
+                        ..said
+                    }
+                })
+            }
+            Meaning::Numeric(function) => {
+                let input = self.numeric(&of.name, function, args);
+                Ok(self.builder.get_mut().input(input))
+            }
+        }
+    }
+
+    /// Returns the input that stands for a function of which only numbers are known; equal calls
+    /// share one.
+    fn numeric(&mut self, name: &str, function: &Numeric, args: Vec<Value>) -> Input {
+        let is_it = |c: &&NamedCall| c.function.is(function) && c.args == args;
+        if let Some(call) = self.calls.iter().find(is_it) {
+            return call.input;
+        }
+        let input = Input::Slot((self.n_variables + self.calls.len()) as u32);
+        self.calls.push(NamedCall {
+            name: name.to_string(),
+            function: function.clone(),
+            args,
+            input,
+        });
+        input
     }
 
     /// Records a call.
@@ -306,11 +401,11 @@ enum Reach {
     Always,
 }
 
-/// Returns for each node when it is evaluated.
-fn conditional(ast: &Ast) -> Vec<Reach> {
+/// Returns for each node when it is evaluated, in an expression that is evaluated so as a `whole`.
+fn conditional(ast: &Ast, whole: Reach) -> Vec<Reach> {
     let mut reach = vec![Reach::Never; ast.nodes.len()];
     if let Some(root) = reach.get_mut(ast.root as usize) {
-        *root = Reach::Always;
+        *root = whole;
     }
     for k in (0..ast.nodes.len()).rev() {
         let here = reach[k];
@@ -340,10 +435,20 @@ fn conditional(ast: &Ast) -> Vec<Reach> {
                     mark(*branch, Reach::Sometimes);
                 }
             }
-            Node::Call { args, .. } => args.iter().for_each(|&a| mark(a, here)),
+            Node::Call { args, .. } | Node::Named { args, .. } => {
+                args.iter().for_each(|&a| mark(a, here));
+            }
         }
     }
     reach
+}
+
+/// Returns the value of an operand, which stands before its operator.
+fn operand(values: &[Option<Value>], ix: NodeIx) -> Result<Value, Diagnostic> {
+    let value = values.get(ix as usize).copied().flatten();
+    value.ok_or_else(|| {
+        Diagnostic::error("unexpected_token", "an operand stands after its operator")
+    })
 }
 
 /// Returns the operation of an operator.
@@ -393,6 +498,7 @@ mod tests {
     use crate::expr::ast::Dialect;
     use crate::expr::interpolation::Interpolation;
     use crate::expr::measures::Measure;
+    use crate::expr::names::Names;
     use crate::expr::program::Work;
 
     /// A tree written node by node.
@@ -426,6 +532,7 @@ mod tests {
                 nodes: self.0,
                 spans,
                 root,
+                names: Names::new(),
             }
         }
     }

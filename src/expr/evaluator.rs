@@ -2,10 +2,12 @@
 //! in time, columns of points.
 
 use super::Expr;
+use super::calls::Calls;
 use super::interpolation::Bindings;
-use super::program::{Batch, Input, Program, Work};
+use super::program::{Batch, Input, Program, Work, too_few};
 use crate::diagnostic::{Cause, Diagnostic, Error};
 use crate::scalar::Jet;
+use std::sync::Arc;
 
 /// A compiled expression with its work space.
 ///
@@ -29,6 +31,8 @@ use crate::scalar::Jet;
 pub struct Evaluator {
     expr: Expr,
     program: Program,
+    /// functions of the caller's own that the program reads as inputs
+    calls: Option<Arc<Calls>>,
     work: Work,
     /// the slopes and what they need, once they have been asked for
     gradient: Option<(Program, Work)>,
@@ -50,8 +54,10 @@ impl Evaluator {
     /// # Errors
     /// A spline or curve that is not bound.
     pub fn new(expr: Expr, bindings: &Bindings) -> Result<Self, Error> {
+        let (program, calls) = expr.compile_with_calls(bindings)?;
         Ok(Self {
-            program: expr.compile(bindings)?,
+            program,
+            calls: calls.map(Arc::new),
             expr,
             work: Work::default(),
             gradient: None,
@@ -65,14 +71,18 @@ impl Evaluator {
         &self.expr
     }
 
-    /// Returns its program.
+    /// Returns its program. Values of functions of the caller's own of which only numbers are known
+    /// are inputs of it, beside those of [`inputs`](Self::inputs).
     pub fn program(&self) -> &Program {
         &self.program
     }
 
     /// Returns the inputs, in the order in which their values are given.
     pub fn inputs(&self) -> &[Input] {
-        self.program.inputs()
+        match &self.calls {
+            None => self.program.inputs(),
+            Some(calls) => calls.inputs(),
+        }
     }
 
     /// Returns the value.
@@ -92,7 +102,10 @@ impl Evaluator {
     /// are missing.
     #[inline]
     pub fn value(&mut self, inputs: &[f64]) -> f64 {
-        self.program.value(inputs, &mut self.work)
+        match &self.calls {
+            None => self.program.value(inputs, &mut self.work),
+            Some(calls) => (self.program).value(&calls.complete(inputs), &mut self.work),
+        }
     }
 
     /// Returns the partial derivatives with respect to the inputs, in their order.
@@ -108,12 +121,21 @@ impl Evaluator {
             (program, Work::default())
         });
         let mut all = vec![0.0; program.n_outputs()];
-        program.run(inputs, work, &mut all);
-        let slopes = all.split_off(1);
+        let slopes = match &self.calls {
+            None => {
+                program.run(inputs, work, &mut all);
+                all.split_off(1)
+            }
+            Some(calls) => {
+                let inputs = calls.complete(inputs);
+                program.run(&inputs, work, &mut all);
+                calls.slopes(&inputs, &all[1..])?
+            }
+        };
         match slopes.iter().position(|slope| !slope.is_finite()) {
             None => Ok(slopes),
             Some(k) => {
-                let input = self.program.inputs()[k];
+                let input = self.expr.input_name(self.inputs()[k]);
                 let what = format!("the derivative with respect to {input} has no finite value");
                 Err(Diagnostic::error(Cause::Domain, what).into())
             }
@@ -135,6 +157,9 @@ impl Evaluator {
     pub fn rates(&mut self, inputs: &[[f64; 3]]) -> Result<[f64; 3], Error> {
         let values: Vec<f64> = inputs.iter().map(|input| input[0]).collect();
         self.eval(&values)?;
+        if let Some(calls) = &self.calls {
+            return Err(calls.no_rates());
+        }
         let jet = |&[value, first, second]: &[f64; 3]| Jet {
             value,
             first,
@@ -167,15 +192,24 @@ impl Evaluator {
     /// # Errors
     /// Columns that are missing, or shorter than the slice.
     pub fn batch_into(&mut self, columns: &[&[f64]], values: &mut [f64]) -> Result<(), Error> {
+        self.expr
+            .check_columns(self.inputs(), columns, values.len())?;
         let batch = self.batch.get_or_insert_with(|| self.program.batch());
-        batch.run(columns, &mut [values])
+        let Some(calls) = &self.calls else {
+            return batch.run(columns, &mut [values]);
+        };
+        let columns = calls.complete_columns(columns, values.len())?;
+        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        batch.run(&columns, &mut [values])
     }
 
     /// Says why there is no value.
     #[cold]
     fn explain(&self, inputs: &[f64], value: f64) -> Result<f64, Error> {
-        self.program.check_counts(inputs.len(), 1)?;
-        let known = self.program.inputs();
+        let known = self.inputs();
+        if inputs.len() < known.len() {
+            return Err(too_few(inputs.len(), &self.expr.names_of(known)).into());
+        }
         let of = |input: Input| {
             let place = known.iter().position(|&k| k == input);
             place.and_then(|k| inputs.get(k).copied())

@@ -1,11 +1,13 @@
 //! The front door of the language: one expression, from its text to its value.
 
 use super::ast::{Ast, Callee, Constant, Dialect, Node, NodeIx};
-use super::compile::compile;
+use super::calls::Calls;
+use super::compile::Compiler;
 use super::functions::Function;
 use super::interpolation::Bindings;
-use super::parse::parse;
-use super::program::{Input, Program};
+use super::names::{Meaning, Names};
+use super::parse::{parse, parse_named};
+use super::program::{Input, Program, too_few};
 use super::symbols::Profile;
 use super::walk::{self, Host};
 use crate::diagnostic::{Cause, Diagnostic, Error, Span};
@@ -91,6 +93,27 @@ impl Expr {
         )?)
     }
 
+    /// Reads a text with names of the caller's own, in the language that they are for.
+    ///
+    /// # Errors
+    /// All mistakes in the names; else those of [`Expr::parse`].
+    ///
+    /// ```
+    /// # use cognate::expr::{Expr, Names};
+    /// let names = Names::new().variables(["speed"]).define("power(f)", "f*TIME");
+    /// let f = Expr::parse_with("power(3) + speed", &names)?;
+    /// assert_eq!(f.eval(&[("speed", 1.0), ("TIME", 2.0)])?, 7.0);
+    /// let error = Expr::parse_with("power(3) + sped", &names).unwrap_err();
+    /// assert_eq!(error.first().help, ["did you mean speed?"]);
+    /// # Ok::<(), cognate::Error>(())
+    /// ```
+    pub fn parse_with(text: &str, names: &Names) -> Result<Self, Error> {
+        names.check()?;
+        let ast = parse_named(text, names.dialect(), Profile::Adams, names)?;
+        names.check_size(&ast)?;
+        Ok(Self::from_ast(text, Arc::new(ast))?)
+    }
+
     /// Takes a tree that was made of a text.
     ///
     /// # Errors
@@ -132,7 +155,7 @@ impl Expr {
     pub fn eval(&self, inputs: &[(&str, f64)]) -> Result<f64, Error> {
         let mut known = BTreeMap::new();
         for &(name, value) in inputs {
-            known.insert(input_named(name, self.ast.dialect)?, value);
+            known.insert(self.input_named(name)?, value);
         }
         self.eval_with(&|input| known.get(&input).copied())
     }
@@ -145,10 +168,62 @@ impl Expr {
         walk::value(&self.ast, host).map_err(|trouble| trouble.diagnostic(&self.text).into())
     }
 
-    /// Returns its inputs, each once, in the order of the text. Delayed values are left out; the
-    /// program numbers them.
+    /// Returns the input of this name: a variable of its own, or an input of the language.
+    ///
+    /// # Errors
+    /// Those of [`input_named`].
+    pub fn input_named(&self, name: &str) -> Result<Input, Diagnostic> {
+        let variable = (0..).zip(self.ast.names.variable_names());
+        let mut variable = variable.filter(|(_, known)| known.eq_ignore_ascii_case(name));
+        match variable.next() {
+            Some((k, _)) => Ok(Input::Slot(k)),
+            None => input_named(name, self.ast.dialect),
+        }
+    }
+
+    /// Returns the name of an input as the expression writes it.
+    pub fn input_name(&self, input: Input) -> String {
+        let variable = match input {
+            Input::Slot(k) => self.ast.names.variable_names().nth(k as usize),
+            _ => None,
+        };
+        variable.map_or_else(|| input.to_string(), String::from)
+    }
+
+    /// Returns the names of inputs as the expression writes them.
+    pub(super) fn names_of(&self, inputs: &[Input]) -> Vec<String> {
+        inputs.iter().map(|&i| self.input_name(i)).collect()
+    }
+
+    /// Checks the columns of `n` points of an expression with names of the caller's own; a program
+    /// checks those of the language.
+    pub(super) fn check_columns(
+        &self,
+        inputs: &[Input],
+        columns: &[&[f64]],
+        n: usize,
+    ) -> Result<(), Error> {
+        if self.ast.names.entries().is_empty() {
+            return Ok(());
+        }
+        if columns.len() < inputs.len() {
+            return Err(too_few(columns.len(), &self.names_of(inputs)).into());
+        }
+        match inputs.iter().zip(columns).find(|(_, c)| c.len() < n) {
+            None => Ok(()),
+            Some((&input, column)) => {
+                let (name, had) = (self.input_name(input), column.len());
+                let what = format!("the column of {name} has {had} values for {n} points");
+                Err(Diagnostic::error(Cause::MissingValue, what).into())
+            }
+        }
+    }
+
+    /// Returns its inputs, each once, in the order of the text, behind variables of its own.
+    /// Delayed values are left out; the program numbers them.
     pub fn inputs(&self) -> Vec<Input> {
-        let mut found = Vec::new();
+        let variables = self.ast.names.variable_names();
+        let mut found: Vec<Input> = (0..).zip(variables).map(|(k, _)| Input::Slot(k)).collect();
         for ix in 0..self.ast.nodes.len() {
             if let Some(input) = self.ast.input(ix as NodeIx).filter(|i| !found.contains(i)) {
                 found.push(input);
@@ -189,15 +264,35 @@ impl Expr {
     /// Compiles the program that yields the same value, fast.
     ///
     /// # Errors
-    /// A spline or curve that is not bound.
+    /// A spline or curve that is not bound; a function of the caller's own that is known by its
+    /// numbers only, which an [`Evaluator`](super::Evaluator) calls.
     pub fn compile(&self, bindings: &Bindings) -> Result<Program, Error> {
-        compile(&[&self.ast], bindings).map_err(|mut said| {
+        match self.compile_with_calls(bindings)? {
+            (program, None) => Ok(program),
+            (_, Some(calls)) => {
+                let what = format!("{} is a closure, no part of a program", calls.first_name());
+                let said = Diagnostic::error("unfit_value", what);
+                Err(said.help("make an Evaluator of the expression").into())
+            }
+        }
+    }
+
+    /// Compiles like [`compile`](Self::compile); with the calls of functions of the caller's own
+    /// that the program reads, if there are any.
+    pub(super) fn compile_with_calls(
+        &self,
+        bindings: &Bindings,
+    ) -> Result<(Program, Option<Calls>), Error> {
+        let mut compiler = Compiler::new(bindings);
+        let value = compiler.add(&self.ast).map_err(|mut said| {
             if let Some(span) = said.span {
                 let placed = super::advice::at(&self.text, said.code, "", span);
                 (said.line, said.column) = (placed.line, placed.column);
             }
-            said.into()
-        })
+            Error::from(said)
+        })?;
+        let calls = Calls::new(&compiler, value);
+        Ok((compiler.finish(&[value]), calls))
     }
 }
 
@@ -239,6 +334,10 @@ impl Ast {
         match self.node(ix) {
             Node::Constant(Constant::Time) => Some(Input::Time),
             Node::Constant(Constant::Mode) => Some(Input::Mode),
+            Node::Named { entry, .. } => match self.names.entry(*entry).meaning {
+                Meaning::Variable(k) => Some(Input::Slot(k)),
+                _ => None,
+            },
             Node::Call {
                 callee: Callee::Measure(m),
                 args,

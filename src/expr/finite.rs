@@ -66,6 +66,9 @@ fn of_node(ast: &Ast, node: &Node, risks: &[Risk]) -> Risk {
             let worst = args.iter().map(|&a| of(a)).max().unwrap_or(Risk::None);
             of_call(ast, callee, args, worst)
         }
+        // variables and constants have values, functions of a caller need not
+        Node::Named { ref args, .. } if args.is_empty() => Risk::None,
+        Node::Named { .. } => Risk::Infinite,
     }
 }
 
@@ -180,7 +183,10 @@ pub(super) fn watched(
         Node::Call {
             callee: Callee::Interpolation(_),
             ref args,
-        } => args.iter().for_each(|&arg| from(Risk::NotANumber, arg)),
+        }
+        | Node::Named { ref args, .. } => {
+            args.iter().for_each(|&arg| from(Risk::NotANumber, arg));
+        }
         _ => {}
     }
 }

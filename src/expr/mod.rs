@@ -18,6 +18,7 @@
 //! | names | `functions/` `measures.rs` `interpolation/` | tables of the functions |
 //! | | `signature.rs` `symbols.rs` | arguments of functions; meanings of names in each language |
 //! | text | `token.rs` `check.rs` | tokens; one ordered pass finds the first mistake, with its place |
+//! | | `names.rs` | variables, constants and functions of a caller's own |
 //! | | `advice.rs` `foreign.rs` | advice on mistakes; words of other languages |
 //! | | `lint/` | warnings about what is legal but hardly meant |
 //! | tree | `grammar/*.pest` `parse.rs` `ast.rs` `print.rs` | grammars, tree, and back to source |
@@ -25,6 +26,7 @@
 //! | value | `walk.rs` | the reference evaluator; names the operation that has no value |
 //! | program | `compile.rs` `program/` | shared, folded, straight-line code over any number |
 //! | | `evaluator.rs` `shared.rs` | a program with its work space; one that threads share |
+//! | | `calls.rs` | functions of a caller's own that are known by their numbers only |
 //! | | `finite.rs` | operands without a finite value that an operation could lose |
 //! | | `smoothness.rs` | places where it is not smooth, and the derivative that jumps there |
 //!
@@ -33,6 +35,7 @@
 
 mod advice;
 pub mod ast;
+mod calls;
 mod check;
 pub mod compile;
 pub mod dimension;
@@ -44,6 +47,7 @@ pub mod functions;
 pub mod interpolation;
 pub mod lint;
 pub mod measures;
+mod names;
 mod parse;
 mod print;
 pub mod program;
@@ -60,6 +64,7 @@ pub use check::{DEEPEST_NESTING, Limits, MOST_CHARACTERS};
 pub use evaluator::Evaluator;
 pub use expression::{Expr, input_named};
 pub use lint::lint;
+pub use names::Names;
 pub use parse::{parse, parse_with_limits};
 pub use shared::{SharedEvaluator, are_finite};
 pub use symbols::{Profile, Symbol, names, symbol};

@@ -8,6 +8,7 @@
 use super::advice;
 use super::ast::{Ast, BinaryOp, Dialect, Node, NodeIx};
 use super::check::{Atom, Limits, check};
+use super::names::Names;
 use super::symbols::Profile;
 use crate::diagnostic::{Diagnostic, Span};
 use pest::Parser;
@@ -20,7 +21,13 @@ use std::iter::Peekable;
 /// The first mistake in the text, from left to right: the code of the diagnostic is its kind, its
 /// column counts all characters of the text from 1.
 pub fn parse(text: &str, dialect: Dialect, profile: Profile) -> Result<Ast, Diagnostic> {
-    parse_with_limits(text, dialect, profile, profile.limits())
+    read(
+        text,
+        dialect,
+        profile,
+        profile.limits(),
+        &Names::of(dialect),
+    )
 }
 
 /// Reads like [`parse`], with limits of the caller's own.
@@ -33,8 +40,29 @@ pub fn parse_with_limits(
     profile: Profile,
     limits: Limits,
 ) -> Result<Ast, Diagnostic> {
-    let atoms = check(text, dialect, profile, limits)
-        .map_err(|fault| advice::explain(text, dialect, &fault))?;
+    read(text, dialect, profile, limits, &Names::of(dialect))
+}
+
+/// Reads like [`parse`], with names of the caller's own.
+pub(super) fn parse_named(
+    text: &str,
+    dialect: Dialect,
+    profile: Profile,
+    names: &Names,
+) -> Result<Ast, Diagnostic> {
+    read(text, dialect, profile, profile.limits(), names)
+}
+
+/// Reads a text: checks it, then makes the tree.
+fn read(
+    text: &str,
+    dialect: Dialect,
+    profile: Profile,
+    limits: Limits,
+    names: &Names,
+) -> Result<Ast, Diagnostic> {
+    let atoms = check(text, dialect, profile, limits, names)
+        .map_err(|fault| advice::explain(text, dialect, names, &fault))?;
     let tree = match dialect {
         Dialect::Function => function::tree(text, atoms),
         Dialect::Expression => expression::tree(text, atoms),
@@ -54,6 +82,7 @@ pub fn parse_with_limits(
         nodes,
         spans,
         root,
+        names: names.clone(),
     })
 }
 
@@ -220,6 +249,10 @@ impl<R: pest::RuleType> Builder<R> {
         let callee = match self.atoms.next()? {
             Atom::Constant(c) => return Some(self.push(Node::Constant(c), span)),
             Atom::Callee(callee) => callee,
+            Atom::Named(entry) => {
+                let args = pairs.map(|a| self.operand(a)).collect::<Option<Vec<_>>>()?;
+                return Some(self.push(Node::Named { entry, args }, span));
+            }
             Atom::Number { .. } => return None,
         };
         let args = pairs.map(|a| self.operand(a)).collect::<Option<Vec<_>>>()?;

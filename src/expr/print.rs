@@ -66,9 +66,11 @@ impl Ast {
             Node::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => Level::Product,
             Node::Binary(BinaryOp::Pow, ..) => Level::Power,
             Node::Negate(_) | Node::Plus(_) => Level::Unary,
-            Node::Number { .. } | Node::Constant(_) | Node::If { .. } | Node::Call { .. } => {
-                Level::Primary
-            }
+            Node::Number { .. }
+            | Node::Constant(_)
+            | Node::If { .. }
+            | Node::Call { .. }
+            | Node::Named { .. } => Level::Primary,
         }
     }
 
@@ -119,15 +121,28 @@ impl Ast {
                 f.write_str("IF(")
             }
             Node::Call { callee, ref args } => {
-                rest.push(Piece::Text(")"));
-                for (k, &arg) in args.iter().enumerate().rev() {
-                    rest.push(Piece::Node(arg, Level::Sum));
-                    if k > 0 {
-                        rest.push(Piece::Text(", "));
-                    }
-                }
+                note_arguments(args, rest);
                 write!(f, "{}(", callee.name())
             }
+            Node::Named { entry, ref args } => {
+                f.write_str(&self.names.entry(entry).name)?;
+                if args.is_empty() {
+                    return Ok(());
+                }
+                note_arguments(args, rest);
+                f.write_str("(")
+            }
+        }
+    }
+}
+
+/// Notes the arguments of a call and its closing parenthesis, last first.
+fn note_arguments(args: &[NodeIx], rest: &mut Vec<Piece>) {
+    rest.push(Piece::Text(")"));
+    for (k, &arg) in args.iter().enumerate().rev() {
+        rest.push(Piece::Node(arg, Level::Sum));
+        if k > 0 {
+            rest.push(Piece::Text(", "));
         }
     }
 }
@@ -166,7 +181,9 @@ impl fmt::Display for Digits {
 /// Two trees are equal when they have the same meaning in the same words; places do not count.
 impl PartialEq for Ast {
     fn eq(&self, other: &Self) -> bool {
-        (self.dialect, self.root) == (other.dialect, other.root) && self.nodes == other.nodes
+        (self.dialect, self.root) == (other.dialect, other.root)
+            && self.nodes == other.nodes
+            && self.names == other.names
     }
 }
 

@@ -4,7 +4,9 @@
 //! so that threads do not wait for each other.
 
 use super::Expr;
+use super::Names;
 use super::ast::Dialect;
+use super::calls::Calls;
 use super::interpolation::Bindings;
 use super::program::{Batch, Input, Program, Work};
 use crate::diagnostic::{Cause, Diagnostic, Error};
@@ -33,6 +35,8 @@ pub struct SharedEvaluator {
     value: Pooled,
     /// value and slopes, once they have been asked for
     slopes: OnceLock<Pooled>,
+    /// functions of the caller's own that the program reads as inputs
+    calls: Option<Calls>,
     names: Vec<String>,
 }
 
@@ -83,9 +87,20 @@ impl SharedEvaluator {
     /// # Errors
     /// Those of [`Expr::parse`]; splines and curves; DELAY, since an expression alone has no past.
     pub fn parse(text: &str, dialect: Dialect) -> Result<Self, Error> {
-        let expr = Expr::parse_dialect(text, dialect)?;
-        let program = expr.compile(&Bindings::default())?;
-        let inputs = program.inputs();
+        Self::new(Expr::parse_dialect(text, dialect)?)
+    }
+
+    /// Reads and compiles an expression with names of the caller's own.
+    ///
+    /// # Errors
+    /// Those of [`Expr::parse_with`]; splines and curves; DELAY.
+    pub fn parse_with(text: &str, names: &Names) -> Result<Self, Error> {
+        Self::new(Expr::parse_with(text, names)?)
+    }
+
+    fn new(expr: Expr) -> Result<Self, Error> {
+        let (program, calls) = expr.compile_with_calls(&Bindings::default())?;
+        let inputs = calls.as_ref().map_or(program.inputs(), Calls::inputs);
         if let Some(past) = inputs.iter().find(|i| matches!(i, Input::Delayed(_))) {
             let what = format!("{past} depends on the past, which an expression alone has not");
             let said = Diagnostic::error("needs_history", what);
@@ -93,7 +108,8 @@ impl SharedEvaluator {
             return Err(said.help(advice).into());
         }
         Ok(Self {
-            names: inputs.iter().map(ToString::to_string).collect(),
+            names: expr.names_of(inputs),
+            calls,
             value: Pooled::new(program),
             slopes: OnceLock::new(),
             expr,
@@ -107,7 +123,10 @@ impl SharedEvaluator {
 
     /// Returns the inputs, in the order in which their values are given.
     pub fn inputs(&self) -> &[Input] {
-        self.value.program.inputs()
+        match &self.calls {
+            None => self.value.program.inputs(),
+            Some(calls) => calls.inputs(),
+        }
     }
 
     /// Returns the names of the inputs, in the same order.
@@ -118,12 +137,30 @@ impl SharedEvaluator {
     /// Puts the value into `out`   (1)
     #[inline]
     pub fn run(&self, inputs: &[f64], out: &mut [f64]) {
-        self.value.run(inputs, out);
+        match &self.calls {
+            None => self.value.run(inputs, out),
+            Some(calls) => self.value.run(&calls.complete(inputs), out),
+        }
     }
 
     /// Puts the value and its derivatives along all inputs into `out`   (1 + inputs)
     pub fn run_slopes(&self, inputs: &[f64], out: &mut [f64]) {
-        self.slopes().run(inputs, out);
+        let Some(calls) = &self.calls else {
+            return self.slopes().run(inputs, out);
+        };
+        let all = calls.complete(inputs);
+        let mut partial = vec![0.0; 1 + all.len()];
+        self.slopes().run(&all, &mut partial);
+        let slopes = calls.slopes(&all, &partial[1..]);
+        out.fill(f64::NAN);
+        if let Some((value, of_inputs)) = out.split_first_mut() {
+            *value = partial[0];
+            let slopes = slopes.unwrap_or_default();
+            of_inputs
+                .iter_mut()
+                .zip(slopes)
+                .for_each(|(to, slope)| *to = slope);
+        }
     }
 
     /// Evaluates many points: `columns` holds one for each input, and `out` one for the value, or
@@ -132,15 +169,37 @@ impl SharedEvaluator {
     /// # Errors
     /// Columns that are missing or too short.
     pub fn batch(&self, columns: &[&[f64]], out: &mut [&mut [f64]]) -> Result<(), Error> {
-        if out.len() > 1 {
-            self.slopes().batch(columns, out)
-        } else {
-            self.value.batch(columns, out)
+        let n = out.iter().map(|column| column.len()).max().unwrap_or(0);
+        self.expr.check_columns(self.inputs(), columns, n)?;
+        match (&self.calls, out.len() > 1) {
+            (None, true) => self.slopes().batch(columns, out),
+            (None, false) => self.value.batch(columns, out),
+            (Some(calls), false) => {
+                let columns = calls.complete_columns(columns, n)?;
+                let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                self.value.batch(&columns, out)
+            }
+            (Some(_), true) => {
+                self.slopes_by_points(columns, out, n);
+                Ok(())
+            }
+        }
+    }
+
+    /// Evaluates values and slopes one point after another.
+    fn slopes_by_points(&self, columns: &[&[f64]], out: &mut [&mut [f64]], n: usize) {
+        let mut point = vec![0.0; columns.len()];
+        let mut results = vec![0.0; out.len()];
+        for k in 0..n {
+            point.iter_mut().zip(columns).for_each(|(x, c)| *x = c[k]);
+            self.run_slopes(&point, &mut results);
+            out.iter_mut().zip(&results).for_each(|(c, y)| c[k] = *y);
         }
     }
 
     fn slopes(&self) -> &Pooled {
-        (self.slopes).get_or_init(|| Pooled::new(self.value.program.with_gradient(self.inputs())))
+        let program = &self.value.program;
+        (self.slopes).get_or_init(|| Pooled::new(program.with_gradient(program.inputs())))
     }
 
     /// Says why a point has no value: an input that is not finite, the operation that has none, or
@@ -160,6 +219,9 @@ impl SharedEvaluator {
         match self.expr.eval_with(&host) {
             Err(error) => error.into_first(),
             Ok(value) => {
+                if let Some(unknown) = self.calls.as_ref().and_then(|c| c.unknown_slopes()) {
+                    return unknown;
+                }
                 let what = format!("a derivative is not finite where the value is {value}");
                 Diagnostic::error(Cause::Domain, what)
             }

@@ -106,6 +106,8 @@ pub(crate) enum About {
     },
     /// a call with this many arguments
     Count(Callee, usize),
+    /// a call of a function of the caller's own, with this many arguments
+    NamedCount(u32, usize),
     /// an argument of a call, from 0
     Argument(Callee, usize),
     /// a limit
@@ -117,6 +119,8 @@ pub(crate) enum About {
 pub(crate) enum Open {
     Group,
     Call(Callee),
+    /// a call of a function of the caller's own
+    Named(u32),
     /// an IF, with the part that is being read: 0 the selector, 1 to 3 the branches
     If(u8),
 }

@@ -43,6 +43,10 @@ impl Ast {
                     positive: at(positive),
                 }),
                 Node::Call { callee, args } => new.call(*callee, args.iter().map(at).collect()),
+                Node::Named { entry, args } => new.add(Node::Named {
+                    entry: *entry,
+                    args: args.iter().map(at).collect(),
+                }),
             };
             place.push(made);
         }
@@ -57,6 +61,7 @@ impl Ast {
             nodes: new.nodes,
             spans: new.spans,
             root,
+            names: self.names.clone(),
         })
     }
 }
@@ -91,7 +96,9 @@ impl Translation {
                 .map(of)
                 .into_iter()
                 .fold(0, usize::saturating_add),
-            Node::Call { args, .. } => args.iter().map(of).fold(0, usize::saturating_add),
+            Node::Call { args, .. } | Node::Named { args, .. } => {
+                args.iter().map(of).fold(0, usize::saturating_add)
+            }
         };
         self.length.push(below.saturating_add(WORD_LENGTH));
         self.nodes.push(node);

@@ -11,8 +11,9 @@ use super::ast::{Ast, BinaryOp, Callee, Constant, Node, NodeIx};
 use super::compile::{constant_value, literal_value};
 use super::functions::Function;
 use super::interpolation::{Bindings, Interpolation};
+use super::names::{Formula, Meaning};
 use super::print::Digits;
-use super::program::Input;
+use super::program::{Input, Sym};
 use crate::diagnostic::{Cause, Diagnostic, Span};
 use crate::scalar::Scalar;
 
@@ -30,6 +31,24 @@ pub trait Host {
 impl<F: Fn(Input) -> Option<f64>> Host for F {
     fn input(&self, input: Input) -> Option<f64> {
         self(input)
+    }
+}
+
+/// The host of a formula: its arguments are its variables.
+struct Inside<'a> {
+    args: &'a [f64],
+    host: &'a dyn Host,
+}
+
+impl Host for Inside<'_> {
+    fn input(&self, input: Input) -> Option<f64> {
+        match input {
+            Input::Slot(k) => self.args.get(k as usize).copied(),
+            _ => self.host.input(input),
+        }
+    }
+    fn bindings(&self) -> Option<&Bindings> {
+        self.host.bindings()
     }
 }
 
@@ -169,7 +188,10 @@ impl<'a> Walk<'a> {
                 callee: Callee::Function(Function::Delay),
                 ..
             } => return self.delayed(ix).map(Some),
-            Node::Call { ref args, .. } => {
+            Node::Named { ref args, .. } if args.is_empty() => {
+                return self.named(ix).map(Some);
+            }
+            Node::Call { ref args, .. } | Node::Named { ref args, .. } => {
                 self.tasks.push(Task::Apply(ix));
                 self.tasks
                     .extend(args.iter().rev().map(|&arg| Task::Evaluate(arg)));
@@ -262,7 +284,7 @@ impl<'a> Walk<'a> {
     /// Evaluates an operation on the numbers at the end of the stack.
     fn apply(&mut self, ix: NodeIx) -> Result<f64, Trouble> {
         let count = match self.ast.node(ix) {
-            Node::Call { args, .. } => args.len(),
+            Node::Call { args, .. } | Node::Named { args, .. } => args.len(),
             Node::Binary(..) => 2,
             _ => 1,
         };
@@ -301,15 +323,56 @@ impl<'a> Walk<'a> {
                 Some(host) => self.interpolated(ix, f, args, host)?,
                 None => return Ok(f64::NAN),
             },
+            (&Node::Named { entry, .. }, args) => self.called(ix, entry, args)?,
             _ => f64::NAN,
         };
         if operands.iter().any(|x| x.is_nan()) {
             return Ok(f64::NAN);
         }
-        if value.is_finite() {
+        let is_closure = matches!(self.ast.node(ix), Node::Named { .. });
+        if value.is_finite() || (is_closure && self.host.is_none()) {
             Ok(value)
         } else {
             Err(self.out_of_domain(ix, operands))
+        }
+    }
+
+    /// Evaluates a variable or a constant of the caller's own.
+    fn named(&self, ix: NodeIx) -> Result<f64, Trouble> {
+        match (self.ast.input(ix), self.ast.node(ix)) {
+            (Some(input), _) => self.input(ix, input),
+            (None, Node::Named { entry, .. }) => match self.ast.names.entry(*entry).meaning {
+                Meaning::Constant(c) => Ok(c),
+                _ => Ok(f64::NAN),
+            },
+            _ => Ok(f64::NAN),
+        }
+    }
+
+    /// Evaluates a function of the caller's own. Where inputs are unknown it is not called.
+    fn called(&self, ix: NodeIx, entry: u32, args: &[f64]) -> Result<f64, Trouble> {
+        let Some(host) = self.host.filter(|_| !args.iter().any(|x| x.is_nan())) else {
+            return Ok(f64::NAN);
+        };
+        let entry = self.ast.names.entry(entry);
+        match &entry.meaning {
+            Meaning::Variable(_) | Meaning::Constant(_) => Ok(f64::NAN),
+            Meaning::Numeric(function) => Ok((function.closure)(args, &mut [])),
+            Meaning::Law(law) => {
+                let args: Vec<Sym> = args.iter().map(|&x| Sym::Constant(x)).collect();
+                match law(&args) {
+                    Sym::Constant(value) => Ok(value),
+                    Sym::Recorded(..) => unreachable!("a law of numbers records nothing"),
+                }
+            }
+            Meaning::Formula(Formula { body, .. }) => {
+                value(body, &Inside { args, host }).map_err(|trouble| {
+                    let message = format!("in {}: {}", entry.name, trouble.message);
+                    let mut here = self.trouble(trouble.code, ix, message);
+                    here.help = trouble.help;
+                    here
+                })
+            }
         }
     }
 
@@ -409,6 +472,10 @@ impl<'a> Walk<'a> {
             (Node::Call { callee, .. }, _) => (
                 format!("{}({})", callee.name(), list()),
                 "outside the curve",
+            ),
+            (&Node::Named { entry, .. }, _) => (
+                format!("{}({})", self.ast.names.entry(entry).name, list()),
+                "it gives no finite number",
             ),
             _ => (list(), "not a number"),
         };

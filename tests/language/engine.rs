@@ -141,6 +141,7 @@ fn hold(least: usize, law: impl Fn(&Ast, f64) -> Result<usize, String>) {
                     spans: ast.spans[..=k].to_vec(),
                     root: k as u32,
                     dialect: ast.dialect,
+                    names: ast.names.clone(),
                 };
                 let parts = (0..ast.nodes.len()).map(part);
                 let broken = |part: Ast| {

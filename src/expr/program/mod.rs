@@ -55,4 +55,5 @@ pub use machine::{Engine, translation_time};
 pub use node::Value;
 pub use operation::{BinaryOp, Comparison, UnaryOp};
 pub use record::{Condition, Sym};
+pub(super) use run::too_few;
 pub use run::{Program, Work};

@@ -234,22 +234,11 @@ impl Program {
     /// # Errors
     /// Fewer values than inputs, or more places than outputs.
     pub(in crate::expr) fn check_counts(&self, values: usize, places: usize) -> Result<(), Error> {
-        let (inputs, outputs) = (self.inputs.len(), self.n_outputs());
-        let number = |n: usize, one: &str| match n {
-            1 => format!("1 {one}"),
-            n => format!("{n} {one}s"),
-        };
+        let outputs = self.n_outputs();
         let mut wrong = Vec::new();
-        if values < inputs {
+        if values < self.inputs.len() {
             let names: Vec<String> = self.inputs.iter().map(ToString::to_string).collect();
-            let was = if values == 1 { "was" } else { "were" };
-            let what = format!(
-                "{} {was} given for {}: {}",
-                number(values, "value"),
-                number(inputs, "input"),
-                names.join(", ")
-            );
-            wrong.push(Diagnostic::error(Cause::MissingValue, what));
+            wrong.push(too_few(values, &names));
         }
         if places > outputs {
             let what = format!(
@@ -294,5 +283,24 @@ impl Program {
         work.owner = 0;
         work.registers.extend(self.machine.extras());
         work.owner = self.id + FOR_THE_MACHINE;
+    }
+}
+/// Returns the mistake of fewer values than inputs of these names.
+pub(in crate::expr) fn too_few(values: usize, names: &[String]) -> Diagnostic {
+    let was = if values == 1 { "was" } else { "were" };
+    let what = format!(
+        "{} {was} given for {}: {}",
+        number(values, "value"),
+        number(names.len(), "input"),
+        names.join(", ")
+    );
+    Diagnostic::error(Cause::MissingValue, what)
+}
+
+/// Words a number of things.
+fn number(n: usize, one: &str) -> String {
+    match n {
+        1 => format!("1 {one}"),
+        n => format!("{n} {one}s"),
     }
 }
