@@ -230,6 +230,8 @@ struct Readme;
 // floor 0
 pub mod clock;
 pub mod diagnostic;
+#[cfg(feature = "solver")]
+mod disk;
 pub mod scalar;
 
 pub use diagnostic::Error;

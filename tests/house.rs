@@ -338,6 +338,22 @@ fn the_clock_is_read_in_one_place() {
     none("files that read a clock of their own", wrong);
 }
 
+#[test]
+fn files_and_the_environment_are_reached_in_one_place() {
+    // the command line is where a user names files
+    let doors = ["std::fs", ".exists()", "std::env", "env::var"];
+    let wrong = files("src").into_iter().filter(|file| {
+        let is_free = file.path == "src/disk.rs" || file.path.starts_with("src/cli/");
+        let code = file.code();
+        !is_free && doors.iter().any(|door| code.contains(door))
+    });
+    let wrong: Vec<String> = wrong.map(|file| file.path).collect();
+    none(
+        "files that reach for files or the environment by themselves",
+        wrong,
+    );
+}
+
 /// Returns whether a line assigns to a field of something named `scene`.
 fn assigns_to_scene(line: &str) -> bool {
     line.match_indices("scene.").any(|(at, found)| {

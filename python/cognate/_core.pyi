@@ -31,7 +31,13 @@ _Row = tuple[int, list[float], list[float], str, int, str]
 
 @final
 class Expr:
-    def __new__(cls, text: str, *, dialect: Literal["function", "expression"] = "function") -> Expr: ...
+    def __new__(
+        cls,
+        text: str,
+        *,
+        dialect: Literal["function", "expression"] = "function",
+        names: dict[str, Any] | None = None,
+    ) -> Expr: ...
     @property
     def text(self) -> str: ...
     @property

@@ -2,11 +2,13 @@
 
 use crate::arrays::{self, Values};
 use crate::errors::{self, Kind};
+use crate::names::{self, Given};
+use crate::watch::Raised;
 use cognate::Error;
 use cognate::diagnostic::{Cause, Diagnostic};
 use cognate::expr::ast::Dialect;
 use cognate::expr::program::Input;
-use cognate::expr::{SharedEvaluator, input_named};
+use cognate::expr::SharedEvaluator;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -30,6 +32,8 @@ const POINTS_TO_DETACH: usize = 512;
 ///     The expression.
 /// dialect : {"function", "expression"}
 ///     Radians and ``TIME``, or degrees and ``t``.
+/// names : dict, optional
+///     Lists of ``variables``, ``constants`` and ``functions``; ``cognate.expr`` makes it.
 ///
 /// Raises
 /// ------
@@ -51,7 +55,14 @@ pub struct Expr {
     dialect: Dialect,
     /// place of TIME among the inputs
     time: Option<usize>,
+    /// names of one's own, as they were given
+    given: Option<Py<PyDict>>,
+    /// what functions of one's own have raised
+    raised: Raised,
 }
+
+/// The text, the language and the names that an expression is made from.
+type Restored = (String, &'static str, Option<Py<PyDict>>);
 
 /// What to do at points without a value.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -77,8 +88,13 @@ impl Invalid {
 #[pymethods]
 impl Expr {
     #[new]
-    #[pyo3(signature = (text, *, dialect = "function"))]
-    fn new(py: Python<'_>, text: &str, dialect: &str) -> PyResult<Self> {
+    #[pyo3(signature = (text, *, dialect = "function", names = None))]
+    fn new(
+        py: Python<'_>,
+        text: &str,
+        dialect: &str,
+        names: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
         let dialect = match dialect {
             "function" => Dialect::Function,
             "expression" => Dialect::Expression,
@@ -89,8 +105,22 @@ impl Expr {
             }
         };
         let raised = |e: Error| errors::exception(py, Kind::Expr, e, Some(text));
-        let shared = SharedEvaluator::parse(text, dialect).map_err(raised)?;
+        let kept = Raised::default();
+        let given = match names {
+            Some(names) if !names::is_empty(&names)? => Some(names),
+            _ => None,
+        };
+        let shared = match &given {
+            None => SharedEvaluator::parse(text, dialect),
+            Some(names) => {
+                let names: Given = names.extract()?;
+                SharedEvaluator::parse_with(text, &names.names(py, dialect, &kept)?)
+            }
+        };
+        let shared = shared.map_err(raised)?;
         Ok(Self {
+            given: given.map(Bound::unbind),
+            raised: kept,
             time: shared.inputs().iter().position(|i| *i == Input::Time),
             shared,
             dialect,
@@ -163,7 +193,7 @@ impl Expr {
         {
             let (given, mut result) = ([time.value()], [0.0]);
             self.shared.run(&given[..self.inputs().len()], &mut result);
-            if given[0].is_finite() && result[0].is_finite() {
+            if given[0].is_finite() && result[0].is_finite() && !self.raised.is_set() {
                 return Ok(PyFloat::new(py, result[0]).into_any());
             }
         }
@@ -255,8 +285,14 @@ impl Expr {
         self.shared.expr().to_string()
     }
 
-    fn __eq__(&self, other: &Self) -> bool {
-        self.dialect == other.dialect && self.shared.expr().text() == other.shared.expr().text()
+    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        let texts = [self, other].map(|e| (e.dialect, e.shared.expr().text()));
+        Ok(texts[0] == texts[1]
+            && match (&self.given, &other.given) {
+                (None, None) => true,
+                (Some(a), Some(b)) => a.bind(py).eq(b)?,
+                _ => false,
+            })
     }
 
     fn __hash__(&self) -> u64 {
@@ -268,12 +304,16 @@ impl Expr {
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
         py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (String, &'static str))> {
+    ) -> PyResult<(Bound<'py, PyAny>, Restored)> {
         let maker = py.import("cognate._expr")?.getattr("_restored")?;
         let this = slf.get();
         Ok((
             maker,
-            (this.shared.expr().text().to_owned(), this.dialect()),
+            (
+                this.shared.expr().text().to_owned(),
+                this.dialect(),
+                this.given.as_ref().map(|given| given.clone_ref(py)),
+            ),
         ))
     }
 }
@@ -334,6 +374,7 @@ impl Expr {
             let d = Diagnostic::error(Cause::MissingValue, format!("{name} has not been given"));
             let help = match self.inputs()[k] {
                 Input::Time => "time comes first: f(0.5)".to_owned(),
+                Input::Slot(_) => format!("variables are given by name: f({name}=0.5)"),
                 _ => format!("inputs of a model are given by name: f(t, {{\"{name}\": 0.5}})"),
             };
             errors::exception(
@@ -353,7 +394,7 @@ impl Expr {
         if let Some(place) = self.names().iter().position(|n| n == name) {
             return Ok(Some(place));
         }
-        let input = input_named(name, self.dialect)
+        let input = (self.shared.expr().input_named(name))
             .map_err(|e| errors::exception(py, Kind::Expr, e, Some(name)))?;
         Ok(self.inputs().iter().position(|i| *i == input))
     }
@@ -423,6 +464,7 @@ impl Expr {
             } else {
                 py.detach(&mut go)
             };
+            self.reraise()?;
             let text = self.shared.expr().text();
             let first =
                 first.map_err(|e: Error| errors::exception(py, Kind::Expr, e, Some(text)))?;
@@ -445,11 +487,20 @@ impl Expr {
         out: &mut [f64],
         invalid: Invalid,
     ) -> PyResult<()> {
+        self.reraise()?;
         let columns: Vec<&[f64]> = given.iter().map(std::slice::from_ref).collect();
         let mut out: Vec<&mut [f64]> = out.iter_mut().map(std::slice::from_mut).collect();
         match (SharedEvaluator::mark(&columns, &mut out), invalid) {
             (Some(_), Invalid::Raise) => Err(self.complaint(py, given, None)),
             _ => Ok(()),
+        }
+    }
+
+    /// Raises what a function of one's own has raised.
+    fn reraise(&self) -> PyResult<()> {
+        match self.raised.take() {
+            Some(e) => Err(e),
+            None => Ok(()),
         }
     }
 

@@ -9,6 +9,7 @@
 //! arrays.rs    numbers of Python: scalars, lists, arrays of any layout
 //! errors.rs    diagnostics as exceptions
 //! expr.rs      one expression over arrays
+//! names.rs     variables, constants and functions of one's own in it
 //! model.rs     datasets
 //! session.rs   simulations, one after another
 //! watch.rs     Ctrl-C and progress while they go on
@@ -23,13 +24,14 @@ mod builder;
 mod errors;
 mod expr;
 mod model;
+mod names;
 mod results;
 mod session;
 mod sweep;
 mod user;
 mod watch;
 
-use pyo3::prelude::*;
+use pyo3::pymodule;
 
 /// Compiled part of cognate.
 #[pymodule]
@@ -47,7 +49,10 @@ mod _core {
     #[pymodule_export]
     use super::sweep::{Sweep, Table, design_points};
 
-    #[pymodule_export]
-    #[allow(non_upper_case_globals)]
-    const __version__: &str = env!("CARGO_PKG_VERSION");
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn add_version(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }

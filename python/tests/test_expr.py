@@ -173,3 +173,45 @@ def test_threads_share_an_expression():
     assert len(found) == 4
     for values in found:
         np.testing.assert_array_equal(values, wanted)
+
+
+def test_functions_of_ones_own_are_formulas_or_callables():
+    formula = {"hertz(x, k)": "k*MAX(x, 0)**1.5"}
+    plain = {"hertz(x, k)": lambda x, k: k * max(x, 0) ** 1.5}
+    slopes = lambda x, k: (1.5 * k * max(x, 0) ** 0.5, max(x, 0) ** 1.5)
+    paired = {"hertz(x, k)": (plain["hertz(x, k)"], slopes)}
+    x = np.linspace(0.5, 2.0, 700)
+    for functions in (formula, plain, paired):
+        f = cg.expr("hertz(2*x, c) - TIME", variables=["x"], constants={"c": 3}, functions=functions)
+        assert f.inputs == ("x", "TIME")
+        assert f(1.0, x=0.5) == 2.0
+        np.testing.assert_allclose(f(1.0, X=x), 3 * (2 * x) ** 1.5 - 1, rtol=1e-15)
+        if functions is plain:
+            with pytest.raises(cg.ExprError, match="derivatives of hertz are not known"):
+                f.gradient(1.0, x=0.5)
+        else:
+            np.testing.assert_allclose(f.gradient(1.0, x=x)["x"], 9 * (2 * x) ** 0.5, rtol=1e-14)
+    f = cg.expr("hertz(x, 2)", variables=["x"], functions=formula)
+    assert pickle.loads(pickle.dumps(f)) == f != cg.expr("TIME")
+    assert pickle.loads(pickle.dumps(f))(x=4.0) == 16.0
+
+
+def test_what_a_function_raises_is_raised():
+    def law(x):
+        if x > 1:
+            raise RuntimeError("too far")
+        return x
+
+    f = cg.expr("1 + law(x)", variables=["x"], functions={"law(x)": law})
+    assert f(x=0.5) == 1.5
+    for x in (2.0, np.linspace(0, 2, 600), [0.5, 1.5]):
+        with pytest.raises(RuntimeError, match="too far"):
+            f(x=x)
+    assert f(x=1.0) == 2.0
+    with pytest.raises(cg.ExprError, match="TIME would hide"):
+        cg.expr("x", variables=["x", "TIME"])
+    with pytest.raises(cg.ExprError) as caught:
+        cg.expr("speet", variables=["speed"])
+    assert "did you mean speed?" in str(caught.value)
+    with pytest.raises(ValueError, match="as in"):
+        cg.expr("f(1)", functions={"f": law})

@@ -4,6 +4,7 @@ use super::system::System;
 use super::trajectory::Trajectory;
 use super::watch::Watch;
 use crate::clock::Moment;
+use crate::disk;
 use crate::numeric::Stats;
 use crate::results::Run;
 use std::thread::ThreadId;
@@ -19,7 +20,7 @@ const RESOLUTION: f64 = 0.01;
 /// it; `None` as the thread: the one that asks.
 fn thread_seconds(thread: Option<&std::path::Path>) -> Option<f64> {
     let folder = thread.unwrap_or_else(|| std::path::Path::new("/proc/thread-self"));
-    let text = std::fs::read_to_string(folder.join("schedstat")).ok()?;
+    let text = disk::read_to_string(folder.join("schedstat")).ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
     Some(1e-9 * nanoseconds)
 }
@@ -27,7 +28,7 @@ fn thread_seconds(thread: Option<&std::path::Path>) -> Option<f64> {
 /// Returns the processor time of all threads of this process that are still there, in s, where the
 /// system tells it.
 pub fn process_seconds() -> Option<f64> {
-    let threads = std::fs::read_dir("/proc/self/task").ok()?;
+    let threads = disk::read_dir("/proc/self/task").ok()?;
     let seconds = threads.filter_map(|t| thread_seconds(Some(&t.ok()?.path())));
     Some(seconds.sum())
 }

@@ -26,6 +26,7 @@ pub mod value;
 pub mod write;
 
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity, Span};
+use crate::disk;
 use crate::model::{ElementKind, MarkerOwner, Model};
 use idle::Idle;
 use read::Table;
@@ -125,7 +126,7 @@ pub fn read_text(text: &str) -> Reading {
 
 /// The bytes of a file.
 fn load(path: &Path) -> Result<Vec<u8>, Error> {
-    std::fs::read(path).map_err(|e| {
+    disk::read(path).map_err(|e| {
         let mut d = Diagnostic::error("cannot_open", format!("cannot be opened: {e}"));
         d.file = Some(path.display().to_string());
         Error::from(d).with_source(e)

@@ -8,6 +8,7 @@
 //! ```
 
 use super::mesh::{self, MOST_BYTES};
+use crate::disk;
 use crate::model::{ElementId, ElementKind, Model, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -52,11 +53,11 @@ impl Surfaces {
 
 fn of_file(name: &str, folders: &[PathBuf]) -> Result<Surface, String> {
     let path = mesh::find(name, folders).ok_or("there is no such file")?;
-    let size = std::fs::metadata(&path).map_or(0, |m| m.len());
+    let size = disk::metadata(&path).map_or(0, |m| m.len());
     if size > MOST_BYTES {
         return Err(format!("{size} bytes are too many"));
     }
-    let bytes = std::fs::read(&path).map_err(|e| format!("it cannot be opened: {e}"))?;
+    let bytes = disk::read(&path).map_err(|e| format!("it cannot be opened: {e}"))?;
     surface(name, &bytes)
 }
 

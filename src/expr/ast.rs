@@ -9,6 +9,7 @@ use super::interpolation::Interpolation;
 use super::measures::Measure;
 use super::names::Names;
 use crate::diagnostic::Span;
+use std::sync::Arc;
 
 /// Index of a node in its [`Ast`].
 pub type NodeIx = u32;
@@ -122,7 +123,7 @@ pub struct Ast {
     /// node of the whole expression
     pub root: NodeIx,
     /// names of the caller's own
-    pub names: Names,
+    pub names: Arc<Names>,
 }
 
 impl Ast {

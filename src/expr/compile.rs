@@ -498,8 +498,8 @@ mod tests {
     use crate::expr::ast::Dialect;
     use crate::expr::interpolation::Interpolation;
     use crate::expr::measures::Measure;
-    use crate::expr::names::Names;
     use crate::expr::program::Work;
+    use std::sync::Arc;
 
     /// A tree written node by node.
     struct Tree(Vec<Node>);
@@ -532,7 +532,7 @@ mod tests {
                 nodes: self.0,
                 spans,
                 root,
-                names: Names::new(),
+                names: Arc::default(),
             }
         }
     }

@@ -109,7 +109,8 @@ impl Expr {
     /// ```
     pub fn parse_with(text: &str, names: &Names) -> Result<Self, Error> {
         names.check()?;
-        let ast = parse_named(text, names.dialect(), Profile::Adams, names)?;
+        let names = Arc::new(names.clone());
+        let ast = parse_named(text, names.dialect(), Profile::Adams, &names)?;
         names.check_size(&ast)?;
         Ok(Self::from_ast(text, Arc::new(ast))?)
     }

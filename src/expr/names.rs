@@ -49,7 +49,7 @@ pub(crate) type Closure = Arc<dyn Fn(&[f64], &mut [f64]) -> f64 + Send + Sync>;
 #[derive(Clone, Debug)]
 pub struct Names {
     dialect: Dialect,
-    entries: Arc<Vec<Entry>>,
+    entries: Vec<Entry>,
     mistakes: Vec<Diagnostic>,
 }
 
@@ -132,7 +132,7 @@ impl Names {
     pub fn of(dialect: Dialect) -> Self {
         Self {
             dialect,
-            entries: Arc::default(),
+            entries: Vec::new(),
             mistakes: Vec::new(),
         }
     }
@@ -211,6 +211,23 @@ impl Names {
         self
     }
 
+    /// Adds a function like [`function_with_slopes`](Self::function_with_slopes), for a number of
+    /// arguments that is known when the program runs. It puts its partial derivatives into the
+    /// second slice, which is empty where only the value is asked for.
+    pub fn function_of_slice_with_slopes(
+        mut self,
+        name: &str,
+        n_arguments: usize,
+        value: impl Fn(&[f64], &mut [f64]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        let meaning = Meaning::Numeric(Numeric {
+            closure: Arc::new(value),
+            has_slopes: true,
+        });
+        self.add(name, numbered(n_arguments), meaning);
+        self
+    }
+
     /// Adds a function that gives its value and its partial derivatives.
     ///
     /// ```
@@ -225,24 +242,17 @@ impl Names {
     /// # Ok::<(), cognate::Error>(())
     /// ```
     pub fn function_with_slopes<const N: usize>(
-        mut self,
+        self,
         name: &str,
         value: impl Fn([f64; N]) -> (f64, [f64; N]) + Send + Sync + 'static,
     ) -> Self {
-        let closure: Closure = Arc::new(move |given: &[f64], out: &mut [f64]| {
+        self.function_of_slice_with_slopes(name, N, move |given, out| {
             let (value, slopes) = value(spread(given));
             for (to, slope) in out.iter_mut().zip(slopes) {
                 *to = slope;
             }
             value
-        });
-        let has_slopes = true;
-        let meaning = Meaning::Numeric(Numeric {
-            closure,
-            has_slopes,
-        });
-        self.add(name, numbered(N), meaning);
-        self
+        })
     }
 
     /// Returns the language that the names are for.
@@ -328,9 +338,10 @@ impl Names {
             !matches!(e.meaning, Meaning::Variable(_)) && inner.find(&e.name).is_none()
         });
         let others: Vec<Entry> = others.cloned().collect();
-        Arc::make_mut(&mut inner.entries).extend(others);
+        inner.entries.extend(others);
         inner.check().map_err(Error::into_first)?;
         let name = name.trim().to_string();
+        let inner = Arc::new(inner);
         let body = parse_named(formula, self.dialect, Profile::Adams, &inner).map_err(|said| {
             let message = format!("in the formula of {name}: {}", said.message);
             Diagnostic { message, ..said }
@@ -365,7 +376,7 @@ impl Names {
                 format!("{name} takes {n} arguments; a function takes 1 to {MOST_ARGUMENTS}");
             self.refuse(what, None);
         } else {
-            Arc::make_mut(&mut self.entries).push(Entry {
+            self.entries.push(Entry {
                 name: name.to_string(),
                 arguments,
                 meaning,
@@ -396,8 +407,7 @@ impl Entry {
 impl PartialEq for Names {
     fn eq(&self, other: &Self) -> bool {
         let names = |of: &Self| of.entries.iter().map(Entry::signature).collect::<Vec<_>>();
-        Arc::ptr_eq(&self.entries, &other.entries)
-            || (self.dialect == other.dialect && names(self) == names(other))
+        self.dialect == other.dialect && names(self) == names(other)
     }
 }
 
@@ -421,7 +431,7 @@ mod tests {
         Evaluator::new(Expr::parse_with(text, names).unwrap(), &Default::default()).unwrap()
     }
 
-    /// The same function four times: in the language, as a law, as a closure with slopes, written out.
+    /// One function in the language, as a law, and as a closure with slopes.
     fn all_ways() -> Names {
         Names::new()
             .variables(["x", "y"])

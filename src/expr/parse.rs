@@ -14,6 +14,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 use std::iter::Peekable;
+use std::sync::Arc;
 
 /// Reads a text of one of the two languages.
 ///
@@ -26,7 +27,7 @@ pub fn parse(text: &str, dialect: Dialect, profile: Profile) -> Result<Ast, Diag
         dialect,
         profile,
         profile.limits(),
-        &Names::of(dialect),
+        &Arc::new(Names::of(dialect)),
     )
 }
 
@@ -40,7 +41,13 @@ pub fn parse_with_limits(
     profile: Profile,
     limits: Limits,
 ) -> Result<Ast, Diagnostic> {
-    read(text, dialect, profile, limits, &Names::of(dialect))
+    read(
+        text,
+        dialect,
+        profile,
+        limits,
+        &Arc::new(Names::of(dialect)),
+    )
 }
 
 /// Reads like [`parse`], with names of the caller's own.
@@ -48,7 +55,7 @@ pub(super) fn parse_named(
     text: &str,
     dialect: Dialect,
     profile: Profile,
-    names: &Names,
+    names: &Arc<Names>,
 ) -> Result<Ast, Diagnostic> {
     read(text, dialect, profile, profile.limits(), names)
 }
@@ -59,7 +66,7 @@ fn read(
     dialect: Dialect,
     profile: Profile,
     limits: Limits,
-    names: &Names,
+    names: &Arc<Names>,
 ) -> Result<Ast, Diagnostic> {
     let atoms = check(text, dialect, profile, limits, names)
         .map_err(|fault| advice::explain(text, dialect, names, &fault))?;

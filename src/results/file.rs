@@ -4,6 +4,7 @@ use super::format::{Format, Reader, Style};
 use super::part_file::{create_beside, unwritable};
 use super::{Run, msg};
 use crate::diagnostic::Diagnostic;
+use crate::disk;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +32,7 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
             _ => unknown,
         })
     })?;
-    let mut run = if path.is_dir() {
+    let mut run = if disk::is_folder(path) {
         read_parts(path, &extension, reader)
     } else {
         contents(path).and_then(|bytes| reader(whole_lines(path, &bytes)))
@@ -48,7 +49,7 @@ pub fn read(path: &Path) -> Result<Run, Diagnostic> {
 }
 
 fn contents(path: &Path) -> Result<Vec<u8>, Diagnostic> {
-    std::fs::read(path).map_err(|e| {
+    disk::read(path).map_err(|e| {
         let mut d = Diagnostic::error("file_unreadable", format!("cannot be read: {e}"));
         d.file = Some(path.display().to_string());
         d
@@ -59,7 +60,7 @@ fn contents(path: &Path) -> Result<Vec<u8>, Diagnostic> {
 fn read_parts(folder: &Path, extension: &str, reader: Reader) -> Result<Run, Diagnostic> {
     let unreadable =
         |e: std::io::Error| Diagnostic::error("file_unreadable", format!("cannot be read: {e}"));
-    let entries = std::fs::read_dir(folder).map_err(unreadable)?;
+    let entries = disk::read_dir(folder).map_err(unreadable)?;
     let entries = entries.map(|entry| entry.map(|e| e.path()));
     let mut parts = entries.collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
     parts.retain(|part| self::extension(part) == extension);
@@ -115,9 +116,9 @@ pub fn write(run: &Run, path: &Path, style: Style) -> Result<(), Diagnostic> {
     let mut sink = sink(style, path);
     sink.rows(run, run.held())?;
     let finished = sink.finish(run)?;
-    std::fs::rename(&finished.part, path).map_err(|e| {
+    disk::rename(&finished.part, path).map_err(|e| {
         // a rest that cannot be removed either adds nothing to say
-        let _ = std::fs::remove_file(&finished.part);
+        let _ = disk::remove_file(&finished.part);
         unwritable(path, &e)
     })
 }
@@ -140,10 +141,10 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
     let (part, mut file) = create_beside(path).map_err(|e| unwritable(path, &e))?;
     let written = file
         .write_all(bytes)
-        .and_then(|()| std::fs::rename(&part, path));
+        .and_then(|()| disk::rename(&part, path));
     written.map_err(|e| {
         // a rest that cannot be removed either adds nothing to say
-        let _ = std::fs::remove_file(&part);
+        let _ = disk::remove_file(&part);
         unwritable(path, &e)
     })
 }

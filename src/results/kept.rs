@@ -7,6 +7,7 @@ use super::output_folder::listed;
 use super::part_file::unwritable;
 use super::write_text;
 use crate::diagnostic::{Diagnostic, near_names};
+use crate::disk;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -48,7 +49,7 @@ pub fn runs_in(folder: &Path) -> Result<Vec<KeptRun>, Diagnostic> {
         Diagnostic::error("file_unreadable", what)
     };
     let mut found = records_in(folder).map_err(unreadable)?;
-    let entries = std::fs::read_dir(folder).map_err(unreadable)?.flatten();
+    let entries = disk::read_dir(folder).map_err(unreadable)?.flatten();
     for entry in entries.filter(|e| e.file_type().is_ok_and(|t| t.is_dir())) {
         // a folder that may not be read has nothing to list
         found.extend(records_in(&folder.join(entry.file_name())).unwrap_or_default());
@@ -59,7 +60,7 @@ pub fn runs_in(folder: &Path) -> Result<Vec<KeptRun>, Diagnostic> {
 
 /// Returns the runs whose records are in a folder itself.
 fn records_in(folder: &Path) -> std::io::Result<Vec<KeptRun>> {
-    let paths = std::fs::read_dir(folder)?.flatten();
+    let paths = disk::read_dir(folder)?.flatten();
     let names = paths.map(|entry| folder.join(entry.file_name()));
     let is_json = |path: &PathBuf| path.extension().is_some_and(|e| e == "json");
     Ok(names.filter(is_json).filter_map(|p| read(&p)).collect())
@@ -67,7 +68,7 @@ fn records_in(folder: &Path) -> std::io::Result<Vec<KeptRun>> {
 
 /// Reads a record; `None`: the file is none.
 fn read(path: &Path) -> Option<KeptRun> {
-    let record: Value = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+    let record: Value = serde_json::from_slice(&disk::read(path).ok()?).ok()?;
     let is_record = record["versions"]["cognate"].is_string() && record["files"].is_object();
     if !is_record {
         return None;
@@ -158,7 +159,7 @@ impl KeptRun {
             let inside = |c: Component| matches!(c, Component::Normal(_));
             let path = root.join(name);
             let about = path.symlink_metadata().ok();
-            let bytes = about.as_ref().map(std::fs::Metadata::len);
+            let bytes = about.as_ref().map(disk::Metadata::len);
             let is_file = about.is_some_and(|a| a.is_file());
             let is_own = is_file && Path::new(name).components().all(inside);
             ClaimedFile {
@@ -180,7 +181,7 @@ impl KeptRun {
         let (own, others): (Vec<_>, Vec<_>) = self.files().into_iter().partition(|f| f.is_own);
         let own = own.into_iter().map(|f| f.path);
         for path in own.chain([self.record_file()]) {
-            std::fs::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
+            disk::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
         }
         let kept = others.into_iter().filter(|f| f.bytes.is_some());
         Ok(kept.map(|f| f.path).collect())
@@ -226,10 +227,10 @@ impl KeptRun {
         }
         write_text(&new_record, &super::json::text(&record))?;
         for (from, to) in &moves {
-            std::fs::rename(from, to).map_err(|e| unwritable(to, &e))?;
+            disk::rename(from, to).map_err(|e| unwritable(to, &e))?;
         }
         let old = self.record_file();
-        std::fs::remove_file(&old).map_err(|e| unwritable(&old, &e))?;
+        disk::remove_file(&old).map_err(|e| unwritable(&old, &e))?;
         let kept = others.into_iter().filter(|f| f.bytes.is_some());
         Ok(kept.map(|f| f.path).collect())
     }

@@ -9,6 +9,7 @@
 use super::format::Finished;
 use super::part_file::{PartFile, beside, unwritable};
 use crate::diagnostic::Diagnostic;
+use crate::disk;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -65,8 +66,8 @@ impl OutputFolder {
     pub fn place(&self, name: &str) -> Result<PathBuf, Diagnostic> {
         let path = self.path(name);
         match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-                std::fs::create_dir_all(folder).map_err(|e| unwritable(&path, &e))?;
+            Some(folder) if !folder.as_os_str().is_empty() && !disk::is_folder(folder) => {
+                disk::create_dir_all(folder).map_err(|e| unwritable(&path, &e))?;
             }
             _ => {}
         }
@@ -119,7 +120,7 @@ impl OutputFolder {
         for name in names.iter().filter(|n| !self.written.contains_key(*n)) {
             let path = self.dir.join(name);
             if self.is_earlier(name, &path) {
-                std::fs::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
+                disk::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
             }
         }
         Ok(())
@@ -152,14 +153,14 @@ impl OutputFolder {
         let path = self.dir.join(name);
         if path.symlink_metadata().is_ok() {
             if self.is_earlier(name, &path) || self.written.contains_key(name) {
-                std::fs::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
+                disk::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
             } else {
                 let aside = free_name(&path);
-                std::fs::rename(&path, &aside).map_err(|e| unwritable(&path, &e))?;
+                disk::rename(&path, &aside).map_err(|e| unwritable(&path, &e))?;
                 self.kept.push((path.clone(), aside));
             }
         }
-        std::fs::rename(&file.part, &path).map_err(|e| unwritable(&path, &e))
+        disk::rename(&file.part, &path).map_err(|e| unwritable(&path, &e))
     }
 
     /// Returns true if a file is one of the earlier run, as it was written.
@@ -195,7 +196,7 @@ impl OutputFolder {
 /// record of this program.
 pub(super) fn listed(path: &Path, name: &str) -> BTreeMap<String, Vec<u64>> {
     let mut earlier: BTreeMap<String, Vec<u64>> = BTreeMap::new();
-    let value = std::fs::read(path).ok();
+    let value = disk::read(path).ok();
     let value = value.and_then(|text| serde_json::from_slice::<Value>(&text).ok());
     let Some(value) = value.filter(|v| v["versions"]["cognate"].is_string()) else {
         return earlier;
@@ -208,7 +209,7 @@ pub(super) fn listed(path: &Path, name: &str) -> BTreeMap<String, Vec<u64>> {
         }
     }
     // a record cannot contain its own size
-    if let Ok(about) = std::fs::metadata(path) {
+    if let Ok(about) = disk::metadata(path) {
         earlier.insert(name.to_owned(), vec![about.len()]);
     }
     earlier
@@ -225,8 +226,8 @@ fn try_to_write(dir: &Path) -> std::io::Result<()> {
         }
     }
     let probe = free_name(&folder.join(format!(".cognate-{}", std::process::id())));
-    std::fs::File::create_new(&probe)?;
-    std::fs::remove_file(&probe)
+    disk::File::create_new(&probe)?;
+    disk::remove_file(&probe)
 }
 
 /// Returns `path~`, or the first of `path~2`, `path~3` … that is free.

@@ -5,7 +5,8 @@
 use super::Run;
 use super::format::{Finished, Sink, TableText};
 use crate::diagnostic::{Cause, Diagnostic};
-use std::fs::File;
+use crate::disk;
+use crate::disk::File;
 use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -72,7 +73,7 @@ impl Drop for PartFile {
     fn drop(&mut self) {
         if let (Some((part, _)), 0) = (&self.part, self.bytes) {
             // an empty file that cannot be removed either does no harm
-            let _ = std::fs::remove_file(part);
+            let _ = disk::remove_file(part);
         }
     }
 }

@@ -12,7 +12,7 @@ use cognate::expr::program::{Engine, Input, Program, Work};
 use cognate::expr::signature::{Choice, Kind};
 use cognate::expr::spline::{Ends, Extrapolation};
 use cognate::expr::walk::{self, Host};
-use cognate::expr::{Names, Profile, compile::compile, lint, parse};
+use cognate::expr::{Profile, compile::compile, lint, parse};
 use cognate::scalar::Lanes;
 use std::sync::Arc;
 
@@ -54,7 +54,7 @@ pub fn tree(bytes: &[u8], contents: Contents) -> Ast {
         nodes: maker.nodes,
         spans,
         root,
-        names: Names::new(),
+        names: Arc::default(),
     }
 }
 
@@ -75,7 +75,7 @@ pub fn prepared_call(bytes: &[u8]) -> Ast {
         spans: vec![Span::default(); maker.nodes.len()],
         nodes: maker.nodes,
         root,
-        names: Names::new(),
+        names: Arc::default(),
     }
 }
 
@@ -130,7 +130,7 @@ pub fn extreme(bytes: &[u8], dialect: Dialect) -> Ast {
         spans: vec![Span::default(); maker.nodes.len()],
         nodes: maker.nodes,
         root,
-        names: Names::new(),
+        names: Arc::default(),
     }
 }
 

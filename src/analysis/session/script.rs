@@ -8,6 +8,7 @@ use crate::analysis::warning::RunWarning;
 use crate::analysis::watch::Watch;
 use crate::dataset::command::{Command, Linear, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Cause, Diagnostic, Error};
+use crate::disk;
 use crate::model::ElementKind;
 use crate::results::{Event, Status};
 
@@ -74,7 +75,7 @@ fn found(session: &Session, name: &str) -> Result<Vec<u8>, Diagnostic> {
     let here = std::path::PathBuf::from(".");
     let folders = session.folders.iter().chain(std::iter::once(&here));
     let mut files = folders.flat_map(|folder| [folder.join(&file), folder.join(&given)]);
-    let bytes = files.find_map(|f| std::fs::read(f).ok());
+    let bytes = files.find_map(|f| disk::read(f).ok());
     bytes.ok_or_else(|| {
         Diagnostic::error("cannot_open", format!("there is no file {file}"))
             .help("SAVE/SYSTEM=file writes one, beside the results")

@@ -2,6 +2,7 @@
 //! corners of their convex hulls.
 
 use crate::dataset::mesh;
+use crate::disk;
 use crate::model::{Model, Shape};
 use crate::scene::contacts::Shell;
 use std::collections::BTreeMap;
@@ -43,11 +44,11 @@ pub fn shell_of(name: &str, folders: &[PathBuf]) -> Result<Shell, String> {
     let Some(path) = mesh::find(name, folders) else {
         return Err(refuse("there is no such file".into()));
     };
-    let size = std::fs::metadata(&path).map_or(0, |m| m.len());
+    let size = disk::metadata(&path).map_or(0, |m| m.len());
     if size > mesh::MOST_BYTES {
         return Err(refuse(format!("{size} bytes are too many")));
     }
-    let bytes = std::fs::read(&path).map_err(|e| refuse(format!("it cannot be opened: {e}")))?;
+    let bytes = disk::read(&path).map_err(|e| refuse(format!("it cannot be opened: {e}")))?;
     let points = mesh::points(name, &bytes).map_err(refuse)?;
     let n = points.len();
     let (corners, outside) = hull(&points).map_err(refuse)?;

@@ -11,9 +11,10 @@
 
 use super::{Parameter, Row, Sweep};
 use crate::diagnostic::{Cause, Diagnostic, Error};
+use crate::disk;
+use crate::disk::{File, OpenOptions};
 use crate::results::{Column, Kind, Run, Sequence, Status, digest, digits, write_text};
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -42,7 +43,7 @@ impl Table {
         let (names, units) = heads(sweep);
         let record = path.with_extension("sweep.json");
         let mut rows = Vec::new();
-        if path.exists() {
+        if disk::is_there(path) {
             let digest = recorded_digest(&record);
             if digest.is_none_or(|d| d != digest_of(sweep)) {
                 let what = format!("{} is no table of this sweep", path.display());
@@ -191,7 +192,7 @@ fn written(names: &[String], units: &[String], rows: &[Row]) -> String {
 
 /// Reads the rows of a table, each as that of a point of the design that has no row yet.
 fn read(path: &Path, names: &[String], points: &[Vec<f64>]) -> Result<Vec<Row>, Error> {
-    let bytes = std::fs::read(path).map_err(|e| {
+    let bytes = disk::read(path).map_err(|e| {
         let what = format!("{}: cannot be opened: {e}", path.display());
         Error::from(Diagnostic::error("cannot_open", what)).with_source(e)
     })?;
@@ -282,7 +283,7 @@ fn record_text(sweep: &Sweep) -> String {
 }
 
 fn recorded_digest(record: &Path) -> Option<String> {
-    let text = std::fs::read(record).ok()?;
+    let text = disk::read(record).ok()?;
     let record: serde_json::Value = serde_json::from_slice(&text).ok()?;
     Some(record["digest"].as_str()?.to_owned())
 }

@@ -19,6 +19,7 @@ use super::syntax::{self, Item, Source, Syntax};
 use super::value::Kind;
 use super::{enter, load};
 use crate::diagnostic::{Diagnostic, Error, Severity, Span};
+use crate::disk;
 use crate::model::{ElementKind, Model, SettingsStatement};
 use interpret::{COMMANDS, interpret};
 use message_log::of_message_log;
@@ -222,7 +223,7 @@ impl Script {
         };
         let named = beside(name);
         let moved = beside(last_component(name));
-        Some(if !named.exists() && moved.exists() {
+        Some(if !disk::is_there(&named) && disk::is_there(&moved) {
             moved
         } else {
             named
@@ -246,7 +247,7 @@ fn last_component(name: &str) -> &str {
 
 /// The file, or the one beside it whose name has other capital letters.
 fn existing(path: PathBuf) -> PathBuf {
-    if path.exists() {
+    if disk::is_there(&path) {
         return path;
     }
     let folder = match path.parent() {
@@ -256,7 +257,7 @@ fn existing(path: PathBuf) -> PathBuf {
     let alike = |other: &std::ffi::OsStr| {
         (path.file_name()).is_some_and(|name| name.eq_ignore_ascii_case(other))
     };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let entries = disk::read_dir(folder).into_iter().flatten().flatten();
     let mut found = entries.filter(|e| alike(&e.file_name()));
     found.next().map_or_else(|| path.clone(), |e| e.path())
 }

@@ -19,6 +19,7 @@ use super::format::{Finished, Sink};
 use super::part_file::{PartFile, beside, unwritable};
 use super::{Run, Sequence, Units};
 use crate::diagnostic::Diagnostic;
+use crate::disk;
 use ::parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType};
 use ::parquet::column::writer::ColumnCloseResult;
 use ::parquet::data_type::DoubleType;
@@ -132,7 +133,7 @@ impl Blocks {
             let bytes = match part {
                 Part::Memory(bytes) => Bytes::copy_from_slice(bytes),
                 Part::File(path) => {
-                    Bytes::from(std::fs::read(path).map_err(|e| unwritable(path, &e))?)
+                    Bytes::from(disk::read(path).map_err(|e| unwritable(path, &e))?)
                 }
             };
             append_groups(&mut writer, &bytes).map_err(|e| failed(&e))?;
@@ -185,11 +186,11 @@ impl Sink for Blocks {
         if let Some(folder) = self.folder.take() {
             for part in std::mem::take(&mut self.parts) {
                 if let Part::File(path) = part {
-                    std::fs::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
+                    disk::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
                 }
             }
             // something that is not ours may be in it
-            let _ = std::fs::remove_dir(&folder);
+            let _ = disk::remove_dir(&folder);
         }
         Ok(finished)
     }
@@ -200,7 +201,7 @@ fn make_folder(place: &Path) -> std::io::Result<PathBuf> {
     let mut number = 1;
     loop {
         let folder = beside(place, number);
-        match std::fs::create_dir(&folder) {
+        match disk::create_dir(&folder) {
             Ok(()) => return Ok(folder),
             Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
             Err(e) => return Err(e),
@@ -211,8 +212,8 @@ fn make_folder(place: &Path) -> std::io::Result<PathBuf> {
 /// Writes a part under a name that programs do not read, then renames it: a part is whole always.
 fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let unfinished = path.with_extension("unfinished");
-    std::fs::write(&unfinished, bytes)?;
-    std::fs::rename(&unfinished, path)
+    disk::write(&unfinished, bytes)?;
+    disk::rename(&unfinished, path)
 }
 
 fn not_encoded(path: &Path, e: &::parquet::errors::ParquetError) -> Diagnostic {
