@@ -11,7 +11,7 @@ use cognate::dataset::command::Script;
 use cognate::model::Model;
 use cognate::numeric::METHODS;
 use cognate::results::csv;
-use requests::expressions;
+use requests::{expressions, problems};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -25,20 +25,6 @@ const BUDGET: f64 = 5.0;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
-}
-
-/// The problems: command files that have a trusted table beside them.
-fn problems() -> Vec<String> {
-    let folder = root().join("tests/data/references");
-    let files = std::fs::read_dir(folder).expect("references");
-    let names = files.filter_map(|file| {
-        let path = file.ok()?.path();
-        let is_commands = path.extension()? == "acf" && path.with_extension("csv").exists();
-        is_commands.then(|| path.file_stem().map(|s| s.to_string_lossy().into_owned()))?
-    });
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    names
 }
 
 fn study(problem: &str, budget: f64) -> Study {
@@ -157,7 +143,7 @@ fn main() {
         .collect();
     let budget = std::env::var("BUDGET").ok().and_then(|b| b.parse().ok());
     let mut studies = Vec::new();
-    for problem in problems() {
+    for problem in problems(&root().join("tests/data/references")) {
         if !words.is_empty() && !words.iter().any(|w| problem.contains(w.as_str())) {
             continue;
         }

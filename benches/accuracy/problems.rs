@@ -69,14 +69,7 @@ fn table(name: &str) -> Run {
 
 /// All problems, by their names.
 pub fn all() -> Vec<Problem> {
-    let files = std::fs::read_dir(folder()).expect("the references");
-    let names = files.filter_map(|file| {
-        let path = file.ok()?.path();
-        let is_commands = path.extension()? == "acf" && path.with_extension("csv").exists();
-        is_commands.then(|| path.file_stem().map(|s| s.to_string_lossy().into_owned()))?
-    });
-    let mut names: Vec<String> = names.collect();
-    names.sort();
+    let names = crate::requests::problems(&folder());
     let mut problems: Vec<Problem> = names.iter().map(|name| moving(name)).collect();
     problems.extend(spheres());
     problems.push(chain());

@@ -26,17 +26,11 @@ const ODD: [f64; 9] = [
     5e-324,
 ];
 
-const PENDULUM: &str = "pendulum
-PART/1, GROUND
-MARKER/1, PART=1
-PART/2, MASS=2, CM=20, IP=0.1,0.1,0.1
-MARKER/20, PART=2, QP=1,0,0
-MARKER/21, PART=2
-JOINT/1, REVOLUTE, I=21, J=1
-ACCGRAV/JGRAV=-9.81
-SFORCE/3, ROTATION, I=21, J=1, FUNCTION=USER(7)
+const PENDULUM: &str = pendulum!(
+    "SFORCE/3, ROTATION, I=21, J=1, FUNCTION=USER(7)
 END
-";
+"
+);
 
 fn pendulum() -> Model {
     Model::from_text(PENDULUM).expect("a model")

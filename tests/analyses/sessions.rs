@@ -11,19 +11,13 @@ use std::sync::mpsc::channel;
 const COLUMNS: [&str; 3] = ["AZ(21,1)", "WZ(21,1)", "FX(21,1)"];
 
 /// A pendulum in three dimensions with a number that a program changes, switches and a motion that ends.
-const PENDULUM: &str = "pendulum
-PART/1, GROUND
-MARKER/1, PART=1
-PART/2, MASS=2, CM=20, IP=0.1,0.1,0.1
-MARKER/20, PART=2, QP=1,0,0
-MARKER/21, PART=2
-JOINT/1, REVOLUTE, I=21, J=1
-ACCGRAV/JGRAV=-9.81
-VARIABLE/3, FUNCTION=0.2
+const PENDULUM: &str = pendulum!(
+    "VARIABLE/3, FUNCTION=0.2
 SFORCE/3, ROTATION, I=21, J=1, FUNCTION=-VARVAL(3)*WZ(21,1)-IF(AZ(21,1)+1:5*AZ(21,1)+5,0,0)
 SENSOR/1, FUNCTION=AZ(21,1)\\, VALUE=-0.5, LE, EVALUATE=TIME
 END
-";
+"
+);
 
 fn session(options: Options) -> Session {
     begin(whole(PENDULUM), "pendulum", options)

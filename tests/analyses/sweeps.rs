@@ -7,19 +7,13 @@ use cognate::results::Status;
 use std::path::PathBuf;
 
 /// A pendulum with a number, and a formula that reads itself.
-const PENDULUM: &str = "pendulum
-PART/1, GROUND
-MARKER/1, PART=1
-PART/2, MASS=2, CM=20, IP=0.1,0.1,0.1
-MARKER/20, PART=2, QP=1,0,0
-MARKER/21, PART=2
-JOINT/1, REVOLUTE, I=21, J=1
-ACCGRAV/JGRAV=-9.81
-VARIABLE/3, FUNCTION=0.2
+const PENDULUM: &str = pendulum!(
+    "VARIABLE/3, FUNCTION=0.2
 VARIABLE/4, IC=0.5, FUNCTION=0.5*COS(VARVAL(4))+VARVAL(3)
 SFORCE/3, ROTATION, I=21, J=1, FUNCTION=-VARVAL(4)*WZ(21,1)
 END
-";
+"
+);
 const MEASURES: [&str; 3] = ["max(abs(WZ(21,1)))", "last(AZ(21,1))", "mean(FX(21,1))"];
 
 fn pendulum() -> Sweep {
