@@ -124,13 +124,23 @@ pub fn read_text(text: &str) -> Reading {
     read_source(Source::from_text(None, text))
 }
 
-/// The bytes of a file.
+/// The bytes of a file, which are a text.
 fn load(path: &Path) -> Result<Vec<u8>, Error> {
-    disk::read(path).map_err(|e| {
+    let bytes = disk::read(path).map_err(|e| {
         let mut d = Diagnostic::error("cannot_open", format!("cannot be opened: {e}"));
         d.file = Some(path.display().to_string());
         Error::from(d).with_source(e)
-    })
+    })?;
+    match syntax::first_of_no_text(&bytes) {
+        None => Ok(bytes),
+        Some(place) => {
+            let message = format!("is no text: byte {place} is zero");
+            let mut d = Diagnostic::error("no_text", message);
+            d.file = Some(path.display().to_string());
+            let d = d.help("datasets, command files and logs are lines of text; what a program keeps in a format of its own it exports");
+            Err(Error::from(d))
+        }
+    }
 }
 
 /// Reads a dataset.
@@ -190,7 +200,8 @@ pub fn read_source(source: Source) -> Reading {
     records.iter().flatten().for_each(|r| without_effect.add(r));
     out.extend(without_effect.told(&source));
     name_elements(&records, out);
-    out.sort_by_key(|d| (d.line, d.column));
+    // what is missing as a whole follows from mistakes that have a place
+    out.sort_by_key(|d| (d.line == 0, d.line, d.column));
     reading.dataset = Dataset {
         source,
         syntax,

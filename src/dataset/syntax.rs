@@ -92,6 +92,15 @@ impl Encoding {
     }
 }
 
+/// Returns the place of the first zero byte in what is no text of any encoding; zeros at the end are
+/// padding.
+pub(super) fn first_of_no_text(bytes: &[u8]) -> Option<usize> {
+    let first = bytes.iter().position(|&b| b == 0)?;
+    let is_padding = bytes.iter().skip(first).all(|&b| b == 0);
+    let is_wide = matches!(Encoding::of(bytes), Encoding::Utf16 { .. });
+    (!is_padding && !is_wide).then_some(first)
+}
+
 impl Source {
     /// A text given by a program.
     pub fn from_text(file: Option<&str>, text: impl Into<String>) -> Self {

@@ -964,3 +964,55 @@ fn every_kind_of_element_has_one_statement() {
         assert_eq!(rows.count(), 1, "{kind}");
     }
 }
+
+#[test]
+fn what_is_missing_as_a_whole_stands_after_the_mistakes_it_may_follow_from() {
+    for wrong in ["PRT/1, GROUND", "PART/1, GROUDN", "PART1, GROUND"] {
+        let text = format!("t\n{wrong}\nMARKER/1, PART=1\nEND\n");
+        let found = dataset::read_text(&text).diagnostics;
+        let errors: Vec<_> = found
+            .iter()
+            .filter(|d| d.severity == Severity::Error)
+            .collect();
+        assert_eq!(errors[0].line, 2, "{found:?}");
+    }
+}
+
+#[test]
+fn a_file_that_is_no_text_is_refused_as_such() {
+    let folder = std::env::temp_dir().join(format!("cognate_no_text_{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let model = "t\nPART/1, GROUND\nEND\n";
+    let wide: Vec<u8> = model.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for (name, bytes, is_text) in [
+        (
+            "packed.adm",
+            b"PK\x03\x04\x14\0\0\0\x08\0abc".to_vec(),
+            false,
+        ),
+        ("zero.adm", b"t\nPART/1, GR\0OUND\nEND\n".to_vec(), false),
+        ("padded.adm", [model.as_bytes(), &[0; 40]].concat(), true),
+        ("wide.adm", wide, true),
+    ] {
+        let file = folder.join(name);
+        std::fs::write(&file, bytes).unwrap();
+        match dataset::read(&file) {
+            Ok(reading) => {
+                let wrong = reading
+                    .diagnostics
+                    .iter()
+                    .any(|d| d.severity == Severity::Error);
+                assert!(is_text && !wrong, "{name}: {:?}", reading.diagnostics);
+            }
+            Err(e) => {
+                assert!(!is_text, "{name}: {e}");
+                assert_eq!(e.diagnostics()[0].code, "no_text");
+            }
+        }
+        // commands are read through the same door
+        let refused = Script::read(&file).err();
+        let is_told = refused.is_some_and(|e| e.diagnostics()[0].code == "no_text");
+        assert_eq!(is_told, !is_text, "{name}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}

@@ -15,6 +15,15 @@ file that is no command is taken as the name of the dataset; FILE/MODEL=name is 
     FILE/MODEL=slider_crank     means slider_crank.adm beside the command file",
     },
     Code {
+        name: "no_text",
+        summary: "a file is no text",
+        explanation: "\
+Datasets, command files and logs are lines of text in UTF-8, UTF-16 or Latin-1; there is no byte of zero in them. What a program keeps in
+a format of its own (.bin, .cmd.gz, pictures, tables in Parquet) is exported as a dataset first.
+
+    cognate run model.adm --end 1     and not model.bin",
+    },
+    Code {
         name: "element_in_use",
         summary: "an element that is to be deleted is named by others",
         explanation: "\
