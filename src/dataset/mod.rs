@@ -137,8 +137,10 @@ fn load(path: &Path) -> Result<Vec<u8>, Error> {
             let message = format!("is no text: byte {place} is zero");
             let mut d = Diagnostic::error("no_text", message);
             d.file = Some(path.display().to_string());
-            let d = d.help("datasets, command files and logs are lines of text; what a program keeps in a format of its own it exports");
-            Err(Error::from(d))
+            Err(Error::from(d.help(
+                "datasets, command files and logs are lines of text; what a program keeps in a format \
+                 of its own it exports",
+            )))
         }
     }
 }
