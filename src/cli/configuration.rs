@@ -11,7 +11,7 @@ use crate::analysis::session::{Analysis, Options, Session};
 use crate::dataset;
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Cause, Diagnostic};
-use crate::model::{ElementKind, Model};
+use crate::model::{ElementId, ElementKind, Model};
 use crate::results::{self, Status, digits_of_six};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -253,8 +253,8 @@ fn write(args: &Args, session: &Session, left: &[Step]) -> Outcome {
                 file.display()
             ));
         }
-        None if !model.inactive.is_empty() => {
-            let names: Vec<String> = model.inactive.iter().map(ToString::to_string).collect();
+        None if !untold(model).is_empty() => {
+            let names: Vec<String> = untold(model).iter().map(ToString::to_string).collect();
             let d = Diagnostic::warning(
                 Cause::Approximate,
                 format!(
@@ -271,6 +271,13 @@ fn write(args: &Args, session: &Session, left: &[Step]) -> Outcome {
         None => {}
     }
     Ok(Exit::Done)
+}
+
+/// Returns the elements that are switched off, which a dataset does not tell; but for those within
+/// rigid bodies, which it does.
+fn untold(model: &Model) -> Vec<ElementId> {
+    let within = model.within_rigid_bodies();
+    model.inactive.difference(&within).copied().collect()
 }
 
 /// Returns a command file for what is left of a run from a time on.

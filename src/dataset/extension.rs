@@ -9,7 +9,9 @@
 //! Initial values become [`Model::beginnings`]. A rigid body becomes FIXED joints between its first
 //! part and the others, with markers of their own; joints within it are switched off, for they have
 //! nothing to hold. So a rigid body is part of the model for every other program, too, once it is
-//! written. A part is in one rigid body at most, and no rigid body is in another.
+//! written: with its line, which finds its FIXED joints by their names when it is read again, and
+//! switches off what is within. A part is in one rigid body at most, and no rigid body is in
+//! another.
 
 use super::syntax::{Item, Source, Syntax, TokenKind};
 use crate::diagnostic::{Cause, Diagnostic, Severity, Span, near_names};
@@ -21,7 +23,7 @@ use crate::model::{
 };
 use crate::physics::kinematic::kinematic;
 use crate::space::{Frame, MarkerState, Vec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The word that such a comment begins with.
 const MARK: &str = "cognate:";
@@ -282,6 +284,7 @@ fn weld(
         let position = Vec3(part.qg);
         Some(Frame { rotation, position })
     };
+    model.rigid_bodies.insert(name.to_owned(), parts.to_vec());
     held_within(name, parts, model, (source, span), out);
     let is_ground = |n: &&u32| model.parts.get(n).is_some_and(|p| p.ground);
     let base = parts.iter().find(is_ground).or(parts.first()).copied();
@@ -290,7 +293,7 @@ fn weld(
         return;
     };
     for &part in parts.iter().filter(|&&p| p != base) {
-        let Some(own) = frame(model, part) else {
+        let Some(own) = frame(model, part).filter(|_| !is_welded(model, name, part)) else {
             continue;
         };
         let turned = base_frame.rotation.transpose() * own.rotation;
@@ -314,7 +317,7 @@ fn weld(
         model.markers.insert(j, on_base);
         let joint = Joint {
             place: Place {
-                name: Some(format!("{name}_{part}")),
+                name: Some(name_of_weld(name, part)),
                 ..Place::default()
             },
             kind: JointKind::Fixed,
@@ -324,6 +327,50 @@ fn weld(
         };
         let id = next(model.joints.keys().next_back());
         model.joints.insert(id, joint);
+    }
+}
+
+/// Returns the name of the joint that fixes a part in a rigid body.
+fn name_of_weld(body: &str, part: u32) -> String {
+    format!("{body}_{part}")
+}
+
+/// Returns whether a joint of that name fixes a part in a rigid body: the body has been written.
+fn is_welded(model: &Model, body: &str, part: u32) -> bool {
+    let mut joints = model.joints.values();
+    joints.any(|joint| is_weld(joint, body, &[part]))
+}
+
+/// Returns whether a joint is one of those that fix some parts in a rigid body.
+fn is_weld(joint: &Joint, body: &str, parts: &[u32]) -> bool {
+    let named = |&part: &u32| joint.place.name == Some(name_of_weld(body, part));
+    joint.kind == JointKind::Fixed && parts.iter().any(named)
+}
+
+/// Returns the joints and primitives between parts of a rigid body, but for those that fix them.
+fn within(name: &str, parts: &[u32], model: &Model) -> Vec<ElementId> {
+    let is_within = |marker: &u32| match model.markers.get(marker).map(|m| m.owner) {
+        Some(MarkerOwner::Part(part)) => parts.contains(&part),
+        Some(MarkerOwner::PointMass(_) | MarkerOwner::Other(_)) | None => false,
+    };
+    let joints = model.joints.iter();
+    let joints = joints.filter(|(_, j)| is_within(&j.i) && is_within(&j.j));
+    let joints = joints.filter(|(_, j)| !is_weld(j, name, parts));
+    let joints = joints.map(|(&n, _)| ElementKind::Joint.id(n));
+    let primitives = model.primitives.iter();
+    let primitives = primitives.filter(|(_, p)| is_within(&p.i) && is_within(&p.j));
+    let primitives = primitives.map(|(&n, _)| ElementKind::Jprim.id(n));
+    joints.chain(primitives).collect()
+}
+
+impl Model {
+    /// Returns the joints and primitives between parts of one rigid body each, which have nothing
+    /// to hold: reading the line of the body switches them off.
+    pub fn within_rigid_bodies(&self) -> BTreeSet<ElementId> {
+        let bodies = self.rigid_bodies.iter();
+        bodies
+            .flat_map(|(name, parts)| within(name, parts, self))
+            .collect()
     }
 }
 
@@ -350,17 +397,11 @@ fn held_within(
         Some(MarkerOwner::Part(part)) => parts.contains(&part),
         Some(MarkerOwner::PointMass(_) | MarkerOwner::Other(_)) | None => false,
     };
-    let joints = model.joints.iter();
-    let joints = joints.filter(|(_, j)| is_within(j.i) && is_within(j.j));
-    let joints: Vec<ElementId> = joints.map(|(&n, _)| ElementKind::Joint.id(n)).collect();
-    let primitives = model.primitives.iter();
-    let primitives = primitives.filter(|(_, p)| is_within(p.i) && is_within(p.j));
-    let primitives = primitives.map(|(&n, _)| ElementKind::Jprim.id(n));
-    let held: Vec<ElementId> = joints.iter().copied().chain(primitives).collect();
+    let held = within(name, parts, model);
     for (&n, motion) in &model.motions {
         let drives = match motion.driven {
             Driven::Joint(j) | Driven::JointRotation(j) | Driven::JointTranslation(j) => {
-                joints.contains(&ElementKind::Joint.id(j))
+                held.contains(&ElementKind::Joint.id(j))
             }
             Driven::Markers { i, j, .. } => is_within(i) && is_within(j),
         };

@@ -117,6 +117,11 @@ impl Model {
             }
             out.push(&line);
         }
+        for (name, parts) in &self.rigid_bodies {
+            let parts = parts.iter().map(|&n| ElementKind::Part.id(n).to_string());
+            let parts: Vec<String> = parts.collect();
+            out.push(&format!("! cognate: RIGID {name} = {}", parts.join(", ")));
+        }
         out.push("!");
         out.push("END");
         out.text("\n")

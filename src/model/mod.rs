@@ -169,6 +169,9 @@ macro_rules! model {
             pub settings: BTreeMap<SettingsStatement, Settings>,
             /// initial values of joints and markers that no statement has
             pub beginnings: BTreeMap<ElementId, Beginning>,
+            /// rigid bodies of several parts, by their names: user's numbers of the PARTs, which
+            /// FIXED joints named after the body hold together
+            pub rigid_bodies: BTreeMap<String, Vec<u32>>,
             /// elements switched off by DEACTIVATE
             pub inactive: BTreeSet<ElementId>,
         }

@@ -3,7 +3,8 @@
 
 use crate::running;
 
-use running::{Analysis, Session, go, last, session_by};
+use cognate::results::Status;
+use running::{Analysis, Session, go, last, session_by, try_to};
 
 const METHODS: [&str; 6] = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
 
@@ -223,5 +224,41 @@ fn forces_and_accelerations_at_rest_are_those_that_hold() {
         {
             near(&s, column, expected, method);
         }
+    }
+}
+
+/// A relay of a displacement with a damper swings ever less and ever more quickly, and never comes to rest: every method
+/// ends within its limit of steps, by name or, where its steps are longer than the swings, at the relay; without a jump of
+/// the force, or without the damper, none stops.
+#[test]
+fn a_damped_relay_of_a_displacement_ends_by_name() {
+    let relay = |force: &str, method: &str, error: f64| {
+        let text = format!(
+            "PART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\nJOINT/2, TRANSLATIONAL, I=2, J=1\n\
+             SFORCE/1, TRANSLATION, ACTIONONLY, I=2, J=1, FUNCTION={force}\n"
+        );
+        let mut s = session_by(&text, &["DZ(2,1)"], method, error);
+        let status = try_to(&mut s, Analysis::Dynamic, 5.0, 50);
+        (status, s.run.record.stop_code, last(&s, "DZ(2,1)"))
+    };
+    for (force, error) in [
+        ("-10*SIGN(1,DZ(2,1)-0.1)-100*VZ(2,1)-50*DZ(2,1)", 1e-5),
+        ("-5*SIGN(1,DZ(2,1)-0.1)-20*VZ(2,1)-10*DZ(2,1)", 1e-4),
+        ("IF(DZ(2,1)-0.1:3,0,-3)-20*VZ(2,1)-2*DZ(2,1)", 1e-4),
+    ] {
+        for method in METHODS {
+            let (status, code, place) = relay(force, method, error);
+            let what = format!("{force} by {method}: {code} at {place}");
+            let is_named = status == Status::Stopped && code == "endless_switching";
+            assert!(is_named || status == Status::Completed, "{what}");
+            assert!((place - 0.1).abs() < 1e-3, "{what}");
+        }
+    }
+    for force in [
+        "-10*SIGN(1,DZ(2,1)-0.1)",
+        "-1E3*MAX(0,DZ(2,1)-0.1)+10-0.1*VZ(2,1)",
+    ] {
+        let (status, code, _) = relay(force, "AUTO", 1e-4);
+        assert_eq!(status, Status::Completed, "{force}: {code}");
     }
 }

@@ -1,6 +1,7 @@
 //! Comment lines of ours: initial values of joints and markers, and parts that are one rigid body.
 
 use crate::running;
+use cognate::analysis::verify::verify;
 use cognate::dataset::read_text;
 use running::{Analysis, GROUND, first, go, last, model, session, values};
 
@@ -239,6 +240,35 @@ fn a_rigid_body_with_ground_stands_and_one_is_written_as_joints() {
         written.contains("adams_view_name='base_2'") && written.contains(", FIXED"),
         "{written}"
     );
+}
+
+/// A model with rigid bodies is written with their lines: reading it again gives the same model, whatever else is in it,
+/// and nothing is fixed twice.
+#[test]
+fn rigid_bodies_are_read_again_as_they_were_written() {
+    let third = "PART/4, MASS=1, CM=40, IP=1,1,1, QG=3,0,0\nMARKER/40, PART=4\nMARKER/41, PART=4\nMARKER/32, PART=3, QP=0,0,-1\n\
+                 JOINT/3, FIXED, I=32, J=22\nJPRIM/1, INLINE, I=31, J=22\nJOINT/7, SPHERICAL, I=40, J=32\n";
+    for lines in [
+        "! cognate: RIGID arm = PART/2, PART/3\n",
+        "! cognate: RIGID base = PART/1, PART/2\n",
+        "! cognate: RIGID b a = PART/3, PART/2\n! cognate: IC MARKER/20, VX=1\n",
+        "! cognate: RIGID a = PART/2, PART/3\n! cognate: RIGID b = PART/4, PART/1\n",
+        "! cognate: RIGID a = PART/2, PART/3, PART/4, PART/1\n",
+    ] {
+        let once = model(&format!("{BARS}{third}{lines}"));
+        let text = once.to_text();
+        let again = running::whole(&text);
+        assert_eq!(again.to_text(), text, "{lines}");
+        assert_eq!(again.inactive, once.inactive, "{lines}");
+        assert_eq!(again.rigid_bodies, once.rigid_bodies, "{lines}");
+        let counted =
+            |model: &cognate::model::Model| verify(model).map(|v| (v.freedom, v.dependent.len()));
+        let (a, b) = (counted(&once).unwrap(), counted(&again).unwrap());
+        assert_eq!(a, b, "{lines}");
+        let reading = read_text(&text);
+        let formatted = running::whole(&reading.dataset.formatted());
+        assert_eq!(formatted.to_text(), text, "{lines}");
+    }
 }
 
 #[test]

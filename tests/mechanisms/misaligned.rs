@@ -81,10 +81,19 @@ fn outcome(text: &str, analysis: Analysis) -> (Option<usize>, bool, Vec<String>)
             freedom,
             false,
             (errors.diagnostics().iter())
-                .map(ToString::to_string)
+                .flat_map(|d| std::iter::once(d.to_string()).chain(d.help.iter().cloned()))
                 .collect(),
         ),
     }
+}
+
+/// A door on two hinges whose axes are parallel, and `apart` from each other.
+fn door(apart: f64, more: &str) -> String {
+    format!(
+        "DOOR\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2, QP=1,0,0.5\n\
+         MARKER/11, PART=1\nMARKER/44, PART=2\nMARKER/14, PART=1, QP={apart:?},0,1\nMARKER/22, PART=2, QP={apart:?},0,1\n\
+         JOINT/1, REVOLUTE, I=44, J=11\nJOINT/2, REVOLUTE, I=22, J=14\n{more}END\n"
+    )
 }
 
 fn misfit(size: f64) -> impl Strategy<Value = Misfit> {
@@ -162,6 +171,52 @@ fn what_is_refused_stays_refused_when_it_is_tilted_more() {
                 refused |= !went;
             }
             assert!(refused || both && freedom == 0, "{analysis:?}, both {both}");
+        }
+    }
+}
+
+/// A loop that fits as it is drawn, but is a structure, is not moved by its drive: beyond tolerance it is refused or
+/// stopped, also where the drive begins at rest, with the amount and the name of a joint; within it the joint is told.
+#[test]
+fn a_drive_does_not_move_what_is_locked() {
+    let tilted = |joint: usize, size: f64| {
+        let mut misfits = [ALIGNED; 8];
+        let tilt = [size, 0.0, 0.0, 0.0, 0.0];
+        (misfits[2 * joint], misfits[2 * joint + 1]) = (tilt, tilt);
+        misfits
+    };
+    for function in ["0.5*TIME", "STEP(TIME,0,0,0.2,1)", "0.5*TIME**2"] {
+        let drive = format!("MOTION/1, JOINT=1, ROTATION, FUNCTION={function}\n");
+        for exponent in 2..=12 {
+            let size = 0.7 * 10f64.powi(-exponent);
+            let mut models: Vec<String> = (0..4)
+                .map(|joint| four_bar(&tilted(joint, size), 1.0, &[0], &drive))
+                .collect();
+            models.push(door(size, &drive));
+            for (k, text) in models.iter().enumerate() {
+                let free = "PART/9, MASS=1, CM=90, IP=1,1,1\nMARKER/90, PART=9, QP=9,9,9\nEND\n";
+                let beside = text.replace("END\n", free);
+                for (text, analysis) in [(text, Analysis::Kinematic), (&beside, Analysis::Dynamic)]
+                {
+                    let (_, went, said) = outcome(text, analysis);
+                    let case = format!("{function}, 1e-{exponent}, {k}, {analysis:?}: {said:?}");
+                    let is_told = said
+                        .iter()
+                        .any(|s| s.contains("JOINT/") && s.contains("misalignment"));
+                    let is_refused = said
+                        .iter()
+                        .any(|s| s.contains("JOINT/") && s.contains("is off by"));
+                    assert_eq!(went, exponent > 3, "{case}");
+                    assert!(
+                        if went {
+                            exponent > 8 || is_told
+                        } else {
+                            is_refused
+                        },
+                        "{case}"
+                    );
+                }
+            }
         }
     }
 }

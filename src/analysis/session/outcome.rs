@@ -8,6 +8,7 @@ use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
 use crate::analysis::time::{ranks, valueless};
 use crate::analysis::trajectory::{Ended, EnergyFlow, Limited, Trajectory};
+use crate::analysis::verify::culprit;
 use crate::analysis::warning::{RunWarning, Warning};
 use crate::model::Model;
 use crate::numeric::{Reason, Stop};
@@ -134,6 +135,14 @@ impl Session {
         }
         self.run.record.redundant = names;
         self.run.record.freedom = assembly.freedom as i64;
+    }
+
+    /// Tells which constraints lock the mechanism whatever its motions prescribe, if any do.
+    pub(super) fn warn_of_locks(&mut self) {
+        let locks = culprit::locked_without_motions(&self.model).unwrap_or_default();
+        for lock in locks {
+            self.warn(RunWarning::LockedWithoutMotions(lock));
+        }
     }
 
     /// Why a simulation over time ended early; `None`: all was done.

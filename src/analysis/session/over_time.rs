@@ -6,6 +6,7 @@ use super::outcome::counts;
 use super::phase::Phase;
 use super::rows::{Follower, Seen};
 use super::simulate::Span;
+use super::stop_reason::StopReason;
 use super::{Analysis, Session};
 use crate::analysis::system::System;
 use crate::analysis::time::continuation::Continuation;
@@ -55,6 +56,9 @@ impl Session {
         self.rank_changes(system, chosen, &trajectory);
         self.note_sensors(system, &trajectory);
         let stopped = self.stop_reason(system, &trajectory, span.end);
+        if stopped.as_ref().is_some_and(StopReason::is_lock) {
+            self.warn_of_locks();
+        }
         self.note_drift(system, &seen.balance);
         self.account(&trajectory.energy);
         if settings.is_auto() && kind == Kind::Dynamic {

@@ -148,6 +148,20 @@ impl StopReason {
         }
     }
 
+    /// Returns whether constraints cannot be kept.
+    pub(super) fn is_lock(&self) -> bool {
+        match self {
+            StopReason::Locked { .. } => true,
+            StopReason::Method { cause, .. } => *cause == Cause::Projection,
+            StopReason::Interrupted
+            | StopReason::WorkLimit { .. }
+            | StopReason::Sensor { .. }
+            | StopReason::Contact { .. }
+            | StopReason::Function { .. }
+            | StopReason::NoEquilibrium { .. } => false,
+        }
+    }
+
     /// Returns the status of the run.
     pub(super) fn status(&self) -> Status {
         match self {

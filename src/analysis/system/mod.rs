@@ -207,6 +207,12 @@ impl System {
         self.recorded.branches.side_left_to(&self.numbers, k)
     }
 
+    /// Returns whether the rate jumps where switch `k` changes.
+    pub fn rate_jumps(&mut self, t: f64, y: &[f64], k: usize) -> bool {
+        self.set(t, y);
+        self.recorded.branches.rate_jumps(&self.numbers, k)
+    }
+
     /// Returns the unknown whose rate changes most where switch `k` does.
     pub fn changed_most_by(&mut self, t: f64, y: &[f64], k: usize) -> usize {
         self.set(t, y);

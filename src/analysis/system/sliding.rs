@@ -29,6 +29,8 @@ use crate::scene::slopes::WIDTH;
 
 /// Distance of the states on either side of what slides, as a part of their sizes.
 const BESIDE: f64 = 1e-12;
+/// Change of the rates at a switch, as a part of the largest rate, that is a jump.
+const JUMP: f64 = 1e-6;
 
 /// One of the branches between which the motion stays.
 #[derive(Clone, Debug)]
@@ -207,14 +209,26 @@ impl Branches {
         }
     }
 
-    /// Returns the unknown whose rate changes most where switch `k` does.
-    pub(super) fn changed_most_by(&mut self, numbers: &[f64], k: usize) -> usize {
+    /// Returns the change of the rates where switch `k` does   (n)
+    fn change_by(&mut self, numbers: &[f64], k: usize) -> &[f64] {
         self.slides.which.push(k);
         self.weigh(numbers);
         self.slides.which.pop();
         let n = self.slides.base.len();
         let change = self.slides.changes.rchunks_exact(n.max(1)).next();
-        let change = change.unwrap_or_default().iter().take(n.saturating_sub(1));
+        change.map_or(&[], |change| &change[..n.saturating_sub(1)])
+    }
+
+    /// Returns whether the rate jumps where switch `k` changes.
+    pub(super) fn rate_jumps(&mut self, numbers: &[f64], k: usize) -> bool {
+        let largest = |all: &[f64]| all.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let change = largest(self.change_by(numbers, k));
+        change > JUMP * largest(&self.slides.base)
+    }
+
+    /// Returns the unknown whose rate changes most where switch `k` does.
+    pub(super) fn changed_most_by(&mut self, numbers: &[f64], k: usize) -> usize {
+        let change = self.change_by(numbers, k).iter();
         let largest = change
             .enumerate()
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));

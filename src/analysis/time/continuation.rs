@@ -278,6 +278,11 @@ impl Continuation {
         // nothing but motions on coordinates of the forest
         let Some(mut sides) = self.sides.take() else {
             let y = self.now.y.clone();
+            if let Some((what, off)) = system.worst_left_out(t, &y)
+                && (off.is_nan() || off > FOLLOWS_TOLERANCE)
+            {
+                return Tried::leaves(what, 0.5);
+            }
             return Tried::Continues {
                 node: Node { t, y },
                 side: None,

@@ -474,7 +474,10 @@ impl<'a> Leg<'a> {
         let without_end = switches::never_end(&self.out.event_times, self.limits.end)
             .then(|| self.switches.changes_most(self.system, anew, &state));
         self.switches.change(self.system, anew, &mut state);
-        if let Some(worst) = without_end.flatten().or(self.switches.endless()) {
+        if let Some(worst) = without_end
+            .flatten()
+            .or(self.switches.endless(anew, self.limits.end))
+        {
             let (reason, t, h) = (Reason::Endless(worst), step.t1, step.h);
             return Err(Stop { reason, t, h }.into());
         }

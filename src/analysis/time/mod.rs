@@ -3,7 +3,7 @@
 //! ```text
 //! dynamics     one method after another       options, trajectory: the question and the answer
 //! leg          the loop over the steps of one method; leg_rows, leg_output: its rows, its results
-//! switches     branches: held within a step, changed where they end
+//! switches     branches: held within a step, changed where they end; chatter: without end
 //! ranks        positions where rows become dependent; better rows; why a mechanism is locked
 //! kinematics   mechanisms without freedom; continuation: their steps along a branch;
 //!              kinematic_sensors: what is watched on the way
@@ -13,6 +13,7 @@
 //! output       output times
 //! ```
 
+mod chatter;
 pub mod continuation;
 mod counting;
 pub mod drives;

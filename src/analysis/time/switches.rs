@@ -22,10 +22,11 @@
 //! Some switch for ever all the same (a relay that reads a position). After a burst of forty
 //! switches the branches are let go for twenty steps, and error control finds its way. The same is
 //! done where no step is possible while they are held. Where that leads nowhere, the run ends:
-//! [`Switches::endless`]. So it does where switches come ever faster and never would end:
-//! [`never_end`].
+//! [`Switches::endless`]. So it does where switches come ever faster and never would end,
+//! [`never_end`], and where one [chatters](crate::analysis::time::chatter).
 
 use crate::analysis::system::System;
+use crate::analysis::time::chatter::Chatter;
 use crate::numeric::event::{Locator, sign};
 use crate::numeric::{Failure, Method, Step};
 
@@ -124,6 +125,7 @@ pub struct Switches {
     last_burst: f64,
     worst: usize,
     rest: usize,
+    chatter: Chatter,
     duration: f64,
 }
 
@@ -151,6 +153,7 @@ impl Switches {
             last_burst: f64::NEG_INFINITY,
             worst: 0,
             rest: 0,
+            chatter: Chatter::default(),
             duration,
         }
     }
@@ -179,9 +182,21 @@ impl Switches {
     }
 
     /// Returns the unknown that branches change most where they change without end and the run
-    /// comes no further.
-    pub fn endless(&self) -> Option<usize> {
-        (self.bursts > MAX_BURSTS).then_some(self.worst)
+    /// comes no further, or one chatters and would until the `end`.
+    pub fn endless(&self, t: f64, end: f64) -> Option<usize> {
+        let endless = self.bursts > MAX_BURSTS || self.chatter.is_endless(t, end);
+        endless.then_some(self.worst)
+    }
+
+    /// Takes note of the switch at the state, if it is one alone.
+    fn see_chatter(&mut self, system: &mut System, t: f64, y: &[f64]) {
+        let mut switched = (0..self.next.len()).filter(|&k| self.next[k] != 0);
+        if let (Some(k), None) = (switched.next(), switched.next()) {
+            self.chatter.see(system, (t, y), k, self.next[k]);
+            if self.chatter.is_long() {
+                self.worst = system.changed_most_by(t, y, k);
+            }
+        }
     }
 
     /// Returns the unknown that changes most by the switch at the state; `None`: there is none.
@@ -195,6 +210,7 @@ impl Switches {
     pub fn change(&mut self, system: &mut System, t: f64, y: &mut [f64]) {
         self.landing = None;
         self.redone = 0;
+        self.see_chatter(system, t, y);
         if t - self.last < BURST_DURATION * self.duration {
             self.burst += 1;
         } else {

@@ -54,7 +54,9 @@ pub(super) fn traced(model: &Model, said: Vec<Diagnostic>) -> Vec<Diagnostic> {
         return said;
     }
     let fits = suspects.iter().all(|s| s.apart.is_none());
-    let drives = |s: &Suspect| fits && s.id.kind == ElementKind::Motion;
+    let locked = fits.then(|| locked_without_motions(model)).flatten();
+    let blames_motions = fits && locked.is_none();
+    let drives = |s: &Suspect| blames_motions && s.id.kind == ElementKind::Motion;
     suspects.sort_by(|a, b| {
         let first = |s: &Suspect| (s.apart.is_none(), !drives(s));
         // rounding decides nothing
@@ -66,7 +68,27 @@ pub(super) fn traced(model: &Model, said: Vec<Diagnostic>) -> Vec<Diagnostic> {
             // of several motions, the last is the one too many
             .then(by_number().unwrap_or(a.id.cmp(&b.id)))
     });
-    vec![accused(model, &suspects, said)]
+    vec![accused(model, &suspects, locked.unwrap_or(said))]
+}
+
+/// Finds the constraints that lock a mechanism whatever its motions prescribe: those that assembly
+/// refuses without them. `None`: there are none, or there are no motions.
+pub(in crate::analysis) fn locked_without_motions(model: &Model) -> Option<Vec<Diagnostic>> {
+    let motions: Vec<ElementId> = (model.active(ElementKind::Motion, &model.motions))
+        .map(|(id, _)| ElementKind::Motion.id(id))
+        .collect();
+    if motions.is_empty() {
+        return None;
+    }
+    let mut model = skeleton(model);
+    model.inactive.extend(motions);
+    let scene = Scene::compile(&model, &options()).ok()?;
+    let mut q = scene.initial_q.clone();
+    let x = start(&scene, &model, &mut q);
+    let drawn = Dataset::drawn(&scene, &model, &x);
+    let refused = drawn.assemble(&mut Configuration::new(&scene), &mut q);
+    let said = refused.err()?;
+    said.iter().all(|d| d.is(Cause::Assembly)).then_some(said)
 }
 
 /// Makes the message about the first of the suspects.

@@ -31,6 +31,8 @@ pub enum RunWarning {
         /// unit of lengths
         unit: String,
     },
+    /// a run has stopped in which constraints lock the mechanism, whatever its motions prescribe
+    LockedWithoutMotions(Diagnostic),
     /// a simulation would end before it begins
     NothingToSimulate {
         /// text of the command
@@ -128,6 +130,7 @@ impl RunWarning {
         match self {
             RunWarning::NoFreedom | RunWarning::Held => "freedom",
             RunWarning::BeyondTolerance { .. } => "redundant",
+            RunWarning::LockedWithoutMotions(d) => d.code,
             RunWarning::ContactsWithoutFreedom(_) => "no_effect",
             RunWarning::NothingToSimulate { .. } => "nothing_to_simulate",
             RunWarning::MotionJumps { .. } => "motion_jumps",
@@ -150,7 +153,7 @@ impl RunWarning {
     pub(super) fn subject(&self) -> Option<Subject> {
         match self {
             RunWarning::MotionJumps { motion, .. } => Some(ElementKind::Motion.id(*motion).into()),
-            RunWarning::MethodReplaced(d) => d.subject(),
+            RunWarning::MethodReplaced(d) | RunWarning::LockedWithoutMotions(d) => d.subject(),
             RunWarning::ContactsWithoutFreedom(contacts) => contacts.first().map(|&id| id.into()),
             RunWarning::EmptyColumn(unsupported) => Some((&unsupported.asked_by).into()),
             RunWarning::Gap { column, .. } => Some(column.as_str().into()),
@@ -191,6 +194,9 @@ impl RunWarning {
                  more than IC/ERROR permits",
                 amount(*off, *is_length, unit)
             ),
+            RunWarning::LockedWithoutMotions(d) => {
+                format!(": {}; no motion can change that", d.message)
+            }
             RunWarning::NothingToSimulate { command, now } => {
                 format!("{command}: the clock shows {now} already, there is nothing to simulate")
             }
