@@ -339,10 +339,9 @@ impl ComplexLu {
                 continue;
             }
             let (lr, li) = (&self.re[k * n..(k + 1) * n], &self.im[k * n..(k + 1) * n]);
-            for i in k + 1..self.low[k] {
-                re[i] -= lr[i] * xr - li[i] * xi;
-                im[i] -= lr[i] * xi + li[i] * xr;
-            }
+            let rows = k + 1..self.low[k];
+            let (lr, li) = (&lr[rows.clone()], &li[rows.clone()]);
+            subtract_product((&mut re[rows.clone()], &mut im[rows]), (lr, li), (xr, xi));
         }
         for k in (0..n).rev() {
             let (ur, ui) = (&self.re[k * n..(k + 1) * n], &self.im[k * n..(k + 1) * n]);
@@ -352,11 +351,21 @@ impl ComplexLu {
             if xr == 0.0 && xi == 0.0 {
                 continue;
             }
-            for i in self.top[k]..k {
-                re[i] -= ur[i] * xr - ui[i] * xi;
-                im[i] -= ur[i] * xi + ui[i] * xr;
-            }
+            let rows = self.top[k]..k;
+            let (ur, ui) = (&ur[rows.clone()], &ui[rows.clone()]);
+            subtract_product((&mut re[rows.clone()], &mut im[rows]), (ur, ui), (xr, xi));
         }
+    }
+}
+
+/// `z ← z − column · x`, real and imaginary parts apart; all of one length.
+#[inline]
+fn subtract_product((re, im): (&mut [f64], &mut [f64]), (cr, ci): (&[f64], &[f64]), x: (f64, f64)) {
+    let m = re.len();
+    let (im, cr, ci) = (&mut im[..m], &cr[..m], &ci[..m]);
+    for i in 0..m {
+        re[i] -= cr[i] * x.0 - ci[i] * x.1;
+        im[i] -= cr[i] * x.1 + ci[i] * x.0;
     }
 }
 

@@ -36,6 +36,7 @@
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
 mod collocation;
+mod full;
 mod systems;
 
 use super::control::{self, Attempts, Rejection, Weights, worst, worst_index};

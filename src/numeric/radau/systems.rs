@@ -4,7 +4,7 @@
 //! (γ − J) x = b            (α + iβ − J)(x + iy) = b + ic                         (1)
 //! ```
 //!
-//! The systems are full unless the problem gives the pattern of its Jacobian. With a pattern the
+//! The systems are full (`full.rs`) unless the problem gives the pattern of its Jacobian. With a pattern the
 //! complex system is solved as a real one of twice the size, whose entries beyond `J` stand on and
 //! beside the diagonal only:
 //!
@@ -16,7 +16,7 @@
 //! Positions are eliminated first without being told apart (`q̇ = v`: their rows have two entries),
 //! as pivots are chosen where they cost least; what is left has the size of the velocities.
 
-use crate::numeric::dense::{ComplexLu, Lu};
+use super::full::Full;
 use crate::numeric::pattern::Pattern;
 use crate::numeric::sparse::Factors;
 use crate::numeric::{Failure, Ode};
@@ -35,7 +35,7 @@ pub(super) struct Systems {
 
 #[derive(Clone, Debug)]
 enum Kind {
-    Full(Box<(Lu, ComplexLu)>),
+    Full(Box<Full>),
     Sparse(Box<Sparse>),
 }
 
@@ -108,7 +108,7 @@ impl Systems {
             n,
             jacobian: Vec::new(),
             dfdt: Vec::new(),
-            kind: Kind::Full(Box::new((Lu::new(0), ComplexLu::new(0)))),
+            kind: Kind::Full(Box::new(Full::new(n))),
         }
     }
 
@@ -124,7 +124,7 @@ impl Systems {
             (None, Kind::Full(..)) if self.jacobian.len() == n * n => {}
             (None, _) => {
                 (self.jacobian, self.dfdt) = (vec![0.0; n * n], vec![0.0; n]);
-                self.kind = Kind::Full(Box::new((Lu::new(n), ComplexLu::new(n))));
+                self.kind = Kind::Full(Box::new(Full::new(n)));
             }
         }
     }
@@ -139,8 +139,12 @@ impl Systems {
         t: f64,
         y: &[f64],
     ) -> Result<(), Failure> {
-        match &self.kind {
-            Kind::Full(..) => problem.jacobian(t, y, &mut self.jacobian, &mut self.dfdt),
+        match &mut self.kind {
+            Kind::Full(full) => {
+                problem.jacobian(t, y, &mut self.jacobian, &mut self.dfdt)?;
+                full.see(&self.jacobian);
+                Ok(())
+            }
             Kind::Sparse(_) => problem.jacobian_entries(t, y, &mut self.jacobian),
         }
     }
@@ -165,29 +169,14 @@ impl Systems {
     pub fn factor(&mut self, gamma: f64, alpha: f64, beta: f64) -> Result<(), usize> {
         match &mut self.kind {
             Kind::Sparse(s) => s.factor(&self.jacobian, gamma, alpha, beta),
-            Kind::Full(both) => {
-                let n = self.n;
-                let (real, complex) = &mut **both;
-                let a = real.matrix_mut();
-                let (re, im) = complex.matrix_mut();
-                for (e, j) in self.jacobian.iter().enumerate() {
-                    (a[e], re[e], im[e]) = (-j, -j, 0.0);
-                }
-                for i in 0..n {
-                    a[i + n * i] += gamma;
-                    re[i + n * i] += alpha;
-                    im[i + n * i] = beta;
-                }
-                real.factor(0.0)?;
-                complex.factor()
-            }
+            Kind::Full(full) => full.factor(&self.jacobian, gamma, alpha, beta),
         }
     }
 
     /// `x ← (γ − J)⁻¹ x`
     pub fn solve(&mut self, x: &mut [f64]) {
         match &mut self.kind {
-            Kind::Full(both) => both.0.solve(x),
+            Kind::Full(full) => full.solve(x),
             Kind::Sparse(s) => s.real.solve(x),
         }
     }
@@ -195,7 +184,7 @@ impl Systems {
     /// `re + i im ← (α + iβ − J)⁻¹ (re + i im)`
     pub fn solve_complex(&mut self, re: &mut [f64], im: &mut [f64]) {
         match &mut self.kind {
-            Kind::Full(both) => both.1.solve(re, im),
+            Kind::Full(full) => full.solve_complex(re, im),
             Kind::Sparse(s) => s.solve_complex(re, im),
         }
     }
