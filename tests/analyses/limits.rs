@@ -1,7 +1,7 @@
 //! Limits of work: a run always ends, with what it has so far, and says where it was.
 
 use crate::running::{Analysis, Options, Session, begin, model, values};
-use cognate::analysis::watch::Unwatched;
+use cognate::analysis::watch::{Unwatched, Watch};
 use cognate::results::Status;
 use std::time::{Duration, Instant};
 
@@ -52,6 +52,58 @@ fn every_method_ends_at_its_limit_with_the_rows_so_far() {
                 record.stop_reason.contains(word),
                 "{method}: {}",
                 record.stop_reason
+            );
+        }
+    }
+}
+
+/// A caller who ends a run at its so many-th look.
+struct Impatient {
+    looks: u64,
+    most: u64,
+}
+
+impl Watch for Impatient {
+    fn interrupted(&mut self) -> bool {
+        self.looks += 1;
+        self.looks >= self.most
+    }
+}
+
+#[test]
+fn every_method_lets_its_caller_look_after_a_few_evaluations_of_a_large_model() {
+    const LINKS: usize = 40;
+    const LOOKS: u64 = 25;
+    const MOST_EVALUATIONS_PER_LOOK: u64 = 60;
+    let mut chain = String::from("ACCGRAV/JGRAV=-9.81\n");
+    for k in 2..2 + LINKS {
+        let (own, end, x) = (10 * k, 10 * k + 1, k - 2);
+        let before = if k == 2 { 1 } else { own - 9 };
+        chain += &format!(
+            "PART/{k}, MASS=1, CM={own}, IP=0.1,0.1,0.1, QG={x},0,0\nMARKER/{own}, PART={k}\n\
+             MARKER/{end}, PART={k}, QP=1,0,0\nJOINT/{k}, REVOLUTE, I={own}, J={before}\n"
+        );
+    }
+    for method in ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"] {
+        for (error, accuracy) in [(1e-3, false), (1e-9, false), (1e-6, true)] {
+            let options = Options {
+                method: Some(method.to_string()),
+                error: Some(error),
+                accuracy,
+                ..Options::default()
+            };
+            let mut session = begin(model(&chain), "chain", options);
+            let mut watch = Impatient {
+                looks: 0,
+                most: LOOKS,
+            };
+            let status = session.simulate(Analysis::Dynamic, 10.0, 10, &mut watch);
+            assert_eq!(status.expect("a run"), Status::Interrupted, "{method}");
+            let counts = session.run.record.counts;
+            let evaluations = counts.evaluations + counts.jacobians + counts.factorizations;
+            assert!(
+                evaluations < MOST_EVALUATIONS_PER_LOOK * watch.looks,
+                "{method}: {counts:?}"
             );
         }
     }
