@@ -106,7 +106,7 @@ impl Full {
         let n = self.n;
         self.links.clear();
         let among = |&j: &usize| self.eliminated.iter().any(|i| jacobian[i + n * j] != 0.0);
-        if self.eliminated.iter().any(|j| among(j)) {
+        if self.eliminated.iter().any(among) {
             return false;
         }
         for (place, &j) in self.kept.iter().enumerate() {

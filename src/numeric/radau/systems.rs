@@ -4,9 +4,9 @@
 //! (γ − J) x = b            (α + iβ − J)(x + iy) = b + ic                         (1)
 //! ```
 //!
-//! The systems are full (`full.rs`) unless the problem gives the pattern of its Jacobian. With a pattern the
-//! complex system is solved as a real one of twice the size, whose entries beyond `J` stand on and
-//! beside the diagonal only:
+//! The systems are full (`full.rs`) unless the problem gives the pattern of its Jacobian. With a
+//! pattern the complex system is solved as a real one of twice the size, whose entries beyond `J`
+//! stand on and beside the diagonal only:
 //!
 //! ```text
 //! ⎡α − J   −β  ⎤ ⎡x⎤   ⎡b⎤
