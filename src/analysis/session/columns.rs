@@ -38,6 +38,8 @@ pub struct Columns {
     bodies: Vec<(ElementId, Option<u32>)>,
     /// where these began
     origins: BTreeMap<ElementId, Origin>,
+    /// texts of the choice before, which have been read
+    known: Vec<(String, Text)>,
 }
 
 /// Returns the unit of what an expression yields, where it is a single measure.
@@ -110,7 +112,14 @@ impl Columns {
             full,
             ..Options::default()
         };
-        Self::chosen(model, run, user, &options.selection(), computed)
+        Self::chosen(
+            model,
+            run,
+            user,
+            &options.selection(),
+            computed,
+            Self::default(),
+        )
     }
 
     /// Declares the columns as [`Columns::new`] does, with the sets of a selection.
@@ -120,12 +129,16 @@ impl Columns {
         user: &[String],
         selection: &Selection<'_>,
         computed: &dyn Fn(u32, &Formula) -> bool,
+        before: Self,
     ) -> Self {
         run.columns.clear();
         run.entities.clear();
         run.requests.clear();
         run.add_column("time", run.units.time.clone());
-        let mut this = Self::default();
+        let mut this = Self {
+            known: before.extra,
+            ..Self::default()
+        };
         this.parts(model, run, selection);
         let mut table = vec![0];
         for text in user {
@@ -140,6 +153,7 @@ impl Columns {
         // without wishes of its own the table has everything that RESULTS asks for
         let has_own = table.len() > 1 || !selection.full;
         run.table = if has_own { table } else { Vec::new() };
+        this.known = Vec::new();
         this
     }
 
@@ -153,7 +167,10 @@ impl Columns {
 
     /// Adds the column of an expression; without a `unit` it has that of its measure.
     fn text(&mut self, run: &mut Run, name: String, text: &str, unit: Option<Unit>) -> usize {
-        let (k, text) = (self.extra.len(), Text::from(text));
+        let k = self.extra.len();
+        let known = self.known.get(k).map(|(_, known)| known);
+        let known = known.filter(|known| ***known == *text).cloned();
+        let text = known.unwrap_or_else(|| Text::from(text));
         let unit = match unit {
             Some(unit) => unit.spelt(&run.units),
             None => unit_of(&text, &run.units),

@@ -78,7 +78,7 @@ pub enum Analysis {
 }
 
 /// Options of solving, beyond what the model says. `None`: as the model says, else our default.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// permitted local error
     pub error: Option<f64>,
@@ -188,6 +188,7 @@ impl Session {
             &options.columns,
             &options.selection(),
             &|_, _| false,
+            Columns::default(),
         );
         run.record.repeats = options.repeat.max(1) as u32;
         let limit = options.limit.map(WorkLimit::begin);
@@ -262,6 +263,7 @@ impl Session {
             &options.columns,
             &options.selection(),
             &known,
+            std::mem::take(&mut self.columns),
         );
     }
 
@@ -269,6 +271,11 @@ impl Session {
     /// numbers, these stay outside the equations, which then need not be written anew.
     pub fn will_change(&mut self, variables: impl IntoIterator<Item = u32>) {
         self.changing.extend(variables);
+    }
+
+    /// Returns the options that it was begun with.
+    pub(in crate::analysis) fn options(&self) -> &Options {
+        &self.options
     }
 
     /// Returns true if a sensor has ended the run.

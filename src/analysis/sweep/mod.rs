@@ -30,9 +30,9 @@ use crate::diagnostic::{Diagnostic, Error};
 use crate::model::{ElementKind, Model};
 use crate::results::Status;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Stack of a thread that runs models, in bytes; what is not used is not taken.
 const STACK_BYTES: usize = 256 << 20;
@@ -68,6 +68,33 @@ pub struct Sweep {
     pub folders: Vec<PathBuf>,
     /// closures that compute what `USER(…)` stands for
     hooks: Vec<Hook>,
+    idle: Idle,
+}
+
+/// Sessions that have done their runs: compiled, for the next call. A copy of a sweep begins without
+/// any.
+#[derive(Default)]
+struct Idle(Mutex<Vec<Session>>);
+
+impl Clone for Idle {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Idle {
+    /// Takes a session that a caller could have begun with these options and folders.
+    fn take(&self, options: &Options, folders: &[PathBuf]) -> Option<Session> {
+        let mut sessions = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        sessions.retain(|s| s.options() == options && s.folders == folders);
+        sessions.pop()
+    }
+
+    /// Keeps a session.
+    fn give(&self, session: Session) {
+        let mut sessions = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        sessions.push(session);
+    }
 }
 
 /// One run of a sweep.
@@ -110,6 +137,7 @@ impl Sweep {
             options: Options::default(),
             folders: Vec::new(),
             hooks: Vec::new(),
+            idle: Idle::default(),
         }
     }
 
@@ -164,6 +192,7 @@ impl Sweep {
             return Err(d.help("take the command away, or the parameter").into());
         }
         self.parameters.push(parameter);
+        self.idle = Idle::default();
         Ok(())
     }
 
@@ -192,6 +221,7 @@ impl Sweep {
         inputs: &[&str],
         law: impl Fn(&Call<'_>, &mut [f64]) + Send + Sync + 'static,
     ) {
+        self.idle = Idle::default();
         self.hooks.push(Hook {
             name: name.to_string(),
             inputs: inputs.iter().map(ToString::to_string).collect(),
@@ -296,13 +326,18 @@ impl Sweep {
         Ok(())
     }
 
-    /// Begins the session of a thread.
-    fn session(&self, columns: Vec<String>) -> Session {
-        let options = Options {
+    /// Returns the options of a session with these columns.
+    fn options_with(&self, columns: Vec<String>) -> Options {
+        Options {
             columns,
             keep_start: true,
             ..self.options.clone()
-        };
+        }
+    }
+
+    /// Begins the session of a thread.
+    fn session(&self, columns: Vec<String>) -> Session {
+        let options = self.options_with(columns);
         let mut session = Session::new(self.model.clone(), "sweep", options);
         session.folders.clone_from(&self.folders);
         for hook in &self.hooks {
@@ -383,20 +418,31 @@ impl Crew<'_> {
     /// Runs points one after another until none is left.
     fn work(&self, rows: &Sender<Row>) {
         let columns = self.sweep.measures.iter().filter_map(Measure::column);
-        let mut session = self.sweep.session(columns.map(String::from).collect());
+        let columns: Vec<String> = columns.map(String::from).collect();
+        let options = self.sweep.options_with(columns.clone());
+        let idle = self.sweep.idle.take(&options, &self.sweep.folders);
+        let mut session = idle.unwrap_or_else(|| self.sweep.session(columns));
+        if self.run_with(&mut session, rows) {
+            self.sweep.idle.give(session);
+        }
+    }
+
+    /// Runs points in a session; returns whether it has ended its last run.
+    fn run_with(&self, session: &mut Session, rows: &Sender<Row>) -> bool {
         while !self.is_over() {
             let place = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(&run) = self.wanted.get(place) else {
-                return;
+                return true;
             };
             let point = (run, self.points[run].as_slice());
-            let Some(row) = self.sweep.one(&mut session, point, self) else {
-                return;
+            let Some(row) = self.sweep.one(session, point, self) else {
+                return false;
             };
             if rows.send(row).is_err() {
-                return;
+                return true;
             }
         }
+        true
     }
 }
 
@@ -406,5 +452,38 @@ struct Hooks<'a>(&'a Crew<'a>);
 impl Watch for Hooks<'_> {
     fn interrupted(&mut self) -> bool {
         self.0.is_over()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_later_call_goes_on_with_the_sessions_of_the_one_before() {
+        let text = "a drop\nPART/1, GROUND\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2, PART=2\n\
+            VARIABLE/3, FUNCTION=1\nVFORCE/1, I=2, JFLOAT=9, FX=VARVAL(3), FY=0, FZ=0\n\
+            MARKER/9, PART=1, FLOATING\nEND\n";
+        let model = Model::from_text(text).unwrap();
+        let mut sweep = Sweep::over(model, Analysis::Dynamic, 1.0, 10);
+        sweep.parameter("VARIABLE/3").unwrap();
+        sweep.measure("last(DX(2))").unwrap();
+        let points: Vec<Vec<f64>> = (1..6).map(|k| vec![f64::from(k)]).collect();
+        let compiled = |sweep: &Sweep| sweep.idle.0.lock().unwrap().len();
+        let first = sweep.rows(&points, 1).unwrap();
+        assert_eq!(compiled(&sweep), 1);
+        assert_eq!(sweep.rows(&points, 1).unwrap(), first);
+        assert_eq!(compiled(&sweep), 1);
+        assert_eq!(sweep.clone().rows(&points, 2).unwrap(), first);
+
+        // another request: nothing of before is used
+        sweep.options.error = Some(1e-9);
+        let finer = sweep.rows(&points[..1], 1).unwrap();
+        assert_eq!(finer, sweep.clone().rows(&points[..1], 1).unwrap());
+        assert_eq!(compiled(&sweep), 1);
+        sweep.measure("max(DX(2))").unwrap();
+        let more = sweep.rows(&points[..1], 1).unwrap();
+        assert_eq!(more[0].measures.len(), 2);
+        assert_eq!(compiled(&sweep), 1);
     }
 }
