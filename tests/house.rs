@@ -1,5 +1,7 @@
 //! The house is as its map says: what `ARCHITECTURE.md` claims about files, floors, rooms and sizes is checked here.
 
+#[path = "house/api.rs"]
+mod api;
 #[path = "house/codes.rs"]
 mod codes;
 #[path = "house/source.rs"]
