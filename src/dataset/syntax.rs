@@ -92,8 +92,8 @@ impl Encoding {
     }
 }
 
-/// Returns the place of the first zero byte in what is no text of any encoding; zeros at the end are
-/// padding.
+/// Returns the place of the first zero byte in what is no text of any encoding; zeros at the end
+/// are padding.
 pub(super) fn first_of_no_text(bytes: &[u8]) -> Option<usize> {
     let first = bytes.iter().position(|&b| b == 0)?;
     let is_padding = bytes.iter().skip(first).all(|&b| b == 0);

@@ -403,8 +403,8 @@ impl Entry {
     }
 }
 
-/// Two lists are equal when they have the same names; their meanings cannot be compared. The language
-/// is that of the tree.
+/// Two lists are equal when they have the same names; their meanings cannot be compared. The
+/// language is that of the tree.
 impl PartialEq for Names {
     fn eq(&self, other: &Self) -> bool {
         let names = |of: &Self| of.entries.iter().map(Entry::signature).collect::<Vec<_>>();

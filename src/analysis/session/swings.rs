@@ -5,13 +5,13 @@
 //!
 //! ```text
 //! Δφ = 2π n ( ½ s ΔE/E + (2π n/N)² / 12 )    n swings in N steps, rad
-//! s² = Σ Var aⱼ / Σ ⟨aⱼ²⟩                     aⱼ: slopes ∂v̇/∂qⱼ and ω ∂v̇/∂vⱼ along the motion
+//! s² = Σ Var aⱼ / Σ ⟨aⱼ²⟩                aⱼ: slopes ∂v̇/∂qⱼ and ω ∂v̇/∂vⱼ along it
 //! ```
 //!
 //! Where the slopes stay the same, the time of a swing does not depend on its width, nor on its
-//! energy. The second part is that of methods of second order; of the others the energy tells. Damping
-//! forgets such errors: nothing is said where more energy was lost to it than there ever was at
-//! once, nor where the acceleration falls with the velocity for so long that a push dies away,
+//! energy. The second part is that of methods of second order; of the others the energy tells.
+//! Damping forgets such errors: nothing is said where more energy was lost to it than there ever
+//! was at once, nor where the acceleration falls with the velocity for so long that a push dies away,
 //! ∫ ∂v̇/∂v dt < −2, whoever wrote the damping into a function.
 
 use crate::analysis::system::System;
@@ -164,15 +164,16 @@ impl Force {
     /// Evaluates the acceleration of velocity `k`, which swings so often, at some states.
     fn along(system: &mut System, (k, swings): (usize, f64), looked: &[Vec<f64>]) -> Self {
         let layout = system.scene.layout;
-        let (n, place) = (layout.n_y(), layout.n_q + k);
+        let n = layout.n_y();
         let (mut jacobian, mut dfdt) = (vec![0.0; n * n], vec![0.0; n]);
         let kept = system.numbers.clone();
-        let mut slopes = vec![Sample::default(); layout.n_q + layout.n_v];
+        let mut slopes = vec![Sample::default(); n];
         for row in looked.iter().step_by(looked.len().div_ceil(SAMPLES).max(1)) {
             system.numbers.copy_from_slice(row);
             if system.jacobian_once(&mut jacobian, &mut dfdt).is_ok() {
-                let of_row = jacobian.iter().skip(place).step_by(n);
-                slopes.iter_mut().zip(of_row).for_each(|(s, &a)| s.add(a));
+                let columns = jacobian.chunks(n);
+                let of_v = columns.filter_map(|column| layout.state(column).v.get(k));
+                slopes.iter_mut().zip(of_v).for_each(|(s, &a)| s.add(a));
             }
         }
         system.numbers.copy_from_slice(&kept);
@@ -184,16 +185,15 @@ impl Force {
         } else {
             0.0
         };
-        let weights = [(layout.n_q, 1.0), (layout.n_v, pace)];
-        let weights = weights
-            .into_iter()
-            .flat_map(|(n, w)| std::iter::repeat_n(w * w, n));
+        let slopes = layout.state(&slopes);
         let (mut all, mut varies) = (0.0, 0.0);
-        for (slope, weight) in slopes.iter().zip(weights) {
-            all += weight * slope.mean_square();
-            varies += weight * slope.variance();
+        for (block, weight) in [(slopes.q, 1.0), (slopes.v, pace * pace)] {
+            for slope in block {
+                all += weight * slope.mean_square();
+                varies += weight * slope.variance();
+            }
         }
-        let damping = slopes.get(place).copied().unwrap_or_default();
+        let damping = slopes.v.get(k).copied().unwrap_or_default();
         Self {
             bend: if all > 0.0 {
                 (varies / all).sqrt()

@@ -71,8 +71,8 @@ pub struct Sweep {
     idle: Idle,
 }
 
-/// Sessions that have done their runs: compiled, for the next call. A copy of a sweep begins without
-/// any.
+/// Sessions that have done their runs: compiled, for the next call. A copy of a sweep begins
+/// without any.
 #[derive(Default)]
 struct Idle(Mutex<Vec<Session>>);
 

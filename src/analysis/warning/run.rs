@@ -241,25 +241,32 @@ impl RunWarning {
                  far as both go"
             ),
             RunWarning::EnergyGrows { factor, fed_by } => growth(*factor, fed_by.is_some()),
-            RunWarning::EnergyUnsure { share } => format!(
-                "the balance of energy lacks {:.0} % of all there was: the method itself took it from the \
-                 motion, or gave it; a smaller ERROR keeps it",
-                100.0 * share
-            ),
-            RunWarning::PhaseUnsure { swings, off } => {
-                let known = if *off < PI { "not sure" } else { "lost" };
-                format!(
-                    "the phase of about {swings:.0} swings is {known}: errors may have added up to \
-                     {off:.1} rad in the end; a smaller ERROR keeps it, and --accuracy says from when on \
-                     it is lost"
-                )
-            }
+            RunWarning::EnergyUnsure { share } => energy(*share),
+            RunWarning::PhaseUnsure { swings, off } => phase(*swings, *off),
             RunWarning::StabilityLimited { limited, steps } => format!(
                 "the model is stiff: in {limited} of {steps} steps stability, not the error asked \
                  for, kept an explicit method short; RADAU5 or AUTO takes longer ones"
             ),
         }
     }
+}
+
+/// Returns which share of all energy its balance lacks.
+fn energy(share: f64) -> String {
+    format!(
+        "the balance of energy lacks {:.0} % of all there was: the method itself took it from the \
+         motion, or gave it; a smaller ERROR keeps it",
+        100.0 * share
+    )
+}
+
+/// Returns how far off the phase of swings may be in the end, rad.
+fn phase(swings: f64, off: f64) -> String {
+    let known = if off < PI { "not sure" } else { "lost" };
+    format!(
+        "the phase of about {swings:.0} swings is {known}: errors may have added up to {off:.1} rad \
+         in the end; a smaller ERROR keeps it, and --accuracy says from when on it is lost"
+    )
 }
 
 /// Returns the way in which a run goes on after what a motion prescribes has jumped.
