@@ -1,7 +1,7 @@
 //! Diagnostics as text for people: the source line, a caret below the place, and advice.
 
 use crate::dataset::syntax::Source;
-use crate::diagnostic::{Cause, Diagnostic, Severity};
+use crate::diagnostic::{Cause, Diagnostic, Severity, Subject};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
@@ -65,7 +65,7 @@ pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> St
         text += &format!("… and {} more\n", shown.len() - MOST_SHOWN);
     }
     for (code, elements) in alike {
-        let names: Vec<&str> = elements.iter().take(MOST_NAMED).copied().collect();
+        let names: Vec<String> = elements.iter().take(MOST_NAMED).cloned().collect();
         let rest = elements.len() - names.len();
         let rest = if rest > 0 {
             format!(" and {rest} more")
@@ -96,15 +96,16 @@ const MOST_NAMED: usize = 12;
 
 /// Separates the diagnostics that are shown in full from the elements of those that repeat them, by
 /// code.
-fn sorted_out(diagnostics: &[Diagnostic]) -> (Vec<&Diagnostic>, Vec<(&str, Vec<&str>)>) {
+fn sorted_out(diagnostics: &[Diagnostic]) -> (Vec<&Diagnostic>, Vec<(&str, Vec<String>)>) {
     let mut shown: Vec<&Diagnostic> = Vec::new();
-    let mut alike: Vec<(&Diagnostic, Vec<&str>)> = Vec::new();
+    let mut alike: Vec<(&Diagnostic, Vec<String>)> = Vec::new();
     for d in diagnostics {
         let same = |other: &Diagnostic| {
             (other.code, other.severity, &other.help) == (d.code, d.severity, &d.help)
         };
         let before = shown.iter().filter(|s| same(s)).count();
-        let element = d.element.as_deref().filter(|_| d.is_any(&ALIKE));
+        let element = d.element.clone().filter(|_| d.is_any(&ALIKE));
+        let element = element.map(|e| Subject::from(e).named(d.name.as_deref()));
         match element {
             Some(element) if before >= FIRST_ALIKE => {
                 match alike.iter_mut().find(|(first, _)| same(first)) {

@@ -411,6 +411,13 @@ impl Model {
         self.element(id).is_some()
     }
 
+    /// Returns an element as messages name it, with the name that its file gives it: "JOINT/47
+    /// 'hinge'".
+    pub fn called(&self, id: ElementId) -> String {
+        let name = self.element(id).and_then(|e| e.place().name.as_deref());
+        Subject::from(id).named(name)
+    }
+
     /// Returns whether an element has not been switched off.
     pub fn is_active(&self, id: ElementId) -> bool {
         !self.inactive.contains(&id)

@@ -599,6 +599,64 @@ fn a_sensor_shortens_the_next_step_or_begins_anew() {
     }
 }
 
+/// In a mechanism without freedom, too, the step after a sensor is as short as it asks for, and grows from there.
+#[test]
+fn a_sensor_shortens_the_next_step_of_a_driven_mechanism() {
+    let crank = "MARKER/11, PART=1, QP=4,0,0\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nMARKER/21, PART=2, QP=1,0,0\n\
+                 PART/3, MASS=1, CM=30, IP=1,1,1\nMARKER/30, PART=3, QP=1,0,0\nMARKER/31, PART=3, QP=4,3,0\n\
+                 PART/4, MASS=1, CM=40, IP=1,1,1\nMARKER/40, PART=4, QP=4,3,0\nMARKER/41, PART=4, QP=4,0,0\n\
+                 JOINT/1, REVOLUTE, I=20, J=1\nJOINT/2, REVOLUTE, I=30, J=21\nJOINT/3, REVOLUTE, I=40, J=31\n\
+                 JOINT/4, REVOLUTE, I=41, J=11\nMOTION/1, JOINT=1, ROTATION, FUNCTION=TIME\n";
+    let run = |more: &str| {
+        let column = ["AZ(40,11)"];
+        let mut s = running::session(&format!("{crank}{more}"), &column, 1e-6);
+        running::go(&mut s, running::Analysis::Kinematic, 1.0, 1);
+        (s.run.record.counts.steps, running::last(&s, column[0]))
+    };
+    let (plain, place) = run("");
+    let sensor = "SENSOR/1, FUNCTION=AZ(20,1), VALUE=0.5, GE, ERROR=1E-6";
+    let (short, there) = run(&format!("{sensor}, STEPSIZE=1E-6\n"));
+    let (shorter, _) = run(&format!("{sensor}, STEPSIZE=1E-9\n"));
+    assert!(
+        short >= plain + 3 && shorter > short,
+        "{plain} {short} {shorter}"
+    );
+    assert!((place - there).abs() < 1e-9, "{place} {there}");
+}
+
+/// Before a run it is told where a motion takes the argument of a spline beyond its data, and how far; not where the run
+/// ends before.
+#[test]
+fn a_spline_whose_data_end_before_its_motion_does_is_told_without_a_run() {
+    let model = |motion: &str| {
+        format!(
+            "PART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2\nJOINT/1, TRANSLATIONAL, I=20, J=1\n\
+             MOTION/1, JOINT=1, TRANSLATION, FUNCTION={motion}\nSPLINE/7, X=-1,0,1,2, Y=1,0,1,4\n\
+             SFORCE/3, TRANSLATION, ACTIONONLY, I=20, J=1, FUNCTION=CUBSPL(DZ(20,1),0,7,0)\n"
+        )
+    };
+    for (motion, told) in [
+        ("TIME", Some("3")),
+        ("0.5*TIME", None),
+        ("-0.5*TIME", Some("-1.5")),
+        ("1.9*SIN(PI*TIME)", Some("-1.9")),
+        ("STEP(TIME,1,0,2,2)", None),
+    ] {
+        let mut session = running::session(&model(motion), &["TIME"], 1e-6);
+        let found = session.preview(running::Analysis::Transient, 3.0);
+        let outside = found.iter().find(|d| d.code == "outside_data");
+        match (told, outside) {
+            (None, None) => {}
+            (Some(worst), Some(d)) => {
+                assert_eq!(d.element.as_deref(), Some("SFORCE/3"), "{motion}: {d}");
+                let part = format!("SPLINE/7 at {worst}");
+                assert!(d.message.contains(&part), "{motion}: {d}");
+            }
+            _ => panic!("{motion}: {found:?}"),
+        }
+    }
+}
+
 /// dₖ₊₁ = 0.8 dₖ + u(tₖ), y = 2 d + 0.5 u, sampled every 0.1; beside it what reads them.
 const SAMPLED: &str = "VARIABLE/1, FUNCTION=1+TIME\nARRAY/10, U, VARIABLES=1\nARRAY/12, Y\nARRAY/14, X\nARRAY/15, IC, NUMBERS=3\n\
     GSE/1, NO=1, U=10, Y=12, ND=1, XD=14, ICD=15, SAMPLE_PERIOD=0.1, FUNCTION=USER(1)\n";

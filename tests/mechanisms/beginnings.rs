@@ -271,6 +271,31 @@ fn rigid_bodies_are_read_again_as_they_were_written() {
     }
 }
 
+/// At its dead point the slider of a slider-crank does not yield to first order: what a line asks of it is told by name.
+#[test]
+fn what_a_line_asks_for_in_vain_at_a_singular_start_is_told_by_name() {
+    let crank = "MARKER/11, PART=1, REULER=90D,90D,0D\nPART/2, MASS=1, CM=20, IP=1,1,1\nMARKER/20, PART=2, QP=0.5,0,0\n\
+                 MARKER/21, PART=2\nMARKER/22, PART=2, QP=1,0,0\nPART/3, MASS=1, CM=30, IP=1,1,1\nMARKER/30, PART=3, QP=2,0,0\n\
+                 MARKER/31, PART=3, QP=1,0,0\nMARKER/32, PART=3, QP=3,0,0\nPART/4, MASS=1, CM=40, IP=1,1,1\n\
+                 MARKER/40, PART=4, QP=3,0,0\nMARKER/41, PART=4, QP=3,0,0, REULER=90D,90D,0D\nJOINT/1, REVOLUTE, I=21, J=1\n\
+                 JOINT/2, REVOLUTE, I=31, J=22\nJOINT/3, REVOLUTE, I=40, J=32\nJOINT/4, TRANSLATIONAL, I=41, J=11\n";
+    for line in [
+        "JOINT/4, DISTANCE=2.8",
+        "JOINT/4, DISTANCE_RATE=1",
+        "MARKER/40, X=2.9",
+        "MARKER/40, VX=1",
+    ] {
+        let (_, warned) = start(&format!("{crank}! cognate: IC {line}\n"), &["DX(40,1)"]);
+        let (element, quantity) = line.split_once(", ").unwrap();
+        let quantity = quantity.split('=').next().unwrap();
+        let begins = format!("{element} {quantity} cannot be met");
+        assert!(
+            warned.iter().any(|w| w.starts_with(&begins)),
+            "{line}: {warned:?}"
+        );
+    }
+}
+
 #[test]
 fn a_rigid_body_is_not_in_another_and_a_part_in_one_alone() {
     for (lines, answer) in [

@@ -23,6 +23,7 @@ mod interference;
 mod loads;
 mod manual;
 mod motion;
+mod names;
 mod pages;
 mod plots;
 mod prompt;

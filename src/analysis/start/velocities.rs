@@ -25,7 +25,12 @@ const TYPED_DIGITS: f64 = 1e-3;
 
 /// Returns the error of motions that ask for a rate which a row forbids: by how much it would have
 /// to give way, and which motions there are.
-fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f64) -> Diagnostic {
+fn prescribed_too_much(
+    (scene, model): (Configured<'_>, &Model),
+    numbers: &[f64],
+    r: usize,
+    rate: f64,
+) -> Diagnostic {
     let at = Equations::new(scene, numbers);
     let row = &scene.rows[r];
     let direction = Direction::of_row(&scene, &at, r);
@@ -36,7 +41,7 @@ fn prescribed_too_much(scene: Configured<'_>, numbers: &[f64], r: usize, rate: f
         length(rate, &scene.length_unit)
     };
     let motions: Vec<String> = (scene.motions.iter())
-        .map(|m| ElementKind::Motion.id(m.id).to_string())
+        .map(|m| model.called(ElementKind::Motion.id(m.id)))
         .collect();
     Diagnostic::error(
         Cause::Assembly,
@@ -77,7 +82,7 @@ pub fn velocities(
         let left = along(row, &v) + drift[r];
         if left.abs() > 1e-8 * scale {
             let still = numbers(scene, t, q, &vec![0.0; n], x);
-            return Err(vec![prescribed_too_much(scene, &still, r, left)]);
+            return Err(vec![prescribed_too_much((scene, model), &still, r, left)]);
         }
     }
     let given = GivenVelocities::collect(scene, model, (t, q, x), (&gradient, &v));

@@ -56,31 +56,36 @@ pub enum Change {
     },
 }
 
-impl fmt::Display for Advice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = &self.element;
+impl Advice {
+    /// Returns it as a sentence; `called` names the element.
+    pub fn sentence(&self, called: &dyn Fn(ElementId) -> String) -> String {
+        let name = called(self.element);
         match self.change {
             Change::Remove => {
-                write!(f, "{name} is not needed: without it the motion is the same")
+                format!("{name} is not needed: without it the motion is the same")
             }
             Change::Replace(Tie::Joint(kind)) => {
                 let kind = kind.keyword();
-                write!(
-                    f,
+                format!(
                     "{name} as {kind} with the same markers permits the same motion and fixes nothing twice"
                 )
             }
             Change::Replace(Tie::Primitive(kind)) => {
                 let kind = kind.row().keyword;
-                write!(
-                    f,
+                format!(
                     "JPRIM {kind} with the markers of {name} in its place permits the same motion and fixes nothing twice"
                 )
             }
             Change::Weaken { kept, of } => {
-                write!(f, "{name} could do with {kept} of its {of} equations")
+                format!("{name} could do with {kept} of its {of} equations")
             }
         }
+    }
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence(&|id| id.to_string()))
     }
 }
 

@@ -98,7 +98,7 @@ fn accused(model: &Model, suspects: &[Suspect], said: Vec<Diagnostic>) -> Diagno
     let alike = others.iter().filter(alike).filter(|s| {
         first.apart.is_some() || s.id.kind == first.id.kind || first.id.kind != ElementKind::Motion
     });
-    let mut names: Vec<String> = alike.map(|s| s.id.to_string()).collect();
+    let mut names: Vec<String> = alike.map(|s| model.called(s.id)).collect();
     let more = names.len().saturating_sub(MOST_NAMED);
     names.truncate(MOST_NAMED);
     let mut names = names.join(", ");
@@ -109,8 +109,8 @@ fn accused(model: &Model, suspects: &[Suspect], said: Vec<Diagnostic>) -> Diagno
         (Some(apart), Some([i, j])) => format!(
             "its markers {} and {} are off by {apart} where the dataset places the parts, \
              and the mechanism cannot make up for it; without it the rest assembles",
-            ElementKind::Marker.id(i),
-            ElementKind::Marker.id(j)
+            model.called(ElementKind::Marker.id(i)),
+            model.called(ElementKind::Marker.id(j))
         ),
         _ if first.id.kind == ElementKind::Motion && !names.is_empty() => {
             format!("it contradicts {names}: without one of them the rest assembles")
@@ -123,6 +123,12 @@ fn accused(model: &Model, suspects: &[Suspect], said: Vec<Diagnostic>) -> Diagno
     }
     for said in said.iter().take(MOST_NAMED) {
         let element = said.subject().unwrap_or_default();
+        let name = element
+            .element
+            .parse()
+            .ok()
+            .and_then(|id| model.element(id));
+        let element = element.named(name.and_then(|e| e.place().name.as_deref()));
         d = d.help(format!("with it {element} {}", said.message));
     }
     d.help

@@ -88,7 +88,7 @@ pub(super) fn motions(
             let parts = moving_parts(&scene, coordinate.link, moving(&v), &still);
             let words = match parts.split_first() {
                 None => format!("{} changes and moves no part", coordinate.id),
-                Some((first, rest)) => sentence(first, rest),
+                Some((first, rest)) => sentence(model, first, rest),
             };
             Free {
                 unknown: coordinate.id.into(),
@@ -132,11 +132,11 @@ fn moving_parts(
 }
 
 /// Writes how a part moves, and which go with it.
-fn sentence(first: &Moving, rest: &[Moving]) -> String {
-    let mut text = format!("{} {}", first.part, first.words);
+fn sentence(model: &Model, first: &Moving, rest: &[Moving]) -> String {
+    let mut text = format!("{} {}", model.called(first.part), first.words);
     if !rest.is_empty() {
         let some = rest.iter().take(MAX_NAMED);
-        let names: Vec<String> = some.map(|p| p.part.to_string()).collect();
+        let names: Vec<String> = some.map(|p| model.called(p.part)).collect();
         text += &format!("; with it {}", names.join(", "));
         if rest.len() > MAX_NAMED {
             text += &format!(" and {} more", rest.len() - MAX_NAMED);

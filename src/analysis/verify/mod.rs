@@ -68,18 +68,20 @@ impl Dependent {
     /// Tells it in a sentence: "JOINT/4 fixes rotation about ground X, already fixed by JOINT/1,
     /// JOINT/2".
     pub fn sentence(&self) -> String {
-        self.sentence_of(&[self])
+        self.sentence_of(&[self], &|id| id.to_string())
     }
 
-    /// Tells it of several rows of the same element that the same elements fix already.
-    pub fn sentence_of(&self, rows: &[&Dependent]) -> String {
+    /// Tells it of several rows of the same element that the same elements fix already; `called`
+    /// names the elements.
+    pub fn sentence_of(&self, rows: &[&Dependent], called: &dyn Fn(ElementId) -> String) -> String {
         let verb = if self.drives { "drives" } else { "fixes" };
         let directions: Vec<String> = rows.iter().map(|d| d.direction.to_string()).collect();
-        let mut text = format!("{} {verb} {}", self.element, directions.join(", "));
+        let element = called(self.element);
+        let mut text = format!("{element} {verb} {}", directions.join(", "));
         if self.fixed_by.is_empty() {
             text += ", though the parts it ties cannot move against each other";
         } else {
-            text += &format!(", already fixed by {}", listed(&self.fixed_by));
+            text += &format!(", already fixed by {}", listed(&self.fixed_by, called));
         }
         if self.only_here {
             text += " (at this position only)";
@@ -88,9 +90,12 @@ impl Dependent {
     }
 }
 
-/// Returns the names of elements in a row: "JOINT/1, JOINT/2".
-pub fn listed<'a>(elements: impl IntoIterator<Item = &'a ElementId>) -> String {
-    let names: Vec<String> = elements.into_iter().map(ElementId::to_string).collect();
+/// Returns the names of elements in a row, each as `called` says: "JOINT/1, JOINT/2".
+pub fn listed<'a>(
+    elements: impl IntoIterator<Item = &'a ElementId>,
+    called: &dyn Fn(ElementId) -> String,
+) -> String {
+    let names: Vec<String> = elements.into_iter().map(|&id| called(id)).collect();
     names.join(", ")
 }
 

@@ -156,7 +156,7 @@ impl Loaded {
     pub fn verify(&self) -> Result<String, Failure> {
         let model = self.before_simulations()?;
         let found = verify(&model).map_err(|errors| self.failure(errors))?;
-        let mut text = verifying::text::of(&found);
+        let mut text = verifying::text::of(&found, &model);
         for d in found.inconsistent {
             text += &format!("{}\n", self.reading.dataset.locate(d));
         }

@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> Outcome {
     if args.json {
         say(&json::text(&found.json()));
     } else {
-        say(&text::of(&found));
+        say(&text::of(&found, &model));
     }
     complain_in_files(&doubted);
     if let Some(file) = args.draw.as_ref().filter(|_| found.inconsistent.is_empty()) {

@@ -2,14 +2,19 @@
 //! elements are given once.
 
 use crate::analysis::verify::{Advice, Dependent, Undetermined, Verification, listed};
+use crate::model::{ElementId, Model};
 use std::fmt::Write;
 
 /// Number of findings of one sort above which they are grouped: one in full, the names of the
 /// others.
 const MOST_UNGROUPED: usize = 6;
 
-/// Prints a verification.
-pub fn of(v: &Verification) -> String {
+/// Names of elements in sentences.
+type Called<'a> = &'a dyn Fn(ElementId) -> String;
+
+/// Prints the verification of a model, with elements as its file names them.
+pub fn of(v: &Verification, model: &Model) -> String {
+    let called: Called<'_> = &|id| model.called(id);
     let mut out = String::new();
     let mut line = |text: String| {
         let _ = writeln!(out, "{text}");
@@ -55,12 +60,12 @@ pub fn of(v: &Verification) -> String {
     if v.dependent.is_empty() {
         line("no redundant constraint".into());
     }
-    let all = redundant(&v.dependent)
+    let all = redundant(&v.dependent, called)
         .into_iter()
-        .chain(not_unique(&v.undetermined));
-    all.chain(advice(&v.advice)).for_each(&mut line);
+        .chain(not_unique(&v.undetermined, called));
+    all.chain(advice(&v.advice, called)).for_each(&mut line);
     for warning in &v.warnings {
-        line(format!("warning: {warning}"));
+        line(format!("warning: {}", warning.record(model).sentence()));
     }
     out
 }
@@ -69,13 +74,13 @@ pub fn of(v: &Verification) -> String {
 const MOST_FREE: usize = 40;
 
 /// Prints the redundant constraints.
-fn redundant(all: &[Dependent]) -> Vec<String> {
+fn redundant(all: &[Dependent], called: Called<'_>) -> Vec<String> {
     let by_element = groups(all, |a, b| {
         (&a.element, &a.fixed_by, a.only_here) == (&b.element, &b.fixed_by, b.only_here)
     });
     let sentence = |(first, group): &(&Dependent, Vec<&Dependent>)| {
         let rows: Vec<&str> = group.iter().map(|d| d.row.as_str()).collect();
-        let words = first.sentence_of(group);
+        let words = first.sentence_of(group, called);
         format!("redundant: {words} ({})", rows.join(", "))
     };
     if by_element.len() <= MOST_UNGROUPED {
@@ -95,8 +100,8 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
         let mut others: Vec<String> = group[1..]
             .iter()
             .map(|(d, _)| match d.fixed_by.as_slice() {
-                [one] => format!("{} by {one}", d.element),
-                _ => d.element.to_string(),
+                &[one] => format!("{} by {}", called(d.element), called(one)),
+                _ => called(d.element),
             })
             .collect();
         others.dedup();
@@ -115,12 +120,12 @@ fn redundant(all: &[Dependent]) -> Vec<String> {
 }
 
 /// Prints the reactions that are not unique.
-fn not_unique(all: &[Undetermined]) -> Vec<String> {
+fn not_unique(all: &[Undetermined], called: Called<'_>) -> Vec<String> {
     let tell = |first: &Undetermined, group: &[&Undetermined], axes: &str| {
         format!(
             "not unique: {} of {} ({axes}); results tell the smallest set",
             first.components.join(" "),
-            listed(group.iter().map(|u| &u.element)),
+            listed(group.iter().map(|u| &u.element), called),
         )
     };
     let exact = groups(all, |a, b| {
@@ -140,16 +145,17 @@ fn not_unique(all: &[Undetermined]) -> Vec<String> {
 }
 
 /// Prints the advice; equal advice about many elements is given once.
-fn advice(all: &[Advice]) -> Vec<String> {
+fn advice(all: &[Advice], called: Called<'_>) -> Vec<String> {
     if all.len() <= MOST_UNGROUPED {
-        return all.iter().map(|a| format!("advice: {a}")).collect();
+        let line = |a: &Advice| format!("advice: {}", a.sentence(called));
+        return all.iter().map(line).collect();
     }
     let mut lines = Vec::new();
     for (first, group) in groups(all, |a, b| a.change == b.change) {
         let others = &group[1..];
-        let mut text = format!("advice: {first}");
+        let mut text = format!("advice: {}", first.sentence(called));
         if !others.is_empty() {
-            let others = listed(others.iter().map(|a| &a.element));
+            let others = listed(others.iter().map(|a| &a.element), called);
             let _ = write!(text, "; likewise {others}");
         }
         lines.push(text);
@@ -193,10 +199,11 @@ mod tests {
     #[test]
     fn few_findings_are_told_one_by_one_and_many_by_their_kinds() {
         let few: Vec<Dependent> = (1..=6).map(|k| dependent(k, &[9])).collect();
-        assert_eq!(redundant(&few).len(), 6);
+        let called: Called<'_> = &|id| id.to_string();
+        assert_eq!(redundant(&few, called).len(), 6);
         let mut many: Vec<Dependent> = (1..=20).map(|k| dependent(k, &[90])).collect();
         many.extend((31..=35).map(|k| dependent(k, &[91, 92])));
-        let lines = redundant(&many);
+        let lines = redundant(&many, called);
         assert_eq!(lines.len(), 3, "{lines:#?}");
         assert!(lines[0].starts_with("25 redundant equations"));
         assert!(lines[1].contains("likewise JOINT/2 by JOINT/90"));
@@ -218,7 +225,7 @@ mod tests {
             change: Change::Remove,
         };
         let all: Vec<Advice> = (1..=9).map(of).collect();
-        let lines = advice(&all);
+        let lines = advice(&all, &|id| id.to_string());
         assert_eq!(lines.len(), 1);
         assert!(lines[0].ends_with(
             "likewise JPRIM/2, JPRIM/3, JPRIM/4, JPRIM/5, JPRIM/6, JPRIM/7, JPRIM/8, JPRIM/9"

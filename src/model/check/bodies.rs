@@ -80,7 +80,7 @@ pub(super) fn mass_has_a_centre(model: &Model, out: &mut Out) {
             let Some(m) = marker.and_then(|m| model.markers.get(&m).map(|_| m)) else {
                 continue;
             };
-            let marker = ElementKind::Marker.id(m);
+            let marker = model.called(ElementKind::Marker.id(m));
             if model.body_of(m).is_some_and(|body| body != id) {
                 error(
                     out,
@@ -215,7 +215,7 @@ pub(super) fn floating_markers_have_one_owner(model: &Model, out: &mut Out) {
         };
         for (name, m) in [("I", i), ("J", j)] {
             if model.markers.get(&m).is_some_and(|m| m.floating) {
-                let marker = ElementKind::Marker.id(m);
+                let marker = model.called(ElementKind::Marker.id(m));
                 let message =
                     format!("{name} = {m}: {marker} is FLOATING and has no frame of its own");
                 error(out, "floating_marker", (id, element.place()), message);

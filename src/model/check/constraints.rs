@@ -101,7 +101,8 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
         let turns = match kind.displacements().chosen(rotation) {
             Ok(turns) => turns,
             Err(why) => {
-                undriven(out, who, (joint, kind), why);
+                let joint = model.called(ElementKind::Joint.id(joint));
+                undriven(out, who, (&joint, kind), why);
                 continue;
             }
         };
@@ -113,8 +114,8 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
                 who,
                 format!(
                     "{} drives {} already",
-                    ElementKind::Motion.id(first),
-                    ElementKind::Joint.id(joint)
+                    model.called(ElementKind::Motion.id(first)),
+                    model.called(ElementKind::Joint.id(joint))
                 ),
             );
         }
@@ -123,8 +124,8 @@ pub(super) fn motions_fit_their_joints(model: &Model, out: &mut Out) {
 }
 
 /// Tells why a motion cannot drive a joint.
-fn undriven(out: &mut Out, who: Who, (joint, kind): (u32, JointKind), why: Unclear) {
-    let is = format!("{} is {}", ElementKind::Joint.id(joint), kind.keyword());
+fn undriven(out: &mut Out, who: Who, (joint, kind): (&str, JointKind), why: Unclear) {
+    let is = format!("{joint} is {}", kind.keyword());
     match why {
         Unclear::Several => {
             let message = format!("{is}: ROTATION or TRANSLATION is needed");

@@ -12,7 +12,10 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
                     out,
                     "contradiction",
                     who,
-                    format!("{} stands twice in JOINTS", ElementKind::Joint.id(*joint)),
+                    format!(
+                        "{} stands twice in JOINTS",
+                        model.called(ElementKind::Joint.id(*joint))
+                    ),
                 );
                 at_argument(out, "JOINTS");
             }
@@ -21,7 +24,8 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
             };
             let said = c.rotational.get(k).copied().flatten();
             if let Err(why) = kind.displacements().chosen(said) {
-                uncoupled(out, who, (*joint, kind), why);
+                let joint = model.called(ElementKind::Joint.id(*joint));
+                uncoupled(out, who, (&joint, kind), why);
             }
         }
         if c.user.is_none() && !c.scales.is_empty() && c.scales.iter().all(|&s| s == 0.0) {
@@ -30,7 +34,7 @@ pub(super) fn couplers_fit_their_joints(model: &Model, out: &mut Out) {
         } else if let ([one], true) = (scaled(c).as_slice(), c.user.is_none()) {
             let message = format!(
                 "SCALES couples nothing to {0}, the only joint whose scale is not zero: it locks {0}",
-                ElementKind::Joint.id(*one)
+                model.called(ElementKind::Joint.id(*one))
             );
             warn(out, "unfit_value", who, message);
             at_argument(out, "SCALES");
@@ -48,8 +52,8 @@ fn scaled(coupler: &Coupler) -> Vec<u32> {
 }
 
 /// Tells why a displacement of a joint cannot be coupled.
-fn uncoupled(out: &mut Out, who: Who, (joint, kind): (u32, JointKind), why: Unclear) {
-    let (word, joint) = (kind.keyword(), ElementKind::Joint.id(joint));
+fn uncoupled(out: &mut Out, who: Who, (joint, kind): (&str, JointKind), why: Unclear) {
+    let word = kind.keyword();
     let (code, message) = match why {
         Unclear::Several => (
             "missing_argument",

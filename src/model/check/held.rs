@@ -168,7 +168,7 @@ pub(super) fn torques_have_an_axis(model: &Model, out: &mut Out) {
         }
         let message = format!(
             "it turns {a} against {b} about z of {}, but no joint between the two has such an axis: one may be missing",
-            ElementKind::Marker.id(j)
+            model.called(ElementKind::Marker.id(j))
         );
         warn(out, "forgotten_joint", (id, place), message);
     }
@@ -196,8 +196,8 @@ pub(super) fn joints_are_not_forgotten(model: &Model, out: &mut Out) {
     };
     let message = format!(
         "{} of it lies on {} of {other}, where no joint ties the two: one may be missing",
-        ElementKind::Marker.id(here),
-        ElementKind::Marker.id(there)
+        model.called(ElementKind::Marker.id(here)),
+        model.called(ElementKind::Marker.id(there))
     );
     warn(out, "forgotten_joint", (id, &part.place), message);
     advise(
