@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -150,21 +151,17 @@ class SweepTable(Mapping[str, NDArray[np.float64]]):
         return id(self)
 
 
+@dataclass(frozen=True)
 class Job:
     """Everything that a worker needs to run points: picklable, and made into a sweep once."""
 
-    def __init__(
-        self,
-        model: Model,
-        options: dict[str, Any],
-        simulation: dict[str, Any],
-        commands: str | None,
-        names: Sequence[str],
-        measures: Sequence[str],
-    ) -> None:
-        self.key = uuid.uuid4().hex
-        self.model, self.options, self.simulation = model, options, simulation
-        self.commands, self.names, self.measures = commands, list(names), list(measures)
+    model: Model
+    options: dict[str, Any]
+    simulation: dict[str, Any]
+    commands: str | None
+    names: list[str]
+    measures: list[str]
+    key: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     def sweep(self) -> _core.Sweep:
         """Make the sweep."""
@@ -249,7 +246,9 @@ def sweep(
     if isinstance(measures, str):
         measures = [measures]
     simulation = simulation_of(kind, end, None, steps, dtout)
-    job = Job(model, choices_of(model, options), simulation, commands, list(parameters), measures)
+    job = Job(
+        model, choices_of(model, options), simulation, commands, list(parameters), list(measures)
+    )
     core = job.sweep()
     points = _points(design, parameters, runs, seed)
     table = None if out is None else _core.Table(os.fspath(out), core, points)
