@@ -1,6 +1,7 @@
 //! `cognate elements`: the elements of a model by their names; one of them with who names it; a
 //! dataset with another name of an element, or without it.
 
+use super::assembly;
 use super::convert::same_file;
 use super::table::Table;
 use super::{Exit, Failure, Outcome, complain_in_files, remark, run, say, width};
@@ -20,6 +21,7 @@ use std::path::PathBuf;
 Examples:
   cognate elements belt.adm
   cognate elements belt.adm --kind COUPLER
+  cognate elements robot.adm --tree
   cognate elements belt.adm --show COUPLER/1
   cognate elements belt.adm --rename COUPLER/1=belt -o named.adm
   cognate elements belt.adm --delete COUPLER/1 -o without.adm")]
@@ -29,6 +31,9 @@ pub struct Args {
     /// List elements of this kind only (repeatable)
     #[arg(long = "kind", value_name = "KEYWORD")]
     kinds: Vec<ElementKind>,
+    /// Show the assembly: parts below what their names with dots begin with, and what each carries
+    #[arg(long)]
+    tree: bool,
     /// Show an element: its statement, whom it names and who names it
     #[arg(long, value_name = "ELEMENT")]
     show: Option<ElementId>,
@@ -87,6 +92,8 @@ pub fn run(args: &Args) -> Outcome {
     }
     if let Some(id) = args.show {
         say(&shown(&reading.model, &reading.dataset, id)?);
+    } else if args.tree {
+        say(&assembly::tree(&reading.model));
     } else if args.json {
         say(&results::json::text(&as_json(&reading.model, &args.kinds)));
     } else {

@@ -6,6 +6,7 @@
 
 mod anatomy;
 mod animate;
+mod assembly;
 pub mod card;
 mod check;
 mod configuration;

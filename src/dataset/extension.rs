@@ -4,7 +4,11 @@
 //! ! cognate: IC JOINT/3, X=0.1, X_RATE=2, ANGLE=30D       initial values of the variables of a joint
 //! ! cognate: IC MARKER/20, X=1, VZ=-3                     and of the place and motion of a marker
 //! ! cognate: RIGID arm = PART/2, PART/3                   parts that are one rigid body
+//! ! cognate: RIGID arm                                    the parts whose names begin with `arm.`
+//! ! cognate: JOINT/4 hinge = REVOLUTE, base, arm, AT=0,0,0, AXIS=0,0,1
 //! ```
+//!
+//! Joints, markers, spring-dampers and curves that lines make are in `extension/made.rs`.
 //!
 //! Initial values become [`Model::beginnings`]. A rigid body becomes FIXED joints between its first
 //! part and the others, with markers of their own; joints within it are switched off, for they have
@@ -12,6 +16,8 @@
 //! written: with its line, which finds its FIXED joints by their names when it is read again, and
 //! switches off what is within. A part is in one rigid body at most, and no rigid body is in
 //! another.
+
+use made::Made;
 
 use super::syntax::{Item, Source, Syntax, TokenKind};
 use crate::diagnostic::{Cause, Diagnostic, Severity, Span, near_names};
@@ -25,6 +31,11 @@ use crate::physics::kinematic::kinematic;
 use crate::space::{Frame, MarkerState, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
+mod chain;
+mod instance;
+mod line;
+mod made;
+
 /// The word that such a comment begins with.
 const MARK: &str = "cognate:";
 
@@ -33,11 +44,14 @@ struct RigidBody {
     name: String,
     span: Span,
     members: Vec<(String, Span)>,
+    /// no line says so: something was made on the instance
+    implied: bool,
 }
 
 /// Reads the comment lines of a dataset whose statements have been read.
 pub(super) fn read(source: &Source, syntax: &Syntax, model: &mut Model, out: &mut Vec<Diagnostic>) {
     let mut bodies: Vec<RigidBody> = Vec::new();
+    let (mut made, mut beginnings) = (Vec::new(), Vec::new());
     for span in comments(syntax) {
         let Some(span) = after_mark(source, span) else {
             continue;
@@ -46,17 +60,30 @@ pub(super) fn read(source: &Source, syntax: &Syntax, model: &mut Model, out: &mu
         let word = text.split_whitespace().next().unwrap_or_default();
         let rest = Span::new(span.start + word.len(), span.end);
         match word.to_ascii_uppercase().as_str() {
-            "IC" => initial_values(source, rest, model, out),
-            "RIGID" => match rigid_body(source, rest) {
+            "IC" => beginnings.push(rest),
+            "RIGID" => match rigid_body(source, rest, model) {
                 Ok(body) => bodies.push(body),
                 Err(d) => out.push(source.locate(d, rest)),
             },
-            _ => {
-                let d = bad(format!("`{word}` is no line of ours")).help(USAGE);
-                out.push(source.locate(d, Span::new(span.start, rest.start.max(span.start + 1))));
-            }
+            _ => match Made::of(word) {
+                Some(what) => made.push((what, rest)),
+                None => {
+                    let d = bad(format!("`{word}` is no line of ours")).help(USAGE);
+                    let word = Span::new(span.start, rest.start.max(span.start + 1));
+                    out.push(source.locate(d, word));
+                }
+            },
         }
     }
+    for (what, rest) in made {
+        let done = made::make((source, rest), what, model, &mut bodies, out);
+        out.extend(done.err());
+    }
+    for rest in beginnings {
+        initial_values(source, rest, model, out);
+    }
+    // a single part is a rigid body by itself
+    bodies.retain(|body| !body.implied || body.members.len() > 1);
     let mut of_part: BTreeMap<ElementId, String> = BTreeMap::new();
     for body in &bodies {
         match parts_of(source, body, &bodies, model, &mut of_part) {
@@ -66,8 +93,8 @@ pub(super) fn read(source: &Source, syntax: &Syntax, model: &mut Model, out: &mu
     }
 }
 
-const USAGE: &str =
-    "lines are `! cognate: IC JOINT/3, ANGLE=30D` and `! cognate: RIGID arm = PART/2, PART/3`";
+const USAGE: &str = "lines are `! cognate: IC JOINT/3, ANGLE=30D`, `! cognate: RIGID arm = PART/2, PART/3` \
+    and `! cognate: JOINT/4 hinge = REVOLUTE, base, arm, AT=0,0,0, AXIS=0,0,1`, with JOINT, MARKER, SPRINGDAMPER or CURVE";
 
 fn bad(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error("bad_extension", message)
@@ -189,9 +216,21 @@ fn number(text: &str) -> Option<f64> {
     (value * factor).is_finite().then_some(value * factor)
 }
 
-/// Reads a rigid body: `name = PART/2, PART/3`.
-fn rigid_body(source: &Source, span: Span) -> Result<RigidBody, Diagnostic> {
+/// Reads a rigid body: `name = PART/2, PART/3`, or the name of an instance.
+fn rigid_body(source: &Source, span: Span, model: &Model) -> Result<RigidBody, Diagnostic> {
     let text = source.slice(span);
+    let name = text.trim();
+    if let Ok(parts) = instance::parts(model, name) {
+        let members = parts
+            .iter()
+            .map(|&n| (ElementKind::Part.id(n).to_string(), span));
+        return Ok(RigidBody {
+            name: name.to_owned(),
+            span,
+            members: members.collect(),
+            implied: false,
+        });
+    }
     let (name, members) = text
         .split_once('=')
         .filter(|(name, members)| !name.trim().is_empty() && !members.trim().is_empty())
@@ -201,6 +240,7 @@ fn rigid_body(source: &Source, span: Span) -> Result<RigidBody, Diagnostic> {
         name: name.trim().to_owned(),
         span,
         members: pieces(source, Span::new(start, span.end)),
+        implied: false,
     })
 }
 
@@ -310,7 +350,6 @@ fn weld(
             owner: MarkerOwner::Part(part),
             ..Marker::default()
         };
-        let next = |last: Option<&u32>| last.map_or(1, |n| n.saturating_add(1));
         let i = next(model.markers.keys().next_back());
         model.markers.insert(i, on_part);
         let j = next(model.markers.keys().next_back());
@@ -372,6 +411,11 @@ impl Model {
             .flat_map(|(name, parts)| within(name, parts, self))
             .collect()
     }
+}
+
+/// Returns the number after the last one in use.
+fn next(last: Option<&u32>) -> u32 {
+    last.map_or(1, |n| n.saturating_add(1))
 }
 
 /// Returns the 3-1-3 angles of a rotation.

@@ -171,10 +171,16 @@ impl From<ElementId> for Subject {
 impl FromStr for ElementId {
     type Err = String;
 
-    /// Reads `JOINT/3`: a full keyword in any case, a slash and a number.
+    /// Reads `JOINT/3`: a full keyword in any case, a slash and a number; or `1-CONTACT1`, the name
+    /// that preprocessors give to CONTACT/1 where nobody names it.
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("`{text}` is not KEYWORD/number, such as MARKER/41");
-        let (keyword, number) = text.trim().split_once('/').ok_or_else(wrong)?;
+        let label = text.trim().split_once('-').and_then(|(number, rest)| {
+            let keyword = rest.strip_suffix(number)?;
+            let is_number = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+            is_number.then_some((keyword, number))
+        });
+        let (keyword, number) = text.trim().split_once('/').or(label).ok_or_else(wrong)?;
         let kind: ElementKind = keyword.trim().parse()?;
         Ok(kind.id(number.trim().parse().map_err(|_| wrong())?))
     }

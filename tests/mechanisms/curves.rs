@@ -475,3 +475,26 @@ fn numbers_of_a_matrix_count_where_a_file_is_named_as_well() {
         .any(|d| d.element.as_deref() == Some("MATRIX/1"));
     assert!(told, "that FILE is not read");
 }
+
+/// A contact point does not jump between outputs, however far apart these are.
+#[test]
+fn a_contact_point_is_where_it_is_however_few_outputs_there_are() {
+    let tie = "MOTION/1, JOINT=1, FUNCTION=4*TIME\nPTCV/1, CURVE=1, I=30, RM=21, DISP=0,0.5,0\n";
+    let columns = ["DX(30,21,21)", "DY(30,21,21)", "DY(30,1)"];
+    for (analysis, text) in [
+        (Analysis::Kinematic, cam("", tie)),
+        (Analysis::Dynamic, bead([0.5, 0.0], ", DISP=0.5,0,0")),
+    ] {
+        let columns = match analysis {
+            Analysis::Kinematic => &columns[..],
+            _ => &columns[2..],
+        };
+        let at_end = |outputs: usize| -> Vec<f64> {
+            let s = running::run(&text, columns, analysis, (3.0, outputs), 1e-8);
+            columns.iter().map(|c| running::last(&s, c)).collect()
+        };
+        let few = at_end(1);
+        assert_eq!(few, at_end(7));
+        assert_eq!(few, at_end(500));
+    }
+}

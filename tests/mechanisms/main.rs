@@ -14,6 +14,7 @@ mod continuation;
 mod curves;
 mod elements;
 mod initial;
+mod instances;
 mod joints;
 mod large;
 mod laws;

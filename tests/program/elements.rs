@@ -124,3 +124,34 @@ fn an_element_that_others_name_stays() {
         2
     );
 }
+
+#[test]
+fn an_assembly_is_shown_as_a_tree_of_its_instances() {
+    let text = "\
+a robot
+! adams_view_name='base'
+PART/1, GROUND
+! adams_view_name='arm.rod'
+PART/2, MASS=1, CM=20, IP=1,1,1
+MARKER/20, PART=2
+! adams_view_name='arm.tool.tip'
+PART/3, MASS=1, CM=30, IP=1,1,1
+MARKER/30, PART=3
+PART/7, MASS=1, CM=70, IP=1,1,1
+MARKER/70, PART=7
+! cognate: JOINT/4 hinge = REVOLUTE, base, arm
+END
+";
+    let model = scratch("elements", "robot.adm", text);
+    let tree = cognate(&["elements", path(&model), "--tree"]);
+    assert_eq!(tree.code, 0, "{}", tree.err);
+    let expected = "\
+├ PART/7
+├ arm
+│ ├ rod  PART/2, JOINT/4 'hinge', JOINT/5 'arm_3'
+│ └ tool
+│   └ tip  PART/3, JOINT/5 'arm_3'
+└ base  PART/1, ground, JOINT/4 'hinge'
+";
+    assert_eq!(tree.out, expected);
+}

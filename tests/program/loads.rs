@@ -502,3 +502,55 @@ fn a_configuration_of_a_run_has_the_loads_of_that_run() {
         "{text}"
     );
 }
+
+#[test]
+fn a_contact_is_known_by_the_name_that_preprocessors_give_it() {
+    let text = "\
+CONTACT
+UNITS/SYSTEM=MKS
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, MASS=1, CM=20, IP=1,1,1, QG=0,0,1
+MARKER/20, PART=2
+GRAPHICS/1, ELLIPSOID, CM=20, XSCALE=0.2, YSCALE=0.2, ZSCALE=0.2
+GRAPHICS/2, PLANE, RM=1, XMIN=-9, XMAX=9, YMIN=-9, YMAX=9
+CONTACT/1, IGEOM=1, JGEOM=2, IMPACT, STIFFNESS=1e5, DAMPING=10, EXPONENT=1.5, DMAX=0.01
+ACCGRAV/KGRAV=-10
+REQUEST/1, F4=DZ(20,1)
+END
+";
+    let model = scratch("loads_contact", "ball.adm", text);
+    let out = out(&model);
+    let fell = |loads: &str| {
+        let args = [
+            "run",
+            path(&model),
+            "--end",
+            "1",
+            "--steps",
+            "10",
+            "--loads",
+            loads,
+            "--out",
+            path(&out),
+        ];
+        ok(&args);
+        let run = results::read(&out.join("ball.csv")).unwrap();
+        run.column("REQUEST_1.Z")
+            .or(run.column("REQUEST_1.F4"))
+            .unwrap()[10]
+    };
+    assert!(fell("gravity") < -3.9);
+    assert!(fell("gravity,1-CONTACT1") > 0.0);
+    let wrong = cognate(&[
+        "run",
+        path(&model),
+        "--end",
+        "1",
+        "--loads",
+        "2-CONTACT1",
+        "--out",
+        path(&out),
+    ]);
+    assert_ne!(wrong.code, 0);
+}

@@ -716,14 +716,20 @@ wrong, the advice what an element has.
 
     ! cognate: IC JOINT/3, X=0.1, X_RATE=2, ANGLE=30D     initial values of a joint: its variables and their rates
     ! cognate: IC MARKER/20, X=1, VZ=-3                   of a marker, in ground
-    ! cognate: RIGID arm = PART/2, PART/3                 parts that are one rigid body",
+    ! cognate: RIGID arm = PART/2, PART/3                 parts that are one rigid body
+    ! cognate: RIGID arm                                  those whose names begin with `arm.`
+    ! cognate: JOINT/4 hinge = REVOLUTE, base, arm, AT=0,0,0, AXIS=0,0,1
+    ! cognate: MARKER tip = arm, AT=0.3,0,0
+    ! cognate: SPRINGDAMPER/1 return = hinge, KT=2/D, ANGLE=30D
+    ! cognate: CURVE/9 cam = MATRIX/1, MATRIX/2           pieces that share end points",
     },
     Code {
         name: "rigid_body",
         summary: "a rigid body of several parts that cannot be one",
         explanation: "\
 A part is in one rigid body at most, and a rigid body is not part of another. No motion moves its parts against each other. As a
-note: a joint within a rigid body has nothing to hold and is switched off.
+note: a joint within a rigid body has nothing to hold and is switched off. An instance (`arm`, whose parts are `arm.rod` and
+`arm.pin`) becomes a rigid body when a line makes a joint, marker or spring-damper on it: it must not lie in one, nor hold one.
 
     ! cognate: RIGID hand = PART/3, PART/4
     ! cognate: RIGID arm = PART/2, hand          not so: name PART/2, PART/3, PART/4 in one line",
