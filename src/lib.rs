@@ -195,6 +195,7 @@
 //! | `parquet` | results as Parquet |
 //! | `pages` | runs as pages that move, as `.glb` files and as drawings |
 //! | `serde` | expressions and models as texts, mistakes and rows of sweeps as data |
+//! | `setup` | load cases, functions and set-ups beside a model (`MODEL.toml`) |
 //! | `cli` | the command line and the prompt |
 //!
 //! Without `native` there is no unsafe Rust here.
@@ -205,7 +206,8 @@
 //! the table of joints; results stand beside the scene because they know nothing of it:
 //!
 //! ```text
-//! 6  build  cli  serialization  models made by programs; the command line; serde
+//! 7  cli                        the command line
+//! 6  build  setup serialization models made by programs; load cases beside them; serde
 //! 5  analysis   report          simulations of a scene; plots of results
 //! 4  dataset  scene  results    files of models; equations; records and files of results
 //! 3  model                      the elements as the user wrote them
@@ -262,10 +264,13 @@ pub mod report;
 // floor 6
 #[cfg(feature = "solver")]
 pub mod build;
-#[cfg(feature = "cli")]
-pub mod cli;
 #[cfg(feature = "serde")]
 mod serialization;
+#[cfg(feature = "setup")]
+pub mod setup;
+// floor 7
+#[cfg(feature = "cli")]
+pub mod cli;
 
 #[cfg(feature = "solver")]
 pub use analysis::session::{Analysis, Options, Session};

@@ -1,6 +1,6 @@
 //! `cognate group`: functions of the user's, and groups of functions.
 
-use super::setup::{Members, Ordinate, Setup, USER_DEFINED, edit};
+use super::setup::{self, Members, Ordinate, Setup, USER_DEFINED, edit};
 use super::{Exit, Failure, Outcome, remark, say};
 use crate::diagnostic::{Diagnostic, near_names};
 use crate::results::json;
@@ -144,7 +144,7 @@ pub fn run(args: &Args) -> Outcome {
 
 /// Makes or changes a group.
 fn create(model: &Path, name: &str, members: &[String], groups: &[String]) -> Outcome {
-    let setup = Setup::of_model(model)?;
+    let setup = setup::of_model(model)?;
     let (key, names) = match groups.is_empty() {
         true => ("functions", members),
         false => ("groups", groups),
@@ -189,7 +189,7 @@ fn put(document: &mut toml_edit::DocumentMut, of: &str, name: &str, new: Table) 
 
 /// Removes a group that no other holds.
 fn remove(model: &Path, name: &str) -> Outcome {
-    let setup = Setup::of_model(model)?;
+    let setup = setup::of_model(model)?;
     if setup.group(name).is_none() {
         return Err(unknown(&setup, name).into());
     }
@@ -219,7 +219,7 @@ pub(super) fn unknown(setup: &Setup, name: &str) -> Diagnostic {
 
 /// Makes or changes a function.
 fn function(args: &FunctionArgs) -> Outcome {
-    let setup = Setup::of_model(&args.model)?;
+    let setup = setup::of_model(&args.model)?;
     let mut table = Table::new();
     let ShapeArgs {
         expression,
@@ -306,7 +306,7 @@ fn points_of(text: &str) -> Result<Item, Failure> {
 
 /// Deletes a function that no load needs.
 fn delete(model: &Path, name: &str) -> Outcome {
-    let setup = Setup::of_model(model)?;
+    let setup = setup::of_model(model)?;
     if setup.function(name).is_none() {
         let known = setup.functions.iter().map(|f| f.name.text.as_str());
         let near = near_names(name, known);
@@ -344,7 +344,7 @@ fn delete(model: &Path, name: &str) -> Outcome {
 
 /// Prints groups, and the functions in them.
 fn list(model: &Path, as_json: bool) -> Outcome {
-    let setup = Setup::of_model(model)?;
+    let setup = setup::of_model(model)?;
     let groups = setup.group_names();
     if as_json {
         let group = |name: &&str| {

@@ -3,7 +3,7 @@
 //! A name of a group means, in this order: a group of `MODEL.toml`; the run itself, whose group
 //! holds all its columns; an element's set of results, such as `PART_2_XFORM`.
 
-use super::setup::Setup;
+use super::setup::{self, Setup};
 use super::{Failure, group, recorded, run};
 use crate::diagnostic::Diagnostic;
 use crate::results::{Column, Run, Units};
@@ -20,12 +20,12 @@ const TIMES: usize = 400;
 pub(super) fn setup_of(results: &Path, model: Option<&Path>) -> Result<Setup, Failure> {
     let named = recorded::model_file(results, model).ok();
     if let Some(model) = named.filter(|file| file.is_file()) {
-        let setup = Setup::of_model(&model)?;
+        let setup = setup::of_model(&model)?;
         if setup.exists() {
             return Ok(setup);
         }
     }
-    Setup::beside(results)
+    setup::beside(results)
 }
 
 /// Returns the names of the columns that a group holds.

@@ -148,7 +148,7 @@ pub fn run(args: &Args) -> Outcome {
 fn opened(model: &Path) -> Result<(Model, Setup), Failure> {
     let dataset = setup::dataset_of(model)?;
     let reading = run::read_with(&dataset, Asked::All)?;
-    Ok((reading.model, Setup::beside(&dataset)?))
+    Ok((reading.model, setup::beside(&dataset)?))
 }
 
 /// Makes or changes a load case, after its loads were looked for in the model.
@@ -168,7 +168,7 @@ fn create(model: &Path, name: &str, loads: &[String]) -> Outcome {
 
 /// Removes load cases that nothing else names.
 fn remove(model: &Path, names: &[String]) -> Outcome {
-    let mut setup = Setup::of_model(model)?;
+    let mut setup = setup::of_model(model)?;
     for name in names {
         if setup.case(name).is_none() {
             let known = setup.cases.iter().map(|c| c.name.text.as_str());
@@ -249,7 +249,7 @@ fn drive(model: &Path, load: &str, function: Option<&str>) -> Outcome {
 
 /// Changes the set-up.
 fn set_up(args: &SetupArgs) -> Outcome {
-    let setup = Setup::of_model(&args.model)?;
+    let setup = setup::of_model(&args.model)?;
     for only in &args.only {
         only.parse::<Chosen>().map_err(Failure::usage)?;
     }

@@ -4,7 +4,7 @@ use super::convert::same_file;
 use super::grouped;
 use super::moved::has_ending;
 use super::recorded::add_measures;
-use super::setup::Setup;
+use super::setup::{self, Setup};
 use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, render, run, say, width};
 use crate::diagnostic::Diagnostic;
@@ -164,7 +164,7 @@ fn is_model(file: &Path) -> bool {
 
 /// Returns the set-up of a model that is shown; `None`: results are shown.
 fn setup_of(args: &Args) -> Result<Option<Setup>, Failure> {
-    let model = is_model(&args.input).then(|| Setup::of_model(&args.input));
+    let model = is_model(&args.input).then(|| setup::of_model(&args.input));
     let setup = model.transpose()?;
     if setup.as_ref().is_some_and(|s| s.functions.is_empty()) {
         let what = format!("{} has no functions to show", args.input.display());

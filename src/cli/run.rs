@@ -115,6 +115,18 @@ pub(super) enum KindName {
     InitialConditions,
 }
 
+impl From<KindName> for SimulationKind {
+    fn from(name: KindName) -> Self {
+        match name {
+            KindName::Dynamic => SimulationKind::Dynamic,
+            KindName::Kinematic => SimulationKind::Kinematic,
+            KindName::Static => SimulationKind::Static,
+            KindName::Transient => SimulationKind::Transient,
+            KindName::InitialConditions => SimulationKind::InitialConditions,
+        }
+    }
+}
+
 /// Shows progress and listens for Ctrl-C.
 struct Terminal<'a> {
     progress: &'a std::cell::RefCell<Progress>,
@@ -510,46 +522,9 @@ pub(super) fn alone_step(args: &Single<'_>) -> Result<Step, Failure> {
 /// Returns the simulation that options describe, else a set-up, after one at rest where it asks for
 /// that.
 fn single_simulation(args: &Single<'_>, setup: &Setup) -> Result<Vec<Step>, Failure> {
-    let kind = args.kind.or(setup.solve.kind);
-    let end = args.end.or(setup.solve.end);
-    let kind = match kind.unwrap_or(KindName::Transient) {
-        KindName::Dynamic => SimulationKind::Dynamic,
-        KindName::Kinematic => SimulationKind::Kinematic,
-        KindName::Static => SimulationKind::Static,
-        KindName::Transient => SimulationKind::Transient,
-        KindName::InitialConditions => SimulationKind::InitialConditions,
-    };
-    let over_time = !matches!(
-        kind,
-        SimulationKind::Static | SimulationKind::InitialConditions
-    );
-    if over_time && end.is_none() {
-        return Err(Failure::usage(
-            "a dataset without a command file needs --end TIME",
-        ));
-    }
-    let steps = args.steps.or(setup.solve.steps);
-    let steps = steps.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
-    let simulate = Simulate {
-        kind,
-        end,
-        duration: None,
-        steps,
-        dtout: None,
-    };
-    let at_rest = Simulate {
-        kind: SimulationKind::Static,
-        end: None,
-        steps: None,
-        ..simulate
-    };
-    let first = (over_time && setup.solve.at_rest_first).then_some(at_rest);
-    let step = |simulate| Step {
-        command: Command::Simulate(simulate),
-        text: "SIMULATE".into(),
-        line: 0,
-    };
-    Ok(first.into_iter().chain([simulate]).map(step).collect())
+    let kind = args.kind.map(SimulationKind::from);
+    let simulations = setup.solve.simulations(kind, args.end, args.steps);
+    simulations.ok_or_else(|| Failure::usage("a dataset without a command file needs --end TIME"))
 }
 
 pub(super) fn stem(path: &Path) -> String {

@@ -1,7 +1,7 @@
 //! Changes of `MODEL.toml`: what a command is asked to change is changed, all else stays as it is
 //! written.
 
-use super::{LAST_USED, Setup, read};
+use super::{LAST_USED, Setup};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::results;
 use toml_edit::{Array, DocumentMut, Item, Table, Value};
@@ -24,9 +24,9 @@ pub fn change(setup: &Setup, edit: impl FnOnce(&mut DocumentMut)) -> Result<Setu
     edit(&mut document);
     let head = if setup.exists() { "" } else { HEAD };
     let text = head.to_owned() + &document.to_string();
-    let new = read::setup(setup.file.clone(), text);
-    let new = new.map_err(|mut found| {
-        let mut d = found.swap_remove(0);
+    let new = Setup::read(setup.file.clone(), text);
+    let new = new.map_err(|found| {
+        let mut d = found.into_first();
         // the place is in a text that was not written
         (d.file, d.line, d.column, d.span) = (None, 0, 0, None);
         d

@@ -1,155 +1,100 @@
-//! The file beside a model, `MODEL.toml`: load cases, functions, groups of functions and the set-up
-//! of a run.
-//!
-//! ```text
-//! MODEL.toml ── read ──▶ Setup ── apply ──▶ Model with chosen loads and functions
-//!                          ▲                     │ what was chosen
-//!                          └──────── edit ◀──────┘
-//! ```
-//!
-//! The file is the user's: only what a command is asked to change is changed, comments and order
-//! stay.
+//! The set-up beside a model, as commands use it: read with its mistakes shown in the file, and
+//! edited. The file is the user's: only what a command is asked to change is changed, comments and
+//! order stay.
 
-mod apply;
 pub mod edit;
-mod function;
-mod group;
-mod load;
-mod read;
 
-pub use apply::{Asked, Prepared, check_loads, chosen_loads, loads_acting, prepare};
-pub use function::{Ordinate, UserFunction};
-pub use group::{Group, Members, USER_DEFINED};
-pub use load::{Load, loads_of};
+pub use crate::setup::{
+    Asked, Case, Group, LAST_USED, Load, Members, Ordinate, Prepared, Setup, USER_DEFINED,
+    UserFunction, loads_of,
+};
 
-use super::run::{self, KindName};
-use super::{Exit, Failure};
-use crate::analysis::session::Chosen;
+use super::{Exit, Failure, remark, run};
 use crate::dataset::command::Script;
-use crate::diagnostic::{Diagnostic, Span};
-use crate::results::format::Format;
+use crate::diagnostic::{Diagnostic, Error};
+use crate::model::Model;
+use crate::results::Loads;
 use std::path::{Path, PathBuf};
 
-/// The load case that keeps loads which were chosen one by one.
-pub const LAST_USED: &str = "9999 Last_Used_Loadcase";
-
-/// A text of the file, with its place.
-#[derive(Clone, Debug, Default)]
-pub struct Named {
-    /// the text
-    pub text: String,
-    /// where it stands
-    pub span: Span,
+/// Returns the failure of mistakes in the file.
+fn in_file(error: Error) -> Failure {
+    Failure::in_files(Exit::Input, error.into())
 }
 
-/// A load case: a named set of loads, or of other load cases.
-#[derive(Clone, Debug)]
-pub struct Case {
-    /// its name
-    pub name: Named,
-    /// loads, or names of load cases
-    pub loads: Vec<Named>,
+/// Reads the file beside a dataset; one without contents where there is none.
+///
+/// # Errors
+/// All mistakes in the file, each at its line and column.
+pub fn beside(dataset: &Path) -> Result<Setup, Failure> {
+    Setup::beside(dataset).map_err(in_file)
 }
 
-/// The set-up of a run: what is not said where it is started.
-#[derive(Clone, Debug, Default)]
-pub struct Solve {
-    /// load cases and loads that act; `None`: all loads
-    pub loads: Option<Vec<Named>>,
-    /// kind of simulation
-    pub kind: Option<KindName>,
-    /// end of the simulation
-    pub end: Option<f64>,
-    /// output steps
-    pub steps: Option<usize>,
-    /// static equilibrium before a simulation over time
-    pub at_rest_first: bool,
-    /// permitted local error
-    pub error: Option<f64>,
-    /// method of integration
-    pub method: Option<String>,
-    /// formats of the tables
-    pub formats: Vec<Format>,
-    /// elements that are recorded
-    pub only: Vec<Chosen>,
-    /// whether velocities and accelerations of bodies are recorded
-    pub body_motion: bool,
-    /// further columns
-    pub columns: Vec<String>,
+/// Reads the file beside a model: beside the dataset that a command file names.
+///
+/// # Errors
+/// When the command file or the file beside the dataset has mistakes.
+pub fn of_model(model: &Path) -> Result<Setup, Failure> {
+    beside(&dataset_of(model)?)
 }
 
-/// The contents of the file beside a model.
-#[derive(Clone, Debug, Default)]
-pub struct Setup {
-    /// the file
-    pub file: PathBuf,
-    /// its text
-    pub text: String,
-    /// set-up of a run
-    pub solve: Solve,
-    /// load cases
-    pub cases: Vec<Case>,
-    /// functions of the user's
-    pub functions: Vec<UserFunction>,
-    /// loads, and the functions that give them
-    pub driven: Vec<(Named, Named)>,
-    /// groups of functions
-    pub groups: Vec<Group>,
+/// Prepares a model for a run, as [`crate::setup::prepare`] does; a new choice of loads is kept in
+/// the file.
+///
+/// # Errors
+/// All mistakes in that file, at their lines and columns, and names that are no loads.
+pub fn prepare(dataset: &Path, model: &mut Model, asked: Asked) -> Result<Prepared, Failure> {
+    let prepared = crate::setup::prepare(dataset, model, asked).map_err(in_file)?;
+    if let Asked::New(names) = asked {
+        keep(&prepared.setup, names, prepared.loads.as_ref());
+    }
+    Ok(prepared)
 }
 
-impl Setup {
-    /// Reads the file beside a dataset; one without contents where there is none.
-    ///
-    /// # Errors
-    /// All mistakes in the file, each at its line and column.
-    pub fn beside(dataset: &Path) -> Result<Self, Failure> {
-        let file = dataset.with_extension("toml");
-        let text = match std::fs::read_to_string(&file) {
-            Ok(text) => text,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                return Ok(Self {
-                    file,
-                    ..Self::default()
-                });
-            }
-            Err(e) => {
-                let mut d = Diagnostic::error("file_unreadable", format!("cannot be read: {e}"));
-                d.file = Some(file.display().to_string());
-                return Err(d.into());
-            }
-        };
-        read::setup(file, text).map_err(|found| Failure::in_files(Exit::Input, found))
-    }
+/// Returns the loads that names of loads and load cases mean.
+///
+/// # Errors
+/// All names that mean none.
+pub fn check_loads(setup: &Setup, model: &Model, names: &[String]) -> Result<Vec<Load>, Failure> {
+    crate::setup::check_loads(setup, model, names).map_err(in_file)
+}
 
-    /// Reads the file beside a model: beside the dataset that a command file names.
-    ///
-    /// # Errors
-    /// When the command file or the file beside the dataset has mistakes.
-    pub fn of_model(model: &Path) -> Result<Self, Failure> {
-        Self::beside(&dataset_of(model)?)
-    }
+/// Returns the loads of the choice that is kept; `None`: all loads.
+///
+/// # Errors
+/// All names that mean none, at their places.
+pub fn chosen_loads(setup: &Setup, model: &Model) -> Result<Option<Vec<Load>>, Failure> {
+    crate::setup::chosen_loads(setup, model).map_err(in_file)
+}
 
-    /// Returns whether there is a file.
-    pub fn exists(&self) -> bool {
-        !self.text.is_empty()
+/// Keeps a choice in the file beside the model. That it cannot be kept is no reason not to run.
+fn keep(setup: &Setup, names: &[String], loads: Option<&Loads>) {
+    let are_cases = names.iter().all(|name| setup.case(name).is_some());
+    let kept = match loads {
+        None => edit::choose(setup, &[]),
+        Some(_) if are_cases => edit::choose(setup, names),
+        Some(loads) => edit::keep_last_used(setup, &loads.acting)
+            .and_then(|new| edit::choose(&new, &[LAST_USED.to_owned()])),
+    };
+    match kept {
+        Ok(_) if loads.is_some() => remark(format!(
+            "the choice is kept in {}; --loads all takes all loads again",
+            setup.file.display()
+        )),
+        Ok(_) => {}
+        Err(d) => remark(format!("the choice of loads is not kept: {}", d.message)),
     }
+}
 
-    /// Returns the load case of a name.
-    pub fn case(&self, name: &str) -> Option<&Case> {
-        self.cases.iter().find(|case| case.name.text == name)
+/// Writes which loads act, for a person.
+pub fn loads_acting(loads: &Loads) -> String {
+    let mut text = format!("loads: {}", loads.chosen.join(", "));
+    if loads.chosen != loads.acting {
+        text += &format!(" ({})", loads.acting.join(", "));
     }
-
-    /// Returns the function of a name.
-    pub fn function(&self, name: &str) -> Option<&UserFunction> {
-        self.functions.iter().find(|f| f.name.text == name)
+    if !loads.left_out.is_empty() {
+        text += &format!("; left out: {}", loads.left_out.join(", "));
     }
-
-    /// Returns a mistake at a place of the file.
-    fn mistake(&self, span: Span, code: &'static str, message: impl Into<String>) -> Diagnostic {
-        let mut d = Diagnostic::error(code, message).at(&self.text, span);
-        d.file = Some(self.file.display().to_string());
-        d
-    }
+    text
 }
 
 /// Returns the dataset of a model: that which a command file names.
@@ -165,7 +110,7 @@ pub fn dataset_of(model: &Path) -> Result<PathBuf, Failure> {
         true => Script::from_message_log(model),
         false => Script::read(model),
     };
-    let script = script.map_err(|e| Failure::in_files(Exit::Input, e.into()))?;
+    let script = script.map_err(in_file)?;
     let named = script.model_file();
     let named = named.or_else(|| is_log.then(|| model.with_extension("adm")));
     named.ok_or_else(|| {

@@ -3,11 +3,10 @@
 use super::function::{Ordinate, Shape, UserFunction, read_formula, read_points};
 use super::group::{self, Group, Members};
 use super::{Case, Named, Setup, Solve};
-use crate::cli::run::KindName;
+use crate::dataset::command::SimulationKind;
 use crate::diagnostic::{Diagnostic, Span, near_names};
 use crate::expr::spline::Ends;
 use crate::results::format::Format;
-use clap::ValueEnum;
 use std::ops::Range;
 use std::path::PathBuf;
 use toml_edit::{Document, Item, TableLike, Value};
@@ -69,6 +68,26 @@ pub(super) fn setup(file: PathBuf, text: String) -> Result<Setup, Vec<Diagnostic
         true => Ok(setup),
         false => Err(found),
     }
+}
+
+/// Kinds of simulations by their words.
+const KINDS: [(&str, SimulationKind); 5] = [
+    ("dynamic", SimulationKind::Dynamic),
+    ("kinematic", SimulationKind::Kinematic),
+    ("static", SimulationKind::Static),
+    ("transient", SimulationKind::Transient),
+    ("initial-conditions", SimulationKind::InitialConditions),
+];
+
+/// Reads a kind of simulation.
+fn kind_of(text: &str) -> Result<SimulationKind, String> {
+    let found = KINDS
+        .iter()
+        .find(|(word, _)| word.eq_ignore_ascii_case(text));
+    found.map(|(_, kind)| *kind).ok_or_else(|| {
+        let words: Vec<&str> = KINDS.iter().map(|(word, _)| *word).collect();
+        format!("`{text}` is no kind of simulation: {}", words.join(", "))
+    })
 }
 
 /// A set-up that is being read, and the mistakes so far.
@@ -149,7 +168,7 @@ impl Reader {
         let loads = table.get("loads");
         self.setup.solve = Solve {
             loads: loads.map(|item| self.names(item, "loads are a list of names")),
-            kind: self.word(table, "type", |text| KindName::from_str(text, true)),
+            kind: self.word(table, "type", kind_of),
             end: self.number(table, "end"),
             steps: self.number(table, "steps").map(|n| n as usize),
             at_rest_first: self.switch(table, "initial_static_equilibrium"),

@@ -3,9 +3,8 @@
 
 use super::function::{Fitted, Ordinate, Shape, UserFunction};
 use super::load::{Load, loads_of};
-use super::{LAST_USED, Named, Setup, edit};
-use crate::cli::{Exit, Failure, remark};
-use crate::diagnostic::{Diagnostic, Span, near_names};
+use super::{Named, Setup};
+use crate::diagnostic::{Diagnostic, Error, Span, near_names};
 use crate::expr::Expr;
 use crate::expr::ast::Dialect;
 use crate::model::{COMPONENTS, Driven, ElementId, ElementKind, Formula, Level, Model, SplineData};
@@ -19,7 +18,7 @@ pub enum Asked<'a> {
     All,
     /// those of the last choice
     Kept,
-    /// these, which are kept as the choice; `all` alone: all loads
+    /// these, which the shell keeps as the choice; `all` alone: all loads
     New(&'a [String]),
     /// those that acted in a run whose record names them
     Recorded(&'a [String]),
@@ -34,15 +33,14 @@ pub struct Prepared {
     pub loads: Option<Loads>,
 }
 
-/// Prepares a model for a run: gives loads their functions, and leaves out the loads that are not
-/// chosen. A new choice is kept in the file beside the dataset.
+/// Prepares a model for a run: reads the file beside its dataset, gives loads their functions, and
+/// leaves out the loads that are not chosen. The file stays as it is.
 ///
 /// # Errors
 /// All mistakes in that file, at their lines and columns, and names that are no loads.
-pub fn prepare(dataset: &Path, model: &mut Model, asked: Asked) -> Result<Prepared, Failure> {
+pub fn prepare(dataset: &Path, model: &mut Model, asked: Asked<'_>) -> Result<Prepared, Error> {
     let setup = Setup::beside(dataset)?;
-    let wrong = |found: Vec<Diagnostic>| Failure::in_files(Exit::Input, found);
-    drive(&setup, model).map_err(wrong)?;
+    drive(&setup, model)?;
     let (names, is_kept) = match asked {
         Asked::All => (None, false),
         Asked::New(names) if is_all(names) => (None, false),
@@ -51,11 +49,8 @@ pub fn prepare(dataset: &Path, model: &mut Model, asked: Asked) -> Result<Prepar
     };
     let loads = match &names {
         None => None,
-        Some(names) => Some(choose(&setup, model, names, is_kept).map_err(wrong)?),
+        Some(names) => Some(choose(&setup, model, names, is_kept)?),
     };
-    if let Asked::New(names) = asked {
-        keep(&setup, names, loads.as_ref());
-    }
     Ok(Prepared { setup, loads })
 }
 
@@ -73,30 +68,11 @@ fn given(names: &[String]) -> Vec<Named> {
     names.iter().map(named).collect()
 }
 
-/// Keeps a choice in the file beside the model. That it cannot be kept is no reason not to run.
-fn keep(setup: &Setup, names: &[String], loads: Option<&Loads>) {
-    let are_cases = names.iter().all(|name| setup.case(name).is_some());
-    let kept = match loads {
-        None => edit::choose(setup, &[]),
-        Some(_) if are_cases => edit::choose(setup, names),
-        Some(loads) => edit::keep_last_used(setup, &loads.acting)
-            .and_then(|new| edit::choose(&new, &[LAST_USED.to_owned()])),
-    };
-    match kept {
-        Ok(_) if loads.is_some() => remark(format!(
-            "the choice is kept in {}; --loads all takes all loads again",
-            setup.file.display()
-        )),
-        Ok(_) => {}
-        Err(d) => remark(format!("the choice of loads is not kept: {}", d.message)),
-    }
-}
-
 /// Returns the loads that names of loads and load cases mean.
 ///
 /// # Errors
 /// All names that mean none.
-pub fn check_loads(setup: &Setup, model: &Model, names: &[String]) -> Result<Vec<Load>, Failure> {
+pub fn check_loads(setup: &Setup, model: &Model, names: &[String]) -> Result<Vec<Load>, Error> {
     meant(setup, model, &given(names), false)
 }
 
@@ -104,24 +80,19 @@ pub fn check_loads(setup: &Setup, model: &Model, names: &[String]) -> Result<Vec
 ///
 /// # Errors
 /// All names that mean none, at their places.
-pub fn chosen_loads(setup: &Setup, model: &Model) -> Result<Option<Vec<Load>>, Failure> {
+pub fn chosen_loads(setup: &Setup, model: &Model) -> Result<Option<Vec<Load>>, Error> {
     let names = setup.solve.loads.as_ref();
     names
         .map(|names| meant(setup, model, names, true))
         .transpose()
 }
 
-fn meant(
-    setup: &Setup,
-    model: &Model,
-    names: &[Named],
-    in_file: bool,
-) -> Result<Vec<Load>, Failure> {
+fn meant(setup: &Setup, model: &Model, names: &[Named], in_file: bool) -> Result<Vec<Load>, Error> {
     let mut found = Vec::new();
     let loads = resolve(setup, model, names, in_file, &mut found);
     match found.is_empty() {
         true => Ok(loads),
-        false => Err(Failure::in_files(Exit::Input, found)),
+        false => Err(found.into()),
     }
 }
 
@@ -441,16 +412,4 @@ fn give(model: &mut Model, id: ElementId, component: Option<usize>, text: String
             _ => force.torque[k - 3] = Some(formula),
         }
     }
-}
-
-/// Writes which loads act, for a person.
-pub fn loads_acting(loads: &Loads) -> String {
-    let mut text = format!("loads: {}", loads.chosen.join(", "));
-    if loads.chosen != loads.acting {
-        text += &format!(" ({})", loads.acting.join(", "));
-    }
-    if !loads.left_out.is_empty() {
-        text += &format!("; left out: {}", loads.left_out.join(", "));
-    }
-    text
 }
