@@ -237,8 +237,12 @@ void cognate_expr_free(CognateExpr *expr);
 // back. It may call cognate_sysfnc, cognate_sysary, c_sysfnc and c_sysary.
 bool cognate_session_load(CognateSession *session, const char *path, CognateError **error);
 
-// Reads a dataset from a file; NULL: it has mistakes.
+// Reads a dataset from a file, and the set-up in the file of the same name with the ending .toml:
+// chosen loads, functions that give them, error and method of runs. NULL: one of them has mistakes.
 CognateModel *cognate_model_read(const char *path, CognateError **error);
+
+// Reads a dataset from a file, whatever stands beside it; NULL: it has mistakes.
+CognateModel *cognate_model_read_alone(const char *path, CognateError **error);
 
 // Reads a dataset from `length` bytes in memory; NULL: it has mistakes.
 //

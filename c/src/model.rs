@@ -10,6 +10,7 @@ use engine::dataset::{self, Dataset, Reading};
 use engine::diagnostic::{Diagnostic, Severity};
 use engine::model::Model;
 use engine::results::json;
+use engine::setup::{self, Asked, Prepared, Setup};
 use std::ffi::c_char;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,13 +21,15 @@ pub struct CognateModel {
     /// the dataset as written, which knows the places
     pub(crate) dataset: Arc<Dataset>,
     doubts: Vec<Diagnostic>,
+    /// the set-up beside it, and the loads that were chosen
+    pub(crate) prepared: Prepared,
 }
 
 impl CognateModel {
-    fn of(reading: Reading) -> Result<*mut Self, Error> {
+    fn of(reading: Reading, setup: Setup) -> Result<*mut Self, Error> {
         let Reading {
             dataset,
-            model,
+            mut model,
             diagnostics,
         } = reading;
         let is_error = |d: &Diagnostic| d.severity == Severity::Error;
@@ -34,11 +37,13 @@ impl CognateModel {
         if !wrong.is_empty() {
             return Err(wrong.into());
         }
+        let prepared = setup::apply(setup, &mut model, Asked::Kept)?;
         let dataset = Arc::new(dataset);
         Ok(Box::into_raw(Box::new(Self {
             model,
             dataset,
             doubts,
+            prepared,
         })))
     }
 
@@ -63,7 +68,8 @@ pub fn commands(source: &str) -> Result<Script, Error> {
     Script::from_text(&format!("\n{source}\n"))
 }
 
-/// Reads a dataset from a file; NULL: it has mistakes.
+/// Reads a dataset from a file, and the set-up in the file of the same name with the ending .toml:
+/// chosen loads, functions that give them, error and method of runs. NULL: one of them has mistakes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_model_read(
     path: *const c_char,
@@ -72,7 +78,22 @@ pub unsafe extern "C" fn cognate_model_read(
     let work = || {
         // SAFETY: a text of the caller
         let path = unsafe { text(path, "path") }?;
-        CognateModel::of(dataset::read(path)?)
+        CognateModel::of(dataset::read(path)?, Setup::beside(Path::new(path))?)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, std::ptr::null_mut(), work) }
+}
+
+/// Reads a dataset from a file, whatever stands beside it; NULL: it has mistakes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_model_read_alone(
+    path: *const c_char,
+    error: *mut *mut CognateError,
+) -> *mut CognateModel {
+    let work = || {
+        // SAFETY: a text of the caller
+        let path = unsafe { text(path, "path") }?;
+        CognateModel::of(dataset::read(path)?, Setup::default())
     };
     // SAFETY: a place of the caller
     unsafe { door(error, std::ptr::null_mut(), work) }
@@ -97,7 +118,8 @@ pub unsafe extern "C" fn cognate_model_from_memory(
             // SAFETY: a text of the caller
             false => Some(unsafe { text(file, "file") }?),
         };
-        CognateModel::of(dataset::read_source(Source::from_bytes(file, bytes)))
+        let reading = dataset::read_source(Source::from_bytes(file, bytes));
+        CognateModel::of(reading, Setup::default())
     };
     // SAFETY: a place of the caller
     unsafe { door(error, std::ptr::null_mut(), work) }

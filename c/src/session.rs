@@ -284,12 +284,14 @@ pub unsafe extern "C" fn cognate_session_new(
             .model
             .settings
             .contains_key(&SettingsStatement::Results);
-        let options = Options {
+        let mut options = Options {
             full: full.unwrap_or(asked),
             ..options.clone()
         };
+        model.prepared.setup.solve.complete(&mut options);
         let mut session = Session::new(model.model.clone(), name, options);
         session.folders = model.folder().into_iter().collect();
+        session.run.record.loads.clone_from(&model.prepared.loads);
         let title = Event::Title(session.run.title.clone());
         session.run.log.push(title);
         let inner = Inner {

@@ -133,13 +133,17 @@ class Model:
         self._user: dict[str, tuple[tuple[str, ...], Law]] = {}
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str]) -> Model:
-        """Read a dataset from a file.
+    def read(cls, path: str | os.PathLike[str], *, setup: bool = True) -> Model:
+        """Read a dataset from a file, and the set-up beside it.
 
         Parameters
         ----------
         path : path-like
             The file.
+        setup : bool
+            Obey the file of the same name with the ending ``.toml``, as the command line does:
+            chosen loads, functions that give them, and the set-up of runs. False: the dataset
+            alone.
 
         Returns
         -------
@@ -151,7 +155,7 @@ class Model:
         ModelError
             Every mistake, with place and advice, in its `errors`.
         """
-        return cls(_core.Model.read(path))
+        return cls(_core.Model.read(path, setup))
 
     @classmethod
     def from_text(cls, text: str, file: str | None = None) -> Model:
@@ -190,6 +194,11 @@ class Model:
     def text(self) -> str:
         """The dataset: as written, or as `changed` has left it."""
         return self._core.text
+
+    @property
+    def loads(self) -> tuple[list[str], list[str]] | None:
+        """Loads that act and loads that are left out, where the set-up chooses; else None."""
+        return self._core.loads
 
     @property
     def elements(self) -> list[str]:
@@ -274,7 +283,7 @@ class Model:
         end: float | None = None,
         steps: int | None = None,
         *,
-        kind: Kind = "transient",
+        kind: Kind | None = None,
         dtout: float | None = None,
         state: str | None = None,
         progress: bool | Progress | None = None,
@@ -286,11 +295,12 @@ class Model:
         ----------
         end : float
             Time at which it ends, in units of the model; not needed for ``"static"`` and
-            ``"initial_conditions"``.
+            ``"initial_conditions"``, or where the set-up of the model says it.
         steps : int, optional
-            Output steps; 50 where neither they nor `dtout` are given.
-        kind : {"transient", "dynamic", "kinematic", "static", "initial_conditions"}
-            ``"transient"``: kinematic without freedom, else dynamic.
+            Output steps; those of the set-up, else 50, where neither they nor `dtout` are given.
+        kind : {"transient", "dynamic", "kinematic", "static", "initial_conditions"}, optional
+            ``"transient"``: kinematic without freedom, else dynamic. That of the set-up, else
+            transient, where it is left out.
         dtout : float, optional
             Time between outputs.
         state : str, optional
@@ -315,8 +325,15 @@ class Model:
             Ctrl-C; its attribute ``run`` holds the results so far.
         """
         session = Session(self, **options)
+        own_kind, own_end, own_steps, rest_first = self._core.solve
+        kind = kind or own_kind or "transient"
+        end = own_end if end is None else end
+        steps = own_steps if steps is None and dtout is None else steps
         if state is not None:
             session.state = state
+        elif rest_first and kind not in ("static", "initial_conditions"):
+            if session._core_simulate("static", None, None, None, None, progress) != "completed":
+                return session._finish()
         session._core_simulate(kind, end, None, steps, dtout, progress)
         return session._finish()
 
@@ -478,12 +495,14 @@ class Model:
         return f"<Model {self.title!r}: {len(self.elements)} elements>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self.text, self.file, self._user)
+        return _restored, (self.text, self.file, self._user, self._core.setup or None)
 
 
-def _restored(text: str, file: str | None, user: dict[str, Any]) -> Model:
+def _restored(
+    text: str, file: str | None, user: dict[str, Any], setup: str | None = None
+) -> Model:
     """Return the model that was pickled."""
-    model = Model.from_text(text, file)
+    model = Model(_core.Model.from_text(text, file, setup))
     model._user = dict(user)
     return model
 

@@ -3,12 +3,13 @@
 use crate::errors::{self, Kind};
 use cognate::Error;
 use cognate::analysis::verify;
-use cognate::dataset::command::{Command, Script};
+use cognate::dataset::command::{Command, Script, SimulationKind};
 use cognate::dataset::syntax::Source;
 use cognate::dataset::{self, Dataset, Reading};
 use cognate::diagnostic::{Diagnostic, Severity};
 use cognate::model::{self, ElementKind};
 use cognate::results::json;
+use cognate::setup::{self, Asked, Prepared, Setup};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -23,13 +24,15 @@ pub struct Model {
     /// it is no longer as written
     changed: bool,
     doubts: Vec<Diagnostic>,
+    /// the set-up beside it, and the loads that were chosen
+    pub(crate) prepared: Prepared,
 }
 
 impl Model {
-    fn of(py: Python<'_>, reading: Reading) -> PyResult<Self> {
+    fn of(py: Python<'_>, reading: Reading, setup: Option<Setup>) -> PyResult<Self> {
         let Reading {
             dataset,
-            model,
+            mut model,
             diagnostics,
         } = reading;
         let is_error = |d: &Diagnostic| d.severity == Severity::Error;
@@ -37,12 +40,18 @@ impl Model {
         if !wrong.is_empty() {
             return Err(errors::exception(py, Kind::Model, wrong, None));
         }
+        let prepared = match setup {
+            Some(setup) => setup::apply(setup, &mut model, Asked::Kept)
+                .map_err(|e| errors::exception(py, Kind::Model, e, None))?,
+            None => Prepared::default(),
+        };
         let dataset = Arc::new(dataset);
         Ok(Self {
             model,
             dataset,
             changed: false,
             doubts,
+            prepared,
         })
     }
 
@@ -61,22 +70,57 @@ impl Model {
 
 #[pymethods]
 impl Model {
-    /// Read a dataset from a file.
+    /// Read a dataset from a file, with the set-up beside it unless `setup` is false.
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let reading = py.detach(|| dataset::read(&path));
-        Self::of(
-            py,
-            reading.map_err(|e| errors::exception(py, Kind::Model, e, None))?,
-        )
+    #[pyo3(signature = (path, setup = true))]
+    fn read(py: Python<'_>, path: PathBuf, setup: bool) -> PyResult<Self> {
+        let raised = |e: Error| errors::exception(py, Kind::Model, e, None);
+        let reading = py.detach(|| dataset::read(&path)).map_err(raised)?;
+        let setup = setup.then(|| Setup::beside(&path)).transpose();
+        Self::of(py, reading, setup.map_err(raised)?)
     }
 
-    /// Read a dataset from a text; `file`: the name it goes by.
+    /// Read a dataset from a text; `file`: the name it goes by; `setup`: the text of a set-up.
     #[staticmethod]
-    #[pyo3(signature = (text, file = None))]
-    fn from_text(py: Python<'_>, text: &str, file: Option<&str>) -> PyResult<Self> {
+    #[pyo3(signature = (text, file = None, setup = None))]
+    fn from_text(
+        py: Python<'_>,
+        text: &str,
+        file: Option<&str>,
+        setup: Option<String>,
+    ) -> PyResult<Self> {
+        let raised = |e: Error| errors::exception(py, Kind::Model, e, None);
         let reading = py.detach(|| dataset::read_source(Source::from_text(file, text)));
-        Self::of(py, reading)
+        let named = PathBuf::from(file.unwrap_or_default()).with_extension("toml");
+        let setup = setup.map(|text| Setup::read(named, text)).transpose();
+        Self::of(py, reading, setup.map_err(raised)?)
+    }
+
+    /// The text of the set-up beside it; empty where there is none.
+    #[getter]
+    fn setup(&self) -> &str {
+        &self.prepared.setup.text
+    }
+
+    /// The set-up of a run: its kind, end, output steps, and whether equilibrium is found first.
+    #[getter]
+    fn solve(&self) -> (Option<&'static str>, Option<f64>, Option<usize>, bool) {
+        let solve = &self.prepared.setup.solve;
+        let kind = solve.kind.map(|kind| match kind {
+            SimulationKind::Kinematic => "kinematic",
+            SimulationKind::Dynamic => "dynamic",
+            SimulationKind::Static => "static",
+            SimulationKind::Transient => "transient",
+            SimulationKind::InitialConditions => "initial_conditions",
+        });
+        (kind, solve.end, solve.steps, solve.at_rest_first)
+    }
+
+    /// The loads that act where some were chosen, and those that are left out.
+    #[getter]
+    fn loads(&self) -> Option<(Vec<String>, Vec<String>)> {
+        let loads = self.prepared.loads.as_ref()?;
+        Some((loads.acting.clone(), loads.left_out.clone()))
     }
 
     /// The dataset as text: as written, or as the changes have left it.
@@ -151,6 +195,7 @@ impl Model {
             dataset,
             changed: true,
             doubts: self.doubts.clone(),
+            prepared: self.prepared.clone(),
         })
     }
 

@@ -52,7 +52,7 @@ impl Choices {
                 .parse::<ElementKind>()
                 .map_err(unknown)
         });
-        let options = Options {
+        let mut options = Options {
             skip: skip.collect::<PyResult<BTreeSet<_>>>()?,
             error: self.error,
             method: self.method,
@@ -68,6 +68,7 @@ impl Choices {
             accuracy: self.accuracy,
             ..Options::default()
         };
+        of.prepared.setup.solve.complete(&mut options);
         Ok((options, self.user))
     }
 }
@@ -164,6 +165,7 @@ impl Session {
         let raised = Raised::default();
         let mut session = session::Session::new(of.model.clone(), &name, options);
         session.folders = of.folder().into_iter().collect();
+        session.run.record.loads.clone_from(&of.prepared.loads);
         let title = Event::Title(session.run.title.clone());
         session.run.log.push(title);
         for routine in user {

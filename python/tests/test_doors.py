@@ -1,6 +1,7 @@
 """Scenes of the gallery through Python and through the command line: the same bytes."""
 
 import os
+import pickle
 import subprocess
 from pathlib import Path
 
@@ -28,3 +29,21 @@ def test_python_and_the_command_line_write_the_same_bytes(scene, tmp_path):
     assert run.ok
     run.to_csv(tmp_path / "python.csv")
     assert (tmp_path / "python.csv").read_bytes() == (tmp_path / "shell.csv").read_bytes()
+
+
+def test_python_obeys_the_set_up_beside_a_model_as_the_command_line_does(tmp_path):
+    folder = ROOT / "tests" / "data" / "loaded"
+    for asked, ran in [
+        (["loaded.acf"], lambda: cg.run(folder / "loaded.acf")),
+        (["loaded.adm"], lambda: cg.Model.read(folder / "loaded.adm").run()),
+        (["loaded.adm"], lambda: pickle.loads(pickle.dumps(cg.Model.read(folder / "loaded.adm"))).run()),
+        (["loaded.adm", "--end", "0.5"], lambda: cg.Model.read(folder / "loaded.adm").run(end=0.5)),
+    ]:
+        model, *more = asked
+        words = [program(), "run", str(folder / model), *more, "--out", str(tmp_path), "--name", "shell"]
+        subprocess.run([*words, "--format", "csv", "--quiet"], check=True)
+        ran().to_csv(tmp_path / "python.csv")
+        assert (tmp_path / "python.csv").read_bytes() == (tmp_path / "shell.csv").read_bytes()
+    alone = cg.Model.read(folder / "loaded.adm", setup=False)
+    assert alone.loads is None
+    assert cg.Model.read(folder / "loaded.adm").loads == (["gravity", "MOTION/1"], ["SFORCE/1"])

@@ -10,7 +10,7 @@ use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Chosen, Options, Session};
 use crate::analysis::watch::Watch;
 use crate::analysis::work_limit::process_seconds;
-use crate::dataset::command::{Command, Script, Simulate, SimulationKind, Step};
+use crate::dataset::command::{Command, Script, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
 use crate::model::{ElementKind, Family, Model, SettingsStatement};

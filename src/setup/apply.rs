@@ -39,7 +39,14 @@ pub struct Prepared {
 /// # Errors
 /// All mistakes in that file, at their lines and columns, and names that are no loads.
 pub fn prepare(dataset: &Path, model: &mut Model, asked: Asked<'_>) -> Result<Prepared, Error> {
-    let setup = Setup::beside(dataset)?;
+    apply(Setup::beside(dataset)?, model, asked)
+}
+
+/// Prepares a model for a run by a set-up, as [`prepare`] does by the file beside its dataset.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn apply(setup: Setup, model: &mut Model, asked: Asked<'_>) -> Result<Prepared, Error> {
     drive(&setup, model)?;
     let (names, is_kept) = match asked {
         Asked::All => (None, false),

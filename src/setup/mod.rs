@@ -22,12 +22,12 @@ mod group;
 mod load;
 mod read;
 
-pub use apply::{Asked, Prepared, check_loads, chosen_loads, prepare};
+pub use apply::{Asked, Prepared, apply, check_loads, chosen_loads, prepare};
 pub use function::{Ordinate, Shape, UserFunction};
 pub use group::{Group, Members, USER_DEFINED};
 pub use load::{Load, loads_of};
 
-use crate::analysis::session::Chosen;
+use crate::analysis::session::{Chosen, Options};
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Diagnostic, Error, Span};
 use crate::results::format::Format;
@@ -82,6 +82,22 @@ pub struct Solve {
 }
 
 impl Solve {
+    /// Gives options what they leave open: error, method, columns, and what is recorded.
+    pub fn complete(&self, options: &mut Options) {
+        options.error = options.error.or(self.error);
+        if options.method.is_none() {
+            options.method.clone_from(&self.method);
+        }
+        if options.columns.is_empty() {
+            options.columns.clone_from(&self.columns);
+        }
+        if options.only.is_empty() {
+            options.only.clone_from(&self.only);
+        }
+        options.body_rates |= self.body_motion;
+        options.full |= self.body_motion || !self.only.is_empty();
+    }
+
     /// Returns the simulations of a run: of a kind, to an end, with output steps, each as the
     /// set-up says where it is `None`, after one at rest where the set-up asks for that.
     ///

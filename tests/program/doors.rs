@@ -6,6 +6,7 @@ use cognate::analysis::session::script::obey;
 use cognate::analysis::watch::Unwatched;
 use cognate::dataset::command::Script;
 use cognate::results::{Status, csv};
+use cognate::setup::{Asked, prepare};
 use cognate::{Model, Options, Session};
 use std::path::Path;
 
@@ -29,5 +30,44 @@ fn the_library_and_the_command_line_write_the_same_bytes() {
         let status = obey(&mut session, &script.steps, |_, _| (), &mut Unwatched);
         assert_eq!(status, Ok(Status::Completed), "{scene}");
         assert_eq!(csv::write(&session.run, true), written, "{scene}");
+    }
+}
+
+#[test]
+fn the_library_obeys_the_set_up_beside_a_model_as_the_command_line_does() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/loaded");
+    let folder = scratch("doors_loaded", "folder", "");
+    let out = folder.parent().unwrap();
+    let dataset = root.join("loaded.adm");
+    let commands = root.join("loaded.acf");
+    let mut tables = Vec::new();
+    for model in [&commands, &dataset] {
+        let done = cognate(&[
+            "run",
+            path(model),
+            "--out",
+            path(out),
+            "--name",
+            "it",
+            "--format",
+            "csv",
+            "--quiet",
+        ]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        tables.push(std::fs::read_to_string(out.join("it.csv")).unwrap());
+    }
+    let mut model = Model::read(&dataset).unwrap();
+    let prepared = prepare(&dataset, &mut model, Asked::Kept).unwrap();
+    let left_out = prepared.loads.as_ref().map(|loads| loads.left_out.clone());
+    assert_eq!(left_out, Some(vec!["SFORCE/1".to_owned()]));
+    let mut options = Options::default();
+    prepared.setup.solve.complete(&mut options);
+    let script = Script::read(&commands).unwrap();
+    let single = prepared.setup.solve.simulations(None, None, None).unwrap();
+    for (steps, table) in [script.steps, single].iter().zip(&tables) {
+        let mut session = Session::new(model.clone(), "it", options.clone());
+        let status = obey(&mut session, steps, |_, _| (), &mut Unwatched);
+        assert_eq!(status, Ok(Status::Completed));
+        assert_eq!(csv::write(&session.run, true), *table);
     }
 }

@@ -5,8 +5,8 @@
 pub mod edit;
 
 pub use crate::setup::{
-    Asked, Case, Group, LAST_USED, Load, Members, Ordinate, Prepared, Setup, USER_DEFINED,
-    UserFunction, loads_of,
+    Asked, Case, LAST_USED, Load, Members, Ordinate, Prepared, Setup, USER_DEFINED, UserFunction,
+    loads_of,
 };
 
 use super::{Exit, Failure, remark, run};
