@@ -12,6 +12,7 @@
 
 use super::Named;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::disk;
 use crate::expr::Expr;
 use crate::expr::ast::Dialect;
 use crate::expr::program::Input;
@@ -307,7 +308,7 @@ pub(super) fn read_points(file: &Path) -> Result<Vec<[f64; 2]>, String> {
 }
 
 fn contents(file: &Path) -> Result<String, String> {
-    let bytes = std::fs::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
+    let bytes = disk::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

@@ -30,6 +30,7 @@ pub use load::{Load, loads_of};
 use crate::analysis::session::{Chosen, Options};
 use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Diagnostic, Error, Span};
+use crate::disk;
 use crate::results::format::Format;
 use std::path::{Path, PathBuf};
 
@@ -167,7 +168,7 @@ impl Setup {
     /// All mistakes in the file, each at its line and column.
     pub fn beside(dataset: &Path) -> Result<Self, Error> {
         let file = dataset.with_extension("toml");
-        let text = match std::fs::read_to_string(&file) {
+        let text = match disk::read_to_string(&file) {
             Ok(text) => text,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 return Ok(Self {
