@@ -11,8 +11,8 @@
 //! Where the slopes stay the same, the time of a swing does not depend on its width, nor on its
 //! energy. The second part is that of methods of second order; of the others the energy tells.
 //! Damping forgets such errors: nothing is said where more energy was lost to it than there ever
-//! was at once, nor where the acceleration falls with the velocity for so long that a push dies away,
-//! ∫ ∂v̇/∂v dt < −2, whoever wrote the damping into a function.
+//! was at once, nor where the acceleration falls with the velocity for so long that a push dies
+//! away, ∫ ∂v̇/∂v dt < −2, whoever wrote the damping into a function.
 
 use crate::analysis::system::System;
 use crate::analysis::trajectory::EnergyFlow;
