@@ -93,11 +93,13 @@ fn kept(asked: PyResult<f64>, raised: &Raised) -> f64 {
 /// Returns the name and the number of arguments of a head: `f(x, y)`.
 fn arguments(head: &str) -> PyResult<(&str, usize)> {
     let parts = head.split_once('(');
-    let parts = parts.and_then(|(name, rest)| Some((name.trim(), rest.trim_end().strip_suffix(')')?)));
+    let parts =
+        parts.and_then(|(name, rest)| Some((name.trim(), rest.trim_end().strip_suffix(')')?)));
     match parts {
         Some((name, list)) => Ok((name, list.split(',').count())),
         None => {
-            let what = format!("a function is given with its arguments, as in \"f(x, y)\": {head:?}");
+            let what =
+                format!("a function is given with its arguments, as in \"f(x, y)\": {head:?}");
             Err(PyValueError::new_err(what))
         }
     }
