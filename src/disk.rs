@@ -7,10 +7,10 @@
 
 pub(crate) use std::fs::{
     File, Metadata, OpenOptions, create_dir_all, metadata, read, read_dir, read_to_string,
-    remove_file, rename, write,
+    remove_file, rename,
 };
 #[cfg(feature = "parquet")]
-pub(crate) use std::fs::{create_dir, remove_dir};
+pub(crate) use std::fs::{create_dir, remove_dir, write};
 use std::path::Path;
 
 /// Returns whether there is a file or a folder at a path.
