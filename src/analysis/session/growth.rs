@@ -21,6 +21,9 @@ use crate::space::MarkerState;
 const GROWTH_PER_QUARTER: f64 = 50.0;
 /// Kinetic energy in the last quarter over all energy in the first.
 const BEYOND_ALL: f64 = 1e6;
+/// Growth of a velocity from the first quarter to the last without which the energy does not grow
+/// by [`BEYOND_ALL`]: a thousand would be its root, and masses change along a motion.
+const LEAST_GROWTH: f64 = 10.0;
 /// States looked at, at most.
 const LOOKS: usize = 160;
 
@@ -73,9 +76,40 @@ impl Looks {
             return None;
         }
         let (first, last) = (self.rows.first()?, &self.last);
-        let looked = self.rows.iter().chain([last]).map(Vec::as_slice);
-        of(system, looked, [first, last])
+        let looked = || self.rows.iter().chain([last]).map(Vec::as_slice);
+        let speeds_grow = speeds_grow(&system.scene.layout, looked(), [first, last]);
+        speeds_grow.then(|| of(system, looked(), [first, last]))?
     }
+}
+
+/// Returns the quarter of the time between two states in which a state lies, 0 … 3.
+fn quarter(row: &[f64], [first, last]: [&[f64]; 2]) -> usize {
+    let (t0, t1) = (first[Layout::TIME], last[Layout::TIME]);
+    let part = 4.0 * (row[Layout::TIME] - t0) / (t1 - t0);
+    (part.ceil() as usize).clamp(1, 4) - 1
+}
+
+/// Returns whether any velocity grows so much that the energy might: a look at the numbers, before
+/// energies are evaluated.
+fn speeds_grow<'a>(
+    layout: &Layout,
+    looked: impl Iterator<Item = &'a [f64]>,
+    ends: [&[f64]; 2],
+) -> bool {
+    let mut largest = [vec![0.0_f64; layout.n_v], vec![0.0; layout.n_v]];
+    for row in looked {
+        let of_quarter = match quarter(row, ends) {
+            0 => &mut largest[0],
+            3 => &mut largest[1],
+            _ => continue,
+        };
+        for (most, v) in of_quarter.iter_mut().zip(&row[layout.v()]) {
+            *most = most.max(v.abs());
+        }
+    }
+    let [early, late] = largest;
+    let mut both = early.iter().zip(&late);
+    both.any(|(early, late)| *late > LEAST_GROWTH * early)
 }
 
 /// A motion that grows without bound.
@@ -94,12 +128,10 @@ fn of<'a>(
     [first, last]: [&[f64]; 2],
 ) -> Option<Growth> {
     let scene = system.configured();
-    let (t0, t1) = (first[Layout::TIME], last[Layout::TIME]);
     let mut largest = [0.0_f64; 4];
     let mut energy = 0.0_f64;
     for row in looked {
-        let part = 4.0 * (row[Layout::TIME] - t0) / (t1 - t0);
-        let quarter = (part.ceil() as usize).clamp(1, 4) - 1;
+        let quarter = quarter(row, [first, last]);
         let [kinetic, potential] = Equations::new(scene, row).energy();
         largest[quarter] = largest[quarter].max(kinetic);
         if quarter == 0 {
