@@ -331,9 +331,13 @@ class Model:
         steps = own_steps if steps is None and dtout is None else steps
         if state is not None:
             session.state = state
-        elif rest_first and kind not in ("static", "initial_conditions"):
-            if session._core_simulate("static", None, None, None, None, progress) != "completed":
-                return session._finish()
+        elif rest_first and end is not None and kind not in ("static", "initial_conditions"):
+            # as commands, whose rows are told apart by their phase
+            outputs = f", STEPS={steps}" if steps is not None else ""
+            outputs += f", DTOUT={float(dtout)!r}" if dtout is not None else ""
+            simulate = f"SIMULATE/{kind.upper()}, END={float(end)!r}{outputs}"
+            session._obey(_core.Commands.from_text(f"SIMULATE/STATIC\n{simulate}"), progress)
+            return session._finish()
         session._core_simulate(kind, end, None, steps, dtout, progress)
         return session._finish()
 
