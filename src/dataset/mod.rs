@@ -131,18 +131,15 @@ fn load(path: &Path) -> Result<Vec<u8>, Error> {
         d.file = Some(path.display().to_string());
         Error::from(d).with_source(e)
     })?;
-    match syntax::first_of_no_text(&bytes) {
-        None => Ok(bytes),
-        Some(place) => {
-            let message = format!("is no text: byte {place} is zero");
-            let mut d = Diagnostic::error("no_text", message);
-            d.file = Some(path.display().to_string());
-            Err(Error::from(d.help(
-                "datasets, command files and logs are lines of text; what a program keeps in a format \
-                 of its own it exports",
-            )))
-        }
+    if !syntax::is_no_text(&bytes) {
+        return Ok(bytes);
     }
+    let mut d = Diagnostic::error("no_text", "is no text: too many bytes are no characters");
+    d.file = Some(path.display().to_string());
+    Err(Error::from(d.help(
+        "datasets, command files and logs are lines of text; what a program keeps in a format of its \
+         own it exports",
+    )))
 }
 
 /// Reads a dataset.

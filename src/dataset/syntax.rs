@@ -92,13 +92,18 @@ impl Encoding {
     }
 }
 
-/// Returns the place of the first zero byte in what is no text of any encoding; zeros at the end
-/// are padding.
-pub(super) fn first_of_no_text(bytes: &[u8]) -> Option<usize> {
-    let first = bytes.iter().position(|&b| b == 0)?;
-    let is_padding = bytes.iter().skip(first).all(|&b| b == 0);
-    let is_wide = matches!(Encoding::of(bytes), Encoding::Utf16 { .. });
-    (!is_padding && !is_wide).then_some(first)
+/// Part of the bytes that are control characters from which on they are no text: of random bytes a
+/// tenth is, and a text has a stray one at most.
+const MOST_CONTROL: f64 = 0.03;
+
+/// Returns whether bytes are no text of any encoding; zeros at the end are padding.
+pub(super) fn is_no_text(bytes: &[u8]) -> bool {
+    let end = bytes.iter().rposition(|&b| b != 0).map_or(0, |k| k + 1);
+    let text = bytes.get(..end).unwrap_or_default();
+    let is_control = |b: &&u8| b.is_ascii_control() && !b.is_ascii_whitespace();
+    let control = text.iter().filter(is_control).count();
+    let is_much = control as f64 > MOST_CONTROL * text.len() as f64;
+    is_much && !matches!(Encoding::of(bytes), Encoding::Utf16 { .. })
 }
 
 impl Source {

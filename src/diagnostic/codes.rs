@@ -116,8 +116,8 @@ takes 1 to 64 arguments; the head of a formula is written f(x, y).
         name: "no_derivative",
         summary: "a function of one's own is known by its values only",
         explanation: "\
-A derivative was asked for along what a registered closure depends on. Of a closure only values are known, or values and first
-derivatives; formulas and laws have all.
+A derivative was asked for along what a registered closure depends on. Of a closure only values are known, or values and
+first derivatives; formulas and laws have all.
 
     Names::new().function(\"f\", |[x]| x * x)                           has no gradient
     Names::new().function_with_slopes(\"f\", |[x]| (x * x, [2.0 * x]))  has one, but no rates

@@ -990,7 +990,16 @@ fn a_file_that_is_no_text_is_refused_as_such() {
             b"PK\x03\x04\x14\0\0\0\x08\0abc".to_vec(),
             false,
         ),
-        ("zero.adm", b"t\nPART/1, GR\0OUND\nEND\n".to_vec(), false),
+        (
+            "random.adm",
+            (0..4000u32).map(|k| (k * k % 65_521 % 256) as u8).collect(),
+            false,
+        ),
+        (
+            "stray.adm",
+            b"t\n! a remark\0 of much\x01 text\nPART/1, GROUND\n! more\nEND\n".to_vec(),
+            true,
+        ),
         ("padded.adm", [model.as_bytes(), &[0; 40]].concat(), true),
         ("wide.adm", wide, true),
     ] {
