@@ -1,6 +1,7 @@
 //! A [`Drawing`] as the text of an SVG file.
 
 use super::drawing::{Drawing, Mark, Point, shaded};
+use super::labels::{Placed, placed};
 use std::collections::BTreeSet;
 
 /// Width of a margin, in px.
@@ -29,18 +30,40 @@ pub fn svg(drawing: &Drawing, width: f64, unit: &str) -> String {
          <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
     );
     paper.gradients(drawing, &mut text);
+    let mut names = paper.names(drawing, [width, height]).into_iter();
+    let left_out = names
+        .clone()
+        .filter(|name| *name == Placed::LeftOut)
+        .count();
     for layer in &drawing.layers {
         let see_through = layer.opacity < 1.0;
         if see_through {
             text += &format!("<g opacity=\"{}\">\n", layer.opacity);
         }
-        layer
-            .marks
-            .iter()
-            .for_each(|mark| paper.mark(mark, &mut text));
+        for mark in &layer.marks {
+            match mark {
+                Mark::Word {
+                    at,
+                    text: word,
+                    colour,
+                } => {
+                    let name = names.next().unwrap_or(Placed::There);
+                    paper.word(*at, word, *colour, name, &mut text);
+                }
+                Mark::Faces { .. } | Mark::Stroke { .. } | Mark::Ball { .. } => {
+                    paper.mark(mark, &mut text);
+                }
+            }
+        }
         if see_through {
             text += "</g>\n";
         }
+    }
+    if left_out > 0 {
+        text += &format!(
+            "<text x=\"12\" y=\"{}\" font-size=\"11\" fill=\"#66707c\">{left_out} names without room are left out</text>\n",
+            short(height - 10.0),
+        );
     }
     paper.bar([width, height], unit, &mut text);
     text + "</svg>\n"
@@ -67,9 +90,13 @@ fn short(x: f64) -> String {
 
 impl Paper {
     /// Returns where a point is on the picture, in px.
+    fn at(&self, p: Point) -> [f64; 2] {
+        [self.left + self.scale * p[0], self.top - self.scale * p[1]]
+    }
+
+    /// Returns the same as it is written.
     fn place(&self, p: Point) -> [String; 2] {
-        let (x, y) = (self.left + self.scale * p[0], self.top - self.scale * p[1]);
-        [short(x), short(y)]
+        self.at(p).map(short)
     }
 
     fn path(&self, points: &[Point]) -> String {
@@ -132,23 +159,47 @@ impl Paper {
                 );
                 *text += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {fill}/>\n");
             }
-            Mark::Word {
-                at,
-                text: word,
-                colour,
-            } => {
-                let [x, y] = self.place(*at);
-                let escaped = word
-                    .replace('&', "&amp;")
-                    .replace('<', "&lt;")
-                    .replace('>', "&gt;");
-                let look = "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"";
-                let fill = hex(*colour);
-                *text += &format!(
-                    "<text x=\"{x}\" y=\"{y}\" dy=\"0.35em\" fill=\"{fill}\" {look}>{escaped}</text>\n"
-                );
-            }
+            // names are written where there is room
+            Mark::Word { .. } => {}
         }
+    }
+
+    /// Returns where the names of a drawing go on a picture.
+    fn names(&self, drawing: &Drawing, size: [f64; 2]) -> Vec<Placed> {
+        let marks = drawing.layers.iter().flat_map(|l| &l.marks);
+        let words = marks.filter_map(|mark| match mark {
+            Mark::Word { at, text, .. } => Some((self.at(*at), text.as_str())),
+            Mark::Faces { .. } | Mark::Stroke { .. } | Mark::Ball { .. } => None,
+        });
+        placed(&words.collect::<Vec<_>>(), size, LETTERS)
+    }
+
+    /// Writes a name, with a line to its point where it stands beside that.
+    fn word(&self, at: Point, word: &str, colour: [u8; 3], name: Placed, text: &mut String) {
+        let fill = hex(colour);
+        let point = self.place(at);
+        let [x, y] = match name {
+            Placed::LeftOut => return,
+            Placed::There => point,
+            Placed::Beside(middle) => {
+                let middle = middle.map(short);
+                *text += &format!(
+                    "<path d=\"M{}L{}\" stroke=\"{fill}\" stroke-width=\"0.8\" stroke-opacity=\"0.7\"/>\n",
+                    point.join(" "),
+                    middle.join(" "),
+                );
+                middle
+            }
+        };
+        let escaped = word
+            .replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;");
+        let look =
+            "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"";
+        *text += &format!(
+            "<text x=\"{x}\" y=\"{y}\" dy=\"0.35em\" fill=\"{fill}\" {look}>{escaped}</text>\n"
+        );
     }
 
     /// Writes a stroke; of a rod with an outline and a lighter middle.

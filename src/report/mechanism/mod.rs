@@ -12,6 +12,7 @@ mod colours;
 pub mod drawing;
 pub mod drawing_svg;
 pub mod glb;
+mod labels;
 mod links;
 mod pack;
 pub mod page;
