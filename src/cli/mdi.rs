@@ -136,10 +136,7 @@ fn install(folder: &Path) -> Outcome {
         ),
         (
             folder.join("common").join("mdi.bat"),
-            format!(
-                "@rem {MARK}: made by `cognate mdi --install`\r\n@\"{}\" mdi %*\r\n",
-                program.display()
-            ),
+            batch(&program.display().to_string()),
         ),
     ];
     for (file, _) in &scripts {
@@ -180,6 +177,13 @@ fn make_executable(file: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
+/// Returns the text of `mdi.bat`, which hands all words on and ends with the code of the program.
+fn batch(program: &str) -> String {
+    // within quotes a batch file still replaces what stands between two percent signs
+    let program = program.replace('%', "%%");
+    format!("@rem {MARK}: made by `cognate mdi --install`\r\n@\"{program}\" mdi %*\r\n")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -199,5 +203,14 @@ mod tests {
         assert!(said("-c ru-standard i no_such_file exit").contains("no_such_file.acf"));
         assert!(said("-c ru-user i lib.so x.acf").contains("routines"));
         assert!(said("aview").contains("no solver") && said("").contains("no solver"));
+    }
+
+    #[test]
+    fn a_batch_file_quotes_the_program_and_hands_all_words_on() {
+        let text = batch(r"C:\Program Files (x86)\100% ours\cognate.exe");
+        let lines: Vec<&str> = text.split("\r\n").collect();
+        assert!(lines[0].starts_with("@rem ") && lines[0].contains(MARK));
+        let call = r#"@"C:\Program Files (x86)\100%% ours\cognate.exe" mdi %*"#;
+        assert_eq!(lines[1..], [call, ""]);
     }
 }
