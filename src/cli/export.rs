@@ -24,16 +24,16 @@ use std::path::PathBuf;
 Examples:
   cognate export crane.acf --name handed_over --out exchange
   cognate export crane.adm --loads lift,gravity --end 2 --steps 200
-  cognate export crane.adm --name lift --overwrite")]
+  cognate export crane.adm --name lift --overwrite -o exchange")]
 pub struct Args {
     /// Dataset (.adm), or command file (.acf)
     model: PathBuf,
     /// Name of the run: of the two files, and of the results of who runs them
     #[arg(long, value_name = "NAME", value_parser = run::run_name)]
     name: Option<String>,
-    /// Folder that the files are written to
-    #[arg(long, value_name = "DIR", default_value = ".")]
-    out: PathBuf,
+    /// Folder that the files are written to; without it here
+    #[arg(short = 'o', long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Load cases and loads, as SFORCE/3 or gravity; `all` for all loads; without it those of the
     /// last choice
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
@@ -63,13 +63,14 @@ pub fn run(args: &Args) -> Outcome {
     };
     let job = match run::has_commands(&args.model) {
         true => run::script_with(&args.model, None, asked)?,
-        false => run::alone_with(&args.single(), asked)?,
+        false => run::standing_with(&args.single(), asked)?,
     };
     let name = args
         .name
         .clone()
         .unwrap_or_else(|| format!("{}_export", job.base));
-    let files = ["adm", "acf"].map(|ending| args.out.join(format!("{name}.{ending}")));
+    let folder = args.out.clone().unwrap_or_default();
+    let files = ["adm", "acf"].map(|ending| folder.join(format!("{name}.{ending}")));
     refuse_overwriting(args, &files)?;
     let is_simulation = |s: &Step| matches!(s.command, Command::Simulate(_));
     let first = job
@@ -95,8 +96,8 @@ pub fn run(args: &Args) -> Outcome {
             ..Failure::from(Diagnostic::error("bug", what))
         });
     }
-    std::fs::create_dir_all(&args.out).map_err(|e| {
-        let what = format!("{}: {e}", args.out.display());
+    std::fs::create_dir_all(&folder).map_err(|e| {
+        let what = format!("{}: {e}", folder.display());
         Diagnostic::error("file_unwritable", what)
     })?;
     results::write_text(&files[0], &text)?;
@@ -105,6 +106,9 @@ pub fn run(args: &Args) -> Outcome {
         remark(setup::loads_acting(loads));
     }
     remark(format!("{} and {}", files[0].display(), files[1].display()));
+    if left.is_empty() {
+        remark("the commands hold no simulation: --end TIME adds one");
+    }
     Ok(Exit::Done)
 }
 

@@ -34,7 +34,7 @@ pub struct Args {
     #[arg(long, value_name = "ID")]
     poutput: Option<u32>,
     /// Folder that NAME_linear.json and NAME_linear.m are written to
-    #[arg(long, value_name = "DIR")]
+    #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Leave out elements of this kind where they are not solved (repeatable)
     #[arg(long = "skip-unsupported", value_name = "KEYWORD")]

@@ -140,7 +140,7 @@ impl Tables {
         session: &mut Session,
     ) -> Result<Self, Diagnostic> {
         let base = session.run.name.as_str();
-        let folder = OutputFolder::open(dir.unwrap_or(Path::new(".")), base)?;
+        let folder = OutputFolder::open(dir.unwrap_or(Path::new("")), base)?;
         let asked = !args.formats.is_empty();
         let formats = args.chosen(&session.model);
         let mut tables = Vec::new();

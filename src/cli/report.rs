@@ -48,7 +48,7 @@ pub struct Args {
     #[arg(long = "type", value_name = "KIND", value_enum)]
     kind: Option<KindName>,
     /// Folder that the report is written to
-    #[arg(long, value_name = "DIR")]
+    #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Leave out elements of this kind where they are not solved (repeatable)
     #[arg(long = "skip-unsupported", value_name = "KEYWORD")]

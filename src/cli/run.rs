@@ -63,7 +63,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
     /// Folder that results are written to
-    #[arg(long, value_name = "DIR")]
+    #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Name of the run, which its files begin with; without it the model's or OUTPUT_PREFIX
     #[arg(long, value_name = "NAME", value_parser = run_name)]
@@ -495,12 +495,27 @@ fn remark_on_choice(job: &Job) {
 
 /// Prepares a dataset with one simulation given by options, else by its set-up.
 pub(super) fn alone_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, Failure> {
+    let job = standing_with(args, asked)?;
+    match job.steps.is_empty() {
+        true => Err(no_end()),
+        false => Ok(job),
+    }
+}
+
+/// Returns the failure of a dataset that nobody says when to end.
+fn no_end() -> Failure {
+    let what = "no end is given: --end TIME says when the simulation of a dataset ends";
+    Failure::usage(format!("{what}, or a set-up (cognate loads setup)"))
+}
+
+/// Prepares a dataset with the simulation given by options or by its set-up, if one is.
+pub(super) fn standing_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, Failure> {
     if args.dataset.is_some() {
         let what = "a second file is the dataset of a command file (.acf) or of a log (.msg)";
         return Err(Failure::usage(what));
     }
     let (reading, read_seconds, Prepared { setup, loads }) = timed_read(args.model, asked)?;
-    let steps = single_simulation(args, &setup)?;
+    let steps = single_simulation(args, &setup).unwrap_or_default();
     Ok(Job {
         reading,
         base: stem(args.model),
@@ -514,17 +529,15 @@ pub(super) fn alone_with(args: &Single<'_>, asked: Asked<'_>) -> Result<Job, Fai
 
 /// Returns the simulation that options describe, as a command.
 pub(super) fn alone_step(args: &Single<'_>) -> Result<Step, Failure> {
-    let steps = single_simulation(args, &Setup::default())?;
-    let last = steps.into_iter().next_back();
-    last.ok_or_else(|| Failure::usage("there is nothing to simulate"))
+    let steps = single_simulation(args, &Setup::default()).unwrap_or_default();
+    steps.into_iter().next_back().ok_or_else(no_end)
 }
 
 /// Returns the simulation that options describe, else a set-up, after one at rest where it asks for
 /// that.
-fn single_simulation(args: &Single<'_>, setup: &Setup) -> Result<Vec<Step>, Failure> {
+fn single_simulation(args: &Single<'_>, setup: &Setup) -> Option<Vec<Step>> {
     let kind = args.kind.map(SimulationKind::from);
-    let simulations = setup.solve.simulations(kind, args.end, args.steps);
-    simulations.ok_or_else(|| Failure::usage("a dataset without a command file needs --end TIME"))
+    setup.solve.simulations(kind, args.end, args.steps)
 }
 
 pub(super) fn stem(path: &Path) -> String {

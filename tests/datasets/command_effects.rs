@@ -129,3 +129,15 @@ fn words_after_the_kind_of_element_are_told() {
         assert!(said.contains("no_effect"), "{said}");
     }
 }
+
+#[test]
+fn commands_that_ask_for_a_print_are_told_by_name() {
+    for keyword in ["INFO", "SHOW", "TIME", "LIST", "HELP", "MENU"] {
+        let script = Script::from_text(&format!("\n{keyword}\nSTOP\n")).unwrap();
+        let told = script
+            .diagnostics
+            .iter()
+            .any(|d| d.code == "ignored" && d.to_string().contains(keyword));
+        assert!(told, "{keyword}: {:?}", script.diagnostics);
+    }
+}

@@ -323,3 +323,23 @@ fn a_program_that_calls_an_external_solver_gets_its_results_from_this_one() {
     std::fs::write(solver.join("mdi"), "#!/bin/sh\necho theirs\n").unwrap();
     assert_eq!(cognate(&["mdi", "--install", path(&solver)]).code, 2);
 }
+
+#[test]
+fn a_dataset_is_exported_without_saying_when_a_simulation_ends() {
+    let model = model("export_without_end");
+    let folder = model.with_file_name("out");
+    let _ = std::fs::remove_dir_all(&folder);
+    let done = ok(&["export", path(&model), "-o", path(&folder), "--name", "it"]);
+    assert!(
+        done.err.contains("the commands hold no simulation"),
+        "{}",
+        done.err
+    );
+    let commands = std::fs::read_to_string(folder.join("it.acf")).unwrap();
+    assert!(!commands.to_uppercase().contains("SIMULATE"), "{commands}");
+    ok(&[
+        "check",
+        path(&folder.join("it.adm")),
+        path(&folder.join("it.acf")),
+    ]);
+}

@@ -7,7 +7,7 @@ use super::setup::{Asked, loads_acting};
 use super::{Exit, Failure, Outcome, complain_in_files, draw, moved, remark, say};
 use crate::analysis::verify::{Verification, verify};
 use crate::dataset::Dataset;
-use crate::dataset::command::Command;
+use crate::dataset::command::{Command, Step};
 use crate::diagnostic::{Diagnostic, Error, Severity};
 use crate::model::Model;
 use crate::results::{Loads, json};
@@ -124,11 +124,8 @@ pub fn before_simulation(job: Job) -> Result<(Model, Dataset), Failure> {
             }
         }
     }
-    if !job
-        .steps
-        .iter()
-        .any(|s| matches!(s.command, Command::Simulate(_)))
-    {
+    let simulates = |s: &Step| matches!(s.command, Command::Simulate(_));
+    if !job.steps.is_empty() && !job.steps.iter().any(simulates) {
         remark("no SIMULATE in the command file: this is the model after all its commands");
     }
     Ok((model, job.reading.dataset))
