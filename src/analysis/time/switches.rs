@@ -23,7 +23,7 @@
 //! switches the branches are let go for twenty steps, and error control finds its way. The same is
 //! done where no step is possible while they are held. Where that leads nowhere, the run ends:
 //! [`Switches::endless`]. So it does where switches come ever faster and never would end,
-//! [`never_end`], and where one [chatters](crate::analysis::time::chatter).
+//! [`never_end`], and where one chatters (`chatter.rs`).
 
 use crate::analysis::system::System;
 use crate::analysis::time::chatter::Chatter;
