@@ -95,6 +95,8 @@ impl Encoding {
 /// Part of the bytes that are control characters from which on they are no text: of random bytes a
 /// tenth is, and a text has a stray one at most.
 const MOST_CONTROL: f64 = 0.03;
+/// Number of stray ones that even a short text may have.
+const STRAY: usize = 4;
 
 /// Returns whether bytes are no text of any encoding; zeros at the end are padding.
 pub(super) fn is_no_text(bytes: &[u8]) -> bool {
@@ -102,7 +104,7 @@ pub(super) fn is_no_text(bytes: &[u8]) -> bool {
     let text = bytes.get(..end).unwrap_or_default();
     let is_control = |b: &&u8| b.is_ascii_control() && !b.is_ascii_whitespace();
     let control = text.iter().filter(is_control).count();
-    let is_much = control as f64 > MOST_CONTROL * text.len() as f64;
+    let is_much = control > STRAY && control as f64 > MOST_CONTROL * text.len() as f64;
     is_much && !matches!(Encoding::of(bytes), Encoding::Utf16 { .. })
 }
 
