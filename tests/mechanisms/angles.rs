@@ -170,6 +170,9 @@ proptest! {
             "JOINT/2, FIXED", "JOINT/2, TRANSLATIONAL", "JOINT/2, REVOLUTE", "JOINT/2, CYLINDRICAL",
             "JOINT/2, PLANAR", "JOINT/2, HOOKE", "JOINT/2, CONVEL",
         ][which];
+        let first = product(&[transposed(&from_313(ground)), from_313(part), from_313(marker)]);
+        // pins of a HOOKE that are parallel are refused, as nothing says which way to turn them
+        prop_assume!(which != 8 || first[1][0].abs() < 0.9998);
         let text = ball(part, marker, ground) + kind + ", I=21, J=11\n";
         let (r, warnings) = assembled(&text);
         let off = match which {
@@ -180,7 +183,6 @@ proptest! {
             _ => (r[1][0] - r[0][1]).abs() + f64::from(u8::from(r[0][0] + r[1][1] < -1e-6)),
         };
         prop_assert!(off < 1e-6, "off by {off}\n{text}{r:?}");
-        let first = product(&[transposed(&from_313(ground)), from_313(part), from_313(marker)]);
         let turn = product(&[r, transposed(&first)]);
         let turned = (0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1.0)).clamp(-1.0, 1.0).acos();
         let told = warnings.iter().any(|w| w.contains("PART/2 is turned by"));
