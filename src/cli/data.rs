@@ -105,7 +105,6 @@ impl Data {
 
 /// Returns the state with its rates: positions and velocities from the next derivative,
 /// accelerations constant.
-#[allow(non_snake_case)]
 fn moving(m: &MarkerState<f64>) -> MarkerState<Jet> {
     let jets = |value: Vec3<f64>, rate: Vec3<f64>, second: Vec3<f64>| {
         Vec3([0, 1, 2].map(|k| Jet::new(value.0[k], rate.0[k], second.0[k])))

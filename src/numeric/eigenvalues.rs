@@ -170,6 +170,7 @@ impl Window<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::random::between_ones;
     use proptest::prelude::*;
 
     fn sorted(mut all: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
@@ -205,12 +206,9 @@ mod tests {
     fn eigenvalues_that_are_equal_but_for_rounding_are_all_found() {
         // a chain of parallelograms between two states: the same two eigenvalues for each
         for n in [2, 6, 10, 20, 40] {
-            let mut bits = 1_u64;
-            let mut noise = || {
-                bits = bits.wrapping_mul(6364136223846793005).wrapping_add(1);
-                1e-15 * ((bits >> 33) as f64 / f64::from(1 << 30) - 1.0)
-            };
-            let mut a: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| noise()).collect()).collect();
+            let mut draw = between_ones(1);
+            let mut noise = || (0..n).map(|_| 1e-15 * draw()).collect();
+            let mut a: Vec<Vec<f64>> = (0..n).map(|_| noise()).collect();
             for k in (0..n).step_by(2) {
                 a[k][k] -= 0.25;
                 a[k][k + 1] += 2.75;

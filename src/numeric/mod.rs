@@ -29,6 +29,8 @@ pub mod noise;
 pub mod pattern;
 pub mod quadrature;
 pub mod radau;
+#[cfg(test)]
+mod random;
 pub mod rank;
 pub mod runge_kutta;
 pub mod sparse;

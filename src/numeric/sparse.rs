@@ -577,6 +577,7 @@ fn concatenate<T: Ord + Copy>(lists: Vec<Vec<T>>, sort: bool) -> (Vec<u32>, Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::random::between_ones;
     use proptest::prelude::*;
 
     /// The Newton matrix of a chain of bodies: 6 × 6 blocks and 5 × 6 constraint blocks to both
@@ -618,16 +619,6 @@ mod tests {
         (11 * bodies, pattern, values)
     }
 
-    /// Numbers between −1 and 1 without a library.
-    fn noise(mut seed: u64) -> impl FnMut() -> f64 {
-        move || {
-            seed = seed
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-    }
-
     fn residual(pattern: &[(usize, usize)], values: &[f64], x: &[f64], b: &[f64]) -> f64 {
         let mut r = b.to_vec();
         for ((i, j), v) in pattern.iter().zip(values) {
@@ -639,9 +630,9 @@ mod tests {
     #[test]
     fn chains_keep_their_pivots_and_little_fill() {
         for bodies in [4, 9, 40] {
-            let (n, pattern, values) = chain(bodies, noise(bodies as u64));
+            let (n, pattern, values) = chain(bodies, between_ones(bodies as u64));
             let mut factors = Factors::new(n, &pattern);
-            let mut draw = noise(7);
+            let mut draw = between_ones(7);
             for round in 0..6 {
                 let values: Vec<f64> = values
                     .iter()
@@ -713,7 +704,7 @@ mod tests {
             places in proptest::collection::vec((0usize..1000, 0usize..1000), 1..160),
             seed in 0u64..1000,
         ) {
-            let mut draw = noise(seed);
+            let mut draw = between_ones(seed);
             let mut pattern: Vec<(usize, usize)> = places.iter().map(|(i, j)| (i % n, j % n)).collect();
             pattern.extend((0..n).map(|i| (i, (i * 7 + 3) % n)));
             let values: Vec<f64> = pattern.iter().map(|_| draw() * 10f64.powf(3.0 * draw())).collect();

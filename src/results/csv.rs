@@ -33,6 +33,12 @@ impl Table {
     pub fn new(style: Style) -> Self {
         Self { style }
     }
+
+    /// Returns whether an empty column follows: one column of numbers with decimal commas has no
+    /// `;` by which a reader knows them.
+    fn has_empty_column(&self, n_columns: usize) -> bool {
+        self.style.decimal_comma && n_columns == 1
+    }
 }
 
 impl TableText for Table {
@@ -50,6 +56,8 @@ impl TableText for Table {
             rows.iter_mut()
                 .zip(cells)
                 .for_each(|(row, cell)| row.push(cell));
+        } else if self.has_empty_column(columns().count()) {
+            rows.iter_mut().for_each(|row| row.push(String::new()));
         }
         let separator = self.style.separator();
         text.extend_from_slice(to_text(&rows, separator).as_bytes());
@@ -75,6 +83,8 @@ impl TableText for Table {
                 text.push(separator);
                 let kind = run.kind_of(run.released + place);
                 text.extend_from_slice(kind.map_or("", Kind::name).as_bytes());
+            } else if self.has_empty_column(columns.len()) {
+                text.push(separator);
             }
             text.push(b'\n');
         }
@@ -93,10 +103,17 @@ fn unit_cell(unit: &str) -> String {
     }
 }
 
-/// Writes rows of text cells, quoted where they must be.
+/// Writes rows of text cells, quoted where they must be: the first name, too, where it holds either
+/// separator, because a reader takes the first separator outside of quotes.
 fn to_text(rows: &[Vec<String>], separator: u8) -> String {
+    let first = rows.first().and_then(|names| names.first());
+    let quotes = match first.is_some_and(|name| name.contains([',', ';'])) {
+        true => ::csv::QuoteStyle::Always,
+        false => ::csv::QuoteStyle::Necessary,
+    };
     let mut writer = ::csv::WriterBuilder::new()
         .delimiter(separator)
+        .quote_style(quotes)
         .from_writer(Vec::new());
     for row in rows {
         // writing rows of equal length to memory cannot fail
@@ -219,12 +236,11 @@ fn leave_words_out(run: &mut Run, words: &[Words]) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// Returns whether cells are separated by `;`: it comes first of the two separators outside of
-/// quotes.
+/// Returns whether cells are separated by `;`: in the first row it comes first of the two separators
+/// outside of quotes.
 fn has_decimal_commas(bytes: &[u8]) -> bool {
-    let line = bytes.split(|&b| b == b'\n').next().unwrap_or_default();
-    let mut bare = line.split(|&b| b == b'"').step_by(2).flatten();
-    bare.find(|b| matches!(b, b';' | b',')) == Some(&b';')
+    let mut bare = bytes.split(|&b| b == b'"').step_by(2).flatten();
+    bare.find(|b| matches!(b, b';' | b',' | b'\n')) == Some(&b';')
 }
 
 #[cfg(test)]
@@ -284,6 +300,27 @@ mod tests {
         let back = read(text.as_bytes()).unwrap();
         assert_eq!(back.columns[0].values, [0.1 + 0.2, 1.0]);
         assert_eq!(back.columns[1].values, [-1e-300, f64::MAX]);
+    }
+
+    #[test]
+    fn a_first_name_with_a_separator_reads_back() {
+        for name in ["x; mm", "DX(1,2)", "a\nb", "say \"x;y\""] {
+            for decimal_comma in [false, true] {
+                let mut run = Run::new("r", "t", Units::default());
+                run.columns[0].name = name.into();
+                run.begin(Kind::Dynamic);
+                run.push(&[0.5]);
+                run.end();
+                let style = Style {
+                    decimal_comma,
+                    ..Style::default()
+                };
+                let text = crate::results::format::text(&mut Table::new(style), &run);
+                let back = read(text.as_bytes()).unwrap();
+                assert_eq!(back.columns[0].name, name);
+                assert_eq!(back.columns[0].values, [0.5], "{text}");
+            }
+        }
     }
 
     #[test]

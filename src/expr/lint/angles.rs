@@ -166,10 +166,11 @@ pub(super) fn of_several_axes(ast: &Ast) -> Vec<Doubt> {
 }
 
 /// Returns the warnings about an expression whose value is an angle in radians, as the FUNCTION of
-/// a MOTION that turns: 90, 360*TIME, STEP(TIME, 0, 0, 1, 90).
+/// a MOTION that turns: 90, 360*TIME, STEP(TIME, 0, 0, 1, 90), 40*SIN(TIME).
 pub fn degrees_in_angle(ast: &Ast, text: &str) -> Vec<Diagnostic> {
     let mut doubts = Vec::new();
     for (sign, term) in terms(ast) {
+        let term = amplitude(ast, term);
         let speed = times_time(ast, term);
         let angle = number(ast, term).filter(|&n| looks_like_degrees(n));
         let (span, message, n) = if let Some((factor, n)) = speed {
@@ -233,6 +234,47 @@ fn terms(ast: &Ast) -> Vec<(f64, NodeIx)> {
         }
     }
     found
+}
+
+/// Returns the factor of a product whose other factors lie between −1 and 1, and the amplitude of
+/// SHF; what is neither stays as it is.
+fn amplitude(ast: &Ast, term: NodeIx) -> NodeIx {
+    if let Node::Call {
+        callee: Callee::Function(Function::Shf),
+        args,
+    } = ast.node(term)
+    {
+        return args.get(2).copied().unwrap_or(term);
+    }
+    let (mut large, mut rest) = (None, vec![term]);
+    while let Some(ix) = rest.pop() {
+        match *ast.node(ix) {
+            Node::Binary(BinaryOp::Mul, a, b) => rest.extend([a, b]),
+            _ if is_bounded(ast, ix) => {}
+            _ if large.is_some() => return term,
+            _ => large = Some(ix),
+        }
+    }
+    large.unwrap_or(term)
+}
+
+/// Returns whether the values of a call lie between −1 and 1.
+fn is_bounded(ast: &Ast, ix: NodeIx) -> bool {
+    let Node::Call {
+        callee: Callee::Function(function),
+        ref args,
+    } = *ast.node(ix)
+    else {
+        return false;
+    };
+    let small = |ix: NodeIx| number(ast, ix).is_some_and(|h| h.abs() <= 1.0);
+    match (function, args.as_slice()) {
+        (Function::Sin | Function::Cos | Function::Tanh, _) => true,
+        (Function::Step | Function::Step5 | Function::Havsin, &[_, _, h0, _, h1]) => {
+            small(h0) && small(h1)
+        }
+        _ => false,
+    }
 }
 
 /// Returns the larger height of a step, if it looks like degrees.

@@ -226,6 +226,14 @@ mod tests {
             ("360D*TIME", vec![]),
             ("2*PI*TIME", vec![]),
             ("STEP(TIME, 0, 0, 90, 1)", vec![]),
+            ("40*SIN(2*PI*TIME)", vec![1]),
+            ("STEP(TIME,0,0,1,40)*SIN(TIME)", vec![17]),
+            ("STEP(TIME,0,0,1,1)*SIN(TIME)*45", vec![30]),
+            ("SHF(TIME, 0, 30, PI, 0, 0)", vec![14]),
+            ("SHF(TIME, 0, 30D, PI, 0, 0)", vec![]),
+            ("40D*SIN(2*PI*TIME)", vec![]),
+            ("1.5*SIN(90*TIME)", vec![]),
+            ("40*DX(1,2)", vec![]),
         ] {
             assert_eq!(at(text), columns, "{text}");
         }

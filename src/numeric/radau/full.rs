@@ -270,16 +270,7 @@ fn eliminable(jacobian: &[f64], n: usize, some: &mut dyn Iterator<Item = usize>)
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Numbers between −1 and 1 without a library.
-    fn noise(mut seed: u64) -> impl FnMut() -> f64 {
-        move || {
-            seed = seed
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-    }
+    use crate::numeric::random::between_ones;
 
     /// The Jacobian of q̇ = v, v̇ = K q + C v with some rows of q̇ reading two velocities, and with
     /// stiffnesses up to `stiffness`.
@@ -317,7 +308,7 @@ mod tests {
     #[test]
     fn positions_are_eliminated_and_solutions_are_those_of_the_whole_system() {
         for (half, stiffness) in [(30, 1.0), (30, 1e8), (41, 1e-4)] {
-            let mut draw = noise(half as u64);
+            let mut draw = between_ones(half as u64);
             let n = 2 * half;
             let mut full = Full::new(n);
             for step in [1e-7, 1e-3, 1.0] {
@@ -345,7 +336,7 @@ mod tests {
 
     #[test]
     fn entries_that_appear_later_are_not_overlooked() {
-        let (half, mut draw) = (20, noise(3));
+        let (half, mut draw) = (20, between_ones(3));
         let n = 2 * half;
         let mut jacobian = second_order(half, 1.0, &mut draw);
         let mut full = Full::new(n);
@@ -381,7 +372,7 @@ mod tests {
 
     #[test]
     fn small_systems_are_solved_whole() {
-        let jacobian = second_order(4, 1.0, &mut noise(1));
+        let jacobian = second_order(4, 1.0, &mut between_ones(1));
         let mut full = Full::new(8);
         full.see(&jacobian);
         assert!(full.eliminated.is_empty());
