@@ -391,7 +391,8 @@ bool cognate_session_progress(CognateSession *session,
 // Ends the simulation that is going on in another thread, with the results so far.
 void cognate_session_interrupt(const CognateSession *session);
 
-// Simulates on to `end`, a time of the clock, with `steps` output steps. `kind`: a CognateKind.
+// Simulates on to `end`, a time of the clock, with `steps` output steps. `kind`: a CognateKind. A
+// first simulation over time begins at equilibrium where the set-up beside the model asks for that.
 //
 // Returns false where the model or the call is wrong. A numerical failure is no mistake: it is
 // told by `status`, which may be NULL, and results so far are kept.

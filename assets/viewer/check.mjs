@@ -1,7 +1,7 @@
 // Opens a page in headless Chromium and says in JSON what it does there: what it asks the network for, what it complains
 // of, whether the picture changes with time, and the values that it shows.
 //
-//   node check.mjs page.html [--rows 0,10] [--columns a,b] [--picture file.png [--row 10] [--select JOINT/1] [--size 1200x800]]
+//   node check.mjs page.html [--rows 0,10] [--columns a,b] [--dimensions 0,10] [--picture file.png [--row 10] [--select JOINT/1] [--size 1200x800]]
 import { chromium } from 'playwright-core';
 import { existsSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
@@ -50,6 +50,19 @@ for (const row of (option('--rows') ?? '').split(',').filter(Boolean).map(Number
   await tab.evaluate((row) => cognate.toRow(row), row);
   for (const column of (option('--columns') ?? '').split(',').filter(Boolean)) {
     (found.values[column] ??= []).push(await tab.evaluate((column) => cognate.value(column), column));
+  }
+}
+if (option('--dimensions')) {
+  found.dimensions = [];
+  for (const row of option('--dimensions').split(',').map(Number)) {
+    found.dimensions.push(await tab.evaluate((row) => (cognate.toRow(row), cognate.dimensions()), row));
+  }
+  // of joints and markers one kind is seen
+  const seen = () => tab.evaluate(() => ['Joints', 'Markers'].map((name) => [...document.querySelectorAll('#tools button')].find((b) => b.textContent === name)?.className === 'on'));
+  found.symbols = [await seen()];
+  for (const name of ['Markers', 'Joints']) {
+    await tab.click(`#tools button:text-is("${name}")`);
+    found.symbols.push(await seen());
   }
 }
 if (rows > 1) {

@@ -292,6 +292,7 @@ pub unsafe extern "C" fn cognate_session_new(
         let mut session = Session::new(model.model.clone(), name, options);
         session.folders = model.folder().into_iter().collect();
         session.run.record.loads.clone_from(&model.prepared.loads);
+        session.at_rest_first = model.prepared.setup.solve.at_rest_first;
         let title = Event::Title(session.run.title.clone());
         session.run.log.push(title);
         let inner = Inner {
@@ -338,7 +339,8 @@ pub unsafe extern "C" fn cognate_session_interrupt(session: *const CognateSessio
     }
 }
 
-/// Simulates on to `end`, a time of the clock, with `steps` output steps. `kind`: a CognateKind.
+/// Simulates on to `end`, a time of the clock, with `steps` output steps. `kind`: a CognateKind. A
+/// first simulation over time begins at equilibrium where the set-up beside the model asks for that.
 ///
 /// Returns false where the model or the call is wrong. A numerical failure is no mistake: it is
 /// told by `status`, which may be NULL, and results so far are kept.
@@ -367,10 +369,8 @@ pub unsafe extern "C" fn cognate_session_simulate(
             steps: Some(steps),
             dtout: None,
         };
-        let go = |session: &mut Session, watch: &mut Watcher<'_>| {
-            let (analysis, end, output) = simulate.resolved(session.time())?;
-            session.simulate_with(analysis, end, output, watch)
-        };
+        let go =
+            |session: &mut Session, watch: &mut Watcher<'_>| session.simulate_as(&simulate, watch);
         // SAFETY: a handle and a place of the caller
         unsafe { simulated(session, status, go) }
     };

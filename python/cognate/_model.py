@@ -325,19 +325,12 @@ class Model:
             Ctrl-C; its attribute ``run`` holds the results so far.
         """
         session = Session(self, **options)
-        own_kind, own_end, own_steps, rest_first = self._core.solve
+        own_kind, own_end, own_steps = self._core.solve
         kind = kind or own_kind or "transient"
         end = own_end if end is None else end
         steps = own_steps if steps is None and dtout is None else steps
         if state is not None:
             session.state = state
-        elif rest_first and end is not None and kind not in ("static", "initial_conditions"):
-            # as commands, whose rows are told apart by their phase
-            outputs = f", STEPS={steps}" if steps is not None else ""
-            outputs += f", DTOUT={float(dtout)!r}" if dtout is not None else ""
-            simulate = f"SIMULATE/{kind.upper()}, END={float(end)!r}{outputs}"
-            session._obey(_core.Commands.from_text(f"SIMULATE/STATIC\n{simulate}"), progress)
-            return session._finish()
         session._core_simulate(kind, end, None, steps, dtout, progress)
         return session._finish()
 
@@ -499,14 +492,22 @@ class Model:
         return f"<Model {self.title!r}: {len(self.elements)} elements>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self.text, self.file, self._user, self._core.setup or None)
+        core = self._core
+        return _restored, (core.written, self.file, self._user, core.setup or None, core.changes)
 
 
 def _restored(
-    text: str, file: str | None, user: dict[str, Any], setup: str | None = None
+    text: str,
+    file: str | None,
+    user: dict[str, Any],
+    setup: str | None = None,
+    changes: Sequence[str] = (),
 ) -> Model:
     """Return the model that was pickled."""
-    model = Model(_core.Model.from_text(text, file, setup))
+    core = _core.Model.from_text(text, file, setup)
+    for commands in changes:
+        core = core.changed(commands)
+    model = Model(core)
     model._user = dict(user)
     return model
 
@@ -567,6 +568,9 @@ class Session:
         progress: bool | Progress | None = None,
     ) -> str:
         """Simulate on from the present state.
+
+        A first simulation over time begins at a static equilibrium where the set-up of the model
+        asks for that.
 
         Parameters
         ----------

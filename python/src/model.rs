@@ -21,8 +21,8 @@ pub struct Model {
     pub(crate) model: model::Model,
     /// the dataset as written, which knows the places
     dataset: Arc<Dataset>,
-    /// it is no longer as written
-    changed: bool,
+    /// the commands that have changed it since
+    changes: Vec<String>,
     doubts: Vec<Diagnostic>,
     /// the set-up beside it, and the loads that were chosen
     pub(crate) prepared: Prepared,
@@ -49,7 +49,7 @@ impl Model {
         Ok(Self {
             model,
             dataset,
-            changed: false,
+            changes: Vec::new(),
             doubts,
             prepared,
         })
@@ -102,9 +102,9 @@ impl Model {
         &self.prepared.setup.text
     }
 
-    /// The set-up of a run: its kind, end, output steps, and whether equilibrium is found first.
+    /// The set-up of a run: its kind, end and output steps.
     #[getter]
-    fn solve(&self) -> (Option<&'static str>, Option<f64>, Option<usize>, bool) {
+    fn solve(&self) -> (Option<&'static str>, Option<f64>, Option<usize>) {
         let solve = &self.prepared.setup.solve;
         let kind = solve.kind.map(|kind| match kind {
             SimulationKind::Kinematic => "kinematic",
@@ -113,7 +113,7 @@ impl Model {
             SimulationKind::Transient => "transient",
             SimulationKind::InitialConditions => "initial_conditions",
         });
-        (kind, solve.end, solve.steps, solve.at_rest_first)
+        (kind, solve.end, solve.steps)
     }
 
     /// The loads that act where some were chosen, and those that are left out.
@@ -126,11 +126,22 @@ impl Model {
     /// The dataset as text: as written, or as the changes have left it.
     #[getter]
     fn text(&self) -> String {
-        if self.changed {
-            self.model.to_text()
-        } else {
-            self.dataset.source.text.clone()
+        match self.changes.is_empty() {
+            true => self.written(),
+            false => self.model.to_text(),
         }
+    }
+
+    /// The dataset as text, as written.
+    #[getter]
+    fn written(&self) -> String {
+        self.dataset.source.text.clone()
+    }
+
+    /// The commands that have changed it since it was read.
+    #[getter]
+    fn changes(&self) -> Vec<String> {
+        self.changes.clone()
     }
 
     /// The file that it was read from.
@@ -193,7 +204,7 @@ impl Model {
         Ok(Self {
             model,
             dataset,
-            changed: true,
+            changes: [&self.changes[..], &[commands.to_owned()]].concat(),
             doubts: self.doubts.clone(),
             prepared: self.prepared.clone(),
         })

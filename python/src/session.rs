@@ -166,6 +166,7 @@ impl Session {
         let mut session = session::Session::new(of.model.clone(), &name, options);
         session.folders = of.folder().into_iter().collect();
         session.run.record.loads.clone_from(&of.prepared.loads);
+        session.at_rest_first = of.prepared.setup.solve.at_rest_first;
         let title = Event::Title(session.run.title.clone());
         session.run.log.push(title);
         for routine in user {
@@ -188,8 +189,7 @@ impl Session {
     ) -> PyResult<&'static str> {
         let simulate = simulation.simulate()?;
         let status = self.work(py, progress, |session, watch| {
-            let (analysis, end, output) = simulate.resolved(session.time())?;
-            session.simulate_with(analysis, end, output, watch)
+            session.simulate_as(&simulate, watch)
         });
         status.map(Status::word)
     }

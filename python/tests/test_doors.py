@@ -44,6 +44,24 @@ def test_python_obeys_the_set_up_beside_a_model_as_the_command_line_does(tmp_pat
         subprocess.run([*words, "--format", "csv", "--quiet"], check=True)
         ran().to_csv(tmp_path / "python.csv")
         assert (tmp_path / "python.csv").read_bytes() == (tmp_path / "shell.csv").read_bytes()
+        again = tmp_path / "session.csv"
+        if more or model.endswith(".acf"):
+            continue
+        session = cg.Model.read(folder / model).session()
+        assert session.simulate(end=0.8, steps=40) == "completed"
+        session.run.to_csv(again)
+        assert again.read_bytes() == (tmp_path / "shell.csv").read_bytes()
     alone = cg.Model.read(folder / "loaded.adm", setup=False)
     assert alone.loads is None
     assert cg.Model.read(folder / "loaded.adm").loads == (["gravity", "MOTION/1"], ["SFORCE/1"])
+
+
+def test_a_pickled_model_keeps_its_changes_and_its_set_up_once():
+    read = cg.Model.read(ROOT / "tests" / "data" / "loaded" / "loaded.adm")
+    changed = read.changed("PART/2, MASS=3").changed("ACTIVATE/SFORCE, ID=1")
+    again = pickle.loads(pickle.dumps(changed))
+    assert (again.text, again.loads, again.file) == (changed.text, changed.loads, changed.file)
+    here, there = changed.run(), again.run()
+    assert here.record["loads"] == there.record["loads"]
+    assert all((here[name] == there[name]).all() for name in here.names)
+    assert not (here["DM(30,22)"] == read.run()["DM(30,22)"]).all()

@@ -1,6 +1,6 @@
 //! `cognate animate`: a run as a page that moves, or as an animated `.glb` file.
 
-use super::moved::{Moved, Source, has_ending, pictured};
+use super::moved::{Dimensions, Moved, Source, has_ending, pictured};
 use super::{Exit, Failure, Outcome, interrupt, remark, run};
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
@@ -18,6 +18,7 @@ Examples:
   cognate animate pendulum.adm --end 2 --steps 200 -o pendulum.html -o pendulum.glb
   cognate animate run.res --model pendulum.adm
   cognate animate pendulum.acf --over earlier.res
+  cognate animate examples/slider_crank.acf --dimension 41,11 --open
   cognate animate press.acf --interference --open")]
 pub struct Args {
     #[command(flatten)]
@@ -29,6 +30,8 @@ pub struct Args {
     /// A further run of the same mechanism, shown pale over the first (.res, .parquet, .json, .gra)
     #[arg(long, value_name = "RUN")]
     over: Option<PathBuf>,
+    #[command(flatten)]
+    dimensions: Dimensions,
     /// Mark on the page where solids overlap
     #[cfg(feature = "geometry")]
     #[arg(long)]
@@ -61,7 +64,9 @@ pub fn run(args: &Args) -> Outcome {
     if out.is_empty() {
         out.push(PathBuf::from(format!("{}.html", run.name)));
     }
-    let pictured = pictured(&model, &run, &folders)?;
+    let pictured = args
+        .dimensions
+        .added_to(pictured(&model, &run, &folders)?)?;
     #[cfg(feature = "geometry")]
     let pictured = match args.interference {
         true => marked(pictured, &model, &run, &folders)?,

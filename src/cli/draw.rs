@@ -1,10 +1,10 @@
 //! `cognate draw`: one configuration of a model as a picture.
 
-use super::moved::{Moved, Source, pictured};
+use super::moved::{Dimensions, Moved, Source, pictured};
 use super::{Exit, Failure, Outcome, interrupt, remark};
 use crate::analysis::session::Session;
 use crate::model::ElementId;
-use crate::report::mechanism::drawing::{Names, Wanted, drawing};
+use crate::report::mechanism::drawing::{Names, SymbolKind, Wanted, drawing};
 use crate::report::mechanism::{Pictured, View, drawing_svg};
 use crate::report::picture::{self, PictureFormat};
 use crate::results::Run;
@@ -21,6 +21,8 @@ Examples:
   cognate draw examples/slider_crank.adm -o crank.svg
   cognate draw examples/slider_crank.acf --at 0.3 --names all -o crank.svg
   cognate draw four_bar.acf --at 0.2 --pale 5 --paths -o four_bar.png
+  cognate draw crank.adm --symbols markers --names all -o markers.svg
+  cognate draw crank.acf --at 0.3 --dimension 41,11 -o stroke.svg       the distance of two markers
   cognate draw loop.adm --highlight JOINT/3 --highlight JOINT/4 -o loop.svg")]
 pub struct Args {
     #[command(flatten)]
@@ -31,7 +33,12 @@ pub struct Args {
     /// File to write: .svg, .png or .pdf; without it NAME_drawing.svg, here
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Names that are written
+    /// Symbols that are drawn
+    #[arg(long, value_enum, default_value = "joints")]
+    symbols: SymbolsArg,
+    #[command(flatten)]
+    dimensions: Dimensions,
+    /// Names that are written: of bodies, or of joints (or the markers that are shown), too
     #[arg(long, value_enum, default_value = "bodies")]
     names: NamesArg,
     /// Element that stands out, such as JOINT/3 (repeatable)
@@ -59,6 +66,28 @@ enum NamesArg {
     None,
     Bodies,
     All,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum SymbolsArg {
+    None,
+    /// pins, rails and balls of joints
+    Joints,
+    /// those, and arrows along the directions in which joints turn and slide
+    Actions,
+    /// x (red), y (green) and z (blue) of markers, in the place of joints
+    Markers,
+}
+
+impl SymbolsArg {
+    fn kind(self) -> SymbolKind {
+        match self {
+            Self::None => SymbolKind::None,
+            Self::Joints => SymbolKind::Joints,
+            Self::Actions => SymbolKind::Actions,
+            Self::Markers => SymbolKind::Markers,
+        }
+    }
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -93,7 +122,9 @@ pub fn run(args: &Args) -> Outcome {
             "--highlight {unknown}: there is no such element"
         )));
     }
-    let pictured = pictured(&model, &run, &folders)?;
+    let pictured = args
+        .dimensions
+        .added_to(pictured(&model, &run, &folders)?)?;
     let out = args.out.clone();
     // NAME.svg is the picture of the requests of a run
     let out = out.unwrap_or_else(|| PathBuf::from(format!("{}_drawing.svg", run.name)));
@@ -101,17 +132,18 @@ pub fn run(args: &Args) -> Outcome {
     let last = times.len() - 1;
     let row = args.at.map_or(last, |at| nearest(times, at));
     let wanted = Wanted {
-        row,
         pale: (0..args.pale).map(|k| k * last / args.pale).collect(),
         names: match args.names {
             NamesArg::None => Names::None,
             NamesArg::Bodies => Names::Bodies,
             NamesArg::All => Names::All,
         },
+        symbols: args.symbols.kind(),
         highlighted: args.highlight.iter().copied().collect(),
         paths: args.paths,
         forces: !args.no_forces,
         view: view(args.from, &pictured.view),
+        ..Wanted::at_row(row, &run.units.length)
     };
     write(&pictured, &wanted, args.width, &run, &out)?;
     Ok(Exit::Done)
@@ -124,15 +156,7 @@ pub fn run(args: &Args) -> Outcome {
 pub fn draw_at(session: &Session, at: f64, file: &Path) -> Result<(), Failure> {
     let run = &session.run;
     let pictured = pictured(&session.model, run, &session.folders)?;
-    let wanted = Wanted {
-        row: nearest(&pictured.track.times, at),
-        pale: Vec::new(),
-        names: Names::Bodies,
-        highlighted: BTreeSet::new(),
-        paths: false,
-        forces: true,
-        view: None,
-    };
+    let wanted = Wanted::at_row(nearest(&pictured.track.times, at), &run.units.length);
     write(&pictured, &wanted, WIDTH, run, file)
 }
 
@@ -152,13 +176,10 @@ pub fn draw_standing_out(
     } = moved;
     let pictured = pictured(model, run, folders)?;
     let wanted = Wanted {
-        row: pictured.track.times.len() - 1,
-        pale: Vec::new(),
         names: Names::All,
         highlighted,
-        paths: false,
         forces: false,
-        view: None,
+        ..Wanted::at_row(pictured.track.times.len() - 1, &run.units.length)
     };
     write(&pictured, &wanted, WIDTH, run, file)
 }

@@ -8,7 +8,7 @@ use crate::analysis::session::{Analysis, Options, Session};
 use crate::dataset::surface::Surfaces;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ElementKind, Model};
-use crate::report::mechanism::Pictured;
+use crate::report::mechanism::{Dimension, Pair, Pictured};
 use crate::results::{self, Run, Status};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +36,29 @@ pub struct Source {
     /// Take what USER(…) would compute as zero
     #[arg(long = "zero-user")]
     pub zero_user: bool,
+}
+
+/// Distances that a picture shows.
+#[derive(clap::Args)]
+pub struct Dimensions {
+    /// Show the distance of two markers as a dimension, as 20,10; its value changes with the
+    /// mechanism (repeatable)
+    #[arg(long = "dimension", value_name = "I,J")]
+    pairs: Vec<Pair>,
+}
+
+impl Dimensions {
+    /// Adds the dimensions to a picture.
+    ///
+    /// # Errors
+    /// When a marker does not exist, or floats.
+    pub fn added_to(&self, mut pictured: Pictured) -> Result<Pictured, Diagnostic> {
+        for &pair in &self.pairs {
+            let dimension = Dimension::new(&pictured.bodies, pair)?;
+            pictured.dimensions.push(dimension);
+        }
+        Ok(pictured)
+    }
 }
 
 /// A model and a run of it.

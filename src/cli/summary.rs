@@ -33,7 +33,7 @@ pub fn table(run: &Run, n_rows: usize, width: usize, who_has_all: &str) -> Strin
         };
         cells.push([vec![column.name.clone(), column.unit.clone()], written].concat());
         if c == columns[0] && phases.len() > 1 {
-            let phase = |row: &usize| kind_of_row(run, *row).map_or("", Kind::name).to_owned();
+            let phase = |row: &usize| run.kind_of(*row).map_or("", Kind::name).to_owned();
             let head = vec!["phase".to_owned(), String::new()];
             cells.push([head, shown.iter().map(phase).collect()].concat());
         }
@@ -69,17 +69,11 @@ pub fn table(run: &Run, n_rows: usize, width: usize, who_has_all: &str) -> Strin
     text
 }
 
-/// Returns the kind of simulation that a row belongs to.
-fn kind_of_row(run: &Run, row: usize) -> Option<Kind> {
-    let mut sequences = run.sequences.iter();
-    sequences.find(|s| s.rows.contains(&row)).map(|s| s.kind)
-}
-
 /// Returns the kinds of simulation that rows belong to, in their order; assembly counts as part of
 /// what follows it.
 fn phases(run: &Run, rows: &[usize]) -> Vec<Kind> {
     let mut kinds: Vec<Kind> = Vec::new();
-    for kind in rows.iter().filter_map(|&row| kind_of_row(run, row)) {
+    for kind in rows.iter().filter_map(|&row| run.kind_of(row)) {
         if kind != Kind::InitialConditions && !kinds.contains(&kind) {
             kinds.push(kind);
         }

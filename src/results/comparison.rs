@@ -100,7 +100,7 @@ pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagno
         interpolated: interpolate,
         ..Comparison::default()
     };
-    let is_channel = |run: &Run, c: &usize| *c > 0 && bar_name(run, *c).is_none();
+    let is_channel = |run: &Run, c: &usize| *c > 0 && run.columns[*c].bar_of.is_none();
     for column in a.table_columns().into_iter().filter(|c| is_channel(a, c)) {
         let name = &a.columns[column].name;
         let Some(other) = b.find(name) else {
@@ -114,8 +114,8 @@ pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagno
             continue;
         }
         let values = Values {
-            a: [Some(column), bars_of(a, column)].map(|c| of_rows(a, &rows[0], c)),
-            b: [Some(other), bars_of(b, other)].map(|c| of_rows(b, &rows[1], c)),
+            a: [Some(column), a.bars(column)].map(|c| of_rows(a, &rows[0], c)),
+            b: [Some(other), b.bars(other)].map(|c| of_rows(b, &rows[1], c)),
         };
         let mut difference = values.difference(&pairs, &ta);
         difference.channel.clone_from(name);
@@ -129,19 +129,6 @@ pub fn compare(a: &Run, b: &Run, interpolate: bool) -> Result<Comparison, Diagno
         .channels
         .sort_by(|x, y| y.relative().total_cmp(&x.relative()));
     Ok(found)
-}
-
-/// Returns the name of the column whose errors a column bounds, if it is one of bars: files tell
-/// that by the name.
-fn bar_name(run: &Run, column: usize) -> Option<&str> {
-    let of = run.columns.get(column)?.name.strip_suffix('±')?;
-    run.columns.iter().any(|c| c.name == of).then_some(of)
-}
-
-/// Returns the column of bars of a column.
-fn bars_of(run: &Run, column: usize) -> Option<usize> {
-    let name = &run.columns.get(column)?.name;
-    (0..run.columns.len()).find(|&c| bar_name(run, c) == Some(name))
 }
 
 /// Returns the values of a column in some rows.
@@ -319,8 +306,10 @@ mod tests {
 
     #[test]
     fn bars_of_both_runs_are_added_where_the_difference_is_largest() {
-        let a = run(&[0.0, 1.0], &[("x", |t| t), ("x±", |_| 0.1)]);
-        let b = run(&[0.0, 1.0], &[("x", |t| 1.5 * t), ("x±", |_| 0.2)]);
+        let mut a = run(&[0.0, 1.0], &[("x", |t| t), ("x±", |_| 0.1)]);
+        let mut b = run(&[0.0, 1.0], &[("x", |t| 1.5 * t), ("x±", |_| 0.2)]);
+        a.find_bars();
+        b.find_bars();
         let found = compare(&a, &b, false).unwrap();
         let x = &found.channels[0];
         assert!((x.bars.unwrap() - 0.3).abs() < 1e-15);

@@ -436,3 +436,45 @@ fn overlaps_are_marked_where_and_when_geometry_says() {
     );
     assert_eq!(overlap["before"], serde_json::json!([false, false, false]));
 }
+
+#[test]
+fn a_dimension_on_the_page_changes_as_the_distance_of_its_markers_does() {
+    let below = PENDULUM.replace("PART/2,", "MARKER/11, PART=1, QP=0,-1,0\nPART/2,");
+    let model = scratch("animate_dimension", "m.adm", &below);
+    let page = model.with_extension("html");
+    let animate = |dimension: &str| {
+        let arguments = ["--end", "1", "--steps", "50", "-o", path(&page)];
+        let mut all = vec!["animate", path(&model), "--dimension", dimension];
+        all.extend(arguments);
+        cognate(&all)
+    };
+    let unknown = animate("21,77");
+    assert_eq!(unknown.code, 3, "{}", unknown.err);
+    assert!(unknown.err.contains("MARKER/77"), "{}", unknown.err);
+    let done = animate("21,11");
+    assert_eq!(done.code, 0, "{}", done.err);
+    let wanted = [
+        "--dimensions",
+        "0,25,50",
+        "--rows",
+        "0,25,50",
+        "--columns",
+        "tip.X,tip.Y",
+    ];
+    let Some(found) = script("check.mjs", &[&[path(&page)], &wanted[..]].concat()) else {
+        return;
+    };
+    assert_eq!(found["errors"], Value::Array(Vec::new()));
+    for (k, shown) in found["dimensions"].as_array().unwrap().iter().enumerate() {
+        let [x, y] =
+            ["REQUEST_1.X", "REQUEST_1.Y"].map(|name| found["values"][name][k].as_f64().unwrap());
+        let expected = x.hypot(y + 1.0);
+        assert!(
+            (shown[0].as_f64().unwrap() - expected).abs() < 1e-4,
+            "{k}: {shown}"
+        );
+    }
+    // symbols of joints make room for those of markers, and come back
+    let shown = serde_json::json!([[true, false], [false, true], [true, false]]);
+    assert_eq!(found["symbols"], shown);
+}

@@ -4,7 +4,7 @@
 use super::command::{cognate, path, scratch};
 use cognate::analysis::session::script::obey;
 use cognate::analysis::watch::Unwatched;
-use cognate::dataset::command::Script;
+use cognate::dataset::command::{Script, Simulate, SimulationKind};
 use cognate::results::{Status, csv};
 use cognate::setup::{Asked, prepare};
 use cognate::{Model, Options, Session};
@@ -70,4 +70,17 @@ fn the_library_obeys_the_set_up_beside_a_model_as_the_command_line_does() {
         assert_eq!(status, Ok(Status::Completed));
         assert_eq!(csv::write(&session.run, true), *table);
     }
+    // a session that is asked for one simulation begins at rest as the set-up wants it
+    let mut session = Session::new(model.clone(), "it", options);
+    session.at_rest_first = prepared.setup.solve.at_rest_first;
+    let simulate = Simulate {
+        kind: SimulationKind::Transient,
+        end: prepared.setup.solve.end,
+        duration: None,
+        steps: Some(40),
+        dtout: None,
+    };
+    let status = session.simulate_as(&simulate, &mut Unwatched);
+    assert_eq!(status, Ok(Status::Completed));
+    assert_eq!(csv::write(&session.run, true), tables[1]);
 }

@@ -171,6 +171,41 @@ fn drawings_are_the_same_every_time_and_name_the_bodies() {
 }
 
 #[test]
+fn axes_of_markers_take_the_place_of_joints_and_dimensions_have_their_values() {
+    let model = root("examples/gallery/slider_crank.acf");
+    let draw = |options: &[&str]| {
+        let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("drawn_axes.svg");
+        let always = ["draw", path(&model), "--at", "0.1", "--names", "all"];
+        let done = cognate(&[&always, options, &["-o", path(&file)]].concat());
+        assert_eq!(done.code, 0, "{}", done.err);
+        std::fs::read_to_string(&file).unwrap()
+    };
+    let axes = ["#cc3e34", "#349448", "#3662c4"];
+    let joints = draw(&[]);
+    assert!(joints.contains(">JOINT/1<") && !axes.iter().any(|a| joints.contains(a)));
+    let markers = draw(&["--symbols", "markers"]);
+    assert!(!markers.contains("JOINT/") && markers.contains(">MARKER/"));
+    assert!(
+        axes[..2].iter().all(|a| markers.contains(a)),
+        "x and y lie in the plane"
+    );
+    let actions = draw(&["--symbols", "actions"]);
+    assert!(actions.contains(">JOINT/1<") && actions.contains("#186080"));
+    let none = draw(&["--symbols", "none"]);
+    assert!(!none.contains("JOINT/") && !none.contains("MARKER/"));
+    // the length of the crank is that of the dataset
+    let dimension = draw(&["--dimension", "22,11"]);
+    assert!(dimension.contains(">50 mm<"));
+    for wrong in ["20", "20,10,30", "PART/2,10"] {
+        let done = cognate(&["draw", path(&model), "--dimension", wrong]);
+        assert_eq!(done.code, 2, "{wrong}: {}", done.err);
+    }
+    let unknown = cognate(&["draw", path(&model), "--dimension", "22,7777"]);
+    assert_eq!(unknown.code, 3, "{}", unknown.err);
+    assert!(unknown.err.contains("MARKER/7777"), "{}", unknown.err);
+}
+
+#[test]
 fn what_is_fixed_twice_stands_out() {
     let model = root("tests/scenes/four_bar.adm");
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("fixed_twice.svg");

@@ -15,7 +15,7 @@ const PAUSE = icon('M3 2h2.2v8H3zM6.8 2H9v8H6.8z');
 const PAGE = `
 <div id="top"><div id="title"><b></b><span></span></div><div id="tools"></div></div>
 <div id="stage">
-  <div id="names"></div><div id="tip"></div>
+  <div id="names"></div><div id="dimensions"></div><div id="tip"></div>
   <label id="scale"><span></span><input type="range" min="-1" max="1" step="0.05" value="0" title="Length of arrows"></label>
 </div>
 <div id="plots"></div>
@@ -63,7 +63,7 @@ async function main() {
   const still = first.times.at(-1) === first.times[0];
   const clock = still ? Float64Array.from(first.times, (_, k) => k) : first.times;
   const [begin, end] = [clock[0], clock.at(-1)];
-  const state = { t: begin, row: 0, playing: false, loop: true, speed: 1, names: false, follow: false, selected: null };
+  const state = { t: begin, row: 0, playing: false, loop: true, speed: 1, names: false, follow: false, selected: null, measuring: null };
   const real = still ? 1 : SECONDS[first.timeUnit] ?? 1;
 
   // --- time ---
@@ -150,6 +150,7 @@ async function main() {
         stage.controls.target.copy(target);
         stage.camera.lookAt(target);
       }
+      measured();
       stage.render();
       labels();
     });
@@ -184,6 +185,40 @@ async function main() {
     });
   }
 
+  // --- dimensions ---
+
+  function dimension(i, j) {
+    const made = stage.addDimension(i, j);
+    made.label = document.createElement('div');
+    made.label.title = `MARKER/${i} – MARKER/${j}: click to remove`;
+    made.label.onclick = () => {
+      stage.removeDimension(made);
+      made.label.remove();
+      draw();
+    };
+    byId('dimensions').append(made.label);
+    draw();
+  }
+  function measured() {
+    for (const made of stage.dimensions) {
+      const { middle, length } = stage.measured(made);
+      made.label.textContent = `${digits(Number(length.toPrecision(5)))} ${data.unit ?? ''}`;
+      const place = stage.onPage(middle);
+      made.label.style.display = place ? '' : 'none';
+      if (place) [made.label.style.left, made.label.style.top] = place.map((x) => `${x}px`);
+    }
+  }
+  /** Takes the marker that is nearest to a click; with two of them there is a dimension. */
+  function measureAt(x, y) {
+    const number = stage.nearestMarker(x, y);
+    if (number === null || state.measuring[0] === number) return;
+    state.measuring.push(number);
+    if (state.measuring.length < 2) return;
+    dimension(...state.measuring);
+    state.measuring = null;
+    measure.classList.remove('on');
+  }
+
   // --- controls ---
 
   const slider = byId('slider');
@@ -199,6 +234,7 @@ async function main() {
   byId('speed').append(...SPEEDS.filter((s) => s >= state.speed / 100 && s <= state.speed * 100).map((s) => new Option(`× ${s}`, s, s === 1, s === state.speed)));
   byId('speed').onchange = (event) => (state.speed = Number(event.target.value));
 
+  let measure = null;
   const tool = (text, title, action, on) => {
     const button = document.createElement('button');
     Object.assign(button, { textContent: text, title });
@@ -235,7 +271,23 @@ async function main() {
   if (has(false)) tool('Forces', 'Arrows of forces (red) and torques (purple)', option('forces'), true);
   if (has(true)) tool('Reactions', 'Arrows of what joints transmit', option('reactions'), false);
   if (data.trails.length) tool('Paths', 'Paths of the markers that requests ask for', option('trails'), true);
-  tool('Joints', 'Symbols of joints', option('joints'), true);
+  // markers are seen only while symbols of joints are not
+  const choose = (shown, hidden) => () => {
+    const { options } = stage;
+    options[shown] = !options[shown];
+    if (options[shown]) options[hidden] = false;
+    for (const [kind, button] of Object.entries(symbols)) button.classList.toggle('on', options[kind]);
+  };
+  const symbols = { joints: tool('Joints', 'Symbols of joints', choose('joints', 'markers'), true) };
+  if (data.actions.length) tool('Axes', 'Directions in which joints turn and slide', option('actions'), false);
+  if (data.triads.length) {
+    symbols.markers = tool('Markers', 'x (red), y (green) and z (blue) of markers, in the place of joints', choose('markers', 'joints'), false);
+    measure = tool('Measure', 'A dimension: click two markers; click its value to remove it', () => {
+      state.measuring = state.measuring ? null : [];
+      if (state.measuring && !stage.options.markers) symbols.markers.click();
+      return Boolean(state.measuring);
+    });
+  }
   tool('Names', 'Names of bodies', () => (state.names = !state.names));
   tool('Grid', 'Grid and shadows', () => (stage.grid.visible = !stage.grid.visible), true);
   if (data.runs.length > 1) tool('Second run', 'The second run, pale', () => (stage.runs[1].root.visible = !stage.runs[1].root.visible), true);
@@ -256,12 +308,14 @@ async function main() {
   const name = (hit) => {
     const body = data.bodies[hit.body];
     const element = panels.elements.get(hit.element);
+    if (hit.element.startsWith('MARKER/')) return `${hit.element} · ${body.name}`;
     return hit.element === body.id || !element ? `${body.name} (${body.id})` : `${element.name} · ${element.kind} (${hit.element})`;
   };
   let pressed = null;
   canvas.addEventListener('pointerdown', (e) => (pressed = [e.clientX, e.clientY]));
   canvas.addEventListener('pointerup', (e) => {
     if (!pressed || Math.hypot(e.clientX - pressed[0], e.clientY - pressed[1]) > 4) return;
+    if (state.measuring) return measureAt(e.clientX, e.clientY);
     const hit = stage.pick(e.clientX, e.clientY);
     const id = hit && (panels.elements.has(hit.element) && !hit.element.startsWith('GRAPHICS') ? hit.element : data.bodies[hit.body].id);
     panels.select(id);
@@ -296,6 +350,7 @@ async function main() {
   // legends below the plots take room when they are filled
   new ResizeObserver(resize).observe(byId('stage'));
 
+  for (const [i, j] of data.dimensions) dimension(i, j);
   pause();
   stage.resize();
   stage.look(stage.eye, stage.up);
@@ -305,6 +360,8 @@ async function main() {
     data, state, play, pause, toRow, seek,
     value: (column) => first.value(first.channels.findIndex((c) => c.name === column))[state.row],
     select: (id) => panels.select(id),
+    dimension,
+    dimensions: () => stage.dimensions.map((made) => stage.measured(made).length),
     draw: () => stage.render(),
   };
   document.body.dataset.ready = 'yes';

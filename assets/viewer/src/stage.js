@@ -38,11 +38,13 @@ export class Stage {
     this.controls.addEventListener('change', () => this.onChange?.());
     this.materials = new Map();
     this.meshes = [];
+    this.dimensions = [];
     this.runs = data.runs.map((run, k) => this.makeRun(run, k));
     this.box = this.extent();
     this.lights();
     this.ground();
-    this.options = { forces: true, reactions: false, trails: true, joints: true };
+    this.options = { forces: true, reactions: false, trails: true, joints: true, actions: false, markers: false };
+    this.pointers = this.directions(this.runs[0].bodies);
     this.arrowScale = 1;
     this.ray = new Raycaster();
     this.look(this.eye, this.up);
@@ -61,6 +63,99 @@ export class Stage {
       this.materials.set(key, made);
     }
     return this.materials.get(key);
+  }
+
+  /** Makes an arrow from a place along a direction. */
+  pointer(place, direction, length, colour) {
+    const ink = new MeshStandardMaterial({ color: colour, roughness: 0.5, emissive: colour, emissiveIntensity: 0.35, depthTest: false, transparent: true });
+    const thick = 0.03 * length;
+    const head = 8 * thick;
+    const group = new Group();
+    group.add(
+      new Mesh(new CylinderGeometry(thick, thick, length - head, 8).rotateX(Math.PI / 2).translate(0, 0, (length - head) / 2), ink),
+      new Mesh(new ConeGeometry(2.6 * thick, head, 12).rotateX(Math.PI / 2).translate(0, 0, length - head / 2), ink),
+    );
+    group.position.set(...place);
+    group.quaternion.setFromUnitVectors(Z, vector(direction));
+    for (const mesh of group.children) mesh.renderOrder = 9;
+    return group;
+  }
+
+  /** Makes the axes of markers and the action vectors of joints: seen through everything. */
+  directions(bodies) {
+    const { joint } = this.data.view;
+    const colours = ['#cc3e34', '#349448', '#3662c4'];
+    const add = (made, { element, body }) => {
+      made.traverse((mesh) => {
+        if (!mesh.isMesh) return;
+        mesh.userData = { element, body };
+        this.meshes.push(mesh);
+      });
+      bodies[body].add(made);
+      made.visible = false;
+      return made;
+    };
+    const markers = this.data.triads.map((triad) => {
+      const made = new Group();
+      [[1, 0, 0], [0, 1, 0], [0, 0, 1]].forEach((axis, k) => made.add(this.pointer([0, 0, 0], axis, 2.5 * joint, colours[k])));
+      made.position.set(...triad.place);
+      made.quaternion.set(...triad.rotation);
+      return add(made, triad);
+    });
+    const actions = this.data.actions.map((action) => add(this.pointer(action.place, action.direction, 5 * joint, '#186080'), action));
+    return { markers, actions };
+  }
+
+  /** Returns where a marker is now, in ground; `null`: it has no place. */
+  marker(number) {
+    const triad = this.data.triads.find((t) => t.element === `MARKER/${number}`);
+    if (!triad) return null;
+    const body = this.runs[0].bodies[triad.body];
+    return vector(triad.place).applyQuaternion(body.quaternion).add(body.position);
+  }
+
+  /** Returns the number of the marker nearest to a place of the page; `null`: none is near. */
+  nearestMarker(x, y) {
+    /** Distance within which a marker is meant, in px. */
+    const NEAR = 24;
+    const { left, top } = this.renderer.domElement.getBoundingClientRect();
+    let [best, least] = [null, NEAR];
+    for (const { element } of this.data.triads) {
+      const number = Number(element.split('/')[1]);
+      const place = this.onPage(this.marker(number));
+      const off = place ? Math.hypot(place[0] - (x - left), place[1] - (y - top)) : Infinity;
+      if (off < least) [best, least] = [number, off];
+    }
+    return best;
+  }
+
+  /** Adds the line of the distance of two markers. */
+  addDimension(i, j) {
+    const made = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(6), 3));
+    const line = new Line(made, new LineBasicMaterial({ color: '#186080', depthTest: false, transparent: true }));
+    line.renderOrder = 12;
+    line.frustumCulled = false;
+    line.raycast = () => {};
+    this.scene.add(line);
+    const dimension = { i, j, line };
+    this.dimensions.push(dimension);
+    return dimension;
+  }
+
+  /** Moves the line of a dimension; returns its middle and its length. */
+  measured({ i, j, line }) {
+    const [a, b] = [this.marker(i), this.marker(j)];
+    const { position } = line.geometry.attributes;
+    position.setXYZ(0, a.x, a.y, a.z);
+    position.setXYZ(1, b.x, b.y, b.z);
+    position.needsUpdate = true;
+    return { middle: a.clone().add(b).multiplyScalar(0.5), length: a.distanceTo(b) };
+  }
+
+  removeDimension(dimension) {
+    this.dimensions.splice(this.dimensions.indexOf(dimension), 1);
+    this.scene.remove(dimension.line);
+    dimension.line.geometry.dispose();
   }
 
   surface([first, corners, firstIndex, indices]) {
@@ -387,6 +482,7 @@ export class Stage {
 
   render() {
     for (const { joints } of this.runs) for (const mesh of joints) mesh.visible = this.options.joints;
+    for (const kind of ['markers', 'actions']) for (const made of this.pointers[kind]) made.visible = this.options[kind];
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -402,7 +498,7 @@ export class Stage {
     const { left, top, width, height } = this.renderer.domElement.getBoundingClientRect();
     this.ray.setFromCamera(new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height), this.camera);
     this.ray.params.Line.threshold = 0.006 * this.size;
-    const seen = (mesh) => mesh.visible && mesh.parent.visible;
+    const seen = (mesh) => mesh.visible && mesh.parent.visible && mesh.parent.parent.visible;
     const [hit] = this.ray.intersectObjects(this.meshes.filter(seen), false);
     return hit ? hit.object.userData : null;
   }

@@ -145,6 +145,9 @@ pub struct Session {
     pub saved: std::collections::BTreeMap<String, String>,
     /// folders in which RELOAD, and GRAPHICS that contacts name, look for files
     pub folders: Vec<std::path::PathBuf>,
+    /// whether a first simulation over time begins at a static equilibrium, see
+    /// [`Session::simulate_as`]
+    pub at_rest_first: bool,
     /// a sensor ended the run, not only its simulation
     halted: bool,
     /// columns that have gaps
@@ -207,6 +210,7 @@ impl Session {
             linear: Vec::new(),
             saved: std::collections::BTreeMap::new(),
             folders: Vec::new(),
+            at_rest_first: false,
             halted: false,
             gaps: Gaps::default(),
             receiver: None,

@@ -16,14 +16,18 @@ use crate::results::{Event, Status};
 pub const DEFAULT_STEPS: usize = 50;
 
 impl Simulate {
+    /// Returns whether time passes in it.
+    fn is_over_time(&self) -> bool {
+        !matches!(
+            self.kind,
+            SimulationKind::Static | SimulationKind::InitialConditions
+        )
+    }
+
     /// Returns true if its END is the time that the clock shows: a command after one that was to
     /// end there at the latest.
     fn is_over(&self, now: f64) -> bool {
-        let over_time = !matches!(
-            self.kind,
-            SimulationKind::Static | SimulationKind::InitialConditions
-        );
-        over_time && self.end == Some(now)
+        self.is_over_time() && self.end == Some(now)
     }
 
     /// Kind, end and output steps, when the clock shows `now`.
@@ -168,6 +172,31 @@ fn second_file() -> Diagnostic {
 }
 
 impl Session {
+    /// Runs one simulation as a command asks for it.
+    ///
+    /// With [`Session::at_rest_first`], as the set-up beside a model may ask, a first simulation
+    /// over time begins at a static equilibrium, which is looked for before.
+    ///
+    /// # Errors
+    /// Those of [`Session::simulate`] and [`Simulate::resolved`].
+    pub fn simulate_as(
+        &mut self,
+        simulate: &Simulate,
+        watch: &mut dyn Watch,
+    ) -> Result<Status, Error> {
+        let (analysis, end, output) = simulate.resolved(self.time())?;
+        let is_first = std::mem::take(&mut self.at_rest_first) && self.run.rows() == 0;
+        if is_first && simulate.is_over_time() {
+            self.run.has_phases = true;
+            let now = self.time();
+            let status = self.simulate_with(Analysis::Static, now, Output::Steps(1), watch)?;
+            if status != Status::Completed || self.halted() {
+                return Ok(status);
+            }
+        }
+        self.simulate_with(analysis, end, output, watch)
+    }
+
     /// Obeys SIMULATE; `None`: there was nothing to simulate.
     fn obey_simulate(
         &mut self,

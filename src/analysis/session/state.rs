@@ -139,7 +139,7 @@ impl Session {
         self.model = model;
         self.carried = carried;
         (self.kept, self.columns_program, self.companion) = (None, None, None);
-        self.halted = false;
+        (self.halted, self.at_rest_first) = (false, false);
         if fresh {
             self.choose_columns();
         }

@@ -95,6 +95,11 @@ impl Bodies {
         self.markers.get(&number).copied()
     }
 
+    /// Iterates over the markers that have a place, by number.
+    pub fn markers(&self) -> impl Iterator<Item = (u32, Anchor)> + '_ {
+        self.markers.iter().map(|(&number, &at)| (number, at))
+    }
+
     /// Returns the index of a part or point mass.
     pub fn find(&self, id: ElementId) -> Option<usize> {
         self.all.iter().position(|b| b.id == id)

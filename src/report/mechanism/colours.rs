@@ -20,5 +20,9 @@ pub const GROUND: [u8; 3] = [150, 156, 164];
 pub const JOINT: [u8; 3] = [66, 72, 82];
 /// Springs, beams and bushings.
 pub const ELASTIC: [u8; 3] = [104, 110, 122];
+/// The axes x, y and z of a marker.
+pub const AXES: [[u8; 3]; 3] = [[204, 62, 52], [52, 148, 72], [54, 98, 196]];
+/// Action vectors of joints, and dimensions.
+pub const MEASURE: [u8; 3] = [24, 96, 128];
 /// Forces.
 pub const FORCE: [u8; 3] = [208, 52, 44];

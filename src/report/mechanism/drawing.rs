@@ -9,7 +9,7 @@
 //! out. Rods, balls and springs become strokes and circles, as in a textbook. Lengths are in units
 //! of the model until they are written.
 
-use super::{Form, Look, Pictured, Piece, Role, Solid, View, colours};
+use super::{Anchor, Form, Look, Pictured, Piece, Role, Solid, View, colours};
 use crate::model::ElementId;
 use crate::space::Vec3;
 use std::collections::BTreeSet;
@@ -20,6 +20,8 @@ const DISTANCE: f64 = 3.0;
 const SHADES: f64 = 16.0;
 /// Length of the arrow of the largest force of a row, as a part of the size of the mechanism.
 const ARROW: f64 = 0.16;
+/// Width of the line of an axis or dimension, as a part of half the length of a joint's symbol.
+const AXIS_WIDTH: f64 = 0.14;
 /// Depth by which a role is nearer to the eye than the one before, as a part of the size.
 const LAYER: f64 = 0.02;
 /// Windings of a spring on paper.
@@ -34,6 +36,8 @@ pub struct Wanted {
     pub pale: Vec<usize>,
     /// which names are written
     pub names: Names,
+    /// what stands for joints and markers
+    pub symbols: SymbolKind,
     /// elements that stand out; all others are pale. Empty: none
     pub highlighted: BTreeSet<ElementId>,
     /// paths of the markers that requests ask for
@@ -42,6 +46,25 @@ pub struct Wanted {
     pub forces: bool,
     /// the view; `None`: that of the mechanism
     pub view: Option<View>,
+    /// unit of lengths, for dimensions
+    pub unit: String,
+}
+
+impl Wanted {
+    /// Returns the content of a drawing of one row: symbols of joints, names of bodies, forces.
+    pub fn at_row(row: usize, unit: &str) -> Self {
+        Self {
+            row,
+            pale: Vec::new(),
+            names: Names::Bodies,
+            symbols: SymbolKind::Joints,
+            highlighted: BTreeSet::new(),
+            paths: false,
+            forces: true,
+            view: None,
+            unit: unit.to_owned(),
+        }
+    }
 }
 
 /// Names that a drawing shows.
@@ -51,8 +74,28 @@ pub enum Names {
     None,
     /// those of bodies
     Bodies,
-    /// those of bodies and joints
+    /// those of bodies and joints, or of markers where these are shown
     All,
+}
+
+/// Symbols that a drawing shows at joints and markers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SymbolKind {
+    /// none
+    None,
+    /// those of joints
+    Joints,
+    /// those of joints, with the directions of their displacements
+    Actions,
+    /// the axes of markers, in the place of joints
+    Markers,
+}
+
+impl SymbolKind {
+    /// Returns whether joints have symbols.
+    pub fn has_joints(self) -> bool {
+        matches!(self, Self::Joints | Self::Actions)
+    }
 }
 
 /// A point on paper: to the right and upwards, in units of the model.
@@ -182,9 +225,11 @@ pub fn drawing(pictured: &Pictured, wanted: &Wanted) -> Drawing {
         layers.extend(pen.mechanism(row, 0.22));
     }
     layers.extend(pen.mechanism(wanted.row, 1.0));
+    layers.push(pen.directions(wanted.row));
     if wanted.forces {
         layers.push(pen.forces(wanted.row));
     }
+    layers.push(pen.dimensions(wanted.row));
     layers.push(pen.names(wanted.row));
     let (low, high) = corners(&layers);
     Drawing { layers, low, high }
@@ -243,7 +288,9 @@ impl Pen<'_> {
                 marks,
             )
         };
-        self.pictured.pieces.iter().map(of).collect()
+        let with_joints = self.wanted.symbols.has_joints();
+        let shown = |p: &&Piece| with_joints || !matches!(p.role, Role::Joint | Role::Ground);
+        self.pictured.pieces.iter().filter(shown).map(of).collect()
     }
 
     /// Returns the colour of an element: where others stand out, those in red.
@@ -398,6 +445,70 @@ impl Pen<'_> {
         }
     }
 
+    /// Returns the axes of markers, or the action vectors of joints, at a row.
+    fn directions(&self, row: usize) -> Layer {
+        let Pictured {
+            bodies,
+            track,
+            sizes,
+            ..
+        } = self.pictured;
+        let mut marks = Vec::new();
+        let mut arrow = |at: Anchor, axis: usize, length: f64, colour: [u8; 3]| {
+            let frame = track.frame(bodies, at.body, row).compose(&at.frame);
+            let tip = frame.position + frame.rotation.column(axis).times(length);
+            let [a, b] = [frame.position, tip].map(|p| self.projection.point(p));
+            marks.extend(arrow_between(a, b, AXIS_WIDTH * sizes.joint, colour));
+        };
+        match self.wanted.symbols {
+            SymbolKind::None | SymbolKind::Joints => {}
+            SymbolKind::Actions => {
+                for vector in &self.pictured.action_vectors {
+                    arrow(vector.at, 2, 5.0 * sizes.joint, colours::MEASURE);
+                }
+            }
+            SymbolKind::Markers => {
+                for triad in &self.pictured.triads {
+                    for (axis, colour) in colours::AXES.into_iter().enumerate() {
+                        arrow(triad.at, axis, 2.5 * sizes.joint, colour);
+                    }
+                }
+            }
+        }
+        let opacity = 1.0;
+        Layer { marks, opacity }
+    }
+
+    /// Returns the dimensions at a row, each with its value.
+    fn dimensions(&self, row: usize) -> Layer {
+        let Pictured {
+            bodies,
+            track,
+            sizes,
+            dimensions,
+            ..
+        } = self.pictured;
+        let mut marks = Vec::new();
+        let colour = colours::MEASURE;
+        for dimension in dimensions {
+            let [a, b] = dimension.places(bodies, track, row);
+            let middle = self.projection.point((a + b).times(0.5));
+            for end in [a, b].map(|p| self.projection.point(p)) {
+                marks.extend(arrow_between(middle, end, AXIS_WIDTH * sizes.joint, colour));
+            }
+            let value = crate::results::digits_of_six((a - b).norm());
+            marks.push(Mark::Word {
+                at: middle,
+                text: format!("{value} {}", self.wanted.unit)
+                    .trim_end()
+                    .to_owned(),
+                colour,
+            });
+        }
+        let opacity = 1.0;
+        Layer { marks, opacity }
+    }
+
     /// Returns the arrows of the forces that act at a row.
     fn forces(&self, row: usize) -> Layer {
         let Pictured {
@@ -430,7 +541,7 @@ impl Pen<'_> {
             let from = arrow.from(bodies, track, row);
             let to = from + f.times(length / f.norm());
             let (a, b) = (self.projection.point(from), self.projection.point(to));
-            marks.extend(arrow_between(a, b, 0.35 * sizes.joint));
+            marks.extend(arrow_between(a, b, 0.35 * sizes.joint, colours::FORCE));
         }
         let opacity = 1.0;
         Layer { marks, opacity }
@@ -480,6 +591,15 @@ impl Pen<'_> {
                 marks.push(word(at, &body.name, body.colour));
             }
         }
+        let of_markers = of_joints && self.wanted.symbols == SymbolKind::Markers;
+        let beside = self.projection.right.times(-1.0) - self.projection.up;
+        for triad in self.pictured.triads.iter().filter(|_| of_markers) {
+            let frame = track.frame(bodies, triad.at.body, row);
+            let place = frame.point(triad.at.frame.position);
+            let at = place + beside.times(1.2 * self.pictured.sizes.joint);
+            marks.push(word(at, &triad.element.to_string(), colours::JOINT));
+        }
+        let of_joints = of_joints && self.wanted.symbols.has_joints();
         let mut named = BTreeSet::new();
         let joints = pieces.iter().filter(|p| of_joints && p.role == Role::Joint);
         for piece in joints.filter(|p| named.insert(p.element)) {
@@ -528,7 +648,7 @@ fn zigzag(a: Point, b: Point, radius: f64) -> Vec<Point> {
 }
 
 /// Returns an arrow.
-fn arrow_between(a: Point, b: Point, width: f64) -> Vec<Mark> {
+fn arrow_between(a: Point, b: Point, width: f64, colour: [u8; 3]) -> Vec<Mark> {
     let d = [b[0] - a[0], b[1] - a[1]];
     let length = d[0].hypot(d[1]);
     if length < 1e-9 * width {
@@ -539,7 +659,6 @@ fn arrow_between(a: Point, b: Point, width: f64) -> Vec<Mark> {
     let neck = [b[0] - head * unit[0], b[1] - head * unit[1]];
     let half = 0.42 * head;
     let side = |s: f64| [neck[0] - s * half * unit[1], neck[1] + s * half * unit[0]];
-    let colour = colours::FORCE;
     vec![
         Mark::Stroke {
             points: vec![a, neck],

@@ -1,7 +1,7 @@
 //! A [`Drawing`] as the text of an SVG file.
 
 use super::drawing::{Drawing, Mark, Point, shaded};
-use super::labels::{Placed, placed};
+use super::labels::{Area, Placed, placed};
 use std::collections::BTreeSet;
 
 /// Width of a margin, in px.
@@ -10,6 +10,8 @@ const MARGIN: f64 = 26.0;
 const LINE: f64 = 1.6;
 /// Size of letters, in px.
 const LETTERS: f64 = 13.0;
+/// Most that the bar of the scale is long, in px.
+const BAR: f64 = 110.0;
 /// Largest share of the width of a picture that its height is.
 const HIGHEST: f64 = 1.0;
 
@@ -171,7 +173,11 @@ impl Paper {
             Mark::Word { at, text, .. } => Some((self.at(*at), text.as_str())),
             Mark::Faces { .. } | Mark::Stroke { .. } | Mark::Ball { .. } => None,
         });
-        placed(&words.collect::<Vec<_>>(), size, LETTERS)
+        let bar = Area {
+            middle: [size[0] - 12.0 - BAR / 2.0, size[1] - 16.0],
+            half: [BAR / 2.0, 14.0],
+        };
+        placed(&words.collect::<Vec<_>>(), size, LETTERS, &[bar])
     }
 
     /// Writes a name, with a line to its point where it stands beside that.
@@ -230,7 +236,7 @@ impl Paper {
 
     /// Writes the bar of the scale, of a round length, in the lower right corner.
     fn bar(&self, [width, height]: [f64; 2], unit: &str, text: &mut String) {
-        let most = 110.0 / self.scale;
+        let most = BAR / self.scale;
         let power = 10f64.powf(most.log10().floor());
         let length = [5.0, 2.0, 1.0]
             .into_iter()

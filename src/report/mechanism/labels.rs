@@ -23,9 +23,11 @@ const DIRECTIONS: [[f64; 2]; 8] = [
 
 /// A rectangle: its middle and half its width and height.
 #[derive(Clone, Copy)]
-struct Area {
-    middle: [f64; 2],
-    half: [f64; 2],
+pub(super) struct Area {
+    /// its middle
+    pub middle: [f64; 2],
+    /// half its width and height
+    pub half: [f64; 2],
 }
 
 impl Area {
@@ -51,9 +53,15 @@ pub(super) enum Placed {
 
 /// Returns where names go, in their order.
 ///
-/// `names` are points and texts, `size` that of the picture, `letters` the size of letters.
-pub(super) fn placed(names: &[([f64; 2], &str)], size: [f64; 2], letters: f64) -> Vec<Placed> {
-    let mut taken: Vec<Area> = Vec::new();
+/// `names` are points and texts, `size` that of the picture, `letters` the size of letters,
+/// `reserved` areas where no name goes.
+pub(super) fn placed(
+    names: &[([f64; 2], &str)],
+    size: [f64; 2],
+    letters: f64,
+    reserved: &[Area],
+) -> Vec<Placed> {
+    let mut taken = reserved.to_vec();
     let mut all = Vec::new();
     for (point, text) in names {
         let height = HEIGHT * letters;
@@ -117,7 +125,7 @@ mod tests {
             let names: Vec<([f64; 2], &str)> = (points.iter().copied())
                 .zip(texts.iter().map(String::as_str))
                 .collect();
-            let all = placed(&names, [600.0, 500.0], 13.0);
+            let all = placed(&names, [600.0, 500.0], 13.0, &[]);
             let areas: Vec<Area> = (names.iter().zip(&all))
                 .filter_map(|((point, text), placed)| area(*point, text, *placed, 13.0))
                 .collect();
@@ -127,6 +135,13 @@ mod tests {
             assert!(areas.len() > 12, "{spread}: {}", areas.len());
         }
         let far = [([100.0, 100.0], "PART/2"), ([300.0, 100.0], "PART/3")];
-        assert_eq!(placed(&far, [600.0, 500.0], 13.0), [Placed::There; 2]);
+        assert_eq!(placed(&far, [600.0, 500.0], 13.0, &[]), [Placed::There; 2]);
+        // what is reserved stays free
+        let bar = Area {
+            middle: [100.0, 100.0],
+            half: [60.0, 14.0],
+        };
+        let beside = placed(&far, [600.0, 500.0], 13.0, &[bar]);
+        assert!(matches!(beside[0], Placed::Beside(_)) && beside[1] == Placed::There);
     }
 }

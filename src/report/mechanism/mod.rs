@@ -5,6 +5,7 @@
 //! drawing on paper all show the same. Nothing here solves anything. Lengths are in units of the
 //! model, frames against ground, times those of the run.
 
+mod annotations;
 mod belts;
 mod bodies;
 mod channels;
@@ -23,7 +24,8 @@ mod symbols;
 mod track;
 mod view;
 
-pub use bodies::{Bodies, Body};
+pub use annotations::{ActionVector, Dimension, Pair, Triad};
+pub use bodies::{Anchor, Bodies, Body};
 pub use solid::{Solid, Triangles};
 pub use stretched::{Look, Stretched};
 pub use track::{Load, Track};
@@ -183,6 +185,12 @@ pub struct Pictured {
     pub arrows: Vec<Arrow>,
     /// points whose paths are worth seeing: those that requests ask for
     pub trails: Vec<Trail>,
+    /// axes of the markers
+    pub triads: Vec<Triad>,
+    /// directions of the displacements of joints
+    pub action_vectors: Vec<ActionVector>,
+    /// distances of markers, if somebody has asked for some
+    pub dimensions: Vec<Dimension>,
     /// where solids overlap, if somebody has looked
     pub overlaps: Vec<Overlap>,
     /// where it is seen from at first
@@ -228,6 +236,9 @@ impl Pictured {
             title: model.title.clone(),
             arrows: arrows(model, &bodies, &track),
             trails,
+            triads: annotations::triads(&bodies),
+            action_vectors: annotations::action_vectors(model, &bodies),
+            dimensions: Vec::new(),
             overlaps: Vec::new(),
             bodies,
             track,

@@ -64,6 +64,18 @@ pub fn page(model: &Model, pictured: &Pictured, runs: &[Shown<'_>]) -> String {
         "arrows": pictured.arrows.iter().map(|a| json!({
             "element": a.element.to_string(), "body": a.body, "place": a.place, "load": a.load, "reaction": a.is_reaction,
         })).collect::<Vec<_>>(),
+        "triads": pictured.triads.iter().map(|t| {
+            let q = rotation::to_quaternion(&t.at.frame.rotation);
+            json!({
+                "element": t.element.to_string(), "body": t.at.body, "place": t.at.frame.position.0,
+                "rotation": [q[1], q[2], q[3], q[0]],
+            })
+        }).collect::<Vec<_>>(),
+        "actions": pictured.action_vectors.iter().map(|a| json!({
+            "element": a.element.to_string(), "body": a.at.body, "place": a.at.frame.position.0,
+            "direction": a.at.frame.rotation.column(2).0,
+        })).collect::<Vec<_>>(),
+        "dimensions": pictured.dimensions.iter().map(|d| [d.markers.i, d.markers.j]).collect::<Vec<_>>(),
         "view": {
             "centre": pictured.view.centre.0, "size": pictured.view.size, "eye": pictured.view.eye.0,
             "up": pictured.view.up.0, "planar": pictured.view.is_planar, "joint": pictured.sizes.joint,
