@@ -459,7 +459,7 @@ fn a_dimension_on_the_page_changes_as_the_distance_of_its_markers_does() {
         "--rows",
         "0,25,50",
         "--columns",
-        "tip.X,tip.Y",
+        "REQUEST_1.DX,REQUEST_1.DY",
     ];
     let Some(found) = script("check.mjs", &[&[path(&page)], &wanted[..]].concat()) else {
         return;
@@ -467,7 +467,7 @@ fn a_dimension_on_the_page_changes_as_the_distance_of_its_markers_does() {
     assert_eq!(found["errors"], Value::Array(Vec::new()));
     for (k, shown) in found["dimensions"].as_array().unwrap().iter().enumerate() {
         let [x, y] =
-            ["REQUEST_1.X", "REQUEST_1.Y"].map(|name| found["values"][name][k].as_f64().unwrap());
+            ["REQUEST_1.DX", "REQUEST_1.DY"].map(|name| found["values"][name][k].as_f64().unwrap());
         let expected = x.hypot(y + 1.0);
         assert!(
             (shown[0].as_f64().unwrap() - expected).abs() < 1e-4,
