@@ -22,6 +22,10 @@
 //! of truncation whose two estimates are alike, as those of rounding are; only there they count.
 //! Since roundings come in patches, the largest of the last measurements counts.
 //!
+//! Third differences of a curve through data do not repeat either, but fall with τ, where those of
+//! rounding keep their size. So after many steps that were asked for in vain both are measured, and
+//! rounding that is proven so may be far larger than the request: no step is shortened for it.
+//!
 //! The smallest of three probes counts: where a state lies within rounding of a jump of the rates,
 //! a probe across it measures the jump. That all three cross it is unlikely, and [`largest`]
 //! bounds the harm.
@@ -41,8 +45,22 @@ const ESTIMATE_PER_DIFFERENCE: f64 = 20.0;
 const FADING: f64 = 0.9;
 /// Part of the upper bound of a magnitude (half a turn, for an angle) that is taken for r of (1).
 const ROUNDED_SHARE_OF_BOUND: f64 = 0.25;
-/// Relative error above which nothing is taken for rounding.
+/// Relative error above which nothing is taken for rounding that is not proven.
 const LARGEST_NOISE: f64 = 1e-6;
+/// Relative error above which nothing is taken for rounding.
+const LARGEST_PROVEN: f64 = 1e-4;
+/// Steps asked for in vain after which a proof is tried; twice as many each time it fails.
+const STEPS_BEFORE_PROOF: usize = 500;
+/// Measurements of (3) at two distances that a proof takes.
+const MEASUREMENTS_OF_PROOF: usize = 32;
+/// τ of (3) where rounding is proven, as a part of the step: what truncation adds to differences
+/// falls with its cube.
+const PROVEN_STRIDE: f64 = 1.0 / 4096.0;
+/// τ of the second measurement of a proof, over that of the first.
+const FINER: f64 = 1.0 / 8.0;
+/// Sum of the second measurements over that of the first from which on they are rounding: where the
+/// slope of the rate jumps it is an eighth, where a higher derivative does less.
+const KEPT_BY_ROUNDING: f64 = 0.3;
 /// The same over the permitted error: what does not repeat may also be a curve through data, whose
 /// third derivative jumps at each point, and that must not cost more than a digit and a half.
 const NOISE_PER_TOLERANCE: f64 = 30.0;
@@ -76,6 +94,50 @@ pub struct Noise {
     largest: f64,
     /// the two third differences of (3)   (n each)
     differences: [Vec<f64>; 2],
+    proof: Proof,
+}
+
+/// The proof that differences of rates are rounding.
+#[derive(Clone, Debug)]
+struct Proof {
+    /// steps asked for in vain before the next attempt
+    left: usize,
+    /// steps asked for in vain between the last two attempts
+    patience: usize,
+    /// measurements so far of the present attempt
+    measured: usize,
+    /// their sums, at τ and at τ times [`FINER`]
+    sums: [f64; 2],
+    is_given: bool,
+}
+
+impl Proof {
+    fn new() -> Self {
+        Proof {
+            left: STEPS_BEFORE_PROOF,
+            patience: STEPS_BEFORE_PROOF,
+            measured: 0,
+            sums: [0.0; 2],
+            is_given: false,
+        }
+    }
+
+    /// Returns whether rates are to be measured at two distances.
+    fn is_tried(&self) -> bool {
+        !self.is_given && self.left == 0
+    }
+
+    /// Takes note of a measurement at each distance.
+    fn see(&mut self, sizes: [f64; 2]) {
+        self.measured += 1;
+        self.sums = [self.sums[0] + sizes[0], self.sums[1] + sizes[1]];
+        if self.measured < MEASUREMENTS_OF_PROOF {
+            return;
+        }
+        self.is_given = self.sums[1] >= KEPT_BY_ROUNDING * self.sums[0];
+        self.patience *= 2;
+        (self.left, self.measured, self.sums) = (self.patience, 0, [0.0; 2]);
+    }
 }
 
 /// A state at which the rounding of the rate is measured.
@@ -91,16 +153,6 @@ pub struct Probed<'a> {
     pub weights: &'a Weights,
 }
 
-/// Returns the relative error above which nothing is taken for rounding; `alike`: the two estimates
-/// of the step are, `tolerance`: the relative error that is permitted.
-pub fn largest(alike: bool, tolerance: f64) -> f64 {
-    if alike {
-        (NOISE_PER_TOLERANCE * tolerance).clamp(LARGEST_PROBED, LARGEST_NOISE)
-    } else {
-        LARGEST_PROBED
-    }
-}
-
 impl Noise {
     /// Creates room for `n` unknowns; nothing is measured.
     pub fn new(n: usize) -> Self {
@@ -109,7 +161,28 @@ impl Noise {
             differenced: None,
             largest: 0.0,
             differences: [vec![0.0; n], vec![0.0; n]],
+            proof: Proof::new(),
         }
+    }
+
+    /// Returns the relative error above which nothing is taken for rounding; `alike`: the two
+    /// estimates of the step are, `tolerance`: the relative error that is permitted.
+    pub fn largest(&self, alike: bool, tolerance: f64) -> f64 {
+        match (alike, self.proof.is_given) {
+            (true, true) => LARGEST_PROVEN,
+            (true, false) => (NOISE_PER_TOLERANCE * tolerance).clamp(LARGEST_PROBED, LARGEST_NOISE),
+            (false, _) => LARGEST_PROBED,
+        }
+    }
+
+    /// Returns whether differences of rates have been proven to be rounding.
+    pub fn is_proven(&self) -> bool {
+        self.proof.is_given
+    }
+
+    /// Takes note of an accepted step whose request was in vain.
+    pub fn in_vain(&mut self) {
+        self.proof.left = self.proof.left.saturating_sub(1);
     }
 
     /// Forgets the last measurements.
@@ -143,26 +216,34 @@ impl Noise {
         }
         let tolerance = at.weights.tolerance();
         if self.differenced != Some(at.t) {
-            let size = self.difference(problem, at, h, [probe, rate], stats);
+            let tau = h * if self.proof.is_given {
+                PROVEN_STRIDE
+            } else {
+                STRIDE
+            };
+            let size = self.difference(problem, at, tau, [&mut *probe, &mut *rate], stats);
+            if self.proof.is_tried() {
+                let finer = self.difference(problem, at, FINER * tau, [probe, rate], stats);
+                self.proof.see([size, finer]);
+            }
             self.largest = size.max(FADING * self.largest);
             self.differenced = Some(at.t);
         }
         (ESTIMATE_PER_DIFFERENCE * h * self.largest)
-            .min(largest(alike, tolerance))
+            .min(self.largest(alike, tolerance))
             .max(probed)
     }
 
-    /// Measures δ of (3); 0 where a rate has no value.
+    /// Measures δ of (3) at distances of `tau`, in s; 0 where a rate has no value.
     fn difference<P: Ode + ?Sized>(
         &mut self,
         problem: &mut P,
         at: Probed,
-        h: f64,
+        tau: f64,
         [argument, rate]: [&mut [f64]; 2],
         stats: &mut Stats,
     ) -> f64 {
         let [one, other] = &mut self.differences;
-        let tau = STRIDE * h;
         for (j, [a, b]) in DIFFERENCES.into_iter().enumerate() {
             let rate: &[f64] = if j == 0 {
                 one.fill(0.0);

@@ -34,7 +34,7 @@
 #![allow(clippy::needless_range_loop)] // many arrays at one index read best that way
 
 use super::control::{self, Attempts, Pi, Rejection, Weights, worst, worst_index};
-use super::noise::{self, Noise, Probed};
+use super::noise::{Noise, Probed};
 use super::quadrature::Node;
 use super::{Failure, Method, Ode, Options, Reason, Stats, Step, Stop};
 use interpolant::Interpolant;
@@ -363,9 +363,9 @@ impl Dop853 {
             let scale = ERROR_SCALE / self.weights.tolerance().max(INVARIANT_NOISE);
             error = error.min(scale * self.filtered(problem, self.t0 + h, h));
         }
-        let alike = worst3 < ALIKE_RATIO * worst5;
+        let alike = worst3 < ALIKE_RATIO * worst5 || self.noise.is_proven();
         let suspect = error > 1.0 || error > SUSPECT_ERROR && alike;
-        let largest = noise::largest(alike, self.weights.tolerance());
+        let largest = self.noise.largest(alike, self.weights.tolerance());
         if suspect && error < scale * largest {
             // the rest is measured against rounding, where that is more than the request
             let explained =
@@ -471,6 +471,9 @@ impl Dop853 {
         self.advanced = true;
         self.weights.see(t1, &self.y1);
         self.watch_stiffness();
+        if self.noisy {
+            self.noise.in_vain();
+        }
         self.stats.below_rounding += usize::from(self.noisy || self.weights.is_raised());
     }
 

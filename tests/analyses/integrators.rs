@@ -714,6 +714,66 @@ fn a_request_below_rounding_takes_the_steps_of_one_that_is_not() {
     }
 }
 
+/// An oscillator whose force is a curve through data: its third derivative jumps every [`Curve::KNOT`].
+struct Curve;
+
+impl Curve {
+    const KNOT: f64 = 0.01;
+    const ROUGHNESS: f64 = 2e-3;
+
+    /// Returns the force at a place, and its potential: x and x²/2 beside a Bernoulli polynomial and its integral.
+    fn at(x: f64) -> [f64; 2] {
+        let s = (x / Self::KNOT).rem_euclid(1.0);
+        let fourth = s * s * (1.0 - s) * (1.0 - s) - 1.0 / 30.0;
+        let fifth = s * (s * s * (s * (s - 2.5) + 5.0 / 3.0) - 1.0 / 6.0);
+        [
+            x + Self::ROUGHNESS * fourth,
+            0.5 * x * x + Self::ROUGHNESS * Self::KNOT * fifth / 5.0,
+        ]
+    }
+}
+
+impl Ode for Curve {
+    fn size(&self) -> usize {
+        2
+    }
+    fn rate(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        ydot.copy_from_slice(&[y[1], -Curve::at(y[0])[0]]);
+        Ok(())
+    }
+    fn jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _jacobian: &mut [f64],
+        _dfdt: &mut [f64],
+    ) -> Result<(), Failure> {
+        unreachable!("explicit methods never ask for it")
+    }
+    fn typical(&self, typical: &mut [f64]) {
+        typical.fill(1.0);
+    }
+}
+
+#[test]
+fn a_curve_through_data_is_no_rounding_however_many_steps_it_takes() {
+    for tolerance in [1e-8, 1e-12] {
+        let mut method = ode_method::<Curve>("DOP853", 2, &options(tolerance)).expect("there");
+        method
+            .start(&mut Curve, 0.0, &[1.0, 0.0])
+            .expect("it can start");
+        while method.t() < 200.0 {
+            method.step(&mut Curve, 200.0).expect("it can go on");
+        }
+        let (y, stats) = (method.y(), method.stats());
+        let off = 0.5 * y[1] * y[1] + Curve::at(y[0])[1] - Curve::at(1.0)[1];
+        println!("{tolerance:e}: {off:e} {stats:?}");
+        // some are taken for rounding, more than the proof of it waits for
+        assert!(stats.below_rounding > 500);
+        assert!(off.abs() < stats.steps as f64 * tolerance, "{off:e}");
+    }
+}
+
 /// A slow oscillator beside a fast one that hardly moves: q, Q, v, V.
 struct Humming {
     told: bool,

@@ -36,6 +36,7 @@ mod methods_outside;
 mod outputs;
 mod rates;
 mod references;
+mod rounding;
 mod saved;
 mod sessions;
 mod statics;
