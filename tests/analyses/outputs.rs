@@ -194,3 +194,54 @@ fn a_spline_read_outside_its_data_is_told_however_few_outputs_there_are() {
         }
     }
 }
+
+/// A rotor that a motion turns by `drive`, another one on it by half of that, about an axis at `tilt` degrees, and a slider
+/// whose force reads a spline over an angle between 0 and `last` rad.
+fn read_over(angle: &str, drive: &str, tilt: f64, last: f64) -> String {
+    format!(
+        "{SLIDER}MARKER/3, PART=1, QP=9,0,0\nPART/3, MASS=1, CM=30, IP=1,1,1, QG=9,0,0\nMARKER/30, PART=3\n\
+         MARKER/31, PART=3, REULER=0,{tilt}D,0\nJOINT/3, REVOLUTE, I=30, J=3\n\
+         MOTION/3, ROTATIONAL, JOINT=3, FUNCTION={drive}\n\
+         PART/4, MASS=1, CM=40, IP=1,1,1, QG=9,0,0\nMARKER/40, PART=4, REULER=0,{tilt}D,0\n\
+         JOINT/4, REVOLUTE, I=40, J=31\nMOTION/4, ROTATIONAL, JOINT=4, FUNCTION=0.5*({drive})\n\
+         SPLINE/1, X=0,{},{},{last}, Y=0,0.1,0.2,0.3\n\
+         SFORCE/1, TRANSLATION, ACTIONONLY, I=20, J=11, FUNCTION=-CUBSPL({angle},0,1)\n",
+        0.3 * last,
+        0.6 * last
+    )
+}
+
+#[test]
+fn a_spline_over_an_angle_that_motions_turn_is_told_before_a_run_and_in_it() {
+    let drives: [(&str, f64); 3] = [
+        ("TIME", 2.0),
+        ("30*TIME", 60.0),
+        ("20*SIN(0.5*PI*TIME)", 20.0),
+    ];
+    let angles: [(&str, f64, f64); 4] = [
+        ("AZ(30,3)", 0.0, 1.0),
+        ("-AZ(3,30)", 0.0, 1.0),
+        ("AZ(40,3)", 0.0, 1.5),
+        // about an axis that turns, an angle that no coordinate knows: as many turns but for a bit of one
+        ("AZ(40,3)", 10.0, 1.5),
+    ];
+    for (drive, most) in drives {
+        for (angle, tilt, factor) in angles {
+            for part in [0.8, 1.2] {
+                let text = read_over(angle, drive, tilt, part * factor * most);
+                let mut s = running::session(&text, &["DX(20,1)"], 1e-6);
+                let is_said = |said: &str| said.contains("SPLINE/1");
+                let before = s.preview(Analysis::Dynamic, 2.0);
+                let before = before.iter().any(|d| is_said(&d.to_string()));
+                let mut s = running::session(&text, &["DX(20,1)"], 1e-6);
+                running::go(&mut s, Analysis::Dynamic, 2.0, 2);
+                let after = s.run.record.warned().iter().any(|w| is_said(w));
+                assert_eq!(
+                    [before, after],
+                    [part < 1.0; 2],
+                    "{angle} at {tilt}, {drive}, {part} of the range"
+                );
+            }
+        }
+    }
+}

@@ -3,8 +3,10 @@
 
 use super::Session;
 use crate::analysis::system::System;
+use crate::analysis::time::counting::Counting;
 use crate::analysis::warning::RunWarning;
 use crate::expr::ast::{Callee, Node};
+use crate::expr::functions::Function;
 use crate::expr::interpolation::Interpolation;
 use crate::expr::program::{Program, Work};
 use crate::model::{ElementId, ElementKind, Family, Formula, Model, Text};
@@ -35,6 +37,21 @@ impl SplineCall {
         let name = format!("{} {}", self.element, ElementKind::Spline.id(self.spline));
         (name, self.at.clone())
     }
+}
+
+/// Returns whether an argument asks for a past that would have to be kept for it alone. Turns of
+/// angles are counted for the function that reads the spline.
+fn keeps_past(at: &Text) -> bool {
+    let delays = |node: &Node| {
+        matches!(
+            node,
+            Node::Call {
+                callee: Callee::Function(Function::Delay),
+                ..
+            }
+        )
+    };
+    at.ast().map_or(true, |ast| ast.nodes.iter().any(delays))
 }
 
 /// Collects the calls of splines in the functions that move the model, each argument once.
@@ -75,11 +92,7 @@ pub(super) fn spline_calls(model: &Model) -> Vec<SplineCall> {
                 at: Text::from(ast.written(x)),
                 range,
             };
-            let past = call
-                .at
-                .expression()
-                .is_ok_and(|e| e.needs_history().is_empty());
-            if past && !all.contains(&call) {
+            if !keeps_past(&call.at) && !all.contains(&call) {
                 all.push(call);
             }
         }
@@ -114,22 +127,42 @@ impl Readings {
     }
 
     /// Looks at the arguments that time alone decides, as markers that motions move do, until
-    /// `end`.
+    /// `end`; angles count their turns on the way.
     pub fn see_driven(&mut self, system: &System, formulas: &[usize], end: f64) {
-        let mut numbers = system.numbers.clone();
-        let start = numbers[Layout::TIME];
-        let calls = self.calls.iter().zip(formulas).zip(&mut self.outside);
-        for ((call, &formula), seen) in calls {
-            let (program, _) =
-                record_with_complaints(system.configured(), |at| vec![at.formula(formula)]);
-            let decides = |&place: &usize| place != Layout::TIME && program.reads(place);
-            if (0..numbers.len()).any(|place| decides(&place)) {
-                continue;
-            }
-            for k in 1..=LOOKS_AHEAD {
-                let t = start + (end - start) * k as f64 / LOOKS_AHEAD as f64;
-                numbers[Layout::TIME] = t;
-                note(seen, call, t, program.value(&numbers, &mut self.work));
+        let mut system = system.clone();
+        let l = system.scene.layout;
+        let is_known = |program: &Program| {
+            let mut places = (0..system.numbers.len()).filter(|&place| program.reads(place));
+            places.all(|place| place == Layout::TIME || l.turns().contains(&place))
+        };
+        // angles that follow from time and from their own turns
+        let angles = (0..l.turns().len()).map(|k| {
+            let at = system.configured();
+            is_known(&record_with_complaints(at, |at| vec![at.turned_angle(k).angle]).0)
+        });
+        let driven: Vec<bool> = angles.collect();
+        let programs = (formulas.iter().enumerate()).filter_map(|(call, &formula)| {
+            let at = system.configured();
+            let (program, _) = record_with_complaints(at, |at| vec![at.formula(formula)]);
+            let mut turns = l.turns().zip(&driven);
+            let all_driven = turns.all(|(place, driven)| *driven || !program.reads(place));
+            (is_known(&program) && all_driven).then_some((call, program))
+        });
+        let programs: Vec<(usize, Program)> = programs.collect();
+        if programs.is_empty() {
+            return;
+        }
+        let start = system.numbers[Layout::TIME];
+        let y = system.numbers[l.y()].to_vec();
+        let mut counting = Counting::default();
+        counting.begin(&mut system, start, &y);
+        for k in 1..=LOOKS_AHEAD {
+            let t = start + (end - start) * k as f64 / LOOKS_AHEAD as f64;
+            counting.count(&mut system, t, &mut |_, _, _| true);
+            system.set(t, &y);
+            for (call, program) in &programs {
+                let value = program.value(&system.numbers, &mut self.work);
+                note(&mut self.outside[*call], &self.calls[*call], t, value);
             }
         }
     }

@@ -10,11 +10,11 @@ use crate::analysis::system::turns::Look;
 const SHORTEST_INTERVAL: f64 = 1e-9;
 
 /// Puts the state at a time of a step in place; returns false where there is none.
-pub(super) type StateAt<'a> = dyn FnMut(&mut System, f64, &mut [f64]) -> bool + 'a;
+pub(in crate::analysis) type StateAt<'a> = dyn FnMut(&mut System, f64, &mut [f64]) -> bool + 'a;
 
 /// The angles that are counted from look to look within a step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Counting {
+pub(in crate::analysis) struct Counting {
     /// the last look whose angles were taken over
     from: Look,
     /// the look that is tried

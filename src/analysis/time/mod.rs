@@ -15,7 +15,7 @@
 
 mod chatter;
 pub mod continuation;
-mod counting;
+pub(super) mod counting;
 pub mod drives;
 pub mod dynamics;
 pub mod energy;
