@@ -27,10 +27,41 @@ fn thread_seconds(thread: Option<&std::path::Path>) -> Option<f64> {
 
 /// Returns the processor time of all threads of this process that are still there, in s, where the
 /// system tells it.
-pub fn process_seconds() -> Option<f64> {
+fn process_seconds() -> Option<f64> {
     let threads = disk::read_dir("/proc/self/task").ok()?;
     let seconds = threads.filter_map(|t| thread_seconds(Some(&t.ok()?.path())));
     Some(seconds.sum())
+}
+
+/// The processor time that all threads of this process use from some moment on. A program that takes
+/// the place of another in its process (`cargo run` ends so) has the other's time on its account.
+#[derive(Clone, Copy, Debug)]
+pub struct ProcessClock {
+    /// processor time of the process at the beginning, in s; `None`: not known here
+    start: Option<f64>,
+    begin: Moment,
+}
+
+impl ProcessClock {
+    /// Starts a clock.
+    pub fn start() -> Self {
+        Self {
+            start: process_seconds(),
+            begin: Moment::now(),
+        }
+    }
+
+    /// Returns the time that has passed since the start.
+    pub fn elapsed(&self) -> Duration {
+        self.begin.elapsed()
+    }
+
+    /// Returns the processor time since the start, in s; where the system does not tell it, the
+    /// time that has passed.
+    pub fn seconds(&self) -> f64 {
+        let used = || Some(process_seconds()? - self.start?);
+        used().map_or_else(|| self.elapsed().as_secs_f64(), |used| used.max(0.0))
+    }
 }
 
 /// The processor time that a thread uses from some moment on. Where the system does not tell it,

@@ -8,10 +8,10 @@
 use super::output::Tables;
 use super::{Exit, complain, remark, summary};
 use crate::analysis::session::{Activity, Session};
-use crate::analysis::work_limit::process_seconds;
+use crate::analysis::work_limit::ProcessClock;
 use crate::results::{Event, Run, Status};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Time between two looks at the clock of the processor.
 const LOOK: Duration = Duration::from_millis(100);
@@ -98,11 +98,10 @@ impl Guard {
     fn watch(&self, limit: f64) {
         let [seconds, part] = GRACE;
         let permitted = limit + seconds.max(part * limit);
-        let clock = Instant::now();
+        let clock = ProcessClock::start();
         loop {
             std::thread::sleep(LOOK);
-            let passed = clock.elapsed().as_secs_f64();
-            let over = process_seconds().unwrap_or(passed) > permitted;
+            let over = clock.seconds() > permitted;
             self.with(|shared| {
                 if over && !shared.is_done {
                     // held until the process has ended: nobody else writes

@@ -3,7 +3,7 @@
 use super::{Failure, animate, linear, remark, summary};
 use crate::analysis::motion::marker_digest;
 use crate::analysis::session::Session;
-use crate::analysis::work_limit::process_seconds;
+use crate::analysis::work_limit::ProcessClock;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Model, SettingsStatement};
 use crate::results::format::{Format, Sink, Style};
@@ -117,7 +117,7 @@ struct Growing {
     /// rows that the tables have taken
     taken: usize,
     /// when the run began
-    started: Instant,
+    started: ProcessClock,
     /// when rows last went to the disk
     flushed: Instant,
     /// whether the folder knows that this run is being written
@@ -160,7 +160,7 @@ impl Tables {
             folder,
             tables,
             taken: 0,
-            started: Instant::now(),
+            started: ProcessClock::start(),
             flushed: Instant::now(),
             is_claimed: false,
             is_animated: args.animate,
@@ -199,7 +199,7 @@ impl Tables {
         &self,
         session: &mut Session,
         picture: bool,
-        started: Instant,
+        started: ProcessClock,
     ) -> Result<(Vec<PathBuf>, String), Failure> {
         let mut growing = self.growing();
         if let Some(failed) = growing.failed.take() {
@@ -292,7 +292,7 @@ impl Growing {
         &mut self,
         session: &mut Session,
         picture: bool,
-        started: Instant,
+        started: ProcessClock,
     ) -> Result<(Vec<PathBuf>, String), Diagnostic> {
         self.started = started;
         session.run.record.markers = marker_digest(&session.model);
@@ -342,7 +342,7 @@ impl Growing {
         let seconds = &mut run.record.seconds;
         seconds.write = clock.elapsed().as_secs_f64();
         seconds.total = self.started.elapsed().as_secs_f64();
-        seconds.processor = process_seconds().unwrap_or(seconds.total);
+        seconds.processor = self.started.seconds();
         let record = json::with_files(json::record(run), self.folder.written());
         let record = json::text(&record);
         self.folder.put_record(&record)?;

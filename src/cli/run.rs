@@ -9,7 +9,7 @@ use crate::analysis::session::script::obey;
 use crate::analysis::session::state::{self, Saved};
 use crate::analysis::session::{Chosen, Options, Session};
 use crate::analysis::watch::Watch;
-use crate::analysis::work_limit::process_seconds;
+use crate::analysis::work_limit::ProcessClock;
 use crate::dataset::command::{Command, Script, SimulationKind, Step};
 use crate::dataset::{self, Reading};
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
@@ -154,7 +154,7 @@ impl Watch for Terminal<'_> {
 /// # Errors
 /// When a file has mistakes or cannot be written, or the model cannot work.
 pub fn run(args: &Args) -> Outcome {
-    let clock = Instant::now();
+    let clock = ProcessClock::start();
     interrupt::install_for_run();
     let guard = args.limit.map(Guard::set);
 
@@ -180,7 +180,7 @@ pub fn run(args: &Args) -> Outcome {
     let outcome = solve(args, &mut session, &steps, (&tables, guard.as_ref()));
     let (status, failure) = told(&mut session, outcome);
     let elapsed = clock.elapsed().as_secs_f64();
-    let cpu = process_seconds().unwrap_or(elapsed);
+    let cpu = clock.seconds();
     session.run.log.push(Event::Finished { elapsed, cpu });
 
     // write and report

@@ -7,7 +7,7 @@
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::verify::verify;
-use crate::analysis::work_limit::process_seconds;
+use crate::analysis::work_limit::ProcessClock;
 use crate::cli::render::Sources;
 use crate::cli::run::{self, Single};
 use crate::cli::{Exit, complain_in_files, width};
@@ -19,7 +19,6 @@ use crate::model::{ElementId, ElementKind, Model};
 use crate::report::{Curve, Plot};
 use crate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Output steps of a run when nobody says.
 const STEPS: usize = 200;
@@ -180,7 +179,7 @@ impl Loaded {
     pub fn solve(&mut self, end: Option<f64>, steps: Option<usize>) -> Result<String, Failure> {
         let mut session = self.session(self.columns.clone());
         let alone;
-        let (clock, used) = (Instant::now(), process_seconds().unwrap_or_default());
+        let clock = ProcessClock::start();
         let commands = match end {
             None if self.steps.iter().any(is_simulation) => &self.steps,
             None => {
@@ -196,7 +195,7 @@ impl Loaded {
         let status = solved.map_err(|errors| self.failure(errors))?;
         let seconds = &mut session.run.record.seconds;
         seconds.total = clock.elapsed().as_secs_f64();
-        seconds.processor = process_seconds().map_or(seconds.total, |now| now - used);
+        seconds.processor = clock.seconds();
         let run = &session.run;
         let n_rows = run.table_rows().count();
         let mut text = summary::table(run, n_rows, width::columns(), ":plot shows all");
