@@ -9,9 +9,9 @@
 
 // cognate in C: expressions of the ADAMS function language, models, sessions, user subroutines.
 //
-// Handles (CognateExpr, CognateModel, CognateSession, CognateOptions, CognateError) are opaque, made by the
-// functions that return them and given back by the function of the same name that ends in _free, which
-// takes NULL as well. Texts that come in end with a zero byte and are UTF-8; those that go out belong to
+// Handles (CognateExpr, CognateNames, CognateModel, CognateSession, CognateOptions, CognateError) are opaque,
+// made by the functions that return them and given back by the function of the same name that ends in _free,
+// which takes NULL as well. Texts that come in end with a zero byte and are UTF-8; those that go out belong to
 // the handle that they come from, but for `char *`, which cognate_string_free takes back.
 //
 // Mistakes: a function that can fail takes `CognateError **error`. It may be NULL. Where the function
@@ -20,10 +20,10 @@
 // where there must be something is such a mistake. No panic leaves a function; after one (code "bug")
 // the handle concerned should be given back.
 //
-// Threads: expressions and errors do not change and may be used by several threads at once, a model as long
-// as nobody calls cognate_model_change. A session and options belong to one thread at a time, which may
-// change between calls; only cognate_session_interrupt may be called while another thread is at work in
-// the session.
+// Threads: errors and expressions do not change and may be used by several threads at once, expressions with
+// callbacks if these may be; a model as long as nobody calls cognate_model_change. A session, options and names
+// belong to one thread at a time, which may change between calls; only cognate_session_interrupt may be called
+// while another thread is at work in the session.
 //
 // Callbacks are called in the thread that called cognate. No C++ exception may leave them.
 
@@ -85,6 +85,9 @@ typedef struct CognateExpr CognateExpr;
 // A multibody model as its dataset (.adm) says.
 typedef struct CognateModel CognateModel;
 
+// Names of the caller's own, which expressions may use beside those of the language.
+typedef struct CognateNames CognateNames;
+
 // Choices of a session. What is not chosen is as the dataset says.
 typedef struct CognateOptions CognateOptions;
 
@@ -114,6 +117,15 @@ typedef struct {
   // all of it as the command line prints it
   const char *text;
 } CognateDiagnostic;
+
+// A function of `n` arguments: puts its value into `*value`, and its partial derivatives, one for
+// each argument, into `slopes`, which is NULL where they are not asked for. Returns false where it
+// has no value.
+typedef bool (*CognateFunction)(void *data,
+                                const double *arguments,
+                                size_t n,
+                                double *value,
+                                double *slopes);
 
 // A routine of the form SFOSUB: fills `results`, which are zero, with 1 number for SFORCE,
 // VARIABLE and DIFF, 6 for GFORCE (FX, FY, FZ, TX, TY, TZ), 3 for VFORCE and VTORQUE.
@@ -187,11 +199,18 @@ void cognate_error_free(CognateError *error);
 // Reads, checks and compiles an expression; NULL: it has a mistake. `dialect`: a CognateDialect.
 CognateExpr *cognate_expr_parse(const char *source, uint32_t dialect, CognateError **error);
 
+// Reads an expression that uses names of the caller's own; NULL: it, or one of the names, has a
+// mistake. The names may be given back, or have more added, without changing it.
+CognateExpr *cognate_expr_parse_with(const char *source,
+                                     const CognateNames *names,
+                                     CognateError **error);
+
 // Returns how many inputs an expression reads.
 size_t cognate_expr_inputs(const CognateExpr *expr);
 
-// Returns the name of an input, counted from 0: "TIME", "DX(1, 2)"; NULL: there is none.
-const char *cognate_expr_input(const CognateExpr *expr, size_t index);
+// Returns the name of an input, counted from 0: "TIME", "DX(1, 2)", a variable; NULL: there is none.
+const char *cognate_expr_input(const CognateExpr *expr,
+                               size_t index);
 
 // Evaluates an expression for the values of its inputs, in the order of cognate_expr_input.
 //
@@ -269,6 +288,48 @@ char *cognate_model_verify(const CognateModel *model, CognateError **error);
 
 // Gives a model back; sessions of it go on.
 void cognate_model_free(CognateModel *model);
+
+// Returns names of which there are none, for expressions of a language (a CognateDialect); NULL:
+// there is no such language.
+//
+// Upper and lower case are one. What is wrong with names (one that cannot be written, that hides
+// one of the language, or that is there already) is told by cognate_expr_parse_with, all at once.
+CognateNames *cognate_names_new(uint32_t dialect, CognateError **error);
+
+// Adds a variable: "x". Variables are the first inputs of an expression, in the order in which they
+// were added, also those that it does not read.
+bool cognate_names_variable(CognateNames *names, const char *name, CognateError **error);
+
+// Adds a named number.
+bool cognate_names_constant(CognateNames *names,
+                            const char *name,
+                            double value,
+                            CognateError **error);
+
+// Adds a function by its head and a formula of the language: "hertz(x, k)", "k*MAX(x, 0)**1.5".
+//
+// It may use constants and functions that were added before it. It is as fast as if it were written
+// out, and has all derivatives.
+bool cognate_names_define(CognateNames *names,
+                          const char *head,
+                          const char *formula,
+                          CognateError **error);
+
+// Adds a function of `n_arguments` arguments that a callback computes, which is given `data`.
+//
+// `has_slopes`: it gives its derivatives, too. Without them, asking an expression for derivatives
+// along what the arguments depend on is a mistake that names the function. Expressions call it in
+// each thread that evaluates them; `data` must live as long as they do.
+bool cognate_names_function(CognateNames *names,
+                            const char *name,
+                            size_t n_arguments,
+                            CognateFunction function,
+                            bool has_slopes,
+                            void *data,
+                            CognateError **error);
+
+// Gives names back; expressions that use them go on.
+void cognate_names_free(CognateNames *names);
 
 // Returns options of which none is chosen.
 CognateOptions *cognate_options_new(void);

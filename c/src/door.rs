@@ -3,7 +3,7 @@
 use crate::error::CognateError;
 use engine::Error;
 use engine::diagnostic::Diagnostic;
-use std::ffi::{CStr, CString, c_char};
+use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Does the work of a function; where it fails, or panics, returns `failed` and tells why.
@@ -134,4 +134,21 @@ pub fn words(text: impl Into<String>) -> CString {
         text.truncate(end);
     }
     CString::new(text).unwrap_or_default()
+}
+
+/// The caller's data, as a callback is given them.
+#[derive(Clone, Copy)]
+pub struct Data(pub *mut c_void);
+
+// SAFETY: handed back to the caller's callback alone, in the thread that called; the caller says
+// that it may be called there (header)
+unsafe impl Send for Data {}
+// SAFETY: as before
+unsafe impl Sync for Data {}
+
+impl Data {
+    /// Returns the pointer. (A closure that takes the field alone would not be `Send`.)
+    pub fn pointer(&self) -> *mut c_void {
+        self.0
+    }
 }

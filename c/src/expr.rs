@@ -2,6 +2,7 @@
 
 use crate::door::{changed, door, places, quiet, row, seen, text, usage, words};
 use crate::error::CognateError;
+use crate::names::CognateNames;
 use engine::Error;
 use engine::expr::SharedEvaluator;
 use engine::expr::ast::Dialect;
@@ -23,18 +24,24 @@ pub enum CognateDialect {
     Expression,
 }
 
+/// Returns the language of a number that C gives.
+///
+/// # Errors
+/// A number of none.
+pub fn dialect_of(dialect: u32) -> Result<Dialect, Error> {
+    match dialect {
+        d if d == CognateDialect::Function as u32 => Ok(Dialect::Function),
+        d if d == CognateDialect::Expression as u32 => Ok(Dialect::Expression),
+        _ => Err(usage("dialect is none of them", "see CognateDialect")),
+    }
+}
+
 impl CognateExpr {
-    fn parse(source: &str, dialect: u32) -> Result<Self, Error> {
-        let dialect = match dialect {
-            d if d == CognateDialect::Function as u32 => Dialect::Function,
-            d if d == CognateDialect::Expression as u32 => Dialect::Expression,
-            _ => return Err(usage("dialect is none of them", "see CognateDialect")),
-        };
-        let shared = SharedEvaluator::parse(source, dialect)?;
-        Ok(Self {
+    fn handle(shared: SharedEvaluator) -> *mut Self {
+        Box::into_raw(Box::new(Self {
             names: shared.names().iter().map(|n| words(n.clone())).collect(),
             shared,
-        })
+        }))
     }
 
     /// Complains of numbers in place of a value; `point`: the one of many.
@@ -66,9 +73,26 @@ pub unsafe extern "C" fn cognate_expr_parse(
     let work = || {
         // SAFETY: a text of the caller
         let source = unsafe { text(source, "source") }?;
-        Ok(Box::into_raw(Box::new(CognateExpr::parse(
-            source, dialect,
-        )?)))
+        let shared = SharedEvaluator::parse(source, dialect_of(dialect)?)?;
+        Ok(CognateExpr::handle(shared))
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, std::ptr::null_mut(), work) }
+}
+
+/// Reads an expression that uses names of the caller's own; NULL: it, or one of the names, has a
+/// mistake. The names may be given back, or have more added, without changing it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cognate_expr_parse_with(
+    source: *const c_char,
+    names: *const CognateNames,
+    error: *mut *mut CognateError,
+) -> *mut CognateExpr {
+    let work = || {
+        // SAFETY: a text and a handle of the caller
+        let (source, names) = unsafe { (text(source, "source")?, seen(names, "names")?) };
+        let shared = SharedEvaluator::parse_with(source, &names.names)?;
+        Ok(CognateExpr::handle(shared))
     };
     // SAFETY: a place of the caller
     unsafe { door(error, std::ptr::null_mut(), work) }
@@ -81,7 +105,7 @@ pub unsafe extern "C" fn cognate_expr_inputs(expr: *const CognateExpr) -> usize 
     unsafe { expr.as_ref() }.map_or(0, |expr| expr.names.len())
 }
 
-/// Returns the name of an input, counted from 0: "TIME", "DX(1, 2)"; NULL: there is none.
+/// Returns the name of an input, counted from 0: "TIME", "DX(1, 2)", a variable; NULL: there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cognate_expr_input(
     expr: *const CognateExpr,

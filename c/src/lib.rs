@@ -8,6 +8,7 @@
 //! door.rs        pointers in, mistakes out; no panic leaves
 //! error.rs       every mistake with code, place and advice
 //! expr.rs        expressions
+//! names.rs       variables, constants, functions of a caller's own in them
 //! model.rs       datasets
 //! options.rs     choices of a session
 //! session.rs     simulations, columns, files, state
@@ -23,6 +24,7 @@ mod error;
 mod expr;
 mod library;
 mod model;
+mod names;
 mod options;
 mod routines;
 mod session;

@@ -68,6 +68,33 @@ pub fn commands(source: &str) -> Result<Script, Error> {
     Script::from_text(&format!("\n{source}\n"))
 }
 
+/// Reads a dataset from a file, with the set-up that belongs to it.
+unsafe fn read_with(
+    path: *const c_char,
+    error: *mut *mut CognateError,
+    setup: impl FnOnce(&Path) -> Result<Setup, Error>,
+) -> *mut CognateModel {
+    let work = || {
+        // SAFETY: a text of the caller
+        let path = unsafe { text(path, "path") }?;
+        CognateModel::of(dataset::read(path)?, setup(Path::new(path))?)
+    };
+    // SAFETY: a place of the caller
+    unsafe { door(error, std::ptr::null_mut(), work) }
+}
+
+/// Returns a text about a model, to be given back by the caller.
+unsafe fn told(
+    model: *const CognateModel,
+    error: *mut *mut CognateError,
+    tell: impl FnOnce(&CognateModel) -> Result<String, Error>,
+) -> *mut c_char {
+    // SAFETY: a handle of the caller
+    let work = || tell(unsafe { seen(model, "model") }?).map(given);
+    // SAFETY: a place of the caller
+    unsafe { door(error, std::ptr::null_mut(), work) }
+}
+
 /// Reads a dataset from a file, and the set-up in the file of the same name with the ending .toml:
 /// chosen loads, functions that give them, error and method of runs. NULL: one of them has mistakes.
 #[unsafe(no_mangle)]
@@ -75,13 +102,8 @@ pub unsafe extern "C" fn cognate_model_read(
     path: *const c_char,
     error: *mut *mut CognateError,
 ) -> *mut CognateModel {
-    let work = || {
-        // SAFETY: a text of the caller
-        let path = unsafe { text(path, "path") }?;
-        CognateModel::of(dataset::read(path)?, Setup::beside(Path::new(path))?)
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, std::ptr::null_mut(), work) }
+    // SAFETY: a text and a place of the caller
+    unsafe { read_with(path, error, |path| Ok(Setup::beside(path)?)) }
 }
 
 /// Reads a dataset from a file, whatever stands beside it; NULL: it has mistakes.
@@ -90,13 +112,8 @@ pub unsafe extern "C" fn cognate_model_read_alone(
     path: *const c_char,
     error: *mut *mut CognateError,
 ) -> *mut CognateModel {
-    let work = || {
-        // SAFETY: a text of the caller
-        let path = unsafe { text(path, "path") }?;
-        CognateModel::of(dataset::read(path)?, Setup::default())
-    };
-    // SAFETY: a place of the caller
-    unsafe { door(error, std::ptr::null_mut(), work) }
+    // SAFETY: a text and a place of the caller
+    unsafe { read_with(path, error, |_| Ok(Setup::default())) }
 }
 
 /// Reads a dataset from `length` bytes in memory; NULL: it has mistakes.
@@ -175,10 +192,8 @@ pub unsafe extern "C" fn cognate_model_text(
     model: *const CognateModel,
     error: *mut *mut CognateError,
 ) -> *mut c_char {
-    // SAFETY: a handle of the caller
-    let work = || Ok(given(unsafe { seen(model, "model") }?.model.to_text()));
-    // SAFETY: a place of the caller
-    unsafe { door(error, std::ptr::null_mut(), work) }
+    // SAFETY: a handle and a place of the caller
+    unsafe { told(model, error, |model| Ok(model.model.to_text())) }
 }
 
 /// Counts the freedoms of a model and tells what is fixed twice and what is free, as JSON, to be
@@ -188,14 +203,12 @@ pub unsafe extern "C" fn cognate_model_verify(
     model: *const CognateModel,
     error: *mut *mut CognateError,
 ) -> *mut c_char {
-    let work = || {
-        // SAFETY: a handle of the caller
-        let model = unsafe { seen(model, "model") }?;
+    let tell = |model: &CognateModel| {
         let found = verify(&model.model).map_err(|wrong| located(&model.dataset, wrong))?;
-        Ok(given(json::text(&found.json())))
+        Ok(json::text(&found.json()))
     };
-    // SAFETY: a place of the caller
-    unsafe { door(error, std::ptr::null_mut(), work) }
+    // SAFETY: a handle and a place of the caller
+    unsafe { told(model, error, tell) }
 }
 
 /// Gives a model back; sessions of it go on.

@@ -9,7 +9,7 @@
 //! MOTSUB                                      (id, time, par, npar, iord, iflag, value)
 //! ```
 
-use crate::door::{door, row, text, usage};
+use crate::door::{Data, door, row, text, usage};
 use crate::error::CognateError;
 use crate::session::{CognateSession, Failure, Inner};
 use crate::utilities::{Asked, within};
@@ -357,22 +357,6 @@ pub unsafe extern "C" fn cognate_session_motsub(
 ) -> bool {
     // SAFETY: the caller keeps the promises of the header
     unsafe { register_for(session, K::Motion, id, routine.map(Motion), error) }
-}
-
-/// The caller's data, as a routine is given them.
-#[derive(Clone, Copy)]
-struct Data(*mut c_void);
-
-// SAFETY: handed back to the caller's routine alone, in the thread that called; the caller moves a
-// session between threads only between calls (header)
-unsafe impl Send for Data {}
-// SAFETY: as before
-unsafe impl Sync for Data {}
-
-impl Data {
-    fn pointer(&self) -> *mut c_void {
-        self.0
-    }
 }
 
 /// Computes what USER stands for by a routine with data of the caller's.

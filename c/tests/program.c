@@ -73,6 +73,72 @@ static void expressions_have_values_gradients_and_columns(void) {
     cognate_expr_free(blend);
 }
 
+// x², and how often it was asked for
+static bool square(void *data, const double *arguments, size_t n, double *value, double *slopes) {
+    ++*(int *)data;
+    if (n != 1 || arguments[0] == 7.0) return false;
+    *value = arguments[0] * arguments[0];
+    if (slopes != NULL) slopes[0] = 2.0 * arguments[0];
+    return true;
+}
+
+static CognateNames *names_of_mine(int *calls) {
+    CognateError *error = NULL;
+    CognateNames *names = cognate_names_new(COGNATE_DIALECT_FUNCTION, &error);
+    CHECK(cognate_names_variable(names, "x", &error) && cognate_names_variable(names, "v", &error));
+    CHECK(cognate_names_constant(names, "g", 9.81, &error));
+    CHECK(cognate_names_define(names, "hertz(x, k)", "k*MAX(x, 0)**1.5", &error));
+    CHECK(cognate_names_function(names, "square", 1, square, true, calls, &error));
+    CHECK(cognate_names_function(names, "number", 1, square, false, calls, &error));
+    NO_ERROR(error);
+    return names;
+}
+
+static void expressions_take_names_of_the_caller(void) {
+    CognateError *error = NULL;
+    CognateDiagnostic d;
+    int calls = 0;
+    CognateNames *names = names_of_mine(&calls);
+    CognateExpr *force = cognate_expr_parse_with("HERTZ(x, 2e5) + g*square(v) + 0*TIME", names, &error);
+    NO_ERROR(error);
+    CognateExpr *plain = cognate_expr_parse_with("number(v)*x", names, &error);
+    NO_ERROR(error);
+    CognateExpr *wrong = cognate_expr_parse_with("hurtz(x, 2) + 1", names, &error);
+    CHECK(wrong == NULL && cognate_error_get(error, 0, &d) && strstr(d.advice, "hertz") != NULL);
+    cognate_error_free(error);
+    // what is wrong with names is told at once, and expressions of before go on without them
+    CHECK(cognate_names_variable(names, "SIN", &error) && cognate_names_constant(names, "x", 1.0, &error));
+    CHECK(cognate_names_define(names, "broken(", "1", &error) && error == NULL);
+    CHECK(cognate_expr_parse_with("x", names, &error) == NULL && cognate_error_count(error) == 3);
+    CHECK(cognate_error_get(error, 0, &d) && strcmp(d.code, "bad_registration") == 0);
+    cognate_error_free(error);
+    cognate_names_free(names);
+
+    // variables come first, in their order
+    CHECK(cognate_expr_inputs(force) == 3);
+    CHECK(strcmp(cognate_expr_input(force, 0), "x") == 0 && strcmp(cognate_expr_input(force, 1), "v") == 0);
+    double inputs[] = {0.01, 2.0, 5.0}, value, slopes[3];
+    CHECK(cognate_expr_eval(force, inputs, 3, &value, &error));
+    NEAR(value, 200.0 + 4.0 * 9.81, 1e-12);
+    CHECK(cognate_expr_gradient(force, inputs, 3, &value, slopes, &error) && calls >= 2);
+    NEAR(slopes[0], 30000.0, 1e-9);
+    NEAR(slopes[1], 4.0 * 9.81, 1e-12);
+    CHECK(slopes[2] == 0.0);
+    double x[] = {0.01, 0.02, 0.03}, v[] = {1.0, 7.0, 3.0}, times[] = {0.0, 0.0, 0.0}, values[3];
+    const double *columns[] = {x, v, times};
+    CHECK(!cognate_expr_batch(force, columns, 3, 3, values, NULL, &error));
+    CHECK(cognate_error_get(error, 0, &d) && strstr(d.message, "point 1") != NULL);
+    CHECK(isnan(values[1]) && isfinite(values[0]) && isfinite(values[2]));
+    cognate_error_free(error);
+    // of a callback alone the derivatives are not known
+    CHECK(cognate_expr_eval(plain, inputs, 2, &value, &error) && value == 0.04);
+    CHECK(!cognate_expr_gradient(plain, inputs, 2, &value, slopes, &error));
+    CHECK(cognate_error_get(error, 0, &d) && strstr(d.message, "number") != NULL);
+    cognate_error_free(error);
+    cognate_expr_free(force);
+    cognate_expr_free(plain);
+}
+
 static void mistakes_have_code_place_and_advice(void) {
     CognateError *error = NULL;
     CognateDiagnostic d;
@@ -117,6 +183,14 @@ static void nothing_that_is_passed_breaks_anything(void) {
     CHECK(cognate_expr_parse("((", COGNATE_DIALECT_FUNCTION, NULL) == NULL);
     CHECK(!cognate_expr_eval(NULL, &x, 1, &x, NULL));
     CHECK(!cognate_session_simulate(NULL, COGNATE_KIND_DYNAMIC, 1.0, 1, NULL, NULL));
+    CHECK(cognate_names_new(77, NULL) == NULL && !cognate_names_variable(NULL, "x", NULL));
+    CHECK(cognate_expr_parse_with("x", NULL, NULL) == NULL);
+    CognateNames *names = cognate_names_new(COGNATE_DIALECT_FUNCTION, NULL);
+    CHECK(!cognate_names_variable(names, NULL, NULL) && !cognate_names_define(names, "f(x)", NULL, NULL));
+    CHECK(!cognate_names_function(names, "f", 1, NULL, false, NULL, &error) && error != NULL);
+    cognate_error_free(error);
+    cognate_names_free(names);
+    cognate_names_free(NULL);
     CHECK(cognate_model_read("nowhere.adm", NULL) == NULL);
     CHECK(cognate_model_from_memory(NULL, 10, NULL, NULL) == NULL);
     CHECK(cognate_error_count(NULL) == 0 && cognate_session_columns(NULL) == 0);
@@ -403,6 +477,7 @@ static void a_simulation_can_be_ended(void) {
 int main(int argc, char **argv) {
     CHECK(argc == 3);
     expressions_have_values_gradients_and_columns();
+    expressions_take_names_of_the_caller();
     mistakes_have_code_place_and_advice();
     nothing_that_is_passed_breaks_anything();
     a_ball_falls(argv[2]);

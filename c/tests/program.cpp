@@ -15,6 +15,7 @@ template <typename T, void (*Free)(T *)> struct Freed {
     void operator()(T *handle) const { Free(handle); }
 };
 using Expr = std::unique_ptr<CognateExpr, Freed<CognateExpr, cognate_expr_free>>;
+using Names = std::unique_ptr<CognateNames, Freed<CognateNames, cognate_names_free>>;
 using Model = std::unique_ptr<CognateModel, Freed<CognateModel, cognate_model_free>>;
 using Options = std::unique_ptr<CognateOptions, Freed<CognateOptions, cognate_options_free>>;
 using Session = std::unique_ptr<CognateSession, Freed<CognateSession, cognate_session_free>>;
@@ -69,6 +70,34 @@ static void expressions_are_shared_by_threads() {
     for (auto &values : found) CHECK(values == found[0]);
 }
 
+static void a_callback_of_an_expression_is_called_by_all_threads() {
+    std::atomic<int> calls{0};
+    auto count = [](void *data, const double *arguments, size_t, double *value, double *slopes) {
+        ++*static_cast<std::atomic<int> *>(data);
+        *value = 2.0 * arguments[0] + arguments[1];
+        if (slopes != nullptr) slopes[0] = 2.0, slopes[1] = 1.0;
+        return true;
+    };
+    Names names(cognate_names_new(COGNATE_DIALECT_FUNCTION, nullptr));
+    CHECK(cognate_names_variable(names.get(), "x", nullptr));
+    CHECK(cognate_names_function(names.get(), "line", 2, count, true, &calls, nullptr));
+    Expr f(cognate_expr_parse_with("line(x, 3)", names.get(), nullptr));
+    names.reset();
+    std::vector<std::thread> threads;
+    for (int k = 0; k < 4; k++) {
+        threads.emplace_back([&f, k] {
+            for (int j = 0; j < 100; j++) {
+                const double x = 100.0 * k + j;
+                double value = 0.0, slope = 0.0;
+                CHECK(cognate_expr_gradient(f.get(), &x, 1, &value, &slope, nullptr));
+                CHECK(value == 2.0 * x + 3.0 && slope == 2.0);
+            }
+        });
+    }
+    for (auto &thread : threads) thread.join();
+    CHECK(calls >= 400);
+}
+
 static void a_routine_has_data_of_its_own() {
     Spring spring{1.0, 0};
     Session session = cart(&spring);
@@ -105,6 +134,7 @@ static void a_session_moves_to_another_thread_and_is_interrupted_there() {
 
 int main() {
     expressions_are_shared_by_threads();
+    a_callback_of_an_expression_is_called_by_all_threads();
     a_routine_has_data_of_its_own();
     a_session_moves_to_another_thread_and_is_interrupted_there();
     std::puts("C++: all claims hold");
