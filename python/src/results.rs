@@ -313,7 +313,10 @@ impl Results {
         let view = ArrayView1::from(values.get(shown).unwrap_or_default());
         // SAFETY: the class is frozen, so its columns neither move nor change while it lives, and
         // the array keeps it alive as its base; nobody can write through the array
-        #[allow(unsafe_code)]
+        #[expect(
+            unsafe_code,
+            reason = "lending memory without a copy is unsafe in numpy; the only place of this crate"
+        )]
         let array = unsafe { PyArray1::borrow_from_array(&view, slf.clone().into_any()) };
         array.readwrite().make_nonwriteable();
         Ok(array)

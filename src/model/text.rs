@@ -1,7 +1,11 @@
-//! The text of an expression, parsed once: copies of a model share the syntax tree.
+//! The text of an expression, parsed and compiled once: copies of a model share the syntax tree and
+//! the program.
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::ast::{Ast, Dialect};
+use crate::expr::compile::Compiler;
+use crate::expr::interpolation::Bindings;
+use crate::expr::program::Program;
 use crate::expr::{Expr, Profile, parse};
 use std::fmt;
 use std::ops::Deref;
@@ -16,6 +20,7 @@ pub struct Text(Arc<Parsed>);
 struct Parsed {
     text: String,
     ast: OnceLock<Result<Arc<Ast>, Diagnostic>>,
+    program: OnceLock<Option<Program>>,
 }
 
 impl Text {
@@ -24,10 +29,23 @@ impl Text {
     /// # Errors
     /// The first mistake in the text; columns count from its beginning.
     pub fn ast(&self) -> Result<&Arc<Ast>, Diagnostic> {
-        let Parsed { text, ast } = &*self.0;
+        let Parsed { text, ast, .. } = &*self.0;
         let parsed =
             ast.get_or_init(|| parse(text, Dialect::Function, Profile::default()).map(Arc::new));
         parsed.as_ref().map_err(Clone::clone)
+    }
+
+    /// Returns its program, which is compiled once, where nothing of a model is part of it; `None`:
+    /// it names splines or curves, reads the past, or has a mistake.
+    pub(crate) fn program(&self) -> Option<&Program> {
+        let compiled = || {
+            let bindings = Bindings::default();
+            let mut compiler = Compiler::new(&bindings);
+            let value = compiler.add(self.ast().ok()?).ok()?;
+            let has_past = !compiler.delays().is_empty();
+            (!has_past).then(|| compiler.finish(&[value]))
+        };
+        self.0.program.get_or_init(compiled).as_ref()
     }
 
     /// Returns the expression, whose constant parts have been evaluated once.
@@ -41,8 +59,10 @@ impl Text {
 
 impl From<String> for Text {
     fn from(text: String) -> Self {
-        let ast = OnceLock::new();
-        Self(Arc::new(Parsed { text, ast }))
+        Self(Arc::new(Parsed {
+            text,
+            ..Parsed::default()
+        }))
     }
 }
 
@@ -62,7 +82,7 @@ impl Deref for Text {
 
 impl PartialEq for Text {
     fn eq(&self, other: &Self) -> bool {
-        self.0.text == other.0.text
+        Arc::ptr_eq(&self.0, &other.0) || self.0.text == other.0.text
     }
 }
 

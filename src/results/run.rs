@@ -348,9 +348,11 @@ impl Run {
                 .flat_map(char::to_lowercase)
                 .collect::<String>()
         };
-        let wanted = plain(name);
         let exact = self.columns.iter().position(|c| c.name == name);
-        exact.or_else(|| self.columns.iter().position(|c| plain(&c.name) == wanted))
+        exact.or_else(|| {
+            let wanted = plain(name);
+            self.columns.iter().position(|c| plain(&c.name) == wanted)
+        })
     }
     /// Returns the values of the column with this name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {

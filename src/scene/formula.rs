@@ -93,12 +93,18 @@ pub(super) struct Compiled {
     pub delays: Vec<[Program; 3]>,
 }
 
-/// Compiles an expression; its text is parsed only if that has not been done before.
+/// Compiles an expression, as far as that has not been done before.
 ///
 /// # Errors
 /// The first mistake in the text, whose columns count from its beginning; splines or curves that do
 /// not exist.
 pub(super) fn compile(text: &Text, bindings: &Bindings) -> Result<Compiled, Diagnostic> {
+    if let Some(program) = text.program() {
+        return Ok(Compiled {
+            program: program.clone(),
+            delays: Vec::new(),
+        });
+    }
     let ast = text.ast()?;
     let mut compiler = compile::Compiler::new(bindings);
     let value = compiler.add(ast)?;

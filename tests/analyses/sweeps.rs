@@ -3,6 +3,7 @@
 use crate::running::{Analysis, Options, begin, sweep, whole};
 
 use cognate::analysis::sweep::{Row, Sweep, Table, design};
+use cognate::model::Formula;
 use cognate::results::Status;
 use std::path::PathBuf;
 
@@ -96,6 +97,85 @@ fn a_row_is_that_of_its_dataset_alone_to_the_bit() {
             assert_eq!(bits(row), expected, "{:?}", row.values);
         }
     }
+}
+
+/// A crank whose load reads a number, driven or free.
+fn crank(drive: &str) -> String {
+    let more = "VARIABLE/3, FUNCTION=0.2
+SFORCE/3, ROTATION, I=21, J=1, FUNCTION=-VARVAL(3)*WZ(21,1)
+SPRINGDAMPER/4, ROTATION, I=21, J=1, CT=0.4, KT=3
+";
+    PENDULUM[..PENDULUM.find("VARIABLE/3").expect("a pendulum")].to_string()
+        + more
+        + drive
+        + "END\n"
+}
+
+#[test]
+fn rows_of_every_method_are_those_of_a_run_alone_to_the_bit() {
+    let driven = crank("MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME**2\n");
+    let free = crank("");
+    let methods = ["AUTO", "DOP853", "RADAU5", "BDF", "HHT", "NEWMARK"];
+    let cases = methods.map(|method| (&free, method)).into_iter();
+    for (text, method) in cases.chain([(&driven, "AUTO")]) {
+        let mut s = sweep(text, 0.5, 10);
+        s.options.method = Some(method.into());
+        for name in ["PART/2.MASS", "VARIABLE/3"] {
+            s.parameter(name).expect("a number of the model");
+        }
+        s.measure("last(MOTION(1,0,8,0))").unwrap_or_else(|_| {
+            s.measure("last(AZ(21,1))").expect("a measure");
+        });
+        let points = design::grid(&[vec![2.0, 3.0], vec![0.1, 0.5, 0.3]]).expect("six points");
+        for row in &s.rows(&points, 1).expect("rows") {
+            let alone = s.clone().rows(std::slice::from_ref(&row.values), 1);
+            let alone = alone.expect("a row");
+            assert_eq!(row.reason, "", "{method}");
+            assert_eq!(bits(row), bits(&alone[0]), "{method} {:?}", row.values);
+            assert_eq!(row.warnings, alone[0].warnings, "{method}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_compiled_for_rows_that_differ_by_variables() {
+    for drive in ["", "MOTION/1, JOINT=1, ROTATION, FUNCTION=TIME**2\n"] {
+        let options = Options {
+            keep_start: true,
+            ..Options::default()
+        };
+        let mut session = begin(whole(&crank(drive)), "again", options);
+        session.will_change([3]);
+        for k in 0..3 {
+            session.reset();
+            let variable = session.model.variables.get_mut(&3).expect("VARIABLE/3");
+            variable.function = Formula::text(format!("0.{k}"));
+            let done = session.run_to(Analysis::Transient, 0.5, 10);
+            assert_eq!(done, Ok(Status::Completed));
+            let seconds = &session.run.record.seconds;
+            assert_eq!(seconds.compile == 0.0, k > 0, "{drive:?} {k}");
+            assert_eq!(seconds.assemble == 0.0, k > 0, "{drive:?} {k}");
+        }
+    }
+}
+
+#[test]
+fn rows_come_in_groups_of_what_is_compiled_once() {
+    let mut s = sweep(&crank(""), 0.1, 2);
+    for name in ["VARIABLE/3", "PART/2.MASS"] {
+        s.parameter(name).expect("a number of the model");
+    }
+    s.measure("last(AZ(21,1))").expect("a measure");
+    let points = design::grid(&[vec![0.1, 0.2], vec![2.0, 3.0]]).expect("four points");
+    let all: Vec<usize> = (0..4).collect();
+    let mut order = Vec::new();
+    let each = |row: Row| {
+        order.push(row.run);
+        Ok(())
+    };
+    let nobody = cognate::analysis::sweep::Unfollowed;
+    s.run(&points, &all, 1, &nobody, each).expect("rows");
+    assert_eq!(order, [0, 2, 1, 3]);
 }
 
 #[test]

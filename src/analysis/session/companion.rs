@@ -2,6 +2,7 @@
 //! the difference of the two gives.
 
 use super::Session;
+use super::kept::Starts;
 use super::simulate::Span;
 use crate::analysis::accuracy::{
     Bars, Comparison, LEAST_SIZE, SHORTER_STEPS, TIGHTER_REST, companion_request, partners, safety,
@@ -148,7 +149,7 @@ impl Session {
                 (companion, request, follows) = (other, larger, true);
             }
         }
-        companion.starts.clear();
+        companion.starts = Starts::default();
         if !follows {
             self.warn(RunWarning::CompanionEnded { request });
         }

@@ -1,6 +1,7 @@
 //! Doors of a session for programs: simulations without hooks, rows as they come, columns that are
 //! named whenever they are wanted, and the way back to the start.
 
+use super::kept::Starts;
 use super::{Analysis, Gaps, MetStiffness, Session};
 use crate::analysis::system::closures::Hook;
 use crate::analysis::watch::Unwatched;
@@ -22,7 +23,7 @@ impl Session {
     /// [`register`](Self::register).
     pub fn register_hook(&mut self, hook: Hook) {
         self.hooks.push(hook);
-        self.starts.clear();
+        self.starts = Starts::default();
         if self.carried.is_none() {
             self.choose_columns();
         }
@@ -75,7 +76,7 @@ impl Session {
         self.options.columns.push(expression.to_string());
         self.choose_columns();
         self.columns_program = None;
-        self.starts.clear();
+        self.starts = Starts::default();
         Ok(())
     }
 

@@ -12,6 +12,7 @@ pub mod columns;
 mod companion;
 mod doors;
 mod growth;
+mod kept;
 mod limit;
 mod outcome;
 mod over_time;
@@ -50,13 +51,13 @@ use crate::scene::contacts::Shell;
 use crate::scene::equations::Unsupported;
 use carried::Carried;
 use companion::{Integrated, Pace};
+use kept::{Kept, Starts};
 pub use limit::Activity;
 use limit::SetUp;
 use outcome::units;
 use rows::Gaps;
 pub use rows::Receiver;
 pub use selection::Chosen;
-use start::Kept;
 use states::Stretch;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -131,6 +132,8 @@ pub struct Session {
     changing: BTreeSet<u32>,
     /// what the last simulation ran, for the next one
     kept: Option<Box<Kept>>,
+    /// the model of the system that the present simulation began with, as that keeps it
+    kept_model: Option<Arc<Model>>,
     /// programs of the present scene: of the columns; of the values of rows
     columns_program: Option<Program>,
     /// the program of the columns that belongs to the kept start which the session has gone back
@@ -169,8 +172,8 @@ pub struct Session {
     stiffness: MetStiffness,
     /// states of the rows so far, where they are kept
     states: Vec<Stretch>,
-    /// assembled starts by their MODE, where they are kept
-    starts: BTreeMap<u32, Kept>,
+    /// assembled starts, where they are kept
+    starts: Starts,
 }
 
 /// Values of MODE.
@@ -203,6 +206,7 @@ impl Session {
             carried: None,
             changing: BTreeSet::new(),
             kept: None,
+            kept_model: None,
             columns_program: None,
             columns_at_start: None,
             row_values: None,
@@ -223,7 +227,7 @@ impl Session {
             last: Integrated::default(),
             stiffness: MetStiffness::default(),
             states: Vec::new(),
-            starts: BTreeMap::new(),
+            starts: Starts::default(),
         }
     }
 

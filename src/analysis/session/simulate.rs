@@ -1,9 +1,9 @@
 //! One simulation: what it is, whether it can be run, and what is told before and after it.
 
 use super::companion::Integrated;
+use super::kept::{Kept, Prepared};
 use super::limit::SetUp;
 use super::phase::Phase;
-use super::start::Kept;
 use super::{Analysis, DYNAMIC, INITIAL_CONDITIONS, KINEMATIC, STATIC, Session};
 use crate::analysis::start::assemble::Assembly;
 use crate::analysis::system::System;
@@ -116,8 +116,12 @@ impl Session {
         }
         watch.simulated(&self.run);
         // what the next simulation may go on with
+        if let Some(start) = self.starts.systems.get_mut(&(system.scene.mode as u32)) {
+            start.take_derivatives(&system);
+        }
         if self.hooks.is_empty() && analysis == Analysis::Dynamic && status == Status::Completed {
-            self.kept = Some(Box::new(Kept::new(&self.model, DYNAMIC, system, assembly)));
+            let model = self.made_of(&system.scene);
+            self.kept = Some(Box::new(Kept::new(model, DYNAMIC, system, assembly)));
         }
         Ok(status)
     }
@@ -133,27 +137,25 @@ impl Session {
             Analysis::Static => STATIC,
             Analysis::Dynamic | Analysis::Transient => DYNAMIC,
         };
-        let (mut system, assembly) = self.prepare(mode, &[])?;
-        let analysis = match asked {
-            Analysis::Transient if assembly.freedom > 0 => Analysis::Dynamic,
-            Analysis::Transient => Analysis::Kinematic,
-            Analysis::Dynamic if assembly.freedom == 0 => {
-                let scene = &system.scene;
-                if !scene.motions.is_empty() {
-                    self.warn(RunWarning::NoFreedom);
-                } else if !scene.parts.is_empty() {
-                    self.warn(RunWarning::Held);
+        let (system, assembly, analysis) = match mode {
+            DYNAMIC => match self.prepare_dynamics()? {
+                Prepared::Moves(system, assembly) => (*system, assembly, Analysis::Dynamic),
+                Prepared::Still(scene, assembly) => {
+                    if asked == Analysis::Dynamic {
+                        self.warn_of_no_freedom(&scene);
+                    }
+                    let (system, _) = self.prepare(KINEMATIC, &[])?;
+                    (system, assembly, Analysis::Kinematic)
                 }
-                Analysis::Kinematic
+            },
+            _ => {
+                let (system, assembly) = self.prepare(mode, &[])?;
+                if asked == Analysis::Kinematic && assembly.freedom > 0 {
+                    return Err(vec![has_freedom(assembly.freedom)]);
+                }
+                (system, assembly, asked)
             }
-            Analysis::Kinematic if assembly.freedom > 0 => {
-                return Err(vec![has_freedom(assembly.freedom)]);
-            }
-            other => other,
         };
-        if analysis == Analysis::Kinematic && mode != KINEMATIC {
-            (system, _) = self.prepare(KINEMATIC, &[])?;
-        }
         let contacts = self
             .model
             .active(ElementKind::Contact, &self.model.contacts);
@@ -162,6 +164,15 @@ impl Session {
             self.warn(RunWarning::ContactsWithoutFreedom(contacts));
         }
         Ok((system, assembly, analysis))
+    }
+
+    /// Warns that motions, or joints alone, decide how everything moves.
+    fn warn_of_no_freedom(&mut self, scene: &Scene) {
+        if !scene.motions.is_empty() {
+            self.warn(RunWarning::NoFreedom);
+        } else if !scene.parts.is_empty() {
+            self.warn(RunWarning::Held);
+        }
     }
 
     /// Checks that nothing moves without mass when dynamics begins.
@@ -247,7 +258,7 @@ impl Session {
             Some(kept) => kept,
             None => self.columns.program(system.configured()),
         };
-        let start = self.starts.get_mut(&(system.scene.mode as u32));
+        let start = self.starts.systems.get_mut(&(system.scene.mode as u32));
         if let Some(start) = start.filter(|_| self.carried.is_none()) {
             start.keep_columns(&program, &complaints);
         }

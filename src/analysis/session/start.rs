@@ -2,6 +2,7 @@
 //! simulation left or that is assembled.
 
 use super::carried::{has_new_unknowns, moved};
+use super::kept::Prepared;
 use super::limit::SetUp;
 use super::phase::Phase;
 use super::shells;
@@ -18,121 +19,17 @@ use crate::analysis::system::{closures, samples};
 use crate::analysis::verify::culprit::blamed;
 use crate::analysis::warning::Warning;
 use crate::diagnostic::{Diagnostic, Error};
-use crate::expr::program::Program;
-use crate::model::{Formula, Model, Place};
+use crate::model::Model;
 use crate::scene::Scene;
 use crate::scene::build;
 use crate::scene::configuration::Configured;
 use crate::scene::contacts::Shell;
-use crate::scene::equations::Unsupported;
 use crate::scene::external_inputs::ExternalInput;
 use crate::scene::layout::Layout;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A system that has done its simulation, and the model it was made of.
-#[derive(Debug)]
-pub(super) struct Kept {
-    model: Model,
-    mode: u32,
-    system: System,
-    assembly: Assembly,
-    /// the program of the columns at the start, and the numbers that it lacks
-    columns: Option<(Program, Vec<Unsupported>)>,
-}
-
-impl Kept {
-    pub(super) fn new(model: &Model, mode: u32, system: System, assembly: Assembly) -> Self {
-        let model = without_constants(model, &system.scene);
-        Self {
-            model,
-            mode,
-            system,
-            assembly,
-            columns: None,
-        }
-    }
-
-    /// Keeps the program of the columns, which belongs to the configuration at the start.
-    pub(super) fn keep_columns(&mut self, program: &Program, complaints: &[Unsupported]) {
-        self.columns = Some((program.clone(), complaints.to_vec()));
-    }
-
-    /// Returns the system, to be looked at.
-    pub(super) fn system_mut(&mut self) -> &mut System {
-        &mut self.system
-    }
-}
-
-/// Returns a model without the numbers that are external inputs of its scene.
-fn without_constants(model: &Model, scene: &Scene) -> Model {
-    let mut model = model.clone();
-    for what in &scene.external_inputs {
-        if let ExternalInput::Constant(id) = what
-            && let Some(variable) = model.variables.get_mut(id)
-            && variable.function.constant().is_some()
-        {
-            (variable.function, variable.place) = (Formula::default(), Place::default());
-        }
-    }
-    model
-}
-
 impl Session {
-    /// Returns the system of the simulation before, at the state that it left, where nothing is
-    /// different but constants that commands change. No constraint reads these: it still holds.
-    fn again(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
-        let kept = *self.kept.take()?;
-        let carried = self.carried.as_ref()?;
-        let mut system = kept.system;
-        let same = kept.mode == mode
-            && inputs.is_empty()
-            && self.hooks.is_empty()
-            && system.scene.samplers.is_empty()
-            && !carried.at_rest
-            && carried.numbers.len() == system.numbers.len()
-            && without_constants(&self.model, &system.scene) == kept.model;
-        if !same {
-            return None;
-        }
-        system.numbers.copy_from_slice(&carried.numbers);
-        self.set_constants(&system.scene, &mut system.numbers);
-        system
-            .recorded
-            .external
-            .delays
-            .begin(carried.t, &carried.past);
-        system.resolve().ok()?;
-        system.begin_sensing();
-        Some((system, kept.assembly))
-    }
-
-    /// Returns the system as it was assembled at the start, where a session has gone back to it and
-    /// nothing is different but constants that commands change.
-    fn rewound(&self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
-        let kept = self.starts.get(&mode)?;
-        let same = inputs.is_empty()
-            && self.carried.is_none()
-            && without_constants(&self.model, &kept.system.scene) == kept.model;
-        if !same {
-            return None;
-        }
-        let (mut system, assembly) = (kept.system.clone(), kept.assembly.clone());
-        let before = system.numbers.clone();
-        self.set_constants(&system.scene, &mut system.numbers);
-        if system.numbers != before {
-            // formulas that read themselves are solved from the guesses of the model alone
-            if !(system.scene.samplers.is_empty() && system.scene.loops.is_empty()) {
-                return None;
-            }
-            let l = system.scene.layout;
-            system.configuration.external = system.numbers[l.external()].to_vec();
-            let y = system.numbers[l.y()].to_vec();
-            self.put(&mut system, (self.time(), &y), mode).ok()?;
-        }
-        Some((system, assembly))
-    }
-
     /// Compiles the model for a MODE, as the present columns need it.
     pub(super) fn compile_again(&mut self, mode: u32) -> Result<Arc<Scene>, Error> {
         Ok(self.compile(mode, &[])?.0)
@@ -144,33 +41,37 @@ impl Session {
         mode: u32,
         inputs: &[u32],
     ) -> Result<(System, Assembly), Vec<Diagnostic>> {
-        if let Some(again) = self.again(mode, inputs) {
-            return Ok(again);
+        if let Some(before) = self.before(mode, inputs) {
+            return Ok(before);
         }
-        self.columns_at_start = None;
-        let (system, assembly) = match self.rewound(mode, inputs) {
-            Some(begun) => {
-                let kept = self.starts.get(&mode);
-                self.columns_at_start = kept.and_then(|kept| kept.columns.clone());
-                begun
-            }
-            None => self.prepare_anew(mode, inputs)?,
-        };
-        // the companion begins where this session does, with the programs that are there
-        let begins = self.carried.is_none() && inputs.is_empty();
-        if let Some(companion) = self.companion.as_mut().filter(|_| begins) {
-            let start = Kept::new(&self.model, mode, system.clone(), assembly.clone());
-            companion.starts.insert(mode, start);
-        }
+        let (start, v, assembly) = self.assembled(mode, inputs)?;
+        let system = self.recorded((start, v), &assembly, inputs)?;
         Ok((system, assembly))
     }
 
-    /// Compiles the model, assembles it, and records its programs.
-    fn prepare_anew(
+    /// Brings the model for dynamics into its state; without freedom, nothing is recorded.
+    pub(super) fn prepare_dynamics(&mut self) -> Result<Prepared, Vec<Diagnostic>> {
+        if let Some((system, assembly)) = self.before(DYNAMIC, &[]) {
+            return Ok(Prepared::Moves(Box::new(system), assembly));
+        }
+        if let Some((scene, assembly)) = self.still_before() {
+            return Ok(Prepared::Still(scene, assembly));
+        }
+        let (start, v, assembly) = self.assembled(DYNAMIC, &[])?;
+        if assembly.freedom > 0 {
+            let system = self.recorded((start, v), &assembly, &[])?;
+            return Ok(Prepared::Moves(Box::new(system), assembly));
+        }
+        self.keep_still(&start.scene, &assembly);
+        Ok(Prepared::Still(start.scene, assembly))
+    }
+
+    /// Compiles the model and assembles it: the start, its velocities, and what assembly found.
+    fn assembled(
         &mut self,
         mode: u32,
         inputs: &[u32],
-    ) -> Result<(System, Assembly), Vec<Diagnostic>> {
+    ) -> Result<(Start, Vec<f64>, Assembly), Vec<Diagnostic>> {
         (self.columns_program, self.row_values) = (None, None);
         self.model.checked()?;
         self.check_closures()?;
@@ -200,9 +101,20 @@ impl Session {
         }
         phase.end(&mut self.run.record.seconds, |s| &mut s.assemble);
         self.within_limit(SetUp::Velocities)?;
+        Ok((start, v, assembly))
+    }
+
+    /// Records the programs of a start.
+    fn recorded(
+        &mut self,
+        (start, v): (Start, Vec<f64>),
+        assembly: &Assembly,
+        inputs: &[u32],
+    ) -> Result<System, Vec<Diagnostic>> {
+        let mode = start.mode;
         let phase = Phase::begin();
         let mut system = self.system(start, v)?;
-        let is_kept = first && self.options.keep_start && inputs.is_empty();
+        let is_kept = self.carried.is_none() && self.options.keep_start && inputs.is_empty();
         if is_kept && mode == DYNAMIC {
             // every run watches it
             system.prepare_energy();
@@ -210,10 +122,11 @@ impl Session {
         phase.end(&mut self.run.record.seconds, |s| &mut s.record);
         self.within_limit(SetUp::Recording)?;
         if is_kept {
-            let start = Kept::new(&self.model, mode, system.clone(), assembly.clone());
-            self.starts.insert(mode, start);
+            let start = self.kept_start(mode, &system, assembly);
+            self.starts.systems.insert(mode, start);
         }
-        Ok((system, assembly))
+        self.begin_companion_at(mode, inputs, &system, assembly);
+        Ok(system)
     }
 
     /// Compiles the model; where commands have changed what carries a part, with its parts where
@@ -342,7 +255,7 @@ impl Session {
     ///
     /// # Errors
     /// Formulas that depend on themselves and have no value.
-    fn put(
+    pub(super) fn put(
         &self,
         system: &mut System,
         (t, y): (f64, &[f64]),
@@ -419,7 +332,7 @@ impl Session {
     }
 
     /// Puts the constants that commands change into their places.
-    fn set_constants(&self, scene: &Scene, numbers: &mut [f64]) {
+    pub(super) fn set_constants(&self, scene: &Scene, numbers: &mut [f64]) {
         for (place, what) in scene.layout.external().zip(&scene.external_inputs) {
             if let ExternalInput::Constant(id) = what {
                 let variable = self.model.variables.get(id);

@@ -1,5 +1,6 @@
 //! States of rows that are kept, so that columns can be named after a simulation.
 
+use super::kept::Starts;
 use super::{Session, columns};
 use crate::analysis::system::System;
 use crate::diagnostic::Error;
@@ -86,7 +87,7 @@ impl Session {
                 self.run.columns[before].values = values;
                 self.options.columns.push(expression.to_string());
                 (self.columns_program, self.kept) = (None, None);
-                self.starts.clear();
+                self.starts = Starts::default();
                 Ok(())
             }
             Err(said) => {

@@ -29,6 +29,7 @@ use crate::dataset::command::{Command, Simulate, SimulationKind, Step};
 use crate::diagnostic::{Diagnostic, Error};
 use crate::model::{ElementKind, Model};
 use crate::results::Status;
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -269,6 +270,7 @@ impl Sweep {
         mut each: impl FnMut(Row) -> Result<(), Error>,
     ) -> Result<(), Error> {
         self.check(points)?;
+        let wanted = &self.in_groups(points, wanted);
         let crew = Crew {
             sweep: self,
             points,
@@ -301,6 +303,23 @@ impl Sweep {
             }
         });
         outcome
+    }
+
+    /// Returns the wanted runs, those together whose parameters differ by VARIABLEs alone: a thread
+    /// compiles once for all of them.
+    fn in_groups(&self, points: &[Vec<f64>], wanted: &[usize]) -> Vec<usize> {
+        let is_variable = |p: &Parameter| p.element().0 == Some(ElementKind::Variable);
+        let mut groups: HashMap<Vec<u64>, usize> = HashMap::new();
+        let group = |&run: &usize| {
+            let values = self.parameters.iter().zip(&points[run]);
+            let compiled = values.filter(|(p, _)| !is_variable(p));
+            let key = compiled.map(|(_, x)| x.to_bits()).collect();
+            let next = groups.len();
+            *groups.entry(key).or_insert(next)
+        };
+        let mut wanted = wanted.to_vec();
+        wanted.sort_by_cached_key(group);
+        wanted
     }
 
     /// Checks that there is something to do, and that points fit the parameters.
@@ -385,9 +404,23 @@ impl Sweep {
         Some(row)
     }
 
+    /// Returns whether commands may leave a model that differs from the one of the sweep in more
+    /// than the parameters, which the next run sets anew.
+    fn changes_more(&self) -> bool {
+        let simulates = |step: &Step| {
+            matches!(
+                step.command,
+                Command::Simulate(_) | Command::Stop | Command::Show(_)
+            )
+        };
+        !self.commands.iter().all(simulates)
+    }
+
     /// Sets the parameters and obeys the commands from the start.
     fn solve(&self, session: &mut Session, values: &[f64], crew: &Crew) -> Result<Status, Error> {
-        session.model.clone_from(&self.model);
+        if self.changes_more() {
+            session.model.clone_from(&self.model);
+        }
         for (parameter, &x) in self.parameters.iter().zip(values) {
             parameter.set(&mut session.model, x)?;
         }

@@ -63,6 +63,26 @@ fn find_gap(jacobian: &[f64], n: usize) -> Result<(), Failure> {
 }
 
 impl System {
+    /// Takes over the derivatives and the implicit equations that a copy of this system has
+    /// recorded for the same rates.
+    pub(in crate::analysis) fn take_derivatives(&mut self, copy: &Self) {
+        let (own, found) = (&mut self.recorded, &copy.recorded);
+        if !own.rate.program.is_copy_of(&found.rate.program) {
+            return;
+        }
+        let (own_ones, found_ones) = (&mut own.derivatives, &found.derivatives);
+        let gradients = own_ones.gradients.iter_mut().zip(&found_ones.gradients);
+        for (own, found) in gradients.filter(|(own, _)| own.is_none()) {
+            own.clone_from(found);
+        }
+        if own_ones.pattern.is_none() {
+            own_ones.pattern.clone_from(&found_ones.pattern);
+        }
+        if own.implicit.is_none() {
+            own.implicit.clone_from(&found.implicit);
+        }
+    }
+
     /// Returns the program of the rates as they are taken now.
     fn present_rate(&self) -> &Program {
         let held = self.recorded.branches.held_rate();

@@ -70,6 +70,11 @@ impl Program {
         self.machine.engine()
     }
 
+    /// Returns whether both are copies of one program.
+    pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+
     /// Returns what the host supplies, in this order.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs

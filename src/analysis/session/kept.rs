@@ -1,0 +1,244 @@
+//! Systems and starts that are kept: what the next simulation may go on with, and what a session
+//! that has gone back to its start begins with, where the model differs by nothing but constants
+//! that commands change. Nothing is compiled, assembled or recorded for those.
+
+use super::Session;
+use crate::analysis::start::assemble::Assembly;
+use crate::analysis::system::System;
+use crate::expr::program::Program;
+use crate::model::Model;
+use crate::scene::Scene;
+use crate::scene::equations::Unsupported;
+use crate::scene::external_inputs::ExternalInput;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A system that has done its simulation, and the model it was made of.
+#[derive(Debug)]
+pub(super) struct Kept {
+    /// without the constants that are external inputs of the scene
+    model: Arc<Model>,
+    mode: u32,
+    system: System,
+    assembly: Assembly,
+    /// the program of the columns at the start, and the numbers that it lacks
+    columns: Option<(Program, Vec<Unsupported>)>,
+}
+
+impl Kept {
+    /// Keeps a system with what [`Session::made_of`] says.
+    pub(super) fn new(model: Arc<Model>, mode: u32, system: System, assembly: Assembly) -> Self {
+        Self {
+            model,
+            mode,
+            system,
+            assembly,
+            columns: None,
+        }
+    }
+
+    /// Keeps the program of the columns, which belongs to the configuration at the start.
+    pub(super) fn keep_columns(&mut self, program: &Program, complaints: &[Unsupported]) {
+        self.columns = Some((program.clone(), complaints.to_vec()));
+    }
+
+    /// Keeps what a simulation that began here has recorded on its way.
+    pub(super) fn take_derivatives(&mut self, system: &System) {
+        self.system.take_derivatives(system);
+    }
+
+    /// Returns the system, to be looked at.
+    pub(super) fn system_mut(&mut self) -> &mut System {
+        &mut self.system
+    }
+
+    /// Returns whether a model differs from the one of this system by nothing but the constants
+    /// that are external inputs.
+    fn is_of(&self, model: &mut Model) -> bool {
+        without_constants(model, &self.system.scene, |model| *model == *self.model)
+    }
+}
+
+/// A mechanism without freedom: what was assembled to find that out. Nothing was recorded for it.
+#[derive(Clone, Debug)]
+struct Still {
+    /// without the constants that are external inputs of the scene
+    model: Arc<Model>,
+    scene: Arc<Scene>,
+    assembly: Assembly,
+}
+
+impl Still {
+    /// Returns whether a model differs by nothing but constants that are external inputs.
+    fn is_of(&self, model: &mut Model) -> bool {
+        without_constants(model, &self.scene, |model| *model == *self.model)
+    }
+}
+
+/// Assembled starts that are kept.
+#[derive(Debug, Default)]
+pub(super) struct Starts {
+    /// by their MODE
+    pub systems: BTreeMap<u32, Kept>,
+    /// of dynamics, where there is no freedom
+    still: Option<Still>,
+}
+
+/// A model that has been brought into its state for dynamics.
+pub(super) enum Prepared {
+    Moves(Box<System>, Assembly),
+    Still(Arc<Scene>, Assembly),
+}
+
+/// Looks at a model while it lacks the numbers that are external inputs of its scene.
+fn without_constants<T>(model: &mut Model, scene: &Scene, look: impl FnOnce(&Model) -> T) -> T {
+    let mut taken = Vec::new();
+    for what in &scene.external_inputs {
+        if let ExternalInput::Constant(id) = what
+            && let Some(variable) = model.variables.get_mut(id)
+            && variable.function.constant().is_some()
+        {
+            let function = std::mem::take(&mut variable.function);
+            taken.push((*id, function, std::mem::take(&mut variable.place)));
+        }
+    }
+    let seen = look(model);
+    for (id, function, place) in taken {
+        if let Some(variable) = model.variables.get_mut(&id) {
+            (variable.function, variable.place) = (function, place);
+        }
+    }
+    seen
+}
+
+impl Session {
+    /// Returns the present model as the system of a simulation keeps it: that of the system which
+    /// the simulation began with, where this is such a one.
+    pub(super) fn made_of(&mut self, scene: &Scene) -> Arc<Model> {
+        let copied = || without_constants(&mut self.model, scene, |model| Arc::new(model.clone()));
+        self.kept_model.take().unwrap_or_else(copied)
+    }
+
+    /// Returns the system of the simulation before, at the state that it left, where nothing is
+    /// different but constants that commands change. No constraint reads these: it still holds.
+    fn again(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
+        let kept = *self.kept.take()?;
+        let carried = self.carried.as_ref()?;
+        let same = kept.mode == mode
+            && inputs.is_empty()
+            && self.hooks.is_empty()
+            && kept.system.scene.samplers.is_empty()
+            && !carried.at_rest
+            && carried.numbers.len() == kept.system.numbers.len()
+            && kept.is_of(&mut self.model);
+        if !same {
+            return None;
+        }
+        let mut system = kept.system;
+        system.numbers.copy_from_slice(&carried.numbers);
+        self.set_constants(&system.scene, &mut system.numbers);
+        system
+            .recorded
+            .external
+            .delays
+            .begin(carried.t, &carried.past);
+        system.resolve().ok()?;
+        system.begin_sensing();
+        self.kept_model = Some(kept.model);
+        Some((system, kept.assembly))
+    }
+
+    /// Returns the system as it was assembled at the start, where a session has gone back to it and
+    /// nothing is different but constants that commands change.
+    fn rewound(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
+        let kept = self.starts.systems.get(&mode)?;
+        let same = inputs.is_empty() && self.carried.is_none() && kept.is_of(&mut self.model);
+        if !same {
+            return None;
+        }
+        let (mut system, assembly) = (kept.system.clone(), kept.assembly.clone());
+        let model = Arc::clone(&kept.model);
+        let before = system.numbers.clone();
+        self.set_constants(&system.scene, &mut system.numbers);
+        if system.numbers != before {
+            // formulas that read themselves are solved from the guesses of the model alone
+            if !(system.scene.samplers.is_empty() && system.scene.loops.is_empty()) {
+                return None;
+            }
+            let l = system.scene.layout;
+            system.configuration.external = system.numbers[l.external()].to_vec();
+            let y = system.numbers[l.y()].to_vec();
+            self.put(&mut system, (self.time(), &y), mode).ok()?;
+        }
+        self.kept_model = Some(model);
+        Some((system, assembly))
+    }
+
+    /// Returns the system of the simulation before, or of the start, where it can be gone on with.
+    pub(super) fn before(&mut self, mode: u32, inputs: &[u32]) -> Option<(System, Assembly)> {
+        self.kept_model = None;
+        if let Some(again) = self.again(mode, inputs) {
+            return Some(again);
+        }
+        self.columns_at_start = None;
+        let (system, assembly) = self.rewound(mode, inputs)?;
+        let kept = self.starts.systems.get(&mode);
+        self.columns_at_start = kept.and_then(|kept| kept.columns.clone());
+        self.begin_companion_at(mode, inputs, &system, &assembly);
+        Some((system, assembly))
+    }
+
+    /// Returns what was assembled for dynamics at the start, where there was no freedom.
+    pub(super) fn still_before(&mut self) -> Option<(Arc<Scene>, Assembly)> {
+        let begins = self.carried.is_none();
+        let still = self.starts.still.as_ref().filter(|_| begins)?;
+        if !still.is_of(&mut self.model) {
+            return None;
+        }
+        if let Some(companion) = &mut self.companion {
+            companion.starts.still = Some(still.clone());
+        }
+        Some((Arc::clone(&still.scene), still.assembly.clone()))
+    }
+
+    /// Keeps what was assembled for dynamics at the start, where there is no freedom.
+    pub(super) fn keep_still(&mut self, scene: &Arc<Scene>, assembly: &Assembly) {
+        let is_read = self.options.keep_start || self.companion.is_some();
+        if self.carried.is_some() || !is_read {
+            return;
+        }
+        let still = Still {
+            model: self.made_of(scene),
+            scene: Arc::clone(scene),
+            assembly: assembly.clone(),
+        };
+        if let Some(companion) = &mut self.companion {
+            companion.starts.still = Some(still.clone());
+        }
+        self.starts.still = Some(still).filter(|_| self.options.keep_start);
+    }
+
+    /// Lets the companion begin where this session does, with the programs that are there.
+    pub(super) fn begin_companion_at(
+        &mut self,
+        mode: u32,
+        inputs: &[u32],
+        system: &System,
+        assembly: &Assembly,
+    ) {
+        if self.companion.is_none() || self.carried.is_some() || !inputs.is_empty() {
+            return;
+        }
+        let start = self.kept_start(mode, system, assembly);
+        if let Some(companion) = &mut self.companion {
+            companion.starts.systems.insert(mode, start);
+        }
+    }
+
+    /// Returns a copy of a system that has been assembled, to be gone back to.
+    pub(super) fn kept_start(&mut self, mode: u32, system: &System, assembly: &Assembly) -> Kept {
+        let model = self.made_of(&system.scene);
+        self.kept_model = Some(Arc::clone(&model));
+        Kept::new(model, mode, system.clone(), assembly.clone())
+    }
+}
