@@ -33,8 +33,8 @@ fn process_seconds() -> Option<f64> {
     Some(seconds.sum())
 }
 
-/// The processor time that all threads of this process use from some moment on. A program that takes
-/// the place of another in its process (`cargo run` ends so) has the other's time on its account.
+/// The processor time that all threads of this process use from some moment on. The account of a
+/// process begins before the program where it took the place of another, as `cargo run` ends.
 #[derive(Clone, Copy, Debug)]
 pub struct ProcessClock {
     /// processor time of the process at the beginning, in s; `None`: not known here

@@ -29,8 +29,6 @@ pub mod noise;
 pub mod pattern;
 pub mod quadrature;
 pub mod radau;
-#[cfg(test)]
-mod random;
 pub mod rank;
 pub mod runge_kutta;
 pub mod sparse;
@@ -496,3 +494,6 @@ methods! {
         "NEWMARK", false, 2, 5.0, "generalized-α without damping (average acceleration)" => Hht::newmark;
     }
 }
+
+#[cfg(test)]
+mod random;

@@ -236,8 +236,8 @@ fn leave_words_out(run: &mut Run, words: &[Words]) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// Returns whether cells are separated by `;`: in the first row it comes first of the two separators
-/// outside of quotes.
+/// Returns whether cells are separated by `;`: in the first row it comes first of the two
+/// separators outside of quotes.
 fn has_decimal_commas(bytes: &[u8]) -> bool {
     let mut bare = bytes.split(|&b| b == b'"').step_by(2).flatten();
     bare.find(|b| matches!(b, b';' | b',' | b'\n')) == Some(&b';')

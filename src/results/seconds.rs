@@ -35,8 +35,8 @@ pub struct Seconds {
     pub write: f64,
     /// from the start to the record
     pub total: f64,
-    /// processor time of all threads from the start to the record; the wall clock where the system does not
-    /// tell it
+    /// processor time of all threads from the start to the record; the wall clock where the system
+    /// does not tell it
     pub processor: f64,
 }
 
