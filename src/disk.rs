@@ -7,11 +7,25 @@
 
 pub(crate) use std::fs::{
     File, Metadata, OpenOptions, create_dir_all, metadata, read, read_dir, read_to_string,
-    remove_file, rename,
+    remove_dir_all, remove_file, rename,
 };
 #[cfg(feature = "parquet")]
 pub(crate) use std::fs::{create_dir, remove_dir, write};
 use std::path::Path;
+
+/// Holds a file until the result is dropped, or this process ends in whatever way: others see by
+/// [`is_held`] that somebody is at work. `None` where that is not possible.
+pub(crate) fn hold(path: &Path) -> Option<File> {
+    let file = File::open(path).ok()?;
+    file.lock_shared().ok()?;
+    Some(file)
+}
+
+/// Returns whether a process holds a file.
+pub(crate) fn is_held(path: &Path) -> bool {
+    let tried = File::open(path).map(|file| file.try_lock());
+    tried.is_ok_and(|locked| matches!(locked, Err(std::fs::TryLockError::WouldBlock)))
+}
 
 /// Returns whether there is a file or a folder at a path.
 pub(crate) fn is_there(path: &Path) -> bool {

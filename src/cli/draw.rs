@@ -41,9 +41,9 @@ pub struct Args {
     /// Names that are written: of bodies, or of joints (or the markers that are shown), too
     #[arg(long, value_enum, default_value = "bodies")]
     names: NamesArg,
-    /// Element that stands out, such as JOINT/3 (repeatable)
+    /// Element that stands out, by JOINT/3 or its name (repeatable)
     #[arg(long, value_name = "ELEMENT")]
-    highlight: Vec<ElementId>,
+    highlight: Vec<String>,
     /// Draw N further configurations of the run, pale
     #[arg(long, value_name = "N", default_value_t = 0)]
     pale: usize,
@@ -113,15 +113,12 @@ pub fn run(args: &Args) -> Outcome {
         run,
         folders,
     } = args.source.get()?;
-    if let Some(unknown) = args
-        .highlight
-        .iter()
-        .find(|id| model.element(**id).is_none())
-    {
-        return Err(Failure::usage(format!(
-            "--highlight {unknown}: there is no such element"
-        )));
-    }
+    let highlighted = args.highlight.iter().map(|element| {
+        let exit = Exit::Usage;
+        let found = model.find_element(element);
+        found.map_err(|d| Failure { exit, ..d.into() })
+    });
+    let highlighted = highlighted.collect::<Result<BTreeSet<ElementId>, Failure>>()?;
     let pictured = args
         .dimensions
         .added_to(pictured(&model, &run, &folders)?)?;
@@ -139,7 +136,7 @@ pub fn run(args: &Args) -> Outcome {
             NamesArg::All => Names::All,
         },
         symbols: args.symbols.kind(),
-        highlighted: args.highlight.iter().copied().collect(),
+        highlighted,
         paths: args.paths,
         forces: !args.no_forces,
         view: view(args.from, &pictured.view),

@@ -6,7 +6,7 @@ use super::convert::same_file;
 use super::table::Table;
 use super::{Exit, Failure, Outcome, complain_in_files, remark, run, say, width};
 use crate::dataset::{self, Dataset, Reading, manual};
-use crate::diagnostic::{Cause, Diagnostic, Severity, near_names};
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::{ElementId, ElementKind, Model};
 use crate::results;
 use serde_json::json;
@@ -14,7 +14,8 @@ use std::path::PathBuf;
 
 /// List the elements of a model, show one of them, rename or delete one
 ///
-/// Names are those of Adams View (`adams_view_name`). A dataset is changed in its text: comments,
+/// Names are those of Adams View (`adams_view_name`); an element is called by its name, or by keyword
+/// and number. A dataset is changed in its text: comments,
 /// order and numbers stay as they are. An element that others name is not deleted.
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -36,13 +37,13 @@ pub struct Args {
     tree: bool,
     /// Show an element: its statement, whom it names and who names it
     #[arg(long, value_name = "ELEMENT")]
-    show: Option<ElementId>,
+    show: Option<String>,
     /// Give an element another name (repeatable)
     #[arg(long, value_name = "ELEMENT=NAME", value_parser = naming)]
-    rename: Vec<(ElementId, String)>,
+    rename: Vec<(String, String)>,
     /// Take an element out (repeatable)
     #[arg(long, value_name = "ELEMENT")]
-    delete: Vec<ElementId>,
+    delete: Vec<String>,
     /// Dataset to write after --rename and --delete
     #[arg(short = 'o', long = "out", value_name = "FILE.adm")]
     out: Option<PathBuf>,
@@ -52,9 +53,9 @@ pub struct Args {
 }
 
 /// Reads `COUPLER/1=belt`.
-fn naming(text: &str) -> Result<(ElementId, String), String> {
-    let (id, name) = text.split_once('=').ok_or("it is ELEMENT=NAME")?;
-    Ok((id.trim().parse()?, name.trim().to_owned()))
+fn naming(text: &str) -> Result<(String, String), String> {
+    let (element, name) = text.split_once('=').ok_or("it is ELEMENT=NAME")?;
+    Ok((element.trim().to_owned(), name.trim().to_owned()))
 }
 
 /// Lists, shows or changes the elements of a dataset.
@@ -74,10 +75,17 @@ pub fn run(args: &Args) -> Outcome {
             let what = "the output is the input, which is never overwritten";
             return Err(Failure::usage(what));
         }
-        for (id, name) in &args.rename {
-            reading = renamed(&reading, *id, name)?;
+        for (element, name) in &args.rename {
+            let id = reading.model.find_element(element)?;
+            reading = renamed(&reading, id, name)?;
         }
-        reading = without(&reading, &args.delete)?;
+        let model = &reading.model;
+        let deleted = args
+            .delete
+            .iter()
+            .map(|element| model.find_element(element));
+        let deleted = deleted.collect::<Result<Vec<ElementId>, Diagnostic>>()?;
+        reading = without(&reading, &deleted)?;
         let bytes = reading.dataset.source.encode(reading.dataset.to_text());
         results::write_bytes(out, &bytes)?;
         remark(out.display());
@@ -90,7 +98,8 @@ pub fn run(args: &Args) -> Outcome {
             false => Exit::Input,
         });
     }
-    if let Some(id) = args.show {
+    if let Some(element) = &args.show {
+        let id = reading.model.find_element(element)?;
         say(&shown(&reading.model, &reading.dataset, id)?);
     } else if args.tree {
         say(&assembly::tree(&reading.model));
@@ -151,7 +160,7 @@ fn as_json(model: &Model, kinds: &[ElementKind]) -> serde_json::Value {
 /// # Errors
 /// When it does not exist.
 pub fn shown(model: &Model, dataset: &Dataset, id: ElementId) -> Result<String, Diagnostic> {
-    let element = model.element(id).ok_or_else(|| unknown(model, id))?;
+    let element = model.element(id).ok_or_else(|| model.no_element(id))?;
     let mut text = String::new();
     let place = element.place();
     let name = place.name.as_ref().map(|name| format!(" '{name}'"));
@@ -182,37 +191,6 @@ pub fn shown(model: &Model, dataset: &Dataset, id: ElementId) -> Result<String, 
     Ok(text)
 }
 
-/// Returns the mistake about an element that does not exist, with those that do.
-pub fn unknown(model: &Model, id: ElementId) -> Diagnostic {
-    /// Numbers that are named.
-    const MOST: usize = 12;
-    let d = Diagnostic::error(Cause::UnknownElement, format!("{id} does not exist"));
-    let numbers: Vec<String> = model
-        .numbers(id.kind)
-        .iter()
-        .map(ToString::to_string)
-        .collect();
-    if numbers.is_empty() {
-        let kinds: Vec<&str> = ElementKind::ALL.iter().map(|k| k.keyword()).collect();
-        let there = kinds.iter().zip(ElementKind::ALL);
-        let there: Vec<&str> = there
-            .filter(|(_, kind)| !model.numbers(**kind).is_empty())
-            .map(|(keyword, _)| *keyword)
-            .collect();
-        return d.help(format!("the model has {}", there.join(", ")));
-    }
-    let written: Vec<&str> = numbers.iter().map(String::as_str).collect();
-    let near = near_names(&id.number.to_string(), written.iter().copied());
-    match near.is_empty() || numbers.len() <= MOST {
-        true => {
-            let first = written[..written.len().min(MOST)].join(", ");
-            let more = if numbers.len() > MOST { ", …" } else { "" };
-            d.help(format!("{} has {first}{more}", id.kind))
-        }
-        false => d.help(format!("did you mean {}/{}?", id.kind, near[0])),
-    }
-}
-
 /// Returns a dataset in which an element has another name, read again.
 ///
 /// # Errors
@@ -224,7 +202,7 @@ pub fn renamed(reading: &Reading, id: ElementId, name: &str) -> Result<Reading, 
     }
     let text = reading.dataset.renamed(id, name);
     text.map(|text| again(reading, &text))
-        .ok_or_else(|| unknown(&reading.model, id))
+        .ok_or_else(|| reading.model.no_element(id))
 }
 
 /// Returns a dataset without some elements, read again.
@@ -243,7 +221,7 @@ pub fn without(reading: &Reading, ids: &[ElementId]) -> Result<Reading, Diagnost
             return Err(d.help("delete these first, or let them name others"));
         }
         let text = now.dataset.without(id);
-        let text = text.ok_or_else(|| unknown(&reading.model, id))?;
+        let text = text.ok_or_else(|| reading.model.no_element(id))?;
         now = again(&now, &text);
     }
     Ok(now)

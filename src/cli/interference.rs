@@ -8,6 +8,7 @@ use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, say, width};
 use crate::analysis::interference::{Interference, Pair, interference};
 use crate::analysis::motion::Recorded;
+use crate::diagnostic::Diagnostic;
 use crate::model::{ElementId, Model};
 use crate::physics::contact::query::separation::Gap;
 use crate::report::mechanism::Overlap;
@@ -31,7 +32,7 @@ pub struct Args {
     results: PathBuf,
     /// Two parts or GRAPHICS to look at, with a comma (repeatable); all pairs when none is given
     #[arg(long = "pair", value_name = "A,B", value_parser = pair)]
-    pairs: Vec<[ElementId; 2]>,
+    pairs: Vec<[String; 2]>,
     /// Distance that must remain; a pair that comes nearer ends the command with exit code 8
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     clearance: Option<f64>,
@@ -48,12 +49,12 @@ pub struct Args {
     style: StyleArgs,
 }
 
-/// Reads `PART/2,GRAPHICS/3`.
-fn pair(text: &str) -> Result<[ElementId; 2], String> {
+/// Reads `PART/2,GRAPHICS/3`, or two names.
+fn pair(text: &str) -> Result<[String; 2], String> {
     let (a, b) = text
         .split_once(',')
         .ok_or_else(|| format!("`{text}` is not A,B"))?;
-    Ok([a.parse()?, b.parse()?])
+    Ok([a, b].map(str::to_owned))
 }
 
 /// Finds the interference of a run.
@@ -70,7 +71,10 @@ pub fn run(args: &Args) -> Outcome {
     let model = model_of(&args.results, args.model.as_deref())?;
     let recorded = Recorded::new(&run, &model);
     let folders = folders(args);
-    let mut found = interference(&recorded, &model, &args.pairs, &folders)?;
+    let of_pair = |[a, b]: &[String; 2]| Ok([model.find_element(a)?, model.find_element(b)?]);
+    let pairs = args.pairs.iter().map(of_pair);
+    let pairs = pairs.collect::<Result<Vec<_>, Diagnostic>>()?;
+    let mut found = interference(&recorded, &model, &pairs, &folders)?;
     let distance = |p: &Pair| p.nearest().map_or(f64::INFINITY, |(_, gap)| gap.distance);
     found
         .pairs
@@ -143,12 +147,21 @@ fn named(model: &Model, id: ElementId) -> String {
     name.map_or_else(|| id.to_string(), |name| format!("{id} ({name})"))
 }
 
+/// Returns a coordinate of a place, or zero where it is rounding beside the farthest of all places.
+fn without_noise(x: f64, size: f64) -> f64 {
+    /// Part of the size below which a coordinate is rounding.
+    const ROUNDING: f64 = 1e-12;
+    if x.abs() < ROUNDING * size { 0.0 } else { x }
+}
+
 /// Prints the pairs, the nearest first, with the spans in which they overlap.
 fn table(run: &Run, model: &Model, found: &Interference) -> String {
     let heads = [
         "solids", "of", "nearest", "at time", "at x", "y", "z", "overlap",
     ];
     let mut table = Table::new(heads);
+    let nearest = found.pairs.iter().filter_map(Pair::nearest);
+    let size = nearest.fold(0.0_f64, |size, (_, gap)| size.max(gap.place.norm()));
     for pair in &found.pairs {
         let Some((row, gap)) = pair.nearest() else {
             continue;
@@ -159,7 +172,7 @@ fn table(run: &Run, model: &Model, found: &Interference) -> String {
             true => time(first),
             false => format!("{} to {}", time(first), time(last)),
         });
-        let [x, y, z] = gap.place.0.map(digits_of_six);
+        let [x, y, z] = gap.place.0.map(|x| digits_of_six(without_noise(x, size)));
         let [of_i, of_j] = pair.bodies.map(|id| named(model, id));
         let [i, j] = pair.graphics;
         table.push([

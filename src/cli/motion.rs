@@ -26,18 +26,18 @@ Examples:
 pub struct Args {
     /// Results of the run: .res, .parquet, or .csv and .json with all parts
     results: PathBuf,
-    /// Marker that moves, as MARKER/20, or joint, as JOINT/3: its I marker (repeatable)
+    /// Marker that moves, as MARKER/20, or joint, as JOINT/3 or by its name: its I marker (repeatable)
     #[arg(long = "of", value_name = "ELEMENT", required = true)]
-    of: Vec<ElementId>,
+    of: Vec<String>,
     /// Marker that the motion is relative to
-    #[arg(long, value_name = "MARKER", value_parser = marker)]
-    relative_to: u32,
+    #[arg(long, value_name = "MARKER")]
+    relative_to: String,
     /// Marker along whose axes components are, or ground
-    #[arg(long = "in", value_name = "MARKER", value_parser = marker)]
-    axes: Option<u32>,
+    #[arg(long = "in", value_name = "MARKER")]
+    axes: Option<String>,
     /// Marker from which rates are seen, or ground
-    #[arg(long, value_name = "MARKER", value_parser = marker)]
-    seen_from: Option<u32>,
+    #[arg(long, value_name = "MARKER")]
+    seen_from: Option<String>,
     /// Kind of motion (repeatable); all that the results have when none is given
     #[arg(long = "as", value_enum, value_name = "KIND")]
     kinds: Vec<KindName>,
@@ -111,18 +111,21 @@ enum Takes {
     Jkl,
 }
 
-/// Reads `MARKER/20`, `20` or `ground`.
-fn marker(text: &str) -> Result<u32, String> {
+/// Returns the number of the marker that is called `MARKER/20`, `20`, by its name, or `ground`.
+fn marker(model: &Model, text: &str) -> Result<u32, Diagnostic> {
     if text.eq_ignore_ascii_case("ground") || text == "0" {
         return Ok(0);
     }
     if let Ok(number) = text.parse() {
         return Ok(number);
     }
-    match text.parse::<ElementId>() {
-        Ok(id) if id.kind == ElementKind::Marker => Ok(id.number),
-        Ok(id) => Err(format!("{id} is not a marker")),
-        Err(_) => Err(format!("`{text}` is not MARKER/number, nor ground")),
+    let id = model.find_element(text)?;
+    match id.kind {
+        ElementKind::Marker => Ok(id.number),
+        _ => Err(Diagnostic::error(
+            "unfit_value",
+            format!("{id} is not a marker"),
+        )),
     }
 }
 
@@ -165,9 +168,11 @@ fn group(args: &Args, run: &Run, model: &Model) -> Result<Run, Diagnostic> {
     group.columns[0] = run.columns.first().cloned().unwrap_or_default();
     group.sequences.clone_from(&run.sequences);
     let recorded = Recorded::new(run, model);
-    let j = args.relative_to;
-    let (k, l) = (args.axes.unwrap_or(j), args.seen_from.unwrap_or(j));
-    for &of in &args.of {
+    let j = marker(model, &args.relative_to)?;
+    let or_j = |text: &Option<String>| text.as_ref().map_or(Ok(j), |text| marker(model, text));
+    let (k, l) = (or_j(&args.axes)?, or_j(&args.seen_from)?);
+    for of in &args.of {
+        let of = model.find_element(of)?;
         let i = moving_marker(model, of)?;
         let name = format!(
             "{}_TO_{}",

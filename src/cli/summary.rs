@@ -7,8 +7,11 @@ use crate::results::{Accuracy, Kind, Run, Seconds, Warning, digits_of_six};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Rows of the table beside first and last rows of simulations; results can have thousands.
-const ROWS: usize = 9;
+/// Rows of the table beside first and last rows of simulations: at every tenth of the run. Results
+/// can have thousands.
+const ROWS: usize = 11;
+/// Most rows of which none is left out.
+const MOST_ROWS: usize = 13;
 /// Most simulations whose first and last rows are shown.
 const SIMULATIONS: usize = 4;
 
@@ -85,17 +88,21 @@ fn phases(run: &Run, rows: &[usize]) -> Vec<Kind> {
 /// other the first and last of each.
 fn selected(run: &Run, rows: &[usize]) -> Vec<usize> {
     let n = rows.len();
-    if n <= ROWS {
+    if n <= MOST_ROWS {
         return rows.to_vec();
     }
     let mut shown: Vec<usize> = (0..ROWS).map(|k| rows[k * (n - 1) / (ROWS - 1)]).collect();
-    let sequences = run
-        .sequences
-        .iter()
-        .filter(|s| s.kind != Kind::Input && !s.rows.is_empty());
-    let ends: Vec<usize> = sequences
-        .flat_map(|s| [s.rows.start, s.rows.end - 1])
-        .collect();
+    let sequences = run.sequences.iter().filter(|s| !s.rows.is_empty());
+    let mut ends = Vec::new();
+    let mut before = None;
+    for sequence in sequences.filter(|s| s.kind != Kind::Input) {
+        // what follows assembly begins with its row
+        if before != Some(Kind::InitialConditions) {
+            ends.push(sequence.rows.start);
+        }
+        ends.push(sequence.rows.end - 1);
+        before = Some(sequence.kind);
+    }
     if ends.len() <= 2 * SIMULATIONS {
         shown.extend(ends.into_iter().filter(|row| rows.contains(row)));
     }

@@ -447,6 +447,15 @@ Renaming a run renames its record and its files. None of them replaces a file th
     cognate runs rename results/crank stiff       refused while results/stiff.csv is there",
     },
     Code {
+        name: "run_in_use",
+        summary: "a run that a program is writing is to be renamed or deleted",
+        explanation: "\
+While a run is being written its record and its parts belong to the program that writes them. `cognate runs` says which runs
+are being written; one whose program was ended from outside is cut off, and may be deleted.
+
+    cognate runs delete results/crank       refused while results/crank is being written",
+    },
+    Code {
         name: "no_shared_time",
         summary: "two runs have no output time in common",
         explanation: "\

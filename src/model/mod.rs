@@ -7,6 +7,7 @@
 
 mod beginning;
 mod body;
+mod called;
 pub mod check;
 mod constraint;
 mod element;

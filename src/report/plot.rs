@@ -258,8 +258,17 @@ pub(super) fn nothing_to_show() -> Diagnostic {
 /// Returns the error for a column that a run does not have; the advice lists near names, or all.
 pub fn unknown_column(run: &Run, name: &str) -> Diagnostic {
     let names: Vec<&str> = run.columns.iter().map(|c| c.name.as_str()).collect();
-    let near = near_names(name, names.iter().copied());
     const MOST_NAMES: usize = 12;
+    let component = |column: &&str| {
+        let last = column.rsplit_once('.').map(|(_, last)| last);
+        let wanted = name.rsplit_once('.').map_or(name, |(_, last)| last);
+        last.is_some_and(|last| last.eq_ignore_ascii_case(wanted.trim()))
+    };
+    let mut near = near_names(name, names.iter().copied());
+    if near.is_empty() {
+        // another element, or none, but this component
+        near.extend(names.iter().copied().filter(component).take(3));
+    }
     let first = names[..names.len().min(MOST_NAMES)].join("  ");
     let advice = match (near.is_empty(), names.len()) {
         (false, _) => format!("did you mean {}?", near.join(" or ")),

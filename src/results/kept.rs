@@ -3,7 +3,8 @@
 //! Only what a record claims, in the size that it claims, belongs to a run. A file of that name and
 //! another size was made or changed by somebody else since, and stays where it is.
 
-use super::output_folder::listed;
+use super::format::Format;
+use super::output_folder::{BEING_WRITTEN, listed};
 use super::part_file::unwritable;
 use super::write_text;
 use crate::diagnostic::{Diagnostic, near_names};
@@ -24,6 +25,17 @@ pub struct KeptRun {
     /// files that the record claims, but itself: place relative to [`KeptRun::root`], and the sizes
     /// that it may have, in bytes
     claims: BTreeMap<String, Vec<u64>>,
+}
+
+/// The state of a run in its folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// all its files are there, as far as its record says
+    Complete,
+    /// a program is writing it
+    BeingWritten,
+    /// the program that wrote it was ended from outside: rows so far are in its parts
+    CutOff,
 }
 
 /// A file that a record claims.
@@ -137,6 +149,48 @@ impl KeptRun {
         self.folder.join(format!("{}.json", self.name))
     }
 
+    /// Returns the state of the run.
+    pub fn state(&self) -> State {
+        match self.record["status"].as_str() {
+            Some(BEING_WRITTEN) if disk::is_held(&self.record_file()) => State::BeingWritten,
+            Some(BEING_WRITTEN) => State::CutOff,
+            _ => State::Complete,
+        }
+    }
+
+    /// Returns the parts of a run that is not complete, with their sizes in bytes: rows so far, each
+    /// to be read by its name; of Parquet a folder.
+    pub fn parts(&self) -> Vec<(PathBuf, u64)> {
+        let own = format!("{}.", self.name);
+        let is_part = |path: &Path| {
+            let name = path.file_name().map(|name| name.to_string_lossy());
+            let rest = name.as_ref().and_then(|name| name.strip_prefix(&own));
+            rest.and_then(|rest| rest.rsplit_once(".part"))
+                .is_some_and(|(table, number)| {
+                    let format = table.strip_prefix("table.").unwrap_or(table);
+                    Format::row(format).is_some() && number.parse::<u32>().is_ok()
+                })
+        };
+        let entries = |folder: &Path| disk::read_dir(folder).into_iter().flatten().flatten();
+        let bytes = |path: &Path| match disk::is_folder(path) {
+            true => {
+                let sizes = entries(path).filter_map(|e| e.metadata().ok());
+                sizes.map(|about| about.len()).sum()
+            }
+            false => disk::metadata(path).map_or(0, |about| about.len()),
+        };
+        let mut all: Vec<(PathBuf, u64)> = match self.state() {
+            State::Complete => Vec::new(),
+            State::BeingWritten | State::CutOff => entries(&self.folder)
+                .map(|entry| self.folder.join(entry.file_name()))
+                .filter(|path| is_part(path))
+                .map(|path| (path.clone(), bytes(&path)))
+                .collect(),
+        };
+        all.sort();
+        all
+    }
+
     /// Returns the folder that names of files in the record start from: a run whose name has
     /// folders of its own is recorded with them.
     fn root(&self) -> &Path {
@@ -172,12 +226,30 @@ impl KeptRun {
         self.claims.iter().map(file).collect()
     }
 
-    /// Removes the files of the run, and its record at last; returns the files that are there and
+    /// Refuses to touch a run that a program is writing.
+    fn is_at_rest(&self) -> Result<(), Diagnostic> {
+        if self.state() != State::BeingWritten {
+            return Ok(());
+        }
+        let what = format!("{} is being written", self.place());
+        Err(Diagnostic::error("run_in_use", what).help("wait until it has ended, or end it"))
+    }
+
+    /// Removes the files of the run, its parts where it was cut off, and its record at last; returns the files that are there and
     /// not as the run wrote them, which stay.
     ///
     /// # Errors
-    /// When a file cannot be removed. The record then stays, and claims the others.
+    /// When a program is writing it, or a file cannot be removed. The record then stays, and claims
+    /// the others.
     pub fn delete(&self) -> Result<Vec<PathBuf>, Diagnostic> {
+        self.is_at_rest()?;
+        for (part, _) in self.parts() {
+            let removed = match disk::is_folder(&part) {
+                true => disk::remove_dir_all(&part),
+                false => disk::remove_file(&part),
+            };
+            removed.map_err(|e| unwritable(&part, &e))?;
+        }
         let (own, others): (Vec<_>, Vec<_>) = self.files().into_iter().partition(|f| f.is_own);
         let own = own.into_iter().map(|f| f.path);
         for path in own.chain([self.record_file()]) {
@@ -194,6 +266,7 @@ impl KeptRun {
     /// When the name is none of a file, a file of the new name is there already, or a file cannot
     /// be renamed. Until all are, both records claim them.
     pub fn rename(&self, name: &str) -> Result<Vec<PathBuf>, Diagnostic> {
+        self.is_at_rest()?;
         if !is_run_name(name) {
             let what = format!("`{name}` is no name of a run: a run stays in its folder");
             return Err(Diagnostic::error("unknown_run", what));

@@ -28,7 +28,12 @@ pub struct OutputFolder {
     files: Vec<PathBuf>,
     /// files of others: where they were, and where they are now
     kept: Vec<(PathBuf, PathBuf)>,
+    /// the record, while it says that the run is being written
+    held: Option<disk::File>,
 }
+
+/// The status in the record of a run that is being written, or whose program was ended from outside.
+pub(super) const BEING_WRITTEN: &str = "being written";
 
 impl OutputFolder {
     /// Opens the folder `dir` for the run called `base`, and tries whether a file can be made
@@ -51,6 +56,7 @@ impl OutputFolder {
             written: BTreeMap::new(),
             files: Vec::new(),
             kept: Vec::new(),
+            held: None,
         })
     }
 
@@ -104,6 +110,7 @@ impl OutputFolder {
     /// When it cannot be written.
     pub fn put_record(&mut self, text: &str) -> Result<(), Diagnostic> {
         let record = self.record.clone();
+        self.held = None;
         let file = self.prepare(&record, text)?;
         self.put_in_place(&record, &file)?;
         self.files.push(self.dir.join(&record));
@@ -179,13 +186,14 @@ impl OutputFolder {
         let mut files = self.written.clone();
         files.extend(more.iter().map(|(name, file)| (name.clone(), file.bytes)));
         let text = json!({
-            "status": "being written",
+            "status": BEING_WRITTEN,
             "versions": {"cognate": env!("CARGO_PKG_VERSION")},
             "files": files,
             "replaced": self.earlier,
         });
         let shown = self.files.len();
         self.put_record(&format!("{text:#}\n"))?;
+        self.held = disk::hold(&self.dir.join(&self.record));
         // the record of the run is still to come
         self.files.truncate(shown);
         Ok(())

@@ -12,20 +12,21 @@ use super::format::TableText;
 use super::gra::{NO_DATE, code_of_units, columns, put_line, units_of_code};
 use super::{Component, Entity, Kind, Requested, Run, component_unit, malformed};
 use crate::diagnostic::Diagnostic;
+use crate::model::ElementKind;
 use std::ops::Range;
 
 /// Places of the components that are written.
 const WRITTEN: [usize; 6] = [1, 2, 3, 5, 6, 7];
 
 /// Components of the kinds of requests: displacement, velocity, acceleration, force, expressions;
-/// those of [`WRITTEN`], then the magnitudes.
+/// those of [`WRITTEN`], then the magnitudes. Names are those of a run's own columns.
 const NAMES: [[&str; 8]; 5] = [
-    ["X", "Y", "Z", "PSI", "THETA", "PHI", "MAG", ""],
-    ["VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM"],
+    ["DX", "DY", "DZ", "PSI", "THETA", "PHI", "MAG", ""],
+    ["VX", "VY", "VZ", "WX", "WY", "WZ", "MAG", "AMAG"],
     [
-        "ACCX", "ACCY", "ACCZ", "WDTX", "WDTY", "WDTZ", "ACCM", "WDTM",
+        "ACCX", "ACCY", "ACCZ", "WDTX", "WDTY", "WDTZ", "MAG", "AMAG",
     ],
-    ["FX", "FY", "FZ", "TX", "TY", "TZ", "FM", "TM"],
+    ["FX", "FY", "FZ", "TX", "TY", "TZ", "MAG", "AMAG"],
     ["F2", "F3", "F4", "F6", "F7", "F8", "", ""],
 ];
 
@@ -91,7 +92,7 @@ fn request(line: &str) -> Option<Requested> {
 /// Adds the columns of a request; those of displacements, velocities, accelerations and forces have
 /// their magnitudes.
 fn add_request(run: &mut Run, mut request: Requested) {
-    let name = format!("REQ_{}", request.id);
+    let name = format!("{}_{}", ElementKind::Request, request.id);
     let names = NAMES[request.kind as usize - 1];
     let magnitudes = match request.kind {
         1 => &[0][..],
@@ -105,8 +106,10 @@ fn add_request(run: &mut Run, mut request: Requested) {
     let mut components = Vec::new();
     let wanted: Vec<(usize, &str)> = own.map(|(&c, name)| (c, name)).collect();
     for (place, component) in wanted {
-        let unit = match component {
-            "MAG" => run.units.length.clone(),
+        // a magnitude has the unit of the components that it is made of
+        let unit = match place {
+            0 if request.kind != 5 => component_unit(names[0], &run.units),
+            4 if request.kind != 5 => component_unit(names[3], &run.units),
             _ => component_unit(component, &run.units),
         };
         let column = run.add_column(format!("{name}.{component}"), unit);
@@ -209,10 +212,10 @@ mod tests {
         let again = read(text.as_bytes()).unwrap();
         assert_eq!(again.title, "a title");
         assert_eq!(again.requests[0].markers, [20, 10, 0]);
-        assert_eq!(again.column("REQ_4.VM"), Some(&[5.0, 3.0][..]));
-        assert_eq!(again.column("REQ_4.WM"), Some(&[2.0, 7.0][..]));
+        assert_eq!(again.column("REQUEST_4.MAG"), Some(&[5.0, 3.0][..]));
+        assert_eq!(again.column("REQUEST_4.AMAG"), Some(&[2.0, 7.0][..]));
         assert_eq!(
-            again.columns[again.find("REQ_4.WX").unwrap()].unit,
+            again.columns[again.find("REQUEST_4.WX").unwrap()].unit,
             "rad/sec"
         );
         // cut off

@@ -44,7 +44,7 @@ pub fn component_unit(component: &str, units: &Units) -> String {
     } = units;
     match component {
         "TIME" => time.clone(),
-        "X" | "Y" | "Z" | "DM" => length.clone(),
+        "X" | "Y" | "Z" | "DX" | "DY" | "DZ" | "DM" => length.clone(),
         "PSI" | "THETA" | "PHI" | "YAW" | "PITCH" | "ROLL" => angle.clone(),
         "VX" | "VY" | "VZ" | "VM" => format!("{length}/{time}"),
         "WX" | "WY" | "WZ" | "WM" => format!("{angle}/{time}"),

@@ -225,9 +225,11 @@ fn requests_of_a_req_file_and_steps_of_a_log_are_read_as_tables() {
             .unwrap()
     };
     // vx = 3 + 11 t, vz = −10 t
-    assert!((last("REQ_1.VX") - 14.0).abs() < 1e-4 && (last("REQ_1.VZ") + 10.0).abs() < 1e-4);
-    assert!((last("REQ_1.VM") - 14f64.hypot(10.0)).abs() < 1e-3);
-    assert!((last("REQ_2.F3") + 5.0).abs() < 1e-4);
+    assert!(
+        (last("REQUEST_1.VX") - 14.0).abs() < 1e-4 && (last("REQUEST_1.VZ") + 10.0).abs() < 1e-4
+    );
+    assert!((last("REQUEST_1.MAG") - 14f64.hypot(10.0)).abs() < 1e-3);
+    assert!((last("REQUEST_2.F3") + 5.0).abs() < 1e-4);
     let compared = ok(&[
         "runs",
         "compare",

@@ -188,8 +188,18 @@ fn the_rows_of_a_run_that_is_killed_are_on_the_disk_and_stay_there() {
     let (folder, file) = pendulum("killed");
     let parts = ["csv", "res", "parquet"].map(|e| folder.join(format!("p.{e}.part1")));
     let mut killed = long_run(&file, &parts[2].join("0001.parquet"));
+    let runs = || cognate(&["runs", path(&folder)]).out;
+    let delete = || cognate(&["runs", "delete", path(&folder.join("p")), "--yes"]);
+    assert!(runs().contains("being written"), "{}", runs());
+    let refused = delete();
+    assert!(refused.err.contains("run_in_use"), "{}", refused.err);
     killed.kill().unwrap();
     killed.wait().unwrap();
+    assert!(
+        runs().contains("cut off") && runs().contains(".csv.part1"),
+        "{}",
+        runs()
+    );
     for part in &parts {
         assert_is_a_beginning(&read(part));
     }
@@ -211,6 +221,11 @@ fn the_rows_of_a_run_that_is_killed_are_on_the_disk_and_stay_there() {
     );
     assert_eq!([size(&parts[0]), size(&parts[1])], sizes);
     assert_eq!(read(&folder.join("p.csv")).rows(), 51);
+    // parts go with the run that was cut off
+    std::fs::write(folder.join("p.json"), record).unwrap();
+    let done = delete();
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(!parts.iter().any(|part| part.exists()), "{}", runs());
 }
 
 /// Returns whether this process, and so its children, ignore SIGHUP.

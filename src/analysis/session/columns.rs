@@ -325,10 +325,19 @@ impl Columns {
         table: &mut Vec<usize>,
         computed: &dyn Fn(u32, &Formula) -> bool,
     ) {
+        // the requests of a MREQUEST have the numbers behind those of all others
+        let mut last = model.requests.keys().copied().max().unwrap_or(0);
         for set in request_sets(model) {
+            let number = match set.id.kind {
+                ElementKind::Request => set.id.number,
+                _ => {
+                    last = last.saturating_add(1);
+                    last
+                }
+            };
             let by_closure = matches!(set.kind, RequestKind::User(_));
             let mut entity = entity_of(set.name.clone(), "Request", set.id);
-            let mut requested = Requested::new(set.id.number, &set.kind);
+            let mut requested = Requested::new(number, &set.kind);
             for component in components(model, &set, computed) {
                 let given = set.cnames.get(component.place - 1);
                 if given.is_some_and(String::is_empty) {

@@ -58,11 +58,11 @@ impl std::str::FromStr for Chosen {
 
     /// Reads `JOINT/3` or `JOINT`; refuses kinds without results of their own.
     fn from_str(text: &str) -> Result<Self, String> {
-        let (chosen, kind) = match text.contains('/') {
-            true => text
-                .parse()
-                .map(|id: ElementId| (Chosen::Element(id), id.kind))?,
-            false => text.trim().parse().map(|kind| (Chosen::Kind(kind), kind))?,
+        let of_kind = |kind: ElementKind| (Chosen::Kind(kind), kind);
+        let of_element = |id: ElementId| (Chosen::Element(id), id.kind);
+        let (chosen, kind) = match text.contains(['/', '-']) {
+            true => text.parse().map(of_element)?,
+            false => text.trim().parse().map(of_kind)?,
         };
         match why_without(kind) {
             Some(why) => Err(format!("{kind} has no results of its own: {why}")),

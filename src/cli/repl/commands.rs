@@ -50,7 +50,11 @@ pub const COMMANDS: [(&str, &str, &str); 24] = [
         "FILE",
         "read a model (.adm, .acf): expressions then have its values at TIME",
     ),
-    (":info", "", "what is loaded, and its last run"),
+    (
+        ":info",
+        "[ELEMENT]",
+        "what is loaded, and its last run; or an element, as :show",
+    ),
     (
         ":list",
         "[KEYWORD]",
@@ -59,7 +63,7 @@ pub const COMMANDS: [(&str, &str, &str); 24] = [
     (
         ":show",
         "ELEMENT",
-        "the statement of an element such as JOINT/3, whom it names and who names it",
+        "the statement of an element, by JOINT/3 or its name; whom it names and who names it",
     ),
     (
         ":rename",
@@ -92,6 +96,7 @@ pub fn usage(command: &str) -> Diagnostic {
     let form = row.map_or(String::new(), |(name, arguments, _)| {
         format!("{name} {arguments}")
     });
+    let form = form.trim_end();
     Diagnostic::error("usage", format!("{command} is used like this: {form}"))
 }
 

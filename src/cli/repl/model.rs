@@ -15,7 +15,7 @@ use crate::cli::{Failure, configuration, draw, elements, interrupt, summary, ver
 use crate::dataset::Reading;
 use crate::dataset::command::{Command, Step};
 use crate::diagnostic::{Cause, Diagnostic, Error, Severity};
-use crate::model::{ElementId, ElementKind, Model};
+use crate::model::{ElementKind, Model};
 use crate::report::{Curve, Plot};
 use crate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
@@ -106,7 +106,8 @@ impl Loaded {
     ///
     /// # Errors
     /// When it does not exist.
-    pub fn show(&self, id: ElementId) -> Result<String, Diagnostic> {
+    pub fn show(&self, element: &str) -> Result<String, Diagnostic> {
+        let id = self.reading.model.find_element(element)?;
         elements::shown(&self.reading.model, &self.reading.dataset, id)
     }
 
@@ -114,7 +115,8 @@ impl Loaded {
     ///
     /// # Errors
     /// When it does not exist, or the name cannot be written.
-    pub fn rename(&mut self, id: ElementId, name: &str) -> Result<(), Diagnostic> {
+    pub fn rename(&mut self, element: &str, name: &str) -> Result<(), Diagnostic> {
+        let id = self.reading.model.find_element(element)?;
         self.changed(elements::renamed(&self.reading, id, name)?);
         Ok(())
     }
@@ -123,7 +125,8 @@ impl Loaded {
     ///
     /// # Errors
     /// When it does not exist, or others name it.
-    pub fn delete(&mut self, id: ElementId) -> Result<(), Diagnostic> {
+    pub fn delete(&mut self, element: &str) -> Result<(), Diagnostic> {
+        let id = self.reading.model.find_element(element)?;
         self.changed(elements::without(&self.reading, &[id])?);
         Ok(())
     }

@@ -214,7 +214,6 @@ impl Session {
             return Err(Failure::usage("there is no model: `:load FILE` reads one"));
         };
         let words: Vec<&str> = rest.split_whitespace().collect();
-        let element = |word: &str| word.parse().map_err(|e: String| Failure::usage(e));
         let silent = |()| String::new();
         match (command, words.as_slice()) {
             (":info", []) => Ok(model.info()),
@@ -223,12 +222,12 @@ impl Session {
                 let kind = kind.parse().map_err(|e: String| Failure::usage(e))?;
                 Ok(model.list(Some(kind)))
             }
-            (":show", [id]) => Ok(model.show(element(id)?)?),
-            (":rename", [id, ..]) if words.len() > 1 => {
-                let name = rest[id.len()..].trim().trim_matches('\'');
-                Ok(model.rename(element(id)?, name).map(silent)?)
+            (":show" | ":info", [element]) => Ok(model.show(element)?),
+            (":rename", [element, ..]) if words.len() > 1 => {
+                let name = rest[element.len()..].trim().trim_matches('\'');
+                Ok(model.rename(element, name).map(silent)?)
             }
-            (":delete", [id]) => Ok(model.delete(element(id)?).map(silent)?),
+            (":delete", [element]) => Ok(model.delete(element).map(silent)?),
             (":save", [_, ..]) => Ok(model.save(Path::new(rest)).map(silent)?),
             (":verify", []) => model.verify(),
             (":draw", [_, ..]) => model.draw(self.time, Path::new(rest)).map(silent),

@@ -5,7 +5,7 @@ mod compare;
 use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, say, width};
 use crate::diagnostic::Diagnostic;
-use crate::results::kept::{self, KeptRun};
+use crate::results::kept::{self, KeptRun, State};
 use crate::results::{digits_of_six, json};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -69,7 +69,9 @@ pub fn run(args: &Args) -> Outcome {
         Some(Verb::Rename { run, name }) => {
             let run = kept::find(run)?;
             told_apart(&run.rename(name)?);
-            remark(format!("{} is now {name}", run.place()));
+            let now = run.record_file().with_file_name(name);
+            let now = now.strip_prefix(".").unwrap_or(&now).display();
+            remark(format!("{} is now {now}", run.place()));
             Ok(Exit::Done)
         }
         Some(Verb::Delete { runs, yes }) => delete(runs, *yes),
@@ -113,6 +115,17 @@ fn size(bytes: u64) -> String {
     format!("{size:.1} {}", UNITS[unit])
 }
 
+/// Returns the status of a run in words.
+fn status(run: &KeptRun) -> String {
+    match run.state() {
+        State::CutOff => "cut off".into(),
+        State::BeingWritten | State::Complete => {
+            let status = run.record["status"].as_str().unwrap_or_default();
+            status.replace('_', " ")
+        }
+    }
+}
+
 /// Prints the runs, one a row.
 fn table(runs: &[KeptRun]) -> String {
     let heads = [
@@ -130,13 +143,18 @@ fn table(runs: &[KeptRun]) -> String {
             rest.unwrap_or_else(|| f.name.clone())
         });
         let others = files.iter().filter(|f| !f.is_own).count();
+        let parts = run.parts();
+        let endings = endings.chain(parts.iter().filter_map(|(path, _)| {
+            let name = path.file_name()?.to_string_lossy();
+            name.strip_prefix(&run.name).map(str::to_owned)
+        }));
         let others = match others {
             0 => String::new(),
             n => format!(" ({n} gone or changed)"),
         };
         table.push([
             run.place(),
-            text("status").replace('_', " "),
+            status(run),
             text("model"),
             span(run).map_or(String::new(), |[start, end]| {
                 format!("{} to {}", digits_of_six(start), digits_of_six(end))
@@ -145,7 +163,11 @@ fn table(runs: &[KeptRun]) -> String {
             text("method"),
             number("error").map_or(String::new(), digits_of_six),
             endings.collect::<Vec<_>>().join(" ") + &others,
-            size(own.filter_map(|f| f.bytes).sum()),
+            size(
+                own.filter_map(|f| f.bytes)
+                    .chain(parts.iter().map(|p| p.1))
+                    .sum(),
+            ),
         ]);
     }
     table.text(width::columns())
@@ -166,13 +188,17 @@ fn as_json(run: &KeptRun) -> Value {
         "name": run.name,
         "folder": run.folder.display().to_string(),
         "model": fact("model"),
-        "status": fact("status"),
+        "status": match run.state() {
+            State::CutOff => json!("cut_off"),
+            State::BeingWritten | State::Complete => fact("status"),
+        },
         "stop_reason": fact("stop_reason"),
         "span": span(run),
         "outputs": fact("outputs"),
         "method": fact("method"),
         "error": fact("error"),
         "files": run.files().iter().map(file).collect::<Vec<_>>(),
+        "parts": run.parts().iter().map(|(path, bytes)| json!({ "path": path.display().to_string(), "bytes": bytes })).collect::<Vec<_>>(),
     })
 }
 
@@ -185,6 +211,9 @@ fn delete(names: &[PathBuf], yes: bool) -> Outcome {
             remark(format!("{}:", run.record_file().display()));
             for file in run.files().iter().filter(|f| f.is_own) {
                 remark(format!("  {}", file.path.display()));
+            }
+            for (part, _) in run.parts() {
+                remark(format!("  {}", part.display()));
             }
         }
         remark("delete these files? [y/N]");

@@ -29,7 +29,7 @@ pub(super) static PAGES: &[Page] = &[
     Page {
         keyword: "REQUEST",
         summary: "Up to eight columns among the results.",
-        text: "Either one of the four quantities between markers, or expressions F1 to F8. Columns are called NAME.COMPONENT: RESULTS_NAME (or the name of the comment line, or REQ_id), and CNAMES (or those below). An empty name \"\" leaves a component out.",
+        text: "Either one of the four quantities between markers, or expressions F1 to F8. Columns are called NAME.COMPONENT: RESULTS_NAME (or the name of the comment line, or REQUEST_id), and CNAMES (or those below). An empty name \"\" leaves a component out.",
         equation: "              1    2     3     4     5     6     7      8\nDISPLACEMENT  MAG  DX    DY    DZ    -     PSI   THETA  PHI    3-1-3 angles, rad\nVELOCITY      MAG  VX    VY    VZ    AMAG  WX    WY     WZ\nACCELERATION  MAG  ACCX  ACCY  ACCZ  AMAG  WDTX  WDTY   WDTZ\nFORCE         MAG  FX    FY    FZ    AMAG  TX    TY     TZ\n\nREQUEST/1, F2=DX(12,21)\\\n, F3=VX(12,21)\\                  a backslash ends each expression\n, CNAMES=\"\",\"x\",\"v\",\"\",\"\",\"\",\"\",\"\", RESULTS_NAME=slider",
         effect: Effect::Solved,
         notes: &[

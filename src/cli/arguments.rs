@@ -1,0 +1,113 @@
+//! Options that several commands take, each written once: how long a run is, how it is integrated,
+//! what is not solved, and what ends it early.
+
+use super::limit;
+use crate::analysis::session::Options;
+use crate::dataset::command::SimulationKind;
+use crate::model::ElementKind;
+
+/// The kind of a simulation, on the command line and in a set-up.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum KindName {
+    Dynamic,
+    Kinematic,
+    Static,
+    Transient,
+    InitialConditions,
+}
+
+impl From<KindName> for SimulationKind {
+    fn from(name: KindName) -> Self {
+        match name {
+            KindName::Dynamic => SimulationKind::Dynamic,
+            KindName::Kinematic => SimulationKind::Kinematic,
+            KindName::Static => SimulationKind::Static,
+            KindName::Transient => SimulationKind::Transient,
+            KindName::InitialConditions => SimulationKind::InitialConditions,
+        }
+    }
+}
+
+/// The one simulation of a dataset without command file.
+#[derive(clap::Args, Clone, Copy, Debug, Default)]
+pub struct SpanArgs {
+    /// End of the simulation, for a dataset without command file
+    #[arg(long, value_name = "TIME")]
+    pub end: Option<f64>,
+    /// Output steps, for a dataset without command file
+    #[arg(long, value_name = "N")]
+    pub steps: Option<usize>,
+    /// Kind of simulation, for a dataset without command file
+    #[arg(long = "type", value_name = "KIND", value_enum)]
+    pub kind: Option<KindName>,
+}
+
+/// Error and method of the integration.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct IntegrationArgs {
+    /// Permitted local error of the integration, relative to the magnitude of each unknown
+    #[arg(long, value_name = "E")]
+    pub error: Option<f64>,
+    /// Method of integration (AUTO chooses by itself)
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<String>,
+}
+
+/// The treatment of what is not solved.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct UnsolvedArgs {
+    /// Leave out elements of this kind where they are not solved (repeatable)
+    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
+    pub skip: Vec<ElementKind>,
+    /// Take what USER(…) would compute as zero
+    #[arg(long = "zero-user")]
+    pub zero_user: bool,
+}
+
+/// Ways of a run through jumps, and limits of its work.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct LimitArgs {
+    /// Run motions whose displacement or velocity jumps, piece by piece
+    #[arg(long)]
+    pub piecewise: bool,
+    /// Steps that a simulation may try before it ends early, with exit code 7
+    #[arg(long, value_name = "N")]
+    pub max_steps: Option<usize>,
+    /// Processor time after which a run ends with its results so far, and exit code 7: 60s, 2min
+    #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
+    pub limit: Option<f64>,
+}
+
+impl IntegrationArgs {
+    /// Returns options with this error and method.
+    pub fn given_to(&self, options: Options) -> Options {
+        Options {
+            error: self.error,
+            method: self.method.clone(),
+            ..options
+        }
+    }
+}
+
+impl UnsolvedArgs {
+    /// Returns options with this treatment.
+    pub fn given_to(&self, options: Options) -> Options {
+        Options {
+            skip: self.skip.iter().copied().collect(),
+            zero_user: self.zero_user,
+            ..options
+        }
+    }
+}
+
+impl LimitArgs {
+    /// Returns options with these limits.
+    pub fn given_to(&self, options: Options) -> Options {
+        Options {
+            piecewise: self.piecewise,
+            max_steps: self.max_steps,
+            limit: self.limit,
+            ..options
+        }
+    }
+}
