@@ -1,9 +1,10 @@
 //! `cognate configuration`: the configuration of a run at some time as a dataset that begins there.
 
+use super::arguments::{IntegrationArgs, KindName, SpanArgs, UnsolvedArgs};
 use super::convert::same_file;
 use super::moved::has_ending;
 use super::recorded::{model_file, record_of};
-use super::run::{self, KindName, Single};
+use super::run::{self, Single};
 use super::setup::Asked;
 use super::{Exit, Failure, Outcome, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
@@ -45,21 +46,13 @@ pub struct Args {
     /// Dataset or command file of the results, where it is not the one that their record names
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
-    /// Permitted local error of the integration; that of the run where results are given
-    #[arg(long, value_name = "E")]
-    error: Option<f64>,
-    /// Method of integration (AUTO chooses by itself); that of the model where none is given
-    #[arg(long, value_name = "NAME")]
-    method: Option<String>,
+    #[command(flatten)]
+    integration: IntegrationArgs,
     /// Kind of simulation, for a dataset without command file
     #[arg(long = "type", value_name = "KIND", value_enum)]
     kind: Option<KindName>,
-    /// Leave out elements of this kind where they are not solved (repeatable)
-    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    skip: Vec<ElementKind>,
-    /// Take what USER(…) would compute as zero
-    #[arg(long = "zero-user")]
-    zero_user: bool,
+    #[command(flatten)]
+    unsolved: UnsolvedArgs,
 }
 
 /// Writes a configuration as a dataset.
@@ -93,22 +86,20 @@ pub fn run(args: &Args) -> Outcome {
             &Single {
                 model: &file,
                 dataset,
-                kind: args.kind,
-                end: Some(args.at),
-                steps: None,
+                span: SpanArgs {
+                    kind: args.kind,
+                    end: Some(args.at),
+                    steps: None,
+                },
             },
             asked,
         )?,
     };
-    let options = Options {
-        error: args
-            .error
-            .or_else(|| recorded.and_then(|r| r["error"].as_f64())),
-        method: args.method.clone(),
-        skip: args.skip.iter().copied().collect(),
-        zero_user: args.zero_user,
-        ..Options::default()
-    };
+    let options = args.integration.given_to(Options::default());
+    let mut options = args.unsolved.given_to(options);
+    // a run is gone through as it was solved
+    let error = || recorded.and_then(|r| r["error"].as_f64());
+    options.error = options.error.or_else(error);
     let mut session = Session::new(job.reading.model, &job.base, options);
     session.folders = file.parent().map(Path::to_path_buf).into_iter().collect();
     let reached = lead(&mut session, &job.steps, args.at);

@@ -14,9 +14,9 @@ use std::path::PathBuf;
 
 /// List the elements of a model, show one of them, rename or delete one
 ///
-/// Names are those of Adams View (`adams_view_name`); an element is called by its name, or by keyword
-/// and number. A dataset is changed in its text: comments,
-/// order and numbers stay as they are. An element that others name is not deleted.
+/// Names are those of Adams View (`adams_view_name`); an element is called by its name, or by
+/// keyword and number. A dataset is changed in its text: comments, order and numbers stay as they
+/// are. An element that others name is not deleted.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -1,8 +1,9 @@
 //! `cognate export`: a model as it stands, with chosen loads and its set-up, as a dataset and a
 //! command file for any program that reads them.
 
+use super::arguments::SpanArgs;
 use super::configuration::commands;
-use super::run::{self, KindName, Single};
+use super::run::{self, Single};
 use super::setup::{self, Asked, Setup};
 use super::verify::before_simulation;
 use super::{Exit, Failure, Outcome, remark};
@@ -38,15 +39,8 @@ pub struct Args {
     /// last choice
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     loads: Vec<String>,
-    /// End of the simulation, for a dataset without command file
-    #[arg(long, value_name = "TIME")]
-    end: Option<f64>,
-    /// Output steps, for a dataset without command file
-    #[arg(long, value_name = "N")]
-    steps: Option<usize>,
-    /// Kind of simulation, for a dataset without command file
-    #[arg(long = "type", value_name = "KIND", value_enum)]
-    kind: Option<KindName>,
+    #[command(flatten)]
+    span: SpanArgs,
     /// Replace files of these names, but not the model itself
     #[arg(long)]
     overwrite: bool,
@@ -117,9 +111,7 @@ impl Args {
         Single {
             model: &self.model,
             dataset: None,
-            kind: self.kind,
-            end: self.end,
-            steps: self.steps,
+            span: self.span,
         }
     }
 }

@@ -1,12 +1,12 @@
 //! `cognate linear`: small motions of a model about a state, as eigenvalues and as a linear system.
 
+use super::arguments::UnsolvedArgs;
 use super::{Exit, Failure, Outcome, interrupt, modes, remark, run, say, width};
 use crate::analysis::linear::Wanted;
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::watch::Watch;
 use crate::diagnostic::{Cause, Diagnostic};
-use crate::model::ElementKind;
 use crate::results::{self, Status, json};
 use std::path::PathBuf;
 
@@ -36,12 +36,8 @@ pub struct Args {
     /// Folder that NAME_linear.json and NAME_linear.m are written to
     #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Leave out elements of this kind where they are not solved (repeatable)
-    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    skip: Vec<ElementKind>,
-    /// Take what USER(…) would compute as zero
-    #[arg(long = "zero-user")]
-    zero_user: bool,
+    #[command(flatten)]
+    unsolved: UnsolvedArgs,
     /// Print everything as JSON
     #[arg(long)]
     json: bool,
@@ -68,11 +64,7 @@ pub fn run(args: &Args) -> Outcome {
     } else {
         (run::read(&args.model)?, run::stem(&args.model), Vec::new())
     };
-    let options = Options {
-        skip: args.skip.iter().copied().collect(),
-        zero_user: args.zero_user,
-        ..Options::default()
-    };
+    let options = args.unsolved.given_to(Options::default());
     let mut session = Session::new(reading.model, &base, options);
     session.folders = args
         .model

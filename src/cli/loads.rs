@@ -1,6 +1,7 @@
 //! `cognate loads`: the loads of a model, its load cases, and the set-up of its runs.
 
-use super::run::{self, KindName};
+use super::arguments::{IntegrationArgs, SpanArgs};
+use super::run;
 use super::setup::{self, Asked, Load, Setup, edit, loads_of};
 use super::table::Table;
 use super::{Exit, Failure, Outcome, remark, say, width};
@@ -87,27 +88,16 @@ enum Verb {
 struct SetupArgs {
     /// Dataset (.adm), or command file (.acf) that names it
     model: PathBuf,
-    /// End of the simulation, for a dataset without command file
-    #[arg(long, value_name = "TIME")]
-    end: Option<f64>,
-    /// Output steps, for a dataset without command file
-    #[arg(long, value_name = "N")]
-    steps: Option<u32>,
-    /// Kind of simulation, for a dataset without command file
-    #[arg(long = "type", value_name = "KIND", value_enum)]
-    kind: Option<KindName>,
+    #[command(flatten)]
+    span: SpanArgs,
     /// Find the static equilibrium first
     #[arg(long, conflicts_with = "no_equilibrium")]
     equilibrium: bool,
     /// Do not find the static equilibrium first
     #[arg(long)]
     no_equilibrium: bool,
-    /// Permitted local error of the integration
-    #[arg(long, value_name = "E")]
-    error: Option<f64>,
-    /// Method of integration
-    #[arg(long, value_name = "NAME")]
-    method: Option<String>,
+    #[command(flatten)]
+    integration: IntegrationArgs,
     /// Formats of the tables
     #[arg(long = "format", value_name = "NAME", value_delimiter = ',')]
     formats: Vec<String>,
@@ -253,11 +243,11 @@ fn set_up(args: &SetupArgs) -> Outcome {
     for only in &args.only {
         only.parse::<Chosen>().map_err(Failure::usage)?;
     }
-    let numbers = [("end", args.end), ("error", args.error)];
-    let kind = args.kind.and_then(|k| k.to_possible_value());
+    let numbers = [("end", args.span.end), ("error", args.integration.error)];
+    let kind = args.span.kind.and_then(|k| k.to_possible_value());
     let words = [
         ("type", kind.map(|k| k.get_name().to_owned())),
-        ("method", args.method.clone()),
+        ("method", args.integration.method.clone()),
     ];
     let lists = [
         ("format", &args.formats),
@@ -281,8 +271,9 @@ fn set_up(args: &SetupArgs) -> Outcome {
                 edit::set(solve, key, value.into());
             }
         }
-        if let Some(steps) = args.steps {
-            edit::set(solve, "steps", i64::from(steps).into());
+        if let Some(steps) = args.span.steps {
+            let steps = i64::try_from(steps).unwrap_or(i64::MAX);
+            edit::set(solve, "steps", steps.into());
         }
         for (key, value) in words {
             if let Some(value) = value {

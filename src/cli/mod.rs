@@ -6,6 +6,7 @@
 
 mod anatomy;
 mod animate;
+mod arguments;
 mod assembly;
 pub mod card;
 mod check;

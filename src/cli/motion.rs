@@ -26,7 +26,8 @@ Examples:
 pub struct Args {
     /// Results of the run: .res, .parquet, or .csv and .json with all parts
     results: PathBuf,
-    /// Marker that moves, as MARKER/20, or joint, as JOINT/3 or by its name: its I marker (repeatable)
+    /// Marker that moves, as MARKER/20, or joint, as JOINT/3 or by its name: its I marker
+    /// (repeatable)
     #[arg(long = "of", value_name = "ELEMENT", required = true)]
     of: Vec<String>,
     /// Marker that the motion is relative to

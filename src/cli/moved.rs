@@ -1,13 +1,14 @@
 //! A model and a run of it, for pictures: solved now, or read from files of results.
 
-use super::run::{self, KindName, Single};
+use super::arguments::{KindName, SpanArgs, UnsolvedArgs};
+use super::run::{self, Single};
 use super::setup::Asked;
 use super::{Failure, complain_in_files, interrupt, remark};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::dataset::surface::Surfaces;
 use crate::diagnostic::Diagnostic;
-use crate::model::{ElementKind, Model};
+use crate::model::Model;
 use crate::report::mechanism::{Dimension, Pair, Pictured};
 use crate::results::{self, Run, Status};
 use std::path::{Path, PathBuf};
@@ -21,21 +22,10 @@ pub struct Source {
     /// Dataset of the results; without it the one of their name beside them
     #[arg(long, value_name = "FILE")]
     pub model: Option<PathBuf>,
-    /// End of the simulation, for a dataset without command file
-    #[arg(long, value_name = "TIME")]
-    pub end: Option<f64>,
-    /// Output steps, for a dataset without command file
-    #[arg(long, value_name = "N")]
-    pub steps: Option<usize>,
-    /// Kind of simulation, for a dataset without command file
-    #[arg(long = "type", value_name = "KIND", value_enum)]
-    pub kind: Option<KindName>,
-    /// Leave out elements of this kind where they are not solved (repeatable)
-    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    pub skip: Vec<ElementKind>,
-    /// Take what USER(…) would compute as zero
-    #[arg(long = "zero-user")]
-    pub zero_user: bool,
+    #[command(flatten)]
+    pub span: SpanArgs,
+    #[command(flatten)]
+    pub unsolved: UnsolvedArgs,
 }
 
 /// Distances that a picture shows.
@@ -107,23 +97,24 @@ impl Source {
         }
         let job = if is_dataset {
             let initial = KindName::InitialConditions;
-            let kind = self.kind.or(self.end.is_none().then_some(initial));
+            let SpanArgs { end, steps, kind } = self.span;
+            let kind = kind.or(end.is_none().then_some(initial));
             run::alone(&Single {
                 model: &self.file,
                 dataset: None,
-                kind,
-                end: self.end,
-                steps: self.steps.or(Some(STEPS)),
+                span: SpanArgs {
+                    kind,
+                    end,
+                    steps: steps.or(Some(STEPS)),
+                },
             })?
         } else {
             run::script(&self.file, self.model.as_deref())?
         };
-        let options = Options {
+        let options = self.unsolved.given_to(Options {
             full: true,
-            skip: self.skip.iter().copied().collect(),
-            zero_user: self.zero_user,
             ..Options::default()
-        };
+        });
         let mut session = Session::new(job.reading.model, &job.base, options);
         session.folders = self
             .file

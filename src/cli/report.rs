@@ -1,11 +1,12 @@
 //! `cognate report`: a model at many requests by all methods, as error against time.
 
-use super::run::{self, KindName, Single};
+use super::arguments::{SpanArgs, UnsolvedArgs};
+use super::run::{self, Single};
 use super::{Exit, Failure, Outcome, interrupt, limit, remark, say};
 use crate::analysis::session::Options;
 use crate::analysis::watch::Watch;
 use crate::analysis::work_precision::{Question, Study, page, survey};
-use crate::model::{ElementKind, Model, RequestKind};
+use crate::model::{Model, RequestKind};
 use crate::results::json;
 use crate::results::output_folder::OutputFolder;
 use std::path::{Path, PathBuf};
@@ -38,24 +39,13 @@ pub struct Args {
     /// A further channel to compare: any expression (repeatable)
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
-    /// End of the simulation, for a dataset without command file
-    #[arg(long, value_name = "TIME")]
-    end: Option<f64>,
-    /// Output steps, for a dataset without command file
-    #[arg(long, value_name = "N")]
-    steps: Option<usize>,
-    /// Kind of simulation, for a dataset without command file
-    #[arg(long = "type", value_name = "KIND", value_enum)]
-    kind: Option<KindName>,
+    #[command(flatten)]
+    span: SpanArgs,
     /// Folder that the report is written to
     #[arg(short = 'o', long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Leave out elements of this kind where they are not solved (repeatable)
-    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    skip: Vec<ElementKind>,
-    /// Take what USER(…) would compute as zero
-    #[arg(long = "zero-user")]
-    zero_user: bool,
+    #[command(flatten)]
+    unsolved: UnsolvedArgs,
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
@@ -88,9 +78,7 @@ pub fn run(args: &Args) -> Outcome {
         run::alone(&Single {
             model: &args.model,
             dataset: args.dataset.as_deref(),
-            kind: args.kind,
-            end: args.end,
-            steps: args.steps,
+            span: args.span,
         })?
     };
     let read = clock.elapsed().as_secs_f64();
@@ -101,12 +89,10 @@ pub fn run(args: &Args) -> Outcome {
     let parent = args.model.parent().map(Path::to_path_buf);
     let question = Question {
         name: job.base,
-        options: Options {
+        options: args.unsolved.given_to(Options {
             columns: columns(args, &model),
-            skip: args.skip.iter().copied().collect(),
-            zero_user: args.zero_user,
             ..Options::default()
-        },
+        }),
         model: &model,
         steps: &job.steps,
         folders: args.out.clone().into_iter().chain(parent).collect(),

@@ -1,6 +1,7 @@
 //! `cognate run`: a model with its commands, from file to results.
 
-use super::limit::{self, Guard};
+use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs};
+use super::limit::Guard;
 use super::progress::Progress;
 use super::render::Sources;
 use super::setup::{self, Asked, Prepared, Setup};
@@ -40,24 +41,13 @@ pub struct Args {
     model: PathBuf,
     /// Dataset that the commands are for, where it is not the one that they name
     dataset: Option<PathBuf>,
-    /// Permitted local error of the integration, relative to the magnitude of each unknown
-    #[arg(long, value_name = "E")]
-    error: Option<f64>,
-    /// Method of integration (AUTO chooses by itself)
-    #[arg(long, value_name = "NAME")]
-    method: Option<String>,
+    #[command(flatten)]
+    integration: IntegrationArgs,
     /// A further column of the table: any expression (repeatable)
     #[arg(long = "column", value_name = "EXPR")]
     columns: Vec<String>,
-    /// End of the simulation, for a dataset without command file
-    #[arg(long, value_name = "TIME")]
-    end: Option<f64>,
-    /// Output steps, for a dataset without command file
-    #[arg(long, value_name = "N")]
-    steps: Option<usize>,
-    /// Kind of simulation, for a dataset without command file
-    #[arg(long = "type", value_name = "KIND", value_enum)]
-    kind: Option<KindName>,
+    #[command(flatten)]
+    span: SpanArgs,
     /// Load cases and loads that act, as SFORCE/3 or gravity; `all` for all loads. The choice is
     /// kept in MODEL.toml for the next runs
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
@@ -71,23 +61,12 @@ pub struct Args {
     /// Solve N times and report the median time
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeat: usize,
-    /// Leave out elements of this kind where they are not solved (repeatable)
-    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    skip: Vec<ElementKind>,
-    /// Take what USER(…) would compute as zero
-    #[arg(long = "zero-user")]
-    zero_user: bool,
-    /// Run motions whose displacement or velocity jumps, piece by piece
-    #[arg(long)]
-    piecewise: bool,
-    /// Steps that a simulation may try before it ends with exit code 7
-    #[arg(long, value_name = "N")]
-    max_steps: Option<usize>,
+    #[command(flatten)]
+    unsolved: UnsolvedArgs,
+    #[command(flatten)]
+    limits: LimitArgs,
     #[command(flatten)]
     output: output::FileArgs,
-    /// Processor time after which the run ends with its results so far and exit code 7: 60s, 2min
-    #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
-    limit: Option<f64>,
     /// Record only this element, as JOINT/3, or this kind, as JOINT (repeatable)
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<Chosen>,
@@ -103,28 +82,6 @@ pub struct Args {
     /// Print the run record as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// The kind of a simulation, on the command line and in a set-up.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(super) enum KindName {
-    Dynamic,
-    Kinematic,
-    Static,
-    Transient,
-    InitialConditions,
-}
-
-impl From<KindName> for SimulationKind {
-    fn from(name: KindName) -> Self {
-        match name {
-            KindName::Dynamic => SimulationKind::Dynamic,
-            KindName::Kinematic => SimulationKind::Kinematic,
-            KindName::Static => SimulationKind::Static,
-            KindName::Transient => SimulationKind::Transient,
-            KindName::InitialConditions => SimulationKind::InitialConditions,
-        }
-    }
 }
 
 /// Shows progress and listens for Ctrl-C.
@@ -156,7 +113,7 @@ impl Watch for Terminal<'_> {
 pub fn run(args: &Args) -> Outcome {
     let clock = ProcessClock::start();
     interrupt::install_for_run();
-    let guard = args.limit.map(Guard::set);
+    let guard = args.limits.limit.map(Guard::set);
 
     // read
     let is_command = has_commands(&args.model);
@@ -241,9 +198,7 @@ fn job(args: &Args, is_command: bool) -> Result<Job, Failure> {
     let single = Single {
         model: &args.model,
         dataset: args.dataset.as_deref(),
-        kind: args.kind,
-        end: args.end,
-        steps: args.steps,
+        span: args.span,
     };
     alone_with(&single, asked)
 }
@@ -253,8 +208,9 @@ impl Args {
     fn completed(&self, setup: &Setup) -> Self {
         let mut all = self.clone();
         let solve = &setup.solve;
-        all.error = all.error.or(solve.error);
-        all.method = all.method.or_else(|| solve.method.clone());
+        let IntegrationArgs { error, method } = &mut all.integration;
+        *error = error.or(solve.error);
+        *method = method.take().or_else(|| solve.method.clone());
         all.body_motion |= solve.body_motion;
         if all.columns.is_empty() {
             all.columns.clone_from(&solve.columns);
@@ -388,23 +344,17 @@ fn open(args: &Args, model: Model, base: &str) -> Session {
         || args.output.animate
         || !args.only.is_empty();
     let options = Options {
-        error: args.error,
-        method: args.method.clone(),
         repeat: args.repeat,
         columns: args.columns.clone(),
         full,
         frames: args.output.need(&model, Format::Gra),
         body_rates: args.body_motion,
         only: args.only.clone(),
-        piecewise: args.piecewise,
-        skip: args.skip.iter().copied().collect(),
-        zero_user: args.zero_user,
-        max_steps: args.max_steps,
-        limit: args.limit,
         accuracy: args.accuracy,
-        keep_states: false,
-        keep_start: false,
+        ..Options::default()
     };
+    let options = args.integration.given_to(options);
+    let options = args.limits.given_to(args.unsolved.given_to(options));
     let mut session = Session::new(model, base, options);
     session.run.record.model = args.model.display().to_string();
     let folder = args.model.parent().map(Path::to_path_buf);
@@ -472,12 +422,8 @@ pub(super) struct Single<'a> {
     pub model: &'a Path,
     /// a second file, which is a mistake
     pub dataset: Option<&'a Path>,
-    /// kind of the simulation
-    pub kind: Option<KindName>,
-    /// its end
-    pub end: Option<f64>,
-    /// its output steps
-    pub steps: Option<usize>,
+    /// its kind, its end and its output steps
+    pub span: SpanArgs,
 }
 
 /// Prepares a dataset with one simulation given by options, else by its set-up, and the loads of
@@ -536,8 +482,9 @@ pub(super) fn alone_step(args: &Single<'_>) -> Result<Step, Failure> {
 /// Returns the simulation that options describe, else a set-up, after one at rest where it asks for
 /// that.
 fn single_simulation(args: &Single<'_>, setup: &Setup) -> Option<Vec<Step>> {
-    let kind = args.kind.map(SimulationKind::from);
-    setup.solve.simulations(kind, args.end, args.steps)
+    let SpanArgs { end, steps, kind } = args.span;
+    let kind = kind.map(SimulationKind::from);
+    setup.solve.simulations(kind, end, steps)
 }
 
 pub(super) fn stem(path: &Path) -> String {

@@ -7,9 +7,10 @@ use crate::results::{Accuracy, Kind, Run, Seconds, Warning, digits_of_six};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Rows of the table beside first and last rows of simulations: at every tenth of the run. Results
-/// can have thousands.
+/// Rows of the table of one simulation: at every tenth of it. Results can have thousands.
 const ROWS: usize = 11;
+/// Rows of the table of several simulations, beside the first and the last of each.
+const ROWS_OF_SEVERAL: usize = 9;
 /// Most rows of which none is left out.
 const MOST_ROWS: usize = 13;
 /// Most simulations whose first and last rows are shown.
@@ -91,7 +92,6 @@ fn selected(run: &Run, rows: &[usize]) -> Vec<usize> {
     if n <= MOST_ROWS {
         return rows.to_vec();
     }
-    let mut shown: Vec<usize> = (0..ROWS).map(|k| rows[k * (n - 1) / (ROWS - 1)]).collect();
     let sequences = run.sequences.iter().filter(|s| !s.rows.is_empty());
     let mut ends = Vec::new();
     let mut before = None;
@@ -103,6 +103,14 @@ fn selected(run: &Run, rows: &[usize]) -> Vec<usize> {
         ends.push(sequence.rows.end - 1);
         before = Some(sequence.kind);
     }
+    let simulations = run.sequences.iter();
+    let simulations =
+        simulations.filter(|s| !matches!(s.kind, Kind::Input | Kind::InitialConditions));
+    let last = match simulations.count() {
+        0 | 1 => ROWS - 1,
+        _ => ROWS_OF_SEVERAL - 1,
+    };
+    let mut shown: Vec<usize> = (0..=last).map(|k| rows[k * (n - 1) / last]).collect();
     if ends.len() <= 2 * SIMULATIONS {
         shown.extend(ends.into_iter().filter(|row| rows.contains(row)));
     }

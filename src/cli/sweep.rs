@@ -1,15 +1,15 @@
 //! `cognate sweep`: one model many times, and a table of what came of it.
 
+use super::arguments::{IntegrationArgs, LimitArgs, SpanArgs, UnsolvedArgs};
 use super::progress::Progress;
 use super::render::Sources;
-use super::run::{self, KindName, Single};
+use super::run::{self, Single};
 use super::table::Table as Text;
-use super::{Exit, Failure, Outcome, interrupt, limit, remark, say, width};
+use super::{Exit, Failure, Outcome, interrupt, remark, say, width};
 use crate::analysis::session::Options;
 use crate::analysis::sweep::design::{self, Values};
 use crate::analysis::sweep::{Follow, Row, Sweep, Table};
 use crate::diagnostic::{Diagnostic, Error};
-use crate::model::ElementKind;
 use crate::results::format::Style;
 use crate::results::{self, Status, digits_of_six};
 use std::path::{Path, PathBuf};
@@ -58,36 +58,14 @@ pub struct Args {
     /// given
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// End of the simulation, for a dataset without command file
-    #[arg(long, value_name = "TIME")]
-    end: Option<f64>,
-    /// Output steps, for a dataset without command file
-    #[arg(long, value_name = "N")]
-    steps: Option<usize>,
-    /// Kind of simulation, for a dataset without command file
-    #[arg(long = "type", value_name = "KIND", value_enum)]
-    kind: Option<KindName>,
-    /// Permitted local error of the integration, relative to the magnitude of each unknown
-    #[arg(long, value_name = "E")]
-    error: Option<f64>,
-    /// Method of integration (AUTO chooses by itself)
-    #[arg(long, value_name = "NAME")]
-    method: Option<String>,
-    /// Leave out elements of this kind where they are not solved (repeatable)
-    #[arg(long = "skip-unsupported", value_name = "KEYWORD")]
-    skip: Vec<ElementKind>,
-    /// Take what USER(…) would compute as zero
-    #[arg(long = "zero-user")]
-    zero_user: bool,
-    /// Run motions whose displacement or velocity jumps, piece by piece
-    #[arg(long)]
-    piecewise: bool,
-    /// Steps that a simulation may try before its run fails
-    #[arg(long, value_name = "N")]
-    max_steps: Option<usize>,
-    /// Processor time after which a run fails: 60s, 2min
-    #[arg(long, value_name = "TIME", value_parser = limit::seconds)]
-    limit: Option<f64>,
+    #[command(flatten)]
+    span: SpanArgs,
+    #[command(flatten)]
+    integration: IntegrationArgs,
+    #[command(flatten)]
+    unsolved: UnsolvedArgs,
+    #[command(flatten)]
+    limits: LimitArgs,
     /// Say nothing but mistakes
     #[arg(long)]
     quiet: bool,
@@ -181,9 +159,7 @@ fn open(args: &Args) -> Result<(Sweep, String), Failure> {
         run::alone(&Single {
             model: &args.model,
             dataset: None,
-            kind: args.kind,
-            end: args.end,
-            steps: args.steps,
+            span: args.span,
         })?
     };
     let model = job.reading.model;
@@ -191,16 +167,8 @@ fn open(args: &Args) -> Result<(Sweep, String), Failure> {
         return Err(Failure::in_model(&job.reading.dataset, error));
     }
     let mut sweep = Sweep::new(model, job.steps);
-    sweep.options = Options {
-        error: args.error,
-        method: args.method.clone(),
-        skip: args.skip.iter().copied().collect(),
-        zero_user: args.zero_user,
-        piecewise: args.piecewise,
-        max_steps: args.max_steps,
-        limit: args.limit,
-        ..Options::default()
-    };
+    let options = args.integration.given_to(Options::default());
+    sweep.options = args.limits.given_to(args.unsolved.given_to(options));
     let folder = args.model.parent().map(Path::to_path_buf);
     sweep.folders.extend(folder);
     Ok((sweep, job.base))

@@ -158,8 +158,8 @@ impl KeptRun {
         }
     }
 
-    /// Returns the parts of a run that is not complete, with their sizes in bytes: rows so far, each
-    /// to be read by its name; of Parquet a folder.
+    /// Returns the parts of a run that is not complete, with their sizes in bytes: rows so far,
+    /// each to be read by its name; of Parquet a folder.
     pub fn parts(&self) -> Vec<(PathBuf, u64)> {
         let own = format!("{}.", self.name);
         let is_part = |path: &Path| {
@@ -235,8 +235,8 @@ impl KeptRun {
         Err(Diagnostic::error("run_in_use", what).help("wait until it has ended, or end it"))
     }
 
-    /// Removes the files of the run, its parts where it was cut off, and its record at last; returns the files that are there and
-    /// not as the run wrote them, which stay.
+    /// Removes the files of the run, its parts where it was cut off, and its record at last;
+    /// returns the files that are there and not as the run wrote them, which stay.
     ///
     /// # Errors
     /// When a program is writing it, or a file cannot be removed. The record then stays, and claims

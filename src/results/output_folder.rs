@@ -32,7 +32,7 @@ pub struct OutputFolder {
     held: Option<disk::File>,
 }
 
-/// The status in the record of a run that is being written, or whose program was ended from outside.
+/// The status in the record of a run that is being written, or that was ended from outside.
 pub(super) const BEING_WRITTEN: &str = "being written";
 
 impl OutputFolder {

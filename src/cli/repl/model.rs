@@ -8,6 +8,7 @@ use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::analysis::verify::verify;
 use crate::analysis::work_limit::ProcessClock;
+use crate::cli::arguments::SpanArgs;
 use crate::cli::render::Sources;
 use crate::cli::run::{self, Single};
 use crate::cli::{Exit, complain_in_files, width};
@@ -217,9 +218,11 @@ impl Loaded {
         let single = run::alone_step(&Single {
             model: &self.file,
             dataset: None,
-            kind: None,
-            end: Some(end),
-            steps: Some(steps.unwrap_or(STEPS)),
+            span: SpanArgs {
+                kind: None,
+                end: Some(end),
+                steps: Some(steps.unwrap_or(STEPS)),
+            },
         })?;
         Ok(before.cloned().chain([single]).collect())
     }
