@@ -21,10 +21,10 @@ pub(crate) fn hold(path: &Path) -> Option<File> {
     Some(file)
 }
 
-/// Returns whether a process holds a file.
+/// Returns whether a process holds a file; where nobody can tell, as on some file systems, it may.
 pub(crate) fn is_held(path: &Path) -> bool {
     let tried = File::open(path).map(|file| file.try_lock());
-    tried.is_ok_and(|locked| matches!(locked, Err(std::fs::TryLockError::WouldBlock)))
+    tried.is_ok_and(|locked| locked.is_err())
 }
 
 /// Returns whether there is a file or a folder at a path.

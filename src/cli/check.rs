@@ -73,7 +73,7 @@ pub fn run(args: &Args) -> Outcome {
         complain(&all, &sources);
         remark(format!(
             "{} in {}",
-            tally(errors, warnings),
+            tally(errors, warnings, count(Severity::Note)),
             number(args.files.len(), "file")
         ));
     }
@@ -220,8 +220,9 @@ fn number(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-fn tally(errors: usize, warnings: usize) -> String {
+fn tally(errors: usize, warnings: usize, notes: usize) -> String {
     match (errors, warnings) {
+        (0, 0) if notes > 0 => format!("nothing wrong, {}", number(notes, "note")),
         (0, 0) => "nothing wrong".into(),
         _ => format!(
             "{}, {}",

@@ -22,7 +22,7 @@ Examples:
   cognate group crane.adm                            groups and what is in them
   cognate group function crane.adm swing --expression '30*sin(90*t)' --ordinate angle
   cognate group function crane.adm push --direct 'STEP(TIME, 0, 0, 1, 50)'
-  cognate group function crane.adm lift --points '0,0 1,2 2,2.5' --ends not-a-knot
+  cognate group function crane.adm lift --points '0,0 1,2 2,2.5 3,2' --ends not-a-knot
   cognate group function crane.adm road --points road.csv --slopes 0,0
   cognate group create crane.adm Drives swing lift slider.X
   cognate group create crane.adm All --groups Drives USER_DEFINED

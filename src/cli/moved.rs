@@ -3,12 +3,12 @@
 use super::arguments::{KindName, SpanArgs, UnsolvedArgs};
 use super::run::{self, Single};
 use super::setup::Asked;
-use super::{Failure, complain_in_files, interrupt, remark};
+use super::{Failure, complain_in_files, interrupt, recorded, remark};
 use crate::analysis::session::script::obey;
 use crate::analysis::session::{Analysis, Options, Session};
 use crate::dataset::surface::Surfaces;
 use crate::diagnostic::Diagnostic;
-use crate::model::Model;
+use crate::model::{ElementKind, Family, Model};
 use crate::report::mechanism::{Dimension, Pair, Pictured};
 use crate::results::{self, Run, Status};
 use std::path::{Path, PathBuf};
@@ -85,9 +85,8 @@ impl Source {
         let is_dataset = has_ending(&self.file, "adm");
         if !is_dataset && !run::has_commands(&self.file) {
             let run = results::read(&self.file)?;
-            let dataset = self.dataset(&run)?;
-            let model = run::read_with(&dataset, Asked::All)?.model;
-            let folders = [dataset.parent(), self.file.parent()];
+            let (file, model) = self.model_of(&run)?;
+            let folders = [file.parent(), self.file.parent()];
             let folders = folders.into_iter().flatten().map(Path::to_path_buf);
             return Ok(Moved {
                 model,
@@ -111,10 +110,13 @@ impl Source {
         } else {
             run::script(&self.file, self.model.as_deref())?
         };
-        let options = self.unsolved.given_to(Options {
+        let mut options = self.unsolved.given_to(Options {
             full: true,
             ..Options::default()
         });
+        if is_dataset && self.span.end.is_none() {
+            options.skip.extend(without_effect_at_rest());
+        }
         let mut session = Session::new(job.reading.model, &job.base, options);
         session.folders = self
             .file
@@ -142,27 +144,28 @@ impl Source {
         })
     }
 
-    /// Returns the dataset of a run that was read: the one that is named, the one of the same name
-    /// beside it, or the one that its record names.
+    /// Returns the model of a run that was read, with its file: the one that is named, the dataset
+    /// of the same name beside it, or the one that its record names.
     ///
     /// # Errors
     /// When there is none.
-    fn dataset(&self, run: &Run) -> Result<PathBuf, Diagnostic> {
-        if let Some(model) = &self.model {
-            return Ok(model.clone());
-        }
-        let recorded = Path::new(&run.record.model);
+    fn model_of(&self, run: &Run) -> Result<(PathBuf, Model), Failure> {
+        let named = Path::new(&run.record.model).with_extension("adm");
         let beside = self.file.with_extension("adm");
-        let all = [beside, recorded.with_extension("adm")];
-        let found = all.into_iter().find(|p| p.is_file());
-        found.ok_or_else(|| {
-            let what = format!(
-                "{}: results say where bodies are, not what they are",
-                self.file.display()
-            );
-            Diagnostic::error("no_model", what).help("name the dataset: --model FILE.adm")
-        })
+        let found = [beside, named].into_iter().find(|p| p.is_file());
+        if let Some(dataset) = self.model.clone().or(found) {
+            let model = run::read_with(&dataset, Asked::All)?.model;
+            return Ok((dataset, model));
+        }
+        let file = recorded::model_file(&self.file, None)?;
+        Ok((file, recorded::model_of(&self.file, None)?))
     }
+}
+
+/// Returns the kinds of elements that have no effect on where assembled parts stand: forces, those
+/// that are not solved among them.
+fn without_effect_at_rest() -> impl Iterator<Item = ElementKind> {
+    ElementKind::of(Family::Force)
 }
 
 /// Assembles a model, without moving it.
@@ -176,6 +179,7 @@ pub fn assembled(
 ) -> Result<Moved, Vec<Diagnostic>> {
     let options = Options {
         full: true,
+        skip: without_effect_at_rest().collect(),
         ..Options::default()
     };
     let mut session = Session::new(model, name, options);

@@ -32,22 +32,32 @@ pub(super) fn model_of(results: &Path, given: Option<&Path>) -> Result<Model, Fa
     Ok(model)
 }
 
-/// Returns the file that was run: the `given` one, else that which the record of results names.
+/// Returns the file that was run: the `given` one, else that which the record of results names; of
+/// results of other programs the dataset of their name beside them.
 ///
 /// # Errors
-/// When there is no record that names one.
+/// When there is neither a record that names one nor such a dataset.
 pub(super) fn model_file(results: &Path, given: Option<&Path>) -> Result<PathBuf, Failure> {
     let record = record_of(results);
     let named = record.as_ref().and_then(|r| r["model"].as_str());
     match (given, named) {
         (Some(given), _) => Ok(given.to_owned()),
         (None, Some(named)) => Ok(beside(results, Path::new(named))),
-        (None, None) => {
-            let what = format!("{} has no record that names its model", results.display());
+        (None, None) => namesake(results).ok_or_else(|| {
+            let what = format!(
+                "{} has no record that names its model, nor a dataset of its name beside it",
+                results.display()
+            );
             let d = Diagnostic::error("no_model", what);
-            Err(d.help("--model FILE names it").into())
-        }
+            d.help("--model FILE names it").into()
+        }),
     }
+}
+
+/// Returns the dataset beside results that has their name.
+fn namesake(results: &Path) -> Option<PathBuf> {
+    let dataset = results.with_extension("adm");
+    dataset.is_file().then_some(dataset)
 }
 
 /// Reads the record beside results.
@@ -101,7 +111,7 @@ pub(super) fn add_measures(
     let asked = absent.filter_map(|name| Some((*name, MarkerMeasure::of(name)?)));
     let asked: Vec<(&str, MarkerMeasure)> = asked.collect();
     // without a model these are names like any other
-    let has_model = given.is_some() || record_of(file).is_some();
+    let has_model = given.is_some() || record_of(file).is_some() || namesake(file).is_some();
     if asked.is_empty() || !has_model {
         return Ok(());
     }

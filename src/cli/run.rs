@@ -67,10 +67,11 @@ pub struct Args {
     limits: LimitArgs,
     #[command(flatten)]
     output: output::FileArgs,
-    /// Record only this element, as JOINT/3, or this kind, as JOINT (repeatable)
+    /// Record only this element, as JOINT/3, or this kind, as JOINT (repeatable); tables show it
     #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
     only: Vec<Chosen>,
-    /// Record velocities and accelerations of the bodies' centres of mass, eight each
+    /// Record velocities and accelerations of the bodies' centres of mass, eight each; tables show
+    /// them
     #[arg(long)]
     body_motion: bool,
     /// Give every column bars of error (`name±`), from a further run at a smaller request

@@ -478,3 +478,86 @@ fn a_dimension_on_the_page_changes_as_the_distance_of_its_markers_does() {
     let shown = serde_json::json!([[true, false], [false, true], [true, false]]);
     assert_eq!(found["symbols"], shown);
 }
+
+#[test]
+fn results_without_a_record_find_the_dataset_of_their_name() {
+    let model = scratch("namesake", "m.adm", PENDULUM);
+    let out = model.with_file_name("out");
+    let run = [
+        "run",
+        path(&model),
+        "--end",
+        "1",
+        "--steps",
+        "10",
+        "--format",
+        "res",
+    ];
+    let done = cognate(&[&run[..], &["--out", path(&out), "--quiet"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    // as another program leaves them: the dataset and the results, no record
+    let alone = model.with_file_name("alone");
+    std::fs::create_dir_all(&alone).unwrap();
+    std::fs::copy(out.join("m.res"), alone.join("m.res")).unwrap();
+    let results = alone.join("m.res");
+    let page = alone.join("m.html");
+    let motion = [
+        "motion",
+        path(&results),
+        "--of",
+        "MARKER/21",
+        "--relative-to",
+        "10",
+    ];
+    let animate = ["animate", path(&results), "-o", path(&page)];
+    let _ = std::fs::remove_file(alone.join("m.adm"));
+    for asked in [&motion[..], &animate] {
+        let done = cognate(asked);
+        assert!(
+            done.code == 3 && done.err.contains("no_model"),
+            "{}",
+            done.err
+        );
+    }
+    std::fs::copy(&model, alone.join("m.adm")).unwrap();
+    for asked in [&motion[..], &animate] {
+        let done = cognate(asked);
+        assert_eq!(done.code, 0, "{}", done.err);
+    }
+}
+
+#[test]
+fn a_dataset_is_drawn_whatever_forces_it_has() {
+    let contact = "GRAPHICS/1, EXTERNAL, FILE=body.xmt_txt, RM=21\nGRAPHICS/2, EXTERNAL, FILE=body.xmt_txt, RM=10\n\
+        CONTACT/1, IGEOM=1, JGEOM=2, STIFFNESS=1E5, EXPONENT=1.5, DAMPING=10, DMAX=0.01\nREQUEST/1";
+    let model = scratch(
+        "drawn_unsolved",
+        "m.adm",
+        &PENDULUM.replacen("REQUEST/1", contact, 1),
+    );
+    let picture = model.with_extension("svg");
+    let run = cognate(&[
+        "run",
+        path(&model),
+        "--end",
+        "1",
+        "--out",
+        path(&picture.with_extension("d")),
+    ]);
+    assert_eq!(run.code, 4, "{}", run.err);
+    let check = cognate(&["check", path(&model)]);
+    assert!(
+        check.err.contains("nothing wrong, ") && check.err.contains(" note"),
+        "{}",
+        check.err
+    );
+    for asked in [
+        ["draw", path(&model), "-o", path(&picture)],
+        ["verify", path(&model), "--draw", path(&picture)],
+    ] {
+        let _ = std::fs::remove_file(&picture);
+        let done = cognate(&asked);
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(picture.is_file());
+    }
+}

@@ -168,12 +168,60 @@ fn the_motion_of_a_body_is_the_change_of_its_centre_of_mass_in_ground_axes() {
 }
 
 #[test]
+fn tables_show_the_elements_that_somebody_has_chosen_beside_requests() {
+    let shown = |options: Options| -> Vec<String> {
+        let run = simulated(LIFT, options, 0.1);
+        let columns = run.table_columns().into_iter();
+        columns.map(|c| run.columns[c].name.clone()).collect()
+    };
+    let requests = shown(all_sets());
+    assert!(
+        requests
+            .iter()
+            .all(|name| name == "time" || name.contains("REQUEST_"))
+    );
+    let only = |what: &str| Options {
+        only: vec![what.parse().unwrap()],
+        ..all_sets()
+    };
+    let joint = shown(only("JOINT/1"));
+    assert_eq!(joint[..requests.len()], requests);
+    assert!(
+        joint.contains(&"JOINT_1.FX".into()) && joint.contains(&"JOINT_1_VARIABLES.ANGLE".into())
+    );
+    assert!(
+        !joint
+            .iter()
+            .any(|name| name.starts_with("PART_") || name.starts_with("JOINT_2"))
+    );
+    // positions that an animation needs are recorded, not shown
+    let frames = Options {
+        frames: true,
+        ..only("1-JOINT1")
+    };
+    assert_eq!(shown(frames), joint);
+    let part = shown(only("PART/2"));
+    assert!(part.contains(&"PART_2_XFORM.X".into()) && !part.contains(&"PART_3_XFORM.X".into()));
+    let bodies = shown(Options {
+        body_rates: true,
+        ..all_sets()
+    });
+    assert!(
+        bodies.contains(&"PART_3_VELOCITY.VM".into()) && !bodies.contains(&"JOINT_1.FX".into())
+    );
+}
+
+#[test]
 fn many_requests_are_the_requests_of_their_elements() {
     let run = simulated(LIFT, all_sets(), 1.0);
     let same = |a: &str, b: &str| {
         let [a, b] = [a, b].map(|name| run.column(name).unwrap_or_else(|| panic!("{name}")));
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12));
     };
+    // no two have one number in a .req file
+    let mut numbers: Vec<u32> = run.requests.iter().map(|r| r.id).collect();
+    numbers.sort_unstable();
+    assert!(numbers.windows(2).all(|n| n[0] < n[1]), "{numbers:?}");
     same("MREQUEST_1.PART_2.DX", "REQUEST_3.DX");
     same("MREQUEST_1.PART_3.DX", "PART_3_XFORM.X");
     same("MREQUEST_2.JOINT_2.FY", "JOINT_2.FY");

@@ -38,6 +38,8 @@ pub struct Columns {
     bodies: Vec<(ElementId, Option<u32>)>,
     /// where these began
     origins: BTreeMap<ElementId, Origin>,
+    /// columns that the user has asked for, which tables show beside requests
+    wished: Vec<usize>,
     /// texts of the choice before, which have been read
     known: Vec<(String, Text)>,
 }
@@ -148,10 +150,15 @@ impl Columns {
             this.requests(model, run, &mut table, computed);
         }
         if selection.full {
+            let first = run.columns.len();
             this.elements(model, run, selection);
+            if !selection.only.is_empty() {
+                this.wished.extend(first..run.columns.len());
+            }
         }
         // without wishes of its own the table has everything that RESULTS asks for
         let has_own = table.len() > 1 || !selection.full;
+        table.append(&mut this.wished);
         run.table = if has_own { table } else { Vec::new() };
         this.known = Vec::new();
         this
@@ -211,6 +218,9 @@ impl Columns {
                     let unit = level_unit(level, c < 3).spelt(&run.units);
                     let name = format!("{}.{component}", run.entities[first + k].name);
                     let column = self.push(run, name, unit, What::Part { id, quantity });
+                    if selection.names(id) {
+                        self.wished.push(column);
+                    }
                     run.entities[first + k].components.push(Component {
                         name: (*component).into(),
                         column,
@@ -252,6 +262,9 @@ impl Columns {
                 };
                 let unit = level_unit(level, component < 4).spelt(&run.units);
                 let column = self.push(run, format!("{name}.{of}"), unit, what);
+                if selection.body_rates || selection.names(id) {
+                    self.wished.push(column);
+                }
                 let name = (*of).to_owned();
                 components.push(Component { name, column });
             }

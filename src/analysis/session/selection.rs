@@ -94,6 +94,11 @@ pub(super) struct Selection<'a> {
 }
 
 impl Selection<'_> {
+    /// Returns whether the user has chosen an element by name or kind: tables then show its sets.
+    pub(super) fn names(&self, id: ElementId) -> bool {
+        self.only.iter().any(|chosen| chosen.has(id))
+    }
+
     /// Returns whether an element has a set, whatever RESULTS leaves out of it.
     pub(super) fn has(&self, id: ElementId) -> bool {
         self.full && (self.only.is_empty() || self.only.iter().any(|chosen| chosen.has(id)))

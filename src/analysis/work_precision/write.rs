@@ -65,8 +65,12 @@ impl Study {
         match self.recommended(wanted) {
             Some(row) => {
                 let error = row.error().unwrap_or_default().largest;
+                let error = match error > 0.0 {
+                    true => format!("{error:.1e}"),
+                    false => "no error found".to_owned(),
+                };
                 format!(
-                    "for an error of {wanted:.0e}: --method {} --error {:.0e} ({error:.1e} in {} of solving)",
+                    "for an error of {wanted:.0e}: --method {} --error {:.0e} ({error}, in {} of solving)",
                     row.method,
                     row.request,
                     duration(row.cost.solve)
