@@ -25,7 +25,8 @@
 // belong to one thread at a time, which may change between calls; only cognate_session_interrupt may be called
 // while another thread is at work in the session.
 //
-// Callbacks are called in the thread that called cognate. No C++ exception may leave them.
+// Callbacks are called in the thread that called cognate. No C++ exception may leave them. Of several routines that
+// stand for one USER the last that was given counts.
 
 
 // The severity of a diagnostic.

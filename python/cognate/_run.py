@@ -115,7 +115,11 @@ class Run(Mapping[str, NDArray[np.float64]]):
         advice = [f"did you mean {', '.join(near)}?"] if near else []
         advice.append("columns are asked for before a run: model.run(…, columns=[…])")
         advice.append("after it run.measure(…) finds motions of markers, of a run with full=True")
-        said = Diagnostic("unknown_column", "error", f"there is no column `{name}`", advice=tuple(advice))
+        return self._no_column(f"there is no column `{name}`", advice)
+
+    @staticmethod
+    def _no_column(message: str, advice: list[str]) -> ColumnError:
+        said = Diagnostic("unknown_column", "error", message, advice=tuple(advice))
         text = "\n  help: ".join([f"error[{said.code}]: {said.message}", *advice])
         return ColumnError([Diagnostic(**{**vars(said), "text": text})])
 
@@ -176,7 +180,8 @@ class Run(Mapping[str, NDArray[np.float64]]):
         for index, (_, _, bar_of) in enumerate(self._columns):
             if bar_of == of:
                 return self._array(index)
-        raise self._missing(f"{name}±")
+        what = f"the column `{name}` has no bars of error"
+        raise self._no_column(what, ["they are asked for before a run: model.run(…, accuracy=True)"])
 
     def measure(self, expression: str, model: Model | None = None) -> NDArray[np.float64]:
         """Find a displacement, velocity or acceleration of markers from what has been recorded.

@@ -111,7 +111,7 @@ impl Builder<'_> {
         }
         let known = owner.owner().and_then(|element| {
             let mut hooks = self.hooks.iter();
-            let closure = hooks.position(|h| h.stands_for(element, formula));
+            let closure = hooks.rposition(|h| h.stands_for(element, formula));
             closure.map(|closure| (element, closure))
         });
         let Some((element, closure)) = known else {

@@ -281,6 +281,33 @@ fn a_closure_under_a_misspelt_name_is_refused_with_the_name_that_is_near() {
     }
 }
 
+#[test]
+fn of_several_closures_for_a_user_the_last_counts() {
+    let go = |names: &[&str]| {
+        let mut s = Session::new(pendulum(), "odd", Options::default());
+        s.add_column("SFORCE(3, 0, 8, 1)").expect("a column");
+        for (k, name) in names.iter().enumerate() {
+            let force = -(k as f64) - 1.0;
+            s.register(name, &[], move |_, out| out[0] = force);
+        }
+        let done = s.simulate(Analysis::Dynamic, 0.01, 1, &mut Unwatched);
+        assert_eq!(done, Ok(Status::Completed), "{names:?}");
+        let force = s.run.column("SFORCE(3, 0, 8, 1)");
+        force.and_then(|f| f.last().copied()).expect("a row").abs()
+    };
+    for last in ["SFORCE/3", "sforce/3", "7"] {
+        assert_eq!(go(&[last]), 1.0);
+        assert_eq!(go(&["SFORCE/3", last]), 2.0, "{last}");
+        assert_eq!(go(&["7", "sforce/3", last]), 3.0, "{last}");
+    }
+    // also where the one before was sound
+    let mut s = Session::new(pendulum(), "odd", Options::default());
+    s.register("SFORCE/3", &[], |_, out| out[0] = -1.0);
+    s.register("SFORCE/3", &["WZZ(1,2)"], |_, out| out[0] = -1.0);
+    let found = s.simulate(Analysis::Dynamic, 0.01, 1, &mut Unwatched);
+    assert_eq!(about(found).0, "unknown_name");
+}
+
 fn program() -> Program {
     let expr = Expr::parse("TIME*DX(1, 2)").expect("an expression");
     expr.compile(&Bindings::default()).expect("a program")

@@ -22,6 +22,8 @@ impl Session {
     /// Computes what `USER(…)` stands for by a closure that is shared; see
     /// [`register`](Self::register).
     pub fn register_hook(&mut self, hook: Hook) {
+        let is_other = |other: &Hook| !other.name.eq_ignore_ascii_case(&hook.name);
+        self.hooks.retain(is_other);
         self.hooks.push(hook);
         self.starts = Starts::default();
         if self.carried.is_none() {
