@@ -27,7 +27,7 @@
 //! rounding that is proven so may be far larger than the request: no step is shortened for it.
 //!
 //! The smallest of three probes counts: where a state lies within rounding of a jump of the rates,
-//! a probe across it measures the jump. That all three cross it is unlikely, and [`largest`]
+//! a probe across it measures the jump. That all three cross it is unlikely, and [`Noise::largest`]
 //! bounds the harm.
 //!
 //! Source: Moré & Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), for the
