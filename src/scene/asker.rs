@@ -49,6 +49,18 @@ impl Asker {
         Self::Function(element, Part::Argument(argument))
     }
 
+    /// Returns the element that asks, itself or by a function; `None` for others.
+    pub fn element(&self) -> Option<ElementId> {
+        match self {
+            Self::Element(element) | Self::Function(element, _) => Some(*element),
+            Self::Column(_)
+            | Self::Measure(_)
+            | Self::Input(_)
+            | Self::Equation(_)
+            | Self::Rate(_) => None,
+        }
+    }
+
     /// Returns the element whose function asks; `None` for others.
     pub fn owner(&self) -> Option<ElementId> {
         match self {

@@ -91,7 +91,8 @@ impl Session {
         for &(at, row, off) in &trajectory.beyond {
             self.warn(RunWarning::BeyondTolerance {
                 at,
-                row: (&scene.rows[row]).into(),
+                element: scene.rows[row].element,
+                equation: scene.rows[row].equation.clone(),
                 off,
                 is_length: alignment::is_length(scene, row),
                 unit: scene.length_unit.clone(),

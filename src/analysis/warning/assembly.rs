@@ -122,7 +122,12 @@ impl AssemblyWarning {
 
     /// Returns the element that it is about.
     pub(super) fn subject(&self) -> Subject {
-        let id = match *self {
+        self.element().into()
+    }
+
+    /// Returns the element that it is about.
+    pub(super) fn element(&self) -> ElementId {
+        match *self {
             AssemblyWarning::Axes(ref found) => found.element,
             AssemblyWarning::Turned { ref parts } => {
                 (parts.first()).map_or(ElementKind::Part.id(0), |first| first.0)
@@ -134,8 +139,7 @@ impl AssemblyWarning {
             | AssemblyWarning::Embedded { element, .. }
             | AssemblyWarning::LeftOut { element, .. }
             | AssemblyWarning::HeldSum { element, .. } => element,
-        };
-        id.into()
+        }
     }
 
     /// Returns the sentence after the subject.

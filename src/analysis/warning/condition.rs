@@ -64,7 +64,12 @@ impl ConditionWarning {
 
     /// Returns the element that it is about.
     pub(super) fn subject(&self) -> Subject {
-        let id = match *self {
+        self.element().into()
+    }
+
+    /// Returns the element that it is about.
+    pub(super) fn element(&self) -> ElementId {
+        match *self {
             ConditionWarning::ViewOrder { ref joints } => {
                 (joints.first()).map_or(ElementKind::Joint.id(0), |first| first.0)
             }
@@ -72,8 +77,7 @@ impl ConditionWarning {
             | ConditionWarning::UnmetRate { element, .. }
             | ConditionWarning::Unmet { element, .. }
             | ConditionWarning::UnmetContact { element, .. } => element,
-        };
-        id.into()
+        }
     }
 
     /// Returns the sentence after the subject.

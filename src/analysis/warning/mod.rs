@@ -77,7 +77,13 @@ impl Warning {
 
     /// Returns the element that it is about, where it is one.
     fn id(&self) -> Option<ElementId> {
-        self.subject()?.element.parse().ok()
+        match self {
+            Warning::Scene(d) => of_diagnostic(d),
+            Warning::Assembly(w) => Some(w.element()),
+            Warning::Condition(w) => Some(w.element()),
+            Warning::Run(w) => w.element(),
+            Warning::Verification(w) => w.element(),
+        }
     }
 
     /// Returns it as the record of a run of that model keeps it.
@@ -114,7 +120,12 @@ impl<'m> Names<'m> {
     }
 }
 
-/// Returns the element that a diagnostic is about.
+/// Returns the element that a diagnostic is about, which it holds as it is printed.
+fn of_diagnostic(d: &Diagnostic) -> Option<ElementId> {
+    d.element.as_deref()?.parse().ok()
+}
+
+/// Returns the subject of a diagnostic.
 fn owner(d: &Diagnostic) -> Subject {
     d.subject().unwrap_or_else(|| "the model".into())
 }

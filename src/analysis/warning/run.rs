@@ -1,6 +1,6 @@
 //! Warnings of simulations: of motions that jump, of columns without values, of ranks, of methods.
 
-use super::Names;
+use super::{Names, of_diagnostic};
 use crate::analysis::quantity::{amount, place, short};
 use crate::diagnostic::{Diagnostic, Subject};
 use crate::model::{ElementId, ElementKind};
@@ -22,8 +22,10 @@ pub enum RunWarning {
     BeyondTolerance {
         /// when it was farthest off
         at: f64,
-        /// the row: "JOINT/4 Zi.Xj"
-        row: Subject,
+        /// the element of the row
+        element: ElementId,
+        /// the row of it: `Zi.Xj`
+        equation: String,
         /// how far, in rad or as a length
         off: f64,
         /// whether that is a length
@@ -159,8 +161,34 @@ impl RunWarning {
             RunWarning::Gap { column, .. } => Some(column.as_str().into()),
             RunWarning::EnergyGrows { fed_by, .. } => fed_by.map(Subject::from),
             RunWarning::OutsideData { element, .. } => Some((*element).into()),
-            RunWarning::BeyondTolerance { row, .. } => Some(row.clone()),
+            RunWarning::BeyondTolerance {
+                element, equation, ..
+            } => Some(Subject::part_of(*element, equation)),
             RunWarning::NoFreedom
+            | RunWarning::Held
+            | RunWarning::NothingToSimulate { .. }
+            | RunWarning::Rank(_)
+            | RunWarning::Unstable { .. }
+            | RunWarning::BelowRounding { .. }
+            | RunWarning::EnergyUnsure { .. }
+            | RunWarning::PhaseUnsure { .. }
+            | RunWarning::StabilityLimited { .. }
+            | RunWarning::CompanionEnded { .. } => None,
+        }
+    }
+
+    /// Returns the element that it is about, where it is one.
+    pub(super) fn element(&self) -> Option<ElementId> {
+        match self {
+            RunWarning::MotionJumps { motion, .. } => Some(ElementKind::Motion.id(*motion)),
+            RunWarning::MethodReplaced(d) | RunWarning::LockedWithoutMotions(d) => of_diagnostic(d),
+            RunWarning::ContactsWithoutFreedom(contacts) => contacts.first().copied(),
+            RunWarning::EmptyColumn(unsupported) => unsupported.asked_by.element(),
+            RunWarning::EnergyGrows { fed_by, .. } => *fed_by,
+            RunWarning::OutsideData { element, .. }
+            | RunWarning::BeyondTolerance { element, .. } => Some(*element),
+            RunWarning::Gap { .. }
+            | RunWarning::NoFreedom
             | RunWarning::Held
             | RunWarning::NothingToSimulate { .. }
             | RunWarning::Rank(_)
