@@ -23,8 +23,11 @@
 //! should be scaled alike by the caller (a length of the mechanism).
 //!
 //! *Zeros*: a reflection touches the columns where its vector is not zero, and only rows that have
-//! something there; the parts of all other rows stay as they were measured. So rows that share
-//! columns with few others take about as long as their entries.
+//! something there; the parts of all other rows stay as they were measured. The columns between
+//! which a row has anything tell most of the others at a glance. So rows that share columns with
+//! few others, as in a long chain of loops, take about as long as their entries.
+
+use std::ops::Range;
 
 /// Part of a row outside the others, relative to its length, below which it depends on them.
 pub const TOLERANCE: f64 = 1e-8;
@@ -108,8 +111,9 @@ impl Rank {
         let mut remaining: Vec<usize> = (0..m).collect();
         let (mut chosen, mut reflections) = (Vec::new(), Vec::new());
         let (mut kept, mut dropped) = (1.0f64, 0.0f64);
-        // the part of each row outside those chosen so far
+        // the part of each row outside those chosen so far, and the columns that it lies between
         let mut part: Vec<f64> = l.iter().map(|row| norm(row)).collect();
+        let mut span: Vec<Range<usize>> = l.iter().map(|row| span_from(row, 0, n)).collect();
         while !remaining.is_empty() {
             let k = chosen.len();
             let open = || remaining.iter().take_while(|i| **i < leading);
@@ -123,15 +127,21 @@ impl Rank {
                 .unwrap_or(0);
             let pivot = remaining.remove(at);
             kept = kept.min(part[pivot]);
-            let v = reflection(&l[pivot], k);
+            let v = reflection(&l[pivot], k, span[pivot].end);
             reflect(&v, &mut l[pivot]);
+            let others = v.get(1).map_or(n, |e| e.0)..v.last().map_or(0, |e| e.0 + 1);
             for &i in &remaining {
+                let apart = span[i].start >= others.end || others.start >= span[i].end;
+                if apart && span[i].start != k {
+                    continue;
+                }
                 let row = &mut l[i];
                 if reflect(&v, row) || row[k] != 0.0 {
-                    part[i] = norm(&row[k + 1..]);
+                    span[i] = span_from(row, k + 1, span[i].end.max(others.end));
+                    part[i] = norm(&row[span[i].clone()]);
                 }
             }
-            l[pivot][k + 1..].fill(0.0);
+            l[pivot][k + 1..span[pivot].end.max(k + 1)].fill(0.0);
             reflections.push(v);
             chosen.push(pivot);
         }
@@ -170,6 +180,15 @@ impl Rank {
     pub fn dependent(&self) -> Vec<Dependence> {
         let r = self.rank;
         let mut found = Vec::new();
+        // entries of the rows of L₁ before the last
+        let entries = |j: usize| {
+            let row = self.l[self.order[j]][..j].iter().copied().enumerate();
+            row.filter(|e| e.1 != 0.0).collect()
+        };
+        let before: Vec<Vec<(usize, f64)>> = match r < self.order.len() {
+            true => (0..r).map(entries).collect(),
+            false => Vec::new(),
+        };
         for row in &self.order[r..] {
             let target = &self.l[*row];
             // back substitution with L₁ᵀ
@@ -178,10 +197,9 @@ impl Rank {
                 if c[j] == 0.0 {
                     continue;
                 }
-                let pivot = &self.l[self.order[j]];
-                c[j] /= pivot[j];
-                for i in 0..j {
-                    c[i] -= pivot[i] * c[j];
+                c[j] /= self.l[self.order[j]][j];
+                for &(i, x) in &before[j] {
+                    c[i] -= x * c[j];
                 }
             }
             let mut combination: Vec<(usize, f64)> = (0..r)
@@ -284,7 +302,7 @@ impl Rank {
         let right = |i: &usize| weight(*i) * b[*i] / self.length[*i];
         let mut rest: Vec<f64> = self.order.iter().map(right).collect();
         for k in 0..r {
-            let v = reflection(&columns[k], k);
+            let v = reflection(&columns[k], k, m);
             for column in &mut columns[k..] {
                 reflect(&v, column);
             }
@@ -328,8 +346,21 @@ fn norm(x: &[f64]) -> f64 {
             .sqrt()
 }
 
-/// Returns the Householder vector that turns `x[k..]` into its first component.
-fn reflection(x: &[f64], k: usize) -> Reflection {
+/// Returns the columns between `from` and `end` outside which a row has nothing there; an empty
+/// range at `end` where it has nothing at all.
+fn span_from(row: &[f64], from: usize, end: usize) -> Range<usize> {
+    let entries = &row[from..end];
+    let Some(first) = entries.iter().position(|x| *x != 0.0) else {
+        return end..end;
+    };
+    let last = entries.iter().rposition(|x| *x != 0.0).unwrap_or(first);
+    from + first..from + last + 1
+}
+
+/// Returns the Householder vector that turns `x[k..]`, which has nothing from `end` on, into its
+/// first component.
+fn reflection(x: &[f64], k: usize, end: usize) -> Reflection {
+    let x = &x[..end.max(k + 1)];
     let length = norm(&x[k..]);
     let first = x[k] + if x[k] < 0.0 { -length } else { length };
     let others = x.iter().copied().enumerate().skip(k + 1);

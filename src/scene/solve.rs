@@ -199,6 +199,20 @@ pub const LENT_INERTIA: f64 = 1e-4;
 /// is left.
 const INERTIA_ITERATIONS: usize = 3;
 
+/// Part of the inertia of all that a freedom moves above which what remains of it, after what it
+/// carries has been eliminated, is no rounding.
+const CLEAR_PIVOT: f64 = 1e-9;
+
+/// Returns whether each freedom clearly has an inertia of its own: `rows` is the mass matrix as for
+/// [`MassFactor::new`], `inverse_d` the inverses of its pivots, however they were found   (n_v).
+pub fn have_inertia(rows: &[Vec<(usize, f64)>], inverse_d: &[f64]) -> bool {
+    let largest = rows.iter().fold(0.0, |m: f64, row| m.max(row[0].1));
+    let clear = |(row, &r): (&Vec<(usize, f64)>, &f64)| {
+        r > 0.0 && 1.0 / r > CLEAR_PIVOT * row[0].1.max(CLEAR_PIVOT * largest)
+    };
+    rows.iter().zip(inverse_d).all(clear)
+}
+
 /// Returns the inertia to lend to each freedom that has none; nothing where all have some   (n_v or
 /// 0).
 ///

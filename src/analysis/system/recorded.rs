@@ -22,6 +22,7 @@ use super::tunnelling::ThicknessBounds;
 use super::turns::Turns;
 use crate::diagnostic::Diagnostic;
 use crate::expr::program::Program;
+use crate::scene::articulated::ArticulatedFactor;
 use crate::scene::cams;
 use crate::scene::configuration::{Configuration, Configured, Way};
 use crate::scene::elimination;
@@ -30,8 +31,8 @@ use crate::scene::programs::{self, record};
 use crate::scene::solve;
 use crate::scene::{Scene, Source};
 
-/// Depth of the deepest forest whose rate is also recorded from the entries of the mass matrix: the
-/// number of its operations grows with the square of the depth.
+/// Depth of the deepest forest that is also eliminated by the entries of the mass matrix: the
+/// number of operations grows with the square of the depth.
 const MAX_DEPTH_OF_MATRIX: usize = 40;
 /// Least usual size of a pivot, as a part of the largest: rows that happen to vanish where pivots
 /// are measured are taken to be like the others.
@@ -177,7 +178,15 @@ pub(super) fn lent_inertia(scene: Configured<'_>) -> Vec<f64> {
     }
     let mut numbers = vec![0.0; scene.layout.len()];
     numbers[scene.layout.q()].copy_from_slice(&scene.initial_q);
-    let rows = Equations::new(scene, &numbers).mass_rows();
+    let at = Equations::new(scene, &numbers);
+    let rows = at.mass_rows();
+    // eliminating the entries of a deep forest takes the cube of its depth
+    if scene.depth() > MAX_DEPTH_OF_MATRIX {
+        let factor = ArticulatedFactor::new(&scene, at.links());
+        if solve::have_inertia(&rows, &factor.inverse()) {
+            return Vec::new();
+        }
+    }
     let free = scene.freedoms.iter().filter(|f| f.v.is_some());
     let turns: Vec<bool> = free.map(|f| f.turn).collect();
     solve::lent_inertia(rows, &turns, scene.length)

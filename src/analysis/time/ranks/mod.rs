@@ -9,10 +9,12 @@
 
 mod locked;
 mod passes;
+mod selection;
 mod sides;
 
 pub use locked::{Lock, locked};
 pub use passes::{Pass, passes};
+use selection::{norm, select};
 use sides::Loop;
 pub use sides::{Side, Sides};
 
@@ -123,62 +125,6 @@ fn gradients(scene: Configured<'_>, numbers: &[f64]) -> Vec<Vec<f64>> {
         row.iter_mut().for_each(|x| *x /= one);
     }
     all
-}
-
-/// Chooses rows one after the other by what they determine beyond those before, the preferred ones
-/// unless another determines three times as much; the chosen ones, and the least that any of them
-/// determined. Unlike in `numeric::rank` a short row determines little.
-fn select(
-    mut rows: Vec<Vec<f64>>,
-    preferred: impl Fn(usize) -> bool,
-    most: usize,
-) -> (Vec<usize>, f64) {
-    let (mut chosen, mut least) = (Vec::new(), f64::INFINITY);
-    let mut open: Vec<usize> = (0..rows.len()).collect();
-    let mut sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
-    while chosen.len() < most {
-        let larger = |a: &&usize, b: &&usize| sizes[**a].total_cmp(&sizes[**b]);
-        let Some(&largest) = open.iter().max_by(larger) else {
-            break;
-        };
-        let best = open.iter().filter(|r| preferred(**r)).max_by(larger);
-        let pivot = match best {
-            Some(&r) if sizes[r] > sizes[largest] / PREFERENCE => r,
-            _ => largest,
-        };
-        let length = sizes[pivot];
-        if length.is_nan() || length < DEPENDENT {
-            break;
-        }
-        least = least.min(length);
-        open.retain(|r| *r != pivot);
-        // rows that have nothing where the chosen one has something stay as they are
-        let entries = rows[pivot].iter().enumerate().filter(|e| *e.1 != 0.0);
-        let unit: Vec<(usize, f64)> = entries.map(|(k, x)| (k, x / length)).collect();
-        for &r in &open {
-            let mut changed = false;
-            // twice, so that nothing is left of it but rounding
-            for _ in 0..2 {
-                let row = &mut rows[r];
-                let along: f64 = unit.iter().map(|&(k, x)| row[k] * x).sum();
-                if along == 0.0 {
-                    break;
-                }
-                unit.iter().for_each(|&(k, x)| row[k] -= along * x);
-                changed = true;
-            }
-            if changed {
-                sizes[r] = norm(&rows[r]);
-            }
-        }
-        chosen.push(pivot);
-    }
-    chosen.sort_unstable();
-    (chosen, least)
-}
-
-fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Returns the least that any row of a loop determines beyond the others: zero where they are

@@ -1,0 +1,260 @@
+//! The choice of rows, one after the other, by what each determines beyond those chosen before.
+//!
+//! ```text
+//! few columns    row ← row − (row·u) u                u: the unit of the chosen row       (1)
+//! many columns   row ← (I − v vᵀ) row, less column c   v turns the chosen row into c       (2)
+//! ```
+//!
+//! By (1) what is left of a row reaches as far as all rows that it hangs together with: in a long
+//! chain of loops to the end of the chain, and the time grows with the cube of the length. Under
+//! (2) it reaches as far as its neighbours, because the column of which least is left goes with
+//! each chosen row; the lengths are the same.
+
+use super::PREFERENCE;
+use crate::analysis::start::assemble::DEPENDENT;
+
+/// Number of columns from which on reflections of sparse rows are faster.
+const MANY_COLUMNS: usize = 150;
+
+/// Chooses rows, the preferred ones unless another determines three times as much; the chosen ones,
+/// and the least that any of them determined. Unlike in `numeric::rank` a short row determines
+/// little.
+pub(super) fn select(
+    rows: Vec<Vec<f64>>,
+    preferred: impl Fn(usize) -> bool,
+    most: usize,
+) -> (Vec<usize>, f64) {
+    let n_columns = rows.first().map_or(0, Vec::len);
+    let sizes = rows.iter().map(|row| norm(row)).collect();
+    if n_columns < MANY_COLUMNS {
+        let mut rows = rows;
+        let take = |pivot: usize, open: &[usize], sizes: &mut [f64]| {
+            take_away(&mut rows, pivot, open, sizes);
+        };
+        return choose(sizes, preferred, most, take);
+    }
+    let mut rows = Reflected::new(&rows, n_columns);
+    let take = |pivot: usize, open: &[usize], sizes: &mut [f64]| {
+        rows.take_away(pivot, open, sizes);
+    };
+    choose(sizes, preferred, most, take)
+}
+
+/// Chooses rows by what is left of each; `take_away` takes a chosen row from the open ones, and
+/// measures these again.
+fn choose(
+    mut sizes: Vec<f64>,
+    preferred: impl Fn(usize) -> bool,
+    most: usize,
+    mut take_away: impl FnMut(usize, &[usize], &mut [f64]),
+) -> (Vec<usize>, f64) {
+    let (mut chosen, mut least) = (Vec::new(), f64::INFINITY);
+    let mut open: Vec<usize> = (0..sizes.len()).collect();
+    while chosen.len() < most {
+        let larger = |a: &&usize, b: &&usize| sizes[**a].total_cmp(&sizes[**b]);
+        let Some(&largest) = open.iter().max_by(larger) else {
+            break;
+        };
+        let best = open.iter().filter(|r| preferred(**r)).max_by(larger);
+        let pivot = match best {
+            Some(&r) if sizes[r] > sizes[largest] / PREFERENCE => r,
+            _ => largest,
+        };
+        let length = sizes[pivot];
+        if length.is_nan() || length < DEPENDENT {
+            break;
+        }
+        least = least.min(length);
+        open.retain(|r| *r != pivot);
+        take_away(pivot, &open, &mut sizes);
+        chosen.push(pivot);
+    }
+    chosen.sort_unstable();
+    (chosen, least)
+}
+
+/// Takes what a chosen row determines from the open ones (1).
+fn take_away(rows: &mut [Vec<f64>], pivot: usize, open: &[usize], sizes: &mut [f64]) {
+    let length = sizes[pivot];
+    // rows that have nothing where the chosen one has something stay as they are
+    let entries = rows[pivot].iter().enumerate().filter(|e| *e.1 != 0.0);
+    let unit: Vec<(usize, f64)> = entries.map(|(k, x)| (k, x / length)).collect();
+    for &r in open {
+        let mut changed = false;
+        // twice, so that nothing is left of it but rounding
+        for _ in 0..2 {
+            let row = &mut rows[r];
+            let along: f64 = unit.iter().map(|&(k, x)| row[k] * x).sum();
+            if along == 0.0 {
+                break;
+            }
+            unit.iter().for_each(|&(k, x)| row[k] -= along * x);
+            changed = true;
+        }
+        if changed {
+            sizes[r] = norm(&rows[r]);
+        }
+    }
+}
+
+pub(super) fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// What is left of sparse rows, in columns that are turned with each row that is taken away.
+struct Reflected {
+    /// columns, ascending, and values, by row
+    rows: Vec<Vec<(usize, f64)>>,
+    /// rows that have, or once had, something in a column
+    in_column: Vec<Vec<usize>>,
+    /// the row by which each row was met last
+    met_by: Vec<usize>,
+}
+
+impl Reflected {
+    fn new(rows: &[Vec<f64>], n_columns: usize) -> Self {
+        let sparse = |row: &Vec<f64>| -> Vec<(usize, f64)> {
+            let entries = row.iter().copied().enumerate();
+            entries.filter(|e| e.1 != 0.0).collect()
+        };
+        let rows: Vec<Vec<(usize, f64)>> = rows.iter().map(sparse).collect();
+        let mut in_column = vec![Vec::new(); n_columns];
+        for (r, row) in rows.iter().enumerate() {
+            row.iter().for_each(|e| in_column[e.0].push(r));
+        }
+        Self {
+            met_by: vec![usize::MAX; rows.len()],
+            rows,
+            in_column,
+        }
+    }
+
+    /// Takes what a chosen row determines from the open ones, which are ascending (2).
+    fn take_away(&mut self, pivot: usize, open: &[usize], sizes: &mut [f64]) {
+        let mut v = std::mem::take(&mut self.rows[pivot]);
+        // the column in the fewest rows is the one that goes
+        let Some(&(c, first)) = v.iter().min_by_key(|e| self.in_column[e.0].len()) else {
+            return;
+        };
+        let length = first.signum() * sizes[pivot];
+        for (_, x) in v.iter_mut().filter(|e| e.0 == c) {
+            *x += length;
+        }
+        let scale = (length * (length + first)).sqrt().recip();
+        v.iter_mut().for_each(|e| e.1 *= scale);
+        for &(column, _) in &v {
+            for k in 0..self.in_column[column].len() {
+                let r = self.in_column[column][k];
+                if self.met_by[r] != pivot && open.binary_search(&r).is_ok() {
+                    self.met_by[r] = pivot;
+                    self.reflect(r, &v, c);
+                    sizes[r] = self.rows[r].iter().map(|e| e.1 * e.1).sum::<f64>().sqrt();
+                }
+            }
+        }
+    }
+
+    /// Reflects a row, and drops its column `c`.
+    fn reflect(&mut self, r: usize, v: &[(usize, f64)], c: usize) {
+        let row = std::mem::take(&mut self.rows[r]);
+        let mut at = 0;
+        let mut along = 0.0;
+        for &(column, x) in &row {
+            at += v[at..].iter().take_while(|e| e.0 < column).count();
+            along += v.get(at).filter(|e| e.0 == column).map_or(0.0, |e| x * e.1);
+        }
+        let mut left = Vec::with_capacity(row.len() + v.len());
+        let (mut own, mut other) = (row.into_iter().peekable(), v.iter().peekable());
+        loop {
+            let (column, x) = match (own.peek(), other.peek()) {
+                (Some(&(a, x)), Some(&&(b, y))) if a == b => {
+                    (own.next(), other.next());
+                    (a, x - along * y)
+                }
+                (Some(&(a, x)), Some(&&(b, _))) if a < b => {
+                    own.next();
+                    (a, x)
+                }
+                (_, Some(&&(b, y))) => {
+                    other.next();
+                    self.in_column[b].push(r);
+                    (b, -along * y)
+                }
+                (Some(&(a, x)), None) => {
+                    own.next();
+                    (a, x)
+                }
+                (None, None) => break,
+            };
+            if column != c && x != 0.0 {
+                left.push((column, x));
+            }
+        }
+        self.rows[r] = left;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of a chain of loops: each reads three columns, and a few follow from others.
+    fn chain(n: usize) -> Vec<Vec<f64>> {
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for k in 0..n {
+            let mut row = vec![0.0; n + 2];
+            for j in 0..3 {
+                row[k + j] = (1.0 + 0.7 * (3 * k + j) as f64).sin();
+            }
+            rows.push(row);
+            if k % 10 == 9 {
+                let sum = (0..n + 2).map(|j| rows[k][j] - 0.5 * rows[k - 2][j]);
+                let sum = sum.collect();
+                rows.push(sum);
+            }
+        }
+        rows
+    }
+
+    #[test]
+    fn reflections_choose_the_rows_that_differences_choose() {
+        for n in [20, 60, 200] {
+            let rows = chain(n);
+            let sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
+            let mut dense = rows.clone();
+            let mut sparse = Reflected::new(&rows, n + 2);
+            for preference in [1, 2, 3] {
+                let preferred = |r: usize| r % preference == 0;
+                let by_differences = choose(sizes.clone(), preferred, usize::MAX, |p, o, s| {
+                    take_away(&mut dense, p, o, s);
+                });
+                let by_reflections = choose(sizes.clone(), preferred, usize::MAX, |p, o, s| {
+                    sparse.take_away(p, o, s);
+                });
+                assert_eq!(by_differences.0.len(), n);
+                assert_eq!(by_differences.0, by_reflections.0, "{n}");
+                let (a, b) = (by_differences.1, by_reflections.1);
+                assert!((a - b).abs() < 1e-9 * a, "{n}: {a} {b}");
+                (dense, sparse) = (rows.clone(), Reflected::new(&rows, n + 2));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_left_of_a_row_reaches_as_far_as_its_neighbours() {
+        let rows = chain(400);
+        let mut left = Reflected::new(&rows, 402);
+        let sizes: Vec<f64> = rows.iter().map(|row| norm(row)).collect();
+        let mut longest = 0;
+        choose(
+            sizes,
+            |_| false,
+            usize::MAX,
+            |pivot, open, sizes| {
+                left.take_away(pivot, open, sizes);
+                longest = longest.max(left.rows.iter().map(Vec::len).max().unwrap_or(0));
+            },
+        );
+        assert!(longest < 20, "{longest}");
+    }
+}
